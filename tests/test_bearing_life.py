@@ -16,8 +16,7 @@ from solidgear.bearings.catalogued import catalogued, state
 from solidgear.bearings.duty import DutyPoint, duty_life
 from solidgear.bearings.equivalent import equivalent_load, factors, static_load
 from solidgear.bearings.geometry import Inside, inner_geometry
-from solidgear.bearings.life import life
-from solidgear.bearings.modified_life import life_factor, reference_viscosity, reliability_factor
+from solidgear.bearings.life import life, life_factor, reference_viscosity, reliability_factor
 from solidgear.bearings.rating import (
     fatigue_limit,
     rated,
@@ -130,7 +129,7 @@ def test_a_slice_is_judged_at_the_load_of_a_row_of_its_like():
     row = RollerRow(400, 1e-3, 0.2, length=1e-3, profile="straight")
     inside = Inside(400, 1e-3, 1e-3, 0.2, 0.0, (0.5, 0.5))
     bearing = RollingBearing((row, row))
-    rows = bearing.contacts(bearing.motion([6000.0, 0, 0, 0, 0, 0], held=(1, 3, 5)))
+    rows = bearing.contacts(bearing.motion([6000.0, 0, 0, 0, 0, 0], fixed=(1, 3, 5)))
     done = damage(rows, raceways(inside, 5000.0))
     smooth = done.slice_loads / edge_stress(30)
     assert smooth == pytest.approx(np.full((2, 30), 3000.0), rel=5e-3)
@@ -171,7 +170,7 @@ def lives_at_rating(text, share):
         capacity = raceways(made.inside, dynamic)
         lives = []
         for bearing in (turned(made, place) for place in (0, 0.25, 0.5, 0.75)):
-            motion = bearing.motion([share * dynamic, 0, 0, 0, 0, 0], held=(1, 3, 5))
+            motion = bearing.motion([share * dynamic, 0, 0, 0, 0, 0], fixed=(1, 3, 5))
             lives.append(damage(bearing.contacts(motion), capacity).life)
         found.append(np.mean(lives) / 1e6 * share ** (3 if data.balls else 10 / 3))
     return np.array(found)

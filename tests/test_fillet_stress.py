@@ -13,8 +13,7 @@ from solidgear.scene import Chamfer, Fillet
 from solidgear.solve.backends.matrix import FactorError
 from solidgear.solve.statics import flexibility
 from solidgear.studies.stress import notch
-from solidgear.studies.stress.notch import UNIT_LOADS, fillet_factors
-from solidgear.studies.stress.piece import piece_around
+from solidgear.studies.stress.notch import UNIT_LOADS, fillet_factors, piece_around
 from solidgear.studies.stress.published import CHARTS
 from solidgear.studies.stress.shaft import shaft_stress, sharp_corners
 from validation.manual.exact_fillets import finite_elements

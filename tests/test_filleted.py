@@ -10,7 +10,7 @@ from solidgear.scene import CrossHole, Fillet, Keyway, Port
 from solidgear.scene.closed_form import volume_of
 from solidgear.scene.filleted import filleted
 from solidgear.studies.loading import as_written
-from solidgear.studies.stress.at_rest import _of_a_file, _settling
+from solidgear.studies.stress.at_rest import _file_cautions, _settling
 from validation.step_parts import write_step
 
 GEOMETRY = Path(__file__).parents[1] / "geometry"
@@ -64,7 +64,7 @@ def test_fillets_of_a_step_part_are_those_that_were_drawn(part):
     assert fillets == {(0.05, 0.006), (0.09, 0.005)}
     assert [b.name.partition(".")[2] for b in round_part.blends] == ["end", "start"]
     assert volume_of(round_part.outline) == pytest.approx(volume_of(drawn.outline), rel=1e-6)
-    (sentence,) = _of_a_file(scene.body, round_part)
+    (sentence,) = _file_cautions(scene.body, round_part)
     assert "1 of 3 arcs of part.step are short cones" in sentence
 
 

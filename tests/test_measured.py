@@ -18,7 +18,7 @@ from solidgear.scene.toml_file import parse
 from solidgear.scene.uncertain import with_ranges
 from solidgear.solve.adjoint import mode_form
 from solidgear.studies.loading import scene_of
-from solidgear.studies.measured.alignment import Peak, Seen, align
+from solidgear.studies.measured.alignment import Peak, ShapeLikeness, align
 from solidgear.studies.measured.computed import Computed, computed_up_to
 from solidgear.studies.measured.correlate import SURE, correlate
 from solidgear.studies.measured.data import Measured, load_measured
@@ -159,7 +159,7 @@ def test_three_modes_in_another_order_are_told_apart_by_their_shapes():
     mac = np.full((4, 4), 0.05)
     right = [1, 2, 0, 3]  # as no neighbours changing places make it
     mac[range(4), right] = 0.998
-    seen = Seen(mac, 30, np.ones(4, int), 0.05)
+    seen = ShapeLikeness(mac, 30, np.ones(4, int), 0.05)
     found = align([replace(mode, width=1e-3) for mode in modes], modes, seen)
     assert found.pairs.argmax(axis=1).tolist() == right
     assert found.pairs[range(4), right].min() > SURE
@@ -168,7 +168,7 @@ def test_three_modes_in_another_order_are_told_apart_by_their_shapes():
 def shaped(x, components=30, noise=0.05, span=1):
     """How like one shape is two modes, of which it is `x` short of the first and 0.99 of the other."""
     mac = np.array([[1 - x, 0.01]])
-    return Seen(mac, components, np.array([span, span]), noise)
+    return ShapeLikeness(mac, components, np.array([span, span]), noise)
 
 
 def test_a_shape_is_its_modes_as_far_as_its_noise_says():
@@ -324,7 +324,7 @@ def test_a_body_that_is_not_solved_again_knows_its_frequencies_on_other_springs(
     scene = sg.load(SHAFT)
     before = computed_up_to(scene, 3000.0, 1e-2)
     other = scene.with_bearing_scale(1.3)
-    hertz, motions = Sprung(before).at(as_supports(other))
+    hertz, motions = Sprung(before).modes_on(as_supports(other))
     there = sg.modes(before.body, other, n=30)
     solved = {str(m.name): m.frequency_hz for m in there.modes}
     moved = [abs(solved[str(m.name)] / m.frequency_hz - 1) for m in before.modes]

@@ -10,7 +10,7 @@ from test_nonlinear_pair import pair
 import solidgear as sg
 from solidgear.nonlinear.apart import search
 from solidgear.nonlinear.continuation import follow
-from solidgear.nonlinear.motion import settled
+from solidgear.nonlinear.motion import steady_motion
 from solidgear.nonlinear.stability import stable
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.nonlinear import teeth_of, with_backlash
@@ -45,7 +45,9 @@ def test_the_largest_force_of_the_axle_is_on_branches_apart_that_time_bears_out(
     assert found.worst is two and found.loudest[1] < 0.72 * two.loudest[1]
     for other in found.apart:
         point, force = loudest(other.branch)
-        time = settled(found.remainder, other.periods * point.omega, point.state(), steady=1e-4)
+        time = steady_motion(
+            found.remainder, other.periods * point.omega, point.state(), steady=1e-4
+        )
         assert time.cycle % other.periods == 0
         assert np.ptp(time.force) / 2 == pytest.approx(force, rel=1e-3)
 
@@ -65,23 +67,23 @@ def test_a_pair_has_the_subharmonic_that_a_motion_in_time_keeps_and_nothing_else
     own = pair(0.05)
     branch = follow(own, 0.3, 2.5, step=0.02)
     looked = search(branch, np.geomspace(0.35, 2.4, 10))
-    (one,) = looked.found
+    (one,) = looked.branches
     assert one.periods == 2 and one.end == "closed" and not looked.lost
     low, high = 2 * one.branch.omega.min(), 2 * one.branch.omega.max()
     point = one.branch.at(0.8)[np.argmax([p.rms[0] for p in one.branch.at(0.8)])]
-    time = settled(own, 1.6, point.state())
+    time = steady_motion(own, 1.6, point.state())
     assert time.cycle == 2
     assert np.ptp(time.force) == pytest.approx(np.ptp(point.forces()), rel=1e-3)
     # beyond its ends such a motion falls back to that of one period
     for omega in (0.97 * low, 1.03 * high):
-        assert settled(own, omega, point.state()).cycle == 1
+        assert steady_motion(own, omega, point.state()).cycle == 1
 
 
 def test_a_branch_of_two_periods_that_comes_off_another_ends_there():
     own = pair(0.1)
     branch = follow(own, 0.3, 2.5, step=0.02)
     looked = search(branch, [1.2])
-    (one,) = looked.found
+    (one,) = looked.branches
     assert one.end == "merged" and one.periods == 2
     # both ends are motions of one period, on the branch
     for point in (one.branch.points[0], one.branch.points[-1]):

@@ -11,7 +11,7 @@ from solidgear.nonlinear.balance import Balance
 from solidgear.nonlinear.continuation import follow
 from solidgear.nonlinear.integrated import Integrated
 from solidgear.nonlinear.model import remainder
-from solidgear.nonlinear.motion import settled
+from solidgear.nonlinear.motion import steady_motion
 from solidgear.nonlinear.stability import multipliers
 from solidgear.nonlinear.varying import edges, growth
 from solidgear.system import BearingSpring, RigidBody, RowSpring, System
@@ -101,7 +101,7 @@ def moves_as_written_out(point, damper):
     # harmonics are followed to 1e-4 of the largest
     for one, other in ((there[0] - e, s[:, 0]), (there[1], s[:, 1])):
         np.testing.assert_allclose(one, other, atol=3e-4 * np.ptp(other))
-    found = settled(own, w, point.state(), steady=1e-4)
+    found = steady_motion(own, w, point.state(), steady=1e-4)
     assert found.cycle == 1
     np.testing.assert_allclose(found.rms, point.rms, rtol=3e-4)
 
@@ -136,7 +136,7 @@ def test_a_turning_line_alone_makes_motions_grow_where_hill_says():
 def test_multipliers_of_a_turning_line_are_how_motions_beside_it_fade(loose):
     own, size = loose.balance.remainder, 1e-6
     run = Integrated(own, loose.omega, 1, 1e-11)
-    begin = settled(own, loose.omega, loose.state(), steady=1e-6).state
+    begin = steady_motion(own, loose.omega, loose.state(), steady=1e-6).state
     ends = [run.period(begin + size * d)[0] for d in np.eye(len(begin))]
     found = np.linalg.eigvals((np.array(ends) - run.period(begin)[0]).T / size)
     # the midpoint rule over 400 intervals of the cycle, and where in one of them contact is lost

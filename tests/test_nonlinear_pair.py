@@ -7,11 +7,11 @@ import pytest
 from teeth import ALONG, mass_on_teeth
 
 from solidgear.errors import SolidgearError
-from solidgear.nonlinear.apart import doubled
+from solidgear.nonlinear.apart import period_doubled_branches
 from solidgear.nonlinear.balance import Balance
 from solidgear.nonlinear.continuation import follow
 from solidgear.nonlinear.model import remainder
-from solidgear.nonlinear.motion import Run, settled, sweep
+from solidgear.nonlinear.motion import Run, steady_motion, sweep
 from solidgear.nonlinear.run_up import run_up
 from solidgear.nonlinear.stability import multipliers, stable
 from solidgear.system import Inertia, RowSpring, System
@@ -98,7 +98,7 @@ def test_teeth_with_a_damper_carry_what_the_mass_takes_up():
     force = w**2 * abs(motion)
     assert 1.02 * abs(point.harmonics[1, 0]) < force < MEAN
     ran = run_up(own, w - 1e-6, w, 1e-8, state=point.state())
-    for wave in (point.forces(), settled(own, w, point.state()).force, 2 * ran.swing):
+    for wave in (point.forces(), steady_motion(own, w, point.state()).force, 2 * ran.swing):
         # the largest of 128 looks at a cosine
         assert (np.ptp(wave) if wave.ndim > 1 else wave[-1]) / 2 == pytest.approx(force, rel=4e-4)
 
@@ -111,7 +111,7 @@ def test_multipliers_are_how_a_disturbed_motion_fades(law):
     point = follow(own, 1.3, 0.5).at(0.9)[-1]
     found, period = multipliers(point)[0], 2 * np.pi / point.omega
     run = Run(own, point.omega)
-    steady = settled(own, point.omega, point.state(), steady=1e-10).state
+    steady = steady_motion(own, point.omega, point.state(), steady=1e-10).state
     moved = steady + np.array([1e-5, 0.0])
     left = [moved - steady]
     for _ in range(6):
@@ -129,13 +129,13 @@ def test_multipliers_are_how_a_disturbed_motion_fades(law):
 def test_where_a_period_doubles_a_branch_of_two_periods_begins_that_time_confirms():
     own = pair(0.1)
     branch = follow(own, 1.0, 2.5)
-    (two,) = doubled(branch)
+    (two,) = period_doubled_branches(branch)
     begin, end = (2 * two.points[k].omega for k in (0, -1))
     flips = [point.omega for point in branch.points if not stable(point)]
     assert begin < min(flips) and max(flips) < end
     for w in (1.3, 1.9):
         (motion, *_), (single,) = two.at(w / 2), branch.at(w)
-        found = settled(own, w, 1.05 * single.state())
+        found = steady_motion(own, w, 1.05 * single.state())
         assert stable(motion) and found.cycle == 2
         assert found.rms[0] == pytest.approx(motion.rms[0], rel=1e-3)
         assert abs(found.rms[0] / single.rms[0] - 1) > 0.02

@@ -57,7 +57,7 @@ def test_a_linear_run_is_that_of_the_closed_form(begin, end, varying):
     slope = np.sign(end - begin) * ramp
     angle = 2 * np.pi * len(found.omega)
     t = 2 * angle / (begin + np.sqrt(begin**2 + 2 * slope * angle))
-    x = float(own.seen[0, 0] * found.state[0] / own.omega[0])
+    x = float(own.shapes[0, 0] * found.state[0] / own.omega[0])
     # what a step of constant speed leaves, or the tolerance asked
     assert x == pytest.approx(closed_form(t, begin, slope), abs=1e-6 * ERROR / (2 * ZETA))
 
@@ -136,8 +136,8 @@ def test_a_run_of_two_links_is_that_of_the_equations_written_out():
     # at rest where springs without gaps would hold the mean: the teeth are apart
     still = [mean, 2 * mean, 0.0, 0.0]
     way = solve_ivp(slope, (0, times[-1]), still, "LSODA", dense_output=True, rtol=1e-9, atol=1e-11)
-    assert found.least.min() < half[0] and found.others[0].least.min() < half[1]
-    for k, one in enumerate((found, *found.others)):
+    assert found.least.min() < half[0] and found.other_links[0].least.min() < half[1]
+    for k, one in enumerate((found, *found.other_links)):
         swing = []
         for a, b in zip(times, times[1:]):
             t = np.linspace(a, b, 300)

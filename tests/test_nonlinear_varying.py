@@ -13,7 +13,7 @@ from teeth import ALONG, mass_on_teeth
 from solidgear.nonlinear.continuation import follow
 from solidgear.nonlinear.integrated import Integrated
 from solidgear.nonlinear.model import remainder
-from solidgear.nonlinear.motion import settled
+from solidgear.nonlinear.motion import steady_motion
 from solidgear.nonlinear.stability import multipliers
 from solidgear.nonlinear.varying import edges, growth, hill
 from solidgear.system import BearingSpring, Inertia, RigidBody, RowSpring, System
@@ -67,7 +67,7 @@ def test_balance_and_time_agree_on_every_law(law):
     slow = np.sqrt(own.stiffness[0, 0])
     point = follow(own, 0.45 * slow, 1.1 * slow).at(0.85 * slow)[-1]
     assert point.forces().min() < 0.02, "this is to be a motion that leaves its piece"
-    found = settled(replace(own), point.omega, point.state(), steady=1e-4)
+    found = steady_motion(replace(own), point.omega, point.state(), steady=1e-4)
     assert found.cycle == 1
     assert found.rms[0] == pytest.approx(point.rms[0], rel=1e-3)
 
@@ -123,7 +123,7 @@ def test_a_rotor_that_rubs_moves_alike_by_balance_and_in_time():
     c = 0.1 * 1e7 / (2 * np.pi * 160.0)
     alone = 2e-5 * 500.0**2 / abs(1e7 - 10 * 500.0**2 + 500j * c)
     np.testing.assert_allclose(free.rms, alone / np.sqrt(2), rtol=1e-8)
-    found = settled(own, rubbing.omega, rubbing.state(), steady=1e-4)
+    found = steady_motion(own, rubbing.omega, rubbing.state(), steady=1e-4)
     assert found.cycle == 1
     np.testing.assert_allclose(found.rms, rubbing.rms, rtol=1e-3)
 
@@ -161,6 +161,6 @@ def test_straight_laws_that_vary_are_told_in_one_go_as_law_by_law():
     assert len(own.omega) == 2 and own.flexible.all()
     run, random = Integrated(own, 0.8, ramp=0.01), np.random.default_rng(3)
     for beyond in np.ndindex(2, 2, 2, 2):
-        run._beyond = [bool(on) for on in beyond]
+        run._sides = [bool(on) for on in beyond]
         t, y = random.uniform(0, 9), random.normal(size=4)
         np.testing.assert_allclose(run._straight_slope(t, y), run._slope(t, y), rtol=1e-12)

@@ -16,9 +16,8 @@ import solidgear as sg
 from solidgear.scene.file import load
 from solidgear.studies.measured.correlate import correlate
 from solidgear.studies.measured.data import load_measured
-from solidgear.studies.measured.overlay import overlay
+from solidgear.studies.measured.overlay import overlay, stiffer_motions
 from solidgear.studies.measured.shapes import SurfacePoints
-from solidgear.studies.measured.stiffer import left_out
 from solidgear.studies.measured.turned import turned_beside
 
 pytest.importorskip("pyuff")
@@ -136,7 +135,7 @@ def test_what_a_list_of_modes_lacks_is_what_a_direct_solution_has_beside_it():
     places = SurfacePoints(body, [1, 2], np.array([[0.0, 0.02, 0.015], [0.015, 0.19, 0.0]]))
     ends = [(0, 3), (1, 1), (1, -3), (0, 2)]
     modes = sg.modes(body, scene, n=40, max_frequency=20e3).modes
-    rest = left_out(scene, places, ends, modes).rest
+    rest = stiffer_motions(scene, places, ends, modes).remaining
     block = body.blocks[0]
     port = body.port_index("A")
     seat = block.ports[6 * port : 6 * port + 6]

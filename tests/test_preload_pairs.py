@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from solidgear.bearings.pairs import partners
-from solidgear.bearings.solved import AS_TOLD, Choice, made_of, solved
+from solidgear.bearings.solved import AS_STATED, Choice, catalogued_bearings, partners, solved
 from solidgear.errors import SceneError
 from solidgear.scene.file import load
 
@@ -30,9 +29,11 @@ def shaft(tmp_path, *more, rows=PAIR, words='arrangement = "O"'):
     return load(path)
 
 
-def pressed(scene, choice=AS_TOLD):
+def pressed(scene, choice=AS_STATED):
     """Axial force of each bearing at rest, N."""
-    return {n: one.bearing.load(np.zeros(6))[1] for n, one in made_of(scene, choice).items()}
+    return {
+        n: one.bearing.load(np.zeros(6))[1] for n, one in catalogued_bearings(scene, choice).items()
+    }
 
 
 FORCE = ', preload = "2 kN"'
@@ -53,13 +54,13 @@ def test_a_displacement_that_one_is_told_is_that_of_both_together(tmp_path):
     scene = shaft(tmp_path, ', preload = "20 um"', "")
     force = pressed(scene)
     assert force["A"] == pytest.approx(-force["B"], rel=1e-6)
-    given = [one.bearing.rows[0].preload for one in made_of(scene).values()]
+    given = [one.bearing.rows[0].preload for one in catalogued_bearings(scene).values()]
     assert sum(given) == pytest.approx(20e-6, rel=1e-9) and given[0] != pytest.approx(given[1])
 
 
 def test_its_range_is_that_of_both(tmp_path):
     scene = shaft(tmp_path, FORCE, "")
-    force = pressed(scene, Choice(apart={"A": Choice(preload=0.5)}))
+    force = pressed(scene, Choice(overrides={"A": Choice(preload=0.5)}))
     assert force["A"] == pytest.approx(-force["B"], rel=1e-9)
     assert abs(force["A"]) == pytest.approx(1000.0, rel=1e-9)
 

@@ -8,7 +8,7 @@ from universal_files import nodes, response, units, written
 
 from solidgear.errors import SceneError, SolidgearError
 from solidgear.scene.universal_units import UNITS
-from solidgear.studies.measured.data import load_measured, of_responses
+from solidgear.studies.measured.data import load_measured, measured_from_responses
 from solidgear.studies.measured.modal_fit import fit_modes
 from solidgear.studies.measured.universal import Responses, read_universal
 
@@ -139,7 +139,7 @@ def test_a_hammer_that_goes_round_tells_the_shapes_of_a_sensor_that_does():
     round_about, fixed = ((1, 1), (2, -3), (3, 2)), ((1, 1),) * 3
     places = {k: (float(k), 0.0, 0.0) for k in (1, 2, 3)}
     sensor, hammer = (
-        of_responses(Responses(HERTZ, values, *ends, places, 2)).on_points
+        measured_from_responses(Responses(HERTZ, values, *ends, places, 2)).on_points
         for ends in ((round_about, fixed), (fixed, round_about))
     )
     assert np.array_equal(sensor.values, hammer.values) and sensor.values[:, 1, 2].all()

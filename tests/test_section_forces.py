@@ -9,7 +9,7 @@ from solidgear.scene.closed_form import mass_properties
 from solidgear.studies.stress.nominal import CrossSection, nominal_rows, nominal_stress
 from solidgear.studies.stress.section_forces import (
     Load,
-    moved,
+    move_load,
     on_ports,
     section_forces,
     weight,
@@ -20,7 +20,7 @@ LENGTH = 0.6
 
 def balanced(*loads):
     """Loads and one more at the far end that balances them."""
-    total = sum(moved(load.six, load.y, LENGTH) for load in loads)
+    total = sum(move_load(load.six, load.y, LENGTH) for load in loads)
     return [*loads, Load("wall", LENGTH, -total)]
 
 
@@ -54,7 +54,7 @@ def test_section_forces_are_those_of_either_side(seed):
     loads = balanced(*drawn(seed))
     found = section_forces(loads, LENGTH)
     for y in (0.03, 0.27, 0.55):
-        beyond = sum(moved(load.six, load.y, y) for load in loads if load.y > y)
+        beyond = sum(move_load(load.six, load.y, y) for load in loads if load.y > y)
         assert np.allclose(found.at(y), beyond, atol=1e-12)
 
 
@@ -109,7 +109,7 @@ def test_weight_is_that_of_the_segments_and_masses():
         masses=(PointMass(name="disc", mass=3.0, on="gear", offset=[0.0, 0.01, 0.0]),)
     )
     loads = weight(scene, [0, 0, -9.81])
-    total = sum(moved(load.six, load.y, 0.0) for load in loads)
+    total = sum(move_load(load.six, load.y, 0.0) for load in loads)
     mass = mass_properties(scene.outline)
     force, arm = mass.mass + 3.0, mass.mass * mass.centre + 3.0 * (scene.port.y + 0.01)
     assert total[2] == pytest.approx(-9.81 * force, rel=1e-12)

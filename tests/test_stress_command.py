@@ -15,7 +15,7 @@ from solidgear.report.stress_files import shaft_tables
 from solidgear.scene.closed_form import mass_properties
 from solidgear.scene.operation import GRAVITY, OperatingPoint
 from solidgear.studies.stress import shaft
-from solidgear.studies.stress.at_rest import Asked, stress_of_scene, stress_of_train
+from solidgear.studies.stress.at_rest import StressSettings, stress_of_scene, stress_of_train
 from solidgear.studies.stress.rating import Conditions
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
@@ -123,7 +123,7 @@ def test_what_is_cut_into_a_shaft_is_left_out_and_told():
 @pytest.mark.long
 def test_what_bearings_leave_open_moves_moment_and_stress(file):
     scene = sg.load(file)
-    found = stress_of_scene(scene, "timoshenko", asked=Asked(0.05))
+    found = stress_of_scene(scene, "timoshenko", asked=StressSettings(0.05))
     (one,) = found.shafts
     (notch,) = one.found.notches
     low, high = one.open["root"]
@@ -131,7 +131,7 @@ def test_what_bearings_leave_open_moves_moment_and_stress(file):
     assert one.open_moment[0] <= one.found.forces.largest_moment <= one.open_moment[1]
     assert found.open_by == "estimated insides"
     known = stress_of_scene(
-        sg.load(FILLETED).with_changes(load={"z": 1e3}), "timoshenko", asked=Asked(0.05)
+        sg.load(FILLETED).with_changes(load={"z": 1e3}), "timoshenko", asked=StressSettings(0.05)
     )
     assert known.shafts[0].open == {} and known.shafts[0].open_moment is None
 
@@ -240,7 +240,9 @@ def test_the_page_holds_every_number_of_the_worst_fillet(run, file, tmp_path):
 def test_a_rating_follows_what_is_given(file):
     scene = sg.load(file)
     usual, rough = (
-        stress_of_scene(scene, "timoshenko", asked=Asked(0.05, conditions)).shafts[0].found.worst[0]
+        stress_of_scene(scene, "timoshenko", asked=StressSettings(0.05, conditions))
+        .shafts[0]
+        .found.worst[0]
         for conditions in (Conditions(), Conditions(roughness="25 um"))
     )
     assert rough.rating.fatigue < usual.rating.fatigue

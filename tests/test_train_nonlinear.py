@@ -230,7 +230,7 @@ def test_a_line_of_action_that_stays_where_it_is_changes_nothing(shop, teeth):
         backlash_model(one, BEAMS, teeth_of(one, 5000.0), 4000.0) for one in (shop, lines(shop))
     )
     assert other.sway is None
-    for name in ("omega", "seen", "mean", "losses", "flexible", "stiffness", "error"):
+    for name in ("omega", "shapes", "mean", "losses", "flexible", "stiffness", "error"):
         a, b = getattr(first, name), getattr(other, name)
         np.testing.assert_allclose(np.abs(b), np.abs(a), rtol=1e-10, atol=1e-10 * np.abs(a).max())
 

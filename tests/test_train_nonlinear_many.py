@@ -10,7 +10,7 @@ from solidgear.errors import SolidgearError
 from solidgear.nonlinear.balance import Balance
 from solidgear.nonlinear.continuation import follow
 from solidgear.nonlinear.model import remainder
-from solidgear.nonlinear.motion import settled
+from solidgear.nonlinear.motion import steady_motion
 from solidgear.studies.train.contact import axes_of
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.nonlinear import backlash_model, parting, teeth_of, with_backlash
@@ -105,7 +105,7 @@ def test_balance_of_two_laws_is_motion_in_time(shop, gaps, force, hz, parts):
     branch = follow(made, *ends, step=0.05)
     for at in 2 * np.pi * np.array(hz):
         (point,) = branch.at(at)
-        steady = settled(made, at, steady=1e-4, state=point.state())
+        steady = steady_motion(made, at, steady=1e-4, state=point.state())
         apart = (steady.stretch.min(axis=0) < half) & (np.array(half) > 0)
         assert steady.cycle == 1 and tuple(apart) == parts
         # asked 0.1 %: only the law and the modes are shared
@@ -147,7 +147,7 @@ def test_a_line_of_action_of_the_second_stage_that_stays_changes_nothing(shop):
     for more in ({}, {"line_cycle": table}):
         own = toothed(shop, {}, {**gap, **more})
         made.append(backlash_model(own, BEAMS, teeth_of(own, mesh="middle-output"), 3000.0))
-    for name in ("omega", "seen", "mean", "losses", "error"):
+    for name in ("omega", "shapes", "mean", "losses", "error"):
         a, b = (getattr(one, name) for one in made)
         np.testing.assert_allclose(np.abs(b), np.abs(a), rtol=1e-9, atol=1e-9 * np.abs(a).max())
 

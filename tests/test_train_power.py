@@ -8,7 +8,7 @@ import pytest
 import solidgear as sg
 from solidgear.errors import SceneError
 from solidgear.nonlinear.continuation import follow
-from solidgear.nonlinear.motion import settled
+from solidgear.nonlinear.motion import steady_motion
 from solidgear.studies.train.contact import axes_of
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.nonlinear import backlash_model, teeth_of
@@ -238,7 +238,7 @@ def test_teeth_of_a_loop_part_as_in_motion_in_time(tmp_path):
     branch = follow(made, 2 * np.pi * 835, 2 * np.pi * 880, step=0.05)
     at = 2 * np.pi * 845.0
     point = branch.at(at)[0]
-    steady = settled(made, at, steady=1e-4, state=point.state())
+    steady = steady_motion(made, at, steady=1e-4, state=point.state())
     assert (steady.stretch.min(axis=0) < 20e-6).any() and steady.cycle == 1
     np.testing.assert_allclose(
         np.ptp(steady.force, axis=0), np.ptp(point.forces(), axis=0), rtol=4e-3

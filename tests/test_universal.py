@@ -156,14 +156,14 @@ def test_points_that_do_not_tell_modes_apart_are_named_with_one_that_would(tmp_p
     computed = computed_up_to(rod_scene(), 1200.0, 0.02)
     points = OnPoints(measured.on_points, 0.05, computed)
     one = points.confused(2)[0]
-    assert (one.first, one.second) == (0, 1) and one.mac > 0.9 and one.then < 0.1
+    assert (one.first, one.second) == (0, 1) and one.mac > 0.9 and one.mac_with_it < 0.1
     found = correlate(rod_scene(), measured, tol=0.02)
     told = [s for s in found.sentences if "do not tell bending 1 from bending 2" in s]
     assert told and "one more at x, y, z" in told[0]
     # the point that is named does what is said
     more = Shapes(np.arange(few + 1), np.vstack([ON[at], one.place]), np.ones((2, few + 1, 3)))
     again = OnPoints(more, 0.05, computed)
-    assert not [c for c in again.confused(2) if c.mac > one.then + 0.01]
+    assert not [c for c in again.confused(2) if c.mac > one.mac_with_it + 0.01]
 
 
 def test_a_point_off_the_surface_is_named(tmp_path):

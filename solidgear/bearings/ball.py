@@ -10,12 +10,12 @@ that of de Mul, Vree and Maas (1989) and of Lim and Singh (1990) is the same for
 symbols.  Of the tangent ``Q' n n' + (Q / |s|) (1 - n n')`` the second part is the turning of the
 contact angle.
 
-A groove with a contact angle has one shoulder: beyond its bottom it runs on as a cylinder, so that
+A groove with a contact angle has one shoulder: beyond the bottom it runs on as a cylinder, so that
 a ball is then pressed radially, and nothing holds the shaft the other way.  A deep groove has both.
 
-The load acts on the inner ring along the line through both centres, so that its moment has the
-lever of the inner groove's centre.  ISO/TS 16281 takes half the pitch diameter in its moment
-equation and the groove's centre in its kinematics: its stiffness is not symmetric, by
+The load acts on the inner ring along the line through both centres, so that the moment has the
+lever of the inner groove's centre.  ISO/TS 16281 takes half the pitch diameter in the moment
+equation and the groove's centre in the kinematics: that stiffness is not symmetric, by
 ``(2 f_i - 1) D / D_pw``, 1 % of the tilt.
 """
 
@@ -55,12 +55,12 @@ class BallRow(Elements):
         """Contacts at the inner and the outer ring."""
         gamma = self.diameter * np.cos(self.angle) / self.pitch
         ball = 2 / self.diameter
-        found = []
+        contacts = []
         for groove, ring in ((self.inner, gamma / (1 - gamma)), (self.outer, -gamma / (1 + gamma))):
             rolling = ball * (1 + ring)
             across = ball * (1 - 1 / (2 * groove))
-            found.append(point_contact(rolling, across, self.E, self.nu))
-        return found[0], found[1]
+            contacts.append(point_contact(rolling, across, self.E, self.nu))
+        return contacts[0], contacts[1]
 
     @cached_property
     def constant(self) -> float:
@@ -70,9 +70,9 @@ class BallRow(Elements):
 
     @cached_property
     def _felt(self) -> np.ndarray:
-        out = (self.inner - 0.5) * self.diameter
-        radius = self.pitch / 2 + out * np.cos(self.angle)
-        height = self.height + self.side * out * np.sin(self.angle)
+        centre_offset = (self.inner - 0.5) * self.diameter
+        radius = self.pitch / 2 + centre_offset * np.cos(self.angle)
+        height = self.height + self.side * centre_offset * np.sin(self.angle)
         return felt(radius, height, self.azimuth)
 
     @cached_property
@@ -82,10 +82,12 @@ class BallRow(Elements):
         return np.concatenate([products(radial, radial), 2 * mixed, products(axial, axial)])
 
     def _stretch(self, motion: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """Unit vector between the centres, its length and the approach of every ball."""
-        own = np.asarray(motion, float)[..., FELT]
-        radial = np.maximum(self.start[0] + own @ self._felt[0].T, 0.0)
-        axial = self.start[1] + own @ self._felt[1].T
+        """Return the unit vector and the distance between the centres, and the approach of every
+        ball.
+        """
+        felt_motion = np.asarray(motion, float)[..., FELT]
+        radial = np.maximum(self.start[0] + felt_motion @ self._felt[0].T, 0.0)
+        axial = self.start[1] + felt_motion @ self._felt[1].T
         if self.angle:
             axial = self.side * np.maximum(self.side * axial, 0.0)
         length = np.hypot(radial, axial)
@@ -93,13 +95,13 @@ class BallRow(Elements):
         return radial / safe, axial / safe, safe, np.maximum(length - self.free, 0.0)
 
     def load(self, motion: np.ndarray) -> np.ndarray:
-        """Load that holds the inner ring at motions (..., 6), N and N m."""
+        """Return the load that holds the inner ring at motions (..., 6), N and N m."""
         radial, axial, _, approach = self._stretch(motion)
         press = self.constant * approach**POINT_POWER
         return six((press * radial) @ self._felt[0] + (press * axial) @ self._felt[1])
 
     def tangent(self, motion: np.ndarray) -> np.ndarray:
-        """Derivative of the load, (..., 6, 6), exact."""
+        """Return the derivative of the load, (..., 6, 6), exact."""
         radial, axial, length, approach = self._stretch(motion)
         root = np.sqrt(approach)
         along = POINT_POWER * self.constant * root
@@ -118,7 +120,7 @@ class BallRow(Elements):
         return symmetric(weights @ self._products)
 
     def contacts(self, motion: np.ndarray) -> Contacts:
-        """Loads, angles and pressures of the balls at motions (..., 6)."""
+        """Return loads, angles and pressures of the balls at motions (..., 6)."""
         radial, axial, _, approach = self._stretch(motion)
         load = self.constant * approach**POINT_POWER
         angle = np.where(load > 0, np.arctan2(axial, radial), np.nan)
@@ -135,9 +137,11 @@ class ThrustBallRow(BallRow):
     """
 
     def _stretch(self, motion: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """As of any row, without what is across the shaft."""
-        own = np.asarray(motion, float)[..., FELT]
-        axial = self.side * np.maximum(self.side * (self.start[1] + own @ self._felt[1].T), 0.0)
+        """Return the same as for any row, without motions across the shaft."""
+        felt_motion = np.asarray(motion, float)[..., FELT]
+        axial = self.side * np.maximum(
+            self.side * (self.start[1] + felt_motion @ self._felt[1].T), 0.0
+        )
         length = np.abs(axial)
         safe = np.where(length > 0, length, 1.0)
         return np.zeros_like(axial), axial / safe, safe, np.maximum(length - self.free, 0.0)

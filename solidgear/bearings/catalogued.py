@@ -29,7 +29,7 @@ class Catalogued:
 
     bearing: RollingBearing
     inside: Inside  #: inner geometry of a row that it was made with
-    estimated: tuple[str, ...]  #: what of the inside was not given
+    estimated: tuple[str, ...]  #: names of the inner dimensions that were not given
     clearance: float  #: radial, at work, m
 
 
@@ -41,23 +41,12 @@ def catalogued(
     preload_factor: float = 1.0,
     floats: bool = False,
 ) -> Catalogued:
-    """The bearing that catalogue data describe.
+    """Return the bearing that catalogue data describe, with an estimated inner geometry at one end
+    of the range, and at a place in the range of a clearance class, 0 to 1.
 
-    Parameters
-    ----------
-    end : {'middle', 'softer', 'stiffer'}
-        Of an estimated inner geometry.
-    clearance_share : float
-        Place in the range of a clearance class, 0 to 1.
-    preload_factor : float
-        Times the preload, force or displacement.
-    floats : bool
-        One of its rings slides along y.
-
-    Raises
-    ------
-    SceneError
-        Data that describe no bearing, or a preload beyond its static rating.
+    `preload_factor` multiplies the preload, force or displacement; a bearing that floats has a ring
+    that slides along y. Data that describe no bearing, or a preload beyond the static rating, are
+    refused.
     """
     geometry = inner_geometry(data)
     inside: Inside = getattr(geometry, end)
@@ -72,7 +61,7 @@ def catalogued(
 
 
 def _placed(data: Catalogue, inside: Inside, clearance: float) -> list[BallRow | RollerRow]:
-    """Rows at their places along y, each turned by half a pitch against the one before."""
+    """Return rows at their places along y, each turned by half a pitch against the one before."""
     first = -1 if data.holds == "-y" else 1
     turn = math.pi / inside.elements
     if data.kind == "spherical":  # the rows face each other: their normals meet in the middle
@@ -124,15 +113,15 @@ def _preloaded(data: Catalogue, rows: list[BallRow | RollerRow], factor: float) 
         share = 1 if data.one_sided else len(rows)
         rows = [replace(row, preload=factor * preload.displacement / share) for row in rows]
     if data.speed:
-        made = [SpinningBalls(row, data.speed) for row in rows if isinstance(row, BallRow)]
-        return tuple(made)
+        spinning = [SpinningBalls(row, data.speed) for row in rows if isinstance(row, BallRow)]
+        return tuple(spinning)
     if data.preload_spring is not None:
         return (rows[0], SprungRow(rows[1], data.preload_spring))
     return tuple(rows)
 
 
 def _within_rating(data: Catalogue, inside: Inside, factor: float) -> None:
-    """The equivalent static load of a preload, ``P0 = Y0 F`` by ISO 76, against C0."""
+    """Refuse a preload whose equivalent static load, ``P0 = Y0 F`` by ISO 76, is beyond C0."""
     if data.preload is None or data.preload.force is None or data.static_rating is None:
         return
     equivalent = static_factors(data, inside)[1] * factor * data.preload.force
@@ -147,26 +136,14 @@ def _within_rating(data: Catalogue, inside: Inside, factor: float) -> None:
 
 
 def state(
-    data: Catalogue, made: Catalogued, factor: float = 1.0, start: np.ndarray | None = None
+    data: Catalogue,
+    catalogued_bearing: Catalogued,
+    factor: float = 1.0,
+    start: np.ndarray | None = None,
 ) -> np.ndarray:
-    """Motion at which the data ask for the stiffness.
-
-    Parameters
-    ----------
-    factor : float
-        Times its load.
-    start : (6,) ndarray, optional
-        Where to begin.
-
-    Returns
-    -------
-    (6,) ndarray
-        m and rad: the given displacement, that under the given load, or rest.
-
-    Raises
-    ------
-    SolidgearError
-        A load that the bearing cannot carry.
+    """Return the motion (6,), m and rad, at which the data require the stiffness: the given
+    displacement, that under the given load times a factor, searched from `start`, or rest; refuse a
+    load that the bearing cannot carry.
 
     Examples
     --------
@@ -179,11 +156,11 @@ def state(
         return np.array(data.displacement.six)
     if data.load is None:
         return np.zeros(6)
-    wanted = factor * np.array(data.load.six)
+    target = factor * np.array(data.load.six)
     if data.one_sided:  # what another bearing preloads it with stays
-        wanted += made.bearing.load(np.zeros(6))
+        target += catalogued_bearing.bearing.load(np.zeros(6))
     try:
-        return made.bearing.motion(wanted, held=data.load.held_tilts, start=start)
+        return catalogued_bearing.bearing.motion(target, fixed=data.load.held_tilts, start=start)
     except SolidgearError as error:
         way = f"; it holds the shaft towards {data.holds} only" if data.one_sided else ""
         raise SceneError(f"{error}{way}", path=("load",)) from None

@@ -1,13 +1,13 @@
 """Clearance at work: class, fits and temperature.
 
-A fit widens the inner ring, or narrows the outer one, by what Lame's thick rings say.  With one
+A fit widens the inner ring, or narrows the outer one, by Lame's thick rings.  With one
 material throughout, a ring of inner diameter d and raceway F that is pressed with an interference I
 on a shaft with a bore b widens at its raceway by
 
     I (d / F) (1 - (b/d)^2) / (1 - (b/F)^2),
 
 which is ``I d / F`` on a solid shaft (Harris and Kotzalas, Essential Concepts, ch. 3; it follows
-from equal radial stress and the interference shared at d).  A housing is taken as very thick: its
+from equal radial stress and the interference shared at d).  A housing is taken as very thick: the
 ring narrows by ``I G / D`` at the raceway G.
 """
 
@@ -46,8 +46,8 @@ _SPHERICAL = {
 
 
 def clearance_range(data: Catalogue) -> tuple[float, float]:
-    """Least and largest radial internal clearance before mounting, m, equal where it is told as a
-    length; refuses a class of a bearing that has none.
+    """Return the least and largest radial internal clearance before mounting, m, equal if it is
+    given as a length; refuse a class of a bearing that has none.
     """
     if not isinstance(data.clearance, str):
         return data.clearance, data.clearance
@@ -71,7 +71,9 @@ def clearance_range(data: Catalogue) -> tuple[float, float]:
 
 
 def mounting_change(data: Catalogue, inside: Inside) -> float:
-    """Change of the clearance by fits and temperature, m; negative for a tight fit or a warm shaft."""
+    """Return the change of the clearance by fits and temperature, m; negative for a tight fit or a
+    warm shaft.
+    """
     reach = inside.diameter * math.cos(inside.angle)
     inner, outer = inside.pitch - reach, inside.pitch + reach
     # interference only: a loose fit changes nothing
@@ -83,8 +85,8 @@ def mounting_change(data: Catalogue, inside: Inside) -> float:
 
 
 def clearance_at_work(data: Catalogue, inside: Inside, share: float = 0.5) -> float:
-    """Radial internal clearance once mounted and warm, m, at a place in the range of its class, 0
-    to 1.
+    """Return the radial internal clearance once mounted and warm, m, at a place in the range of the
+    class, 0 to 1.
     """
     low, high = clearance_range(data)
     return low + share * (high - low) + mounting_change(data, inside)

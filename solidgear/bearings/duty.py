@@ -1,4 +1,4 @@
-"""Life over a table of duty: damage of its points adds up (Palmgren 1924, Miner 1945).
+"""Life over a table of duty: damages of the points add up (Palmgren 1924, Miner 1945).
 
 A point with the share q of the time, at n turns an hour and with a life of L turns, uses up
 ``q n / L`` of the bearing an hour; the life in hours is one over the sum.
@@ -41,17 +41,8 @@ class DutyLife:
 
 
 def duty_life(points: Sequence[DutyPoint]) -> DutyLife:
-    """Life of a bearing over the points of a duty table.
-
-    Parameters
-    ----------
-    points : sequence of DutyPoint
-        All with shares of the time that sum to one, or all with hours.
-
-    Raises
-    ------
-    SceneError
-        No points, shares that do not sum to one, shares beside hours, or numbers below zero.
+    """Return the life of a bearing over the points of a duty table, all with shares of the time
+    that sum to one, or all with hours; other tables are refused.
     """
     shares = _shares(points)
     rates = [share * point.turns / point.life for share, point in zip(shares, points)]
@@ -64,25 +55,25 @@ def duty_life(points: Sequence[DutyPoint]) -> DutyLife:
 
 
 def _shares(points: Sequence[DutyPoint]) -> list[float]:
-    """Shares of the time, exactly one in sum."""
+    """Return shares of the time, with the exact sum one."""
     if not points:
         raise SceneError("a duty table needs at least one point")
     for k, point in enumerate(points):
         if not point.life > 0:
             raise SceneError("a life must be greater than zero", path=(k, "life"))
-    given = [point.share for point in points if point.share is not None]
+    stated = [point.share for point in points if point.share is not None]
     hours = [point.hours for point in points if point.hours is not None]
-    if given and hours or len(given) + len(hours) != len(points):
+    if stated and hours or len(stated) + len(hours) != len(points):
         raise SceneError(
             "give every point of a duty table its share of the time, or every point its hours"
         )
-    parts = given or hours
+    parts = stated or hours
     for k, part in enumerate(parts):
         if not 0 <= part < math.inf:
-            key = "share" if given else "hours"
+            key = "share" if stated else "hours"
             raise SceneError("must not be negative, and finite", path=(k, key), value=f"{part:g}")
     total = sum(parts)
-    if given and abs(total - 1) > TYPED:
+    if stated and abs(total - 1) > TYPED:
         raise SceneError(
             f"the shares of a duty table sum to {total:.6g}; they must sum to one (write hours for "
             "times that do not)"

@@ -1,6 +1,6 @@
-"""A shaft and its bearings in equilibrium: loads, tilts, and the stiffness at that point.
+"""Equilibrium of a shaft and the bearings: loads, tilts, and the stiffness at that point.
 
-The free body is seen from its ports: its flexibility (inertia relief) and rigid motions give the
+The free body is seen from the ports: the flexibility (inertia relief) and rigid motions give the
 stiffness between them.  Torques about y are left out, and with them the free turning: they leave by
 the drive, and no bearing feels them.  The rest is :mod:`solidgear.bearings.balance`.
 """
@@ -37,11 +37,10 @@ class Equilibrium:
     ports: tuple[str, ...]  #: bearings in the order given, then loaded ports that carry none
     motion: dict[str, np.ndarray]  #: of ports, m and rad; thy is not solved for and is zero
     relative: dict[str, np.ndarray]  #: motion of each bearing's inner ring against its outer one
-    #: what each bearing carries, N and N m: the load of the shaft on it
-    load: dict[str, np.ndarray]
+    load: dict[str, np.ndarray]  #: of the shaft on each bearing, N and N m
     tangent: dict[str, np.ndarray]  #: of each bearing alone, at that point
     lost: tuple[str, ...]  #: bearings that carry nothing
-    unbalanced: float  #: what is left of the loads, of the largest of them or of the preloads
+    unbalanced: float  #: largest imbalance, relative to the largest load or to the preloads
     iterations: int
     _state: np.ndarray = field(repr=False, default_factory=lambda: np.zeros(0))
 
@@ -53,23 +52,12 @@ def equilibrium(
     housing: float | Housing | None = None,
     start: Equilibrium | None = None,
 ) -> Equilibrium:
-    """Equilibrium of a shaft on bearings of any kind.
+    """Return the equilibrium of a shaft on bearings of any kind, under loads (6,) on ports by name,
+    N and N m; torques about y pass on to the drive.
 
-    Parameters
-    ----------
-    body : Body
-        Any, whose ports carry the bearings and the loads.
-    loads : mapping of str to (6,) array_like
-        Loads on ports by name, N and N m; torques about y pass on to the drive.
-    housing : float or Housing, optional
-        Between all bearings and ground; a number is a spring along y, N/m.
-    start : Equilibrium, optional
-        One of the same shaft to begin at, under a load that is near.
-
-    Raises
-    ------
-    SolidgearError
-        If nothing holds the shaft against a load.
+    A housing stands between all bearings and ground; a number is a spring along y, N/m. The search
+    begins at `start`, an equilibrium of the same shaft under a load that is near; a load that
+    nothing holds is refused.
     """
     bearings = tuple(bearings)
     indices = [body.port_index(b.port, b.attachment) for b in bearings]
@@ -97,24 +85,24 @@ def equilibrium(
         outside[names.index(name)] += np.asarray(load, float)[list(FIVE)]
     target = balance.elastic.basis.T @ outside.ravel()
     try:
-        found = balance.settle(target, None if start is None else start._state)
+        settled = balance.settle(target, None if start is None else start._state)
     except NothingHolds as error:
         raise SolidgearError(not_held(outside.sum(axis=0), error.direction)) from None
     motion = {name: np.zeros(6) for name in names}
-    for name, five in zip(names, balance.places(found.motion).reshape(-1, 5)):
+    for name, five in zip(names, balance.places(settled.motion).reshape(-1, 5)):
         motion[name][list(FIVE)] = five
     relative, carried = (
         {b.port: value for b, value in zip(bearings, values)}
-        for values in balance.carried(found.motion)
+        for values in balance.carried(settled.motion)
     )
     return Equilibrium(
-        tuple(names),
-        motion,
-        relative,
-        carried,
-        {b.port: b.bearing.tangent(relative[b.port]) for b in bearings},
-        tuple(name for name, load in carried.items() if not load.any()),
-        found.unbalanced,
-        found.iterations,
-        found.motion,
+        ports=tuple(names),
+        motion=motion,
+        relative=relative,
+        load=carried,
+        tangent={b.port: b.bearing.tangent(relative[b.port]) for b in bearings},
+        lost=tuple(name for name, load in carried.items() if not load.any()),
+        unbalanced=settled.unbalanced,
+        iterations=settled.iterations,
+        _state=settled.motion,
     )

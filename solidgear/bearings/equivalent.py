@@ -73,7 +73,7 @@ class Equivalent(NamedTuple):
     """Equivalent dynamic load of a bearing."""
 
     load: float  #: P, N
-    #: radial, axial: what it comes from, N
+    #: radial, axial: components of the reaction, N
     radial: float
     axial: float
     #: X, Y, e: factors that were taken, and the limit of F_a / F_r between both pairs of them
@@ -85,8 +85,8 @@ class Equivalent(NamedTuple):
 def equivalent_load(
     data: Catalogue, inside: Inside, rated: Ratings, load: np.ndarray
 ) -> Equivalent:
-    """Equivalent dynamic load by ISO 281, of ratings of all rows and the load (6,) of the shaft on
-    the bearing, N; moments are not felt by this load.
+    """Return the equivalent dynamic load by ISO 281, from ratings of all rows and the load (6,) of
+    the shaft on the bearing, N; moments have no part in it.
     """
     radial, axial = math.hypot(load[0], load[2]), abs(float(load[1]))
     e, low, high = factors(data, inside, _depth(data, inside, axial / rated.static))
@@ -95,7 +95,9 @@ def equivalent_load(
 
 
 def _depth(data: Catalogue, inside: Inside, share: float) -> float:
-    """Axial load over the squares of the balls that carry it, N/mm^2, from its share of C_0."""
+    """Return the axial load over the squares of the balls that carry it, N/mm^2, from the share of
+    C_0.
+    """
     if not data.balls or inside.thrust:
         return 0.0
     # of two rows against each other one carries all of it
@@ -104,9 +106,9 @@ def _depth(data: Catalogue, inside: Inside, share: float) -> float:
 
 
 def factors(data: Catalogue, inside: Inside, depth: float) -> Factors:
-    """X, Y and e of a bearing at an axial load over the squares of the balls that carry it,
-    N/mm^2; of rollers without a contact angle they take the radial load alone, of thrust balls the
-    axial one.
+    """Return X, Y and e of a bearing at an axial load over the squares of the balls that carry it,
+    N/mm^2; for rollers without a contact angle those of the radial load alone, for thrust balls
+    those of the axial one.
     """
     if inside.thrust:
         return Factors(0.0, (0.0, 1.0), (0.0, 1.0))
@@ -120,21 +122,21 @@ def factors(data: Catalogue, inside: Inside, depth: float) -> Factors:
 
 
 def _cone_factors(inside: Inside) -> tuple[float, float, float]:
-    """X, e and Y of tapered rollers."""
+    """Return X, e and Y of tapered rollers."""
     slope = math.tan(inside.angle)
     return 0.4, 1.5 * slope, 0.4 / slope
 
 
 def _ball_factors(data: Catalogue, inside: Inside, depth: float) -> tuple[float, float, float]:
-    """X, e and Y of a row of balls, between the angles of the table by proportion."""
+    """Return X, e and Y of a row of balls, between the angles of the table by proportion."""
     angle = math.degrees(inside.angle)
     if not data.angled:
         # of a clearance that is a length, those of the normal class
         angle = _CLEARANCE_ANGLE.get(str(data.clearance), 5)
-    known = [(degrees, _at_depth(degrees, depth)) for degrees in _SHALLOW]
-    known += _STEEP.items()
-    degrees = [place for place, _ in known]
-    x, e, y = (float(np.interp(angle, degrees, column)) for column in zip(*(v for _, v in known)))
+    tables = [(degrees, _at_depth(degrees, depth)) for degrees in _SHALLOW]
+    tables += _STEEP.items()
+    degrees = [place for place, _ in tables]
+    x, e, y = (float(np.interp(angle, degrees, column)) for column in zip(*(v for _, v in tables)))
     return x, e, y
 
 
@@ -144,8 +146,8 @@ def _at_depth(degrees: int, depth: float) -> tuple[float, float, float]:
 
 
 def static_load(data: Catalogue, inside: Inside, load: np.ndarray) -> float:
-    """Equivalent static load of a bearing by ISO 76, N, under the load (6,) of the shaft on it, N;
-    of rows against each other, that on both.
+    """Return the equivalent static load of a bearing by ISO 76, N, under the load (6,) of the shaft
+    on it, N; for rows against each other, that on both.
 
     Examples
     --------
@@ -162,7 +164,7 @@ def static_load(data: Catalogue, inside: Inside, load: np.ndarray) -> float:
 
 
 def static_factors(data: Catalogue, inside: Inside) -> tuple[float, float]:
-    """X_0 and Y_0 of ISO 76 of a single row."""
+    """Return X_0 and Y_0 of ISO 76 of a single row."""
     if inside.thrust:
         return 0.0, 1.0
     if not data.angled:

@@ -1,12 +1,13 @@
 """Inner geometry of a bearing: given, or estimated from boundary dimensions and load ratings.
 
 A catalogue gives bore, outside diameter, width and load ratings; the number and size of the rolling
-elements are the maker's.  Three things tie them down: room (an element takes a usual share of
-``D - d``), filling (how many are usually put in), and the rating, of which ISO 281:2007 and
-ISO 76:2006 say how it is computed from them (:mod:`solidgear.bearings.rating`).  The shares were
-read off bearings whose inside is published (6203 to 6311, 7208, 218, NU205 to NU312, 30206 to
-32310; of spherical rollers one, Harris's 22317; of thrust balls 51110 and 51210): :mod:`solidgear.bearings.kinds` holds their middle and their spread.  What is estimated is
-marked, and comes with a softer and a stiffer inside at the ends of the spread.
+elements are the maker's. Three things tie them down: room (an element takes a usual share of ``D -
+d``), filling (how many are usually put in), and the rating, of which ISO 281:2007 and ISO 76:2006
+say how it is computed from them (:mod:`solidgear.bearings.rating`). The shares were read off
+bearings whose inside is published (6203 to 6311, 7208, 218, NU205 to NU312, 30206 to 32310; of
+spherical rollers one, Harris's 22317; of thrust balls 51110 and 51210):
+:mod:`solidgear.bearings.kinds` holds their middle and their spread. Estimates are marked, and comes
+with a softer and a stiffer inside at the ends of the spread.
 """
 
 from __future__ import annotations
@@ -42,7 +43,7 @@ class Inside:
 
     @property
     def thrust(self) -> bool:
-        """True where its elements run on washers, at 90 degrees."""
+        """Return whether the elements run on washers, at 90 degrees."""
         return self.angle > math.radians(89)
 
     @property
@@ -52,19 +53,19 @@ class Inside:
 
 
 class Geometry(NamedTuple):
-    """Inner geometry with its spread."""
+    """Inner geometry with its softest and stiffest estimate."""
 
     #: middle, softer, stiffer: all three the same where nothing is estimated
     middle: Inside
     softer: Inside
     stiffer: Inside
-    estimated: tuple[str, ...]  #: what was not given
+    estimated: tuple[str, ...]  #: names of the dimensions that were not given
 
 
 @lru_cache(maxsize=1024)
 def inner_geometry(data: Catalogue) -> Geometry:
-    """Inner geometry of a bearing by its catalogue data; refuses a load rating that no inside of
-    these boundary dimensions has.
+    """Return the inner geometry of a bearing by catalogue data; refuse a load rating that no
+    inside of these boundary dimensions has.
     """
     make = _balls if data.balls else _rollers
     middle = make(data, "middle")
@@ -84,12 +85,12 @@ def _angle(data: Catalogue, end: str) -> float:
     shares = SHARES[data.kind]
     if not data.angled or data.contact_angle is not None:
         return data.contact_angle or shares.angle
-    known = usual_angle(data.designation)
-    return (known or shares.angle) * (1 + _SIGN[end] * shares.angle_spread)
+    usual = usual_angle(data.designation)
+    return (usual or shares.angle) * (1 + _SIGN[end] * shares.angle_spread)
 
 
 def _start(data: Catalogue, end: str) -> Inside:
-    """Geometry by room and filling alone."""
+    """Return the inner geometry by room and filling alone."""
     shares = SHARES[data.kind]
     room = data.outer_diameter - data.bore
     # larger elements are fewer, and softer together
@@ -123,30 +124,30 @@ def _balls(data: Catalogue, end: str) -> Inside:
     rating = data.load_rating * (1 + _SIGN[end] * RATING_SPREAD)
     usual = SHARES[data.kind].diameter.middle * (data.outer_diameter - data.bore)
     counts = [data.elements] if data.elements else range(3, 60)
-    found = []
+    candidates = []
     for count in counts:
         diameter = data.element_diameter or _ball_for(replace(guess, elements=count), rating, data)
         if count * math.asin(min(diameter / guess.pitch, 1.0)) < math.pi:
             inside = replace(guess, elements=count, diameter=diameter)
-            found.append((_misfit(inside, rating, usual, data), inside))
-    if not found:
+            candidates.append((_misfit(inside, rating, usual, data), inside))
+    if not candidates:
         raise _no_inside(data)
-    misfit, best = min(found, key=lambda pair: pair[0])
+    misfit, best = min(candidates, key=lambda pair: pair[0])
     if misfit > 0.5:
         raise _no_inside(data)
     return best
 
 
 def _misfit(inside: Inside, rating: float, usual: float, data: Catalogue) -> float:
-    own = rated(data, inside)
+    computed = rated(data, inside)
     filling = inside.elements * math.asin(inside.diameter / inside.pitch) / math.pi
     share = SHARES[data.kind].filling
     static = 0.0
     if inside.thrust and data.static_rating and data.load_rating:  # Z Dw^2 and nothing else
-        wanted = data.static_rating * rating / data.load_rating
-        static = abs(math.log(static_ball_rating(inside) / wanted))
+        target = data.static_rating * rating / data.load_rating
+        static = abs(math.log(static_ball_rating(inside) / target))
     return (
-        abs(math.log(own / rating))
+        abs(math.log(computed / rating))
         + static
         + abs(math.log(inside.diameter / usual))
         + 0.5 * max(0.0, abs(filling - share.middle) - share.spread)
@@ -154,17 +155,17 @@ def _misfit(inside: Inside, rating: float, usual: float, data: Catalogue) -> flo
 
 
 def _ball_for(inside: Inside, rating: float, data: Catalogue) -> float:
-    """Ball diameter that brings the rating, for a number of balls."""
+    """Return the ball diameter that brings the rating, for a number of balls."""
     widest = 0.48 * (data.outer_diameter - data.bore)
     diameter, power, last = inside.diameter, USUAL_POWER, (0.0, 0.0)
     for _ in range(40):
-        own = rated(data, replace(inside, diameter=diameter))
-        if all(last) and own != last[1]:
+        computed = rated(data, replace(inside, diameter=diameter))
+        if all(last) and computed != last[1]:
             # steps of a secant, where the rating grows as it should
-            grown = math.log(own / last[1]) / math.log(diameter / last[0])
+            grown = math.log(computed / last[1]) / math.log(diameter / last[0])
             power = grown if grown > USUAL_POWER / 2 else USUAL_POWER
-        last = diameter, own
-        diameter = min(diameter * (rating / own) ** (1 / power), widest)
+        last = diameter, computed
+        diameter = min(diameter * (rating / computed) ** (1 / power), widest)
         if abs(diameter - last[0]) <= 1e-14 * diameter:
             break
     return diameter
@@ -174,16 +175,20 @@ def _rollers(data: Catalogue, end: str) -> Inside:
     guess = _start(data, end)
     if data.element_length is not None or not (data.static_rating or data.load_rating):
         return guess
-    # what the ratings tie down best is the length of all rollers together
-    own: float
+    # the ratings fix the length of all rollers together best
+    computed: float
     if data.static_rating is not None:
-        rating, own, power = data.static_rating, data.rated_rows * static_roller_rating(guess), 1.0
+        rating, computed, power = (
+            data.static_rating,
+            data.rated_rows * static_roller_rating(guess),
+            1.0,
+        )
     else:
         assert data.load_rating is not None
-        rating, own = data.load_rating, rated(data, guess)
+        rating, computed = data.load_rating, rated(data, guess)
         power = 9 / 7
-    wanted = rating * (1 + _SIGN[end] * RATING_SPREAD)
-    length = guess.length * (wanted / own) ** power
+    target = rating * (1 + _SIGN[end] * RATING_SPREAD)
+    length = guess.length * (target / computed) ** power
     width = data.width / data.own_rows
     if not 0.3 * width < length < 1.3 * width:
         raise _no_inside(data)

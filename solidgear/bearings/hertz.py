@@ -11,7 +11,7 @@ two bodies of one material (Harris and Kotzalas, Essential Concepts of Bearing T
 ch. 6; Hamrock and Brewe fit the same integrals).  Nothing is fitted here: the integrals are
 evaluated.
 
-Line contact.  The approach of a roller to both its rings has no closed form that is independent of
+Line contact.  The approach of a roller to both rings has no closed form that is independent of
 the rings; ISO/TS 16281:2008, 5.3 takes ``q = 35948 l^(8/9) delta^(10/9)`` (N, mm) for steel, both
 contacts together, after Palmgren.
 """
@@ -46,24 +46,18 @@ class Point(NamedTuple):
     short: float
 
     def pressure(self, load: np.ndarray) -> np.ndarray:
-        """Largest pressure under a load in N, Pa."""
+        """Return the largest pressure under a load in N, Pa."""
         return 1.5 * np.cbrt(load) / (np.pi * self.long * self.short)
 
     def load(self, pressure: float) -> float:
-        """Load under which the largest pressure is that in Pa, N."""
+        """Return the load under which the largest pressure is that in Pa, N."""
         return float((pressure * np.pi * self.long * self.short / 1.5) ** 3)
 
 
 @functools.lru_cache(maxsize=4096)
 def point_contact(rolling: float, across: float, E: float = STEEL_E, nu: float = STEEL_NU) -> Point:
-    """Hertz's contact of two bodies of one material.
-
-    Parameters
-    ----------
-    rolling, across : float
-        Sum of both bodies' curvatures in the two principal planes, 1/m, both positive.
-    E, nu : float
-        Pa, ratio.
+    """Return Hertz's contact of two bodies of one material, from the sums of both bodies'
+    curvatures in the two principal planes, 1/m, both positive.
 
     Examples
     --------
@@ -94,11 +88,11 @@ def _axes_ratio(difference: float) -> float:
         first, second = _integrals(ratio)
         wide = ratio**2 - 1
         share = first / second
-        own = (wide + 2 - 2 * share) / wide
+        estimate = (wide + 2 - 2 * share) / wide
         # dK/dlog k = (k^2 E - K) / (k^2 - 1) and dE/dlog k = (E - K) / (k^2 - 1)
-        turned = (ratio**2 - 2 * share + share**2) / wide
-        slope = 2 * (ratio**2 * (1 - own) - turned) / wide
-        step = (difference - own) / slope
+        moved = (ratio**2 - 2 * share + share**2) / wide
+        slope = 2 * (ratio**2 * (1 - estimate) - moved) / wide
+        step = (difference - estimate) / slope
         log_ratio += step
         if step <= 1e-14 * log_ratio:  # or it is back by rounding
             break
@@ -106,22 +100,23 @@ def _axes_ratio(difference: float) -> float:
 
 
 def _integrals(ratio: float) -> tuple[float, float]:
-    """K(m) and E(m) at ``m = 1 - 1/ratio^2``, by the arithmetic-geometric mean (Abramowitz and
-    Stegun 17.6).
+    """Return K(m) and E(m) at ``m = 1 - 1/ratio^2``, by the arithmetic-geometric mean (Abramowitz
+    and Stegun 17.6).
     """
     a, b, power = 1.0, 1 / ratio, 0.5
-    left = power * (1 - b) * (1 + b)
+    series = power * (1 - b) * (1 + b)
     while a - b > 1e-15 * a:
         a, b, half = (a + b) / 2, math.sqrt(a * b), (a - b) / 2
         power *= 2
-        left += power * half**2
+        series += power * half**2
     first = math.pi / (2 * a)
-    return first, first * (1 - left)
+    return first, first * (1 - series)
 
 
 def line_constant(length: float, E: float = STEEL_E, nu: float = STEEL_NU) -> float:
-    """c of ``Q = c delta^(10/9)`` for a roller of an effective length (m) between its rings, both
-    contacts together, N/m^(10/9); the rule is one for steel, and is scaled by ``E / (1 - nu^2)``.
+    """Return c of ``Q = c delta^(10/9)`` for a roller of an effective length (m) between the
+    rings, both contacts together, N/m^(10/9); the rule is one for steel, and is scaled by ``E / (1
+    - nu^2)``.
 
     Examples
     --------
@@ -135,8 +130,8 @@ def line_constant(length: float, E: float = STEEL_E, nu: float = STEEL_NU) -> fl
 def line_pressure(
     load: np.ndarray, length: float, curvature: float, E: float = STEEL_E, nu: float = STEEL_NU
 ) -> np.ndarray:
-    """Largest pressure of a line contact by Hertz, Pa: load in N, length in m, sum of both bodies'
-    curvatures in 1/m, E in Pa.
+    """Return the largest pressure of a line contact by Hertz, Pa: load in N, length in m, sum of
+    both bodies' curvatures in 1/m, E in Pa.
 
     Examples
     --------

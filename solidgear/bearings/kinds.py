@@ -1,4 +1,4 @@
-"""Kinds of rolling bearings: what their inside usually is, and the factor of their ratings."""
+"""Kinds of rolling bearings: their usual inside, and the factor of their ratings."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ class Share(NamedTuple):
 
 
 class Shares(NamedTuple):
-    """Usual inside of a kind, and what its rating has of the kind."""
+    """Usual inside of a kind, and the factor of the kind in its rating."""
 
     diameter: Share  #: element diameter over ``D - d``
     length: Share  #: effective roller length over width
     filling: Share  #: elements over those that would touch all around
     rating_factor: float  #: b_m of ISO 281:2007, Tables 1 and 6, for the steel and make of today
-    angle: float = 0.0  #: contact angle where nothing tells it, rad
+    angle: float = 0.0  #: contact angle where none is given, rad
     #: of it, relative.  Ball and tapered rows have none here: a steeper one is stiffer along y and
     #: softer across it.  Barrels stand so flat that only the former counts.
     angle_spread: float = 0.0

@@ -3,6 +3,28 @@
 Three lives stand beside each other: the basic one of ISO 281 from the reaction alone, the basic
 reference one of ISO/TS 16281 from the loads of all elements (clearance, preload, tilt and the share
 of each row are in it), and the modified reference one, where the lubrication is known.
+
+The modified life of ISO 281:2007 counts reliability, lubricating film, dirt and the fatigue limit,
+
+    L_nm = a_1 a_ISO L_10.
+
+The film is judged by ``kappa = nu / nu_1``, the viscosity at work over that which the size and the
+speed ask for,
+
+    nu_1 = 45000 n^-0.83 Dpw^-0.5 below 1000 r/min,     4500 n^-0.5 Dpw^-0.5 above   (mm^2/s, mm)
+
+and with e_C for dirt and the fatigue load limit C_u, for 0.1 <= kappa <= 4,
+
+    balls     a_ISO = 0.1 (1 - (2.5671 - A / kappa^B)^0.83 (e_C C_u / P)^(1/3))^-9.3
+    rollers   a_ISO = 0.1 (1 - (1.5859 - A / kappa^B) (e_C C_u / P)^0.4)^-9.185
+
+and at most 50 (ISO 281:2007, 9.3.3; A and B make the formulas join at kappa = 0.4, which a
+misprinted 0.019087 for balls does not). Reliability is a Weibull distribution with a life of 5 %
+that all reach, ``a_1 = 0.05 + 0.95 (ln S / ln 0.9)^(2/3)``: Table 12 of ISO 281 to its digits
+(ISO/TR 1281-2:2008).
+
+ISO/TS 16281 takes a_ISO for every slice by itself, at the load P of a row whose slices are all
+loaded like this one.
 """
 
 from __future__ import annotations
@@ -16,12 +38,6 @@ import numpy as np
 
 from solidgear.bearings.catalogued import Catalogued
 from solidgear.bearings.equivalent import Equivalent, equivalent_load, static_load
-from solidgear.bearings.modified_life import (
-    LEAST_FILM,
-    life_factor,
-    reference_viscosity,
-    reliability_factor,
-)
 from solidgear.bearings.rating import ROW_POWER, STATIC_PRESSURE, Ratings, ratings
 from solidgear.bearings.reference_life import Damage, Ring, damage, raceways
 from solidgear.bearings.row import Contacts
@@ -37,7 +53,7 @@ MOST_LOAD = 0.5
 
 
 class Modified(NamedTuple):
-    """Modified reference rating life and its factors."""
+    """Modified reference rating life with factors."""
 
     life: float  #: L_nmr, revolutions
     reliability: float
@@ -60,10 +76,10 @@ class Life:
     basic: float  #: L_10 of ISO 281
     reference: float  #: L_10r of ISO/TS 16281
     modified: Modified | None
-    without: str  #: why there is no modified life; empty where there is one
+    without: str  #: reason why there is no modified life; empty where there is one
     equivalent: Equivalent  #: dynamic load P of the basic life
-    #: what its elements feel: the radial load, N, under which half of each row carrying it evenly
-    #: would live as long as the reference life
+    #: radial load, N, under which half of each row carrying it evenly would live as long as the
+    #: reference life
     reference_load: float
     #: static_load, static_safety: P_0 in N, and C_0 / P_0
     static_load: float
@@ -71,7 +87,7 @@ class Life:
     #: largest at the inner and the outer ring of each row, Pa
     pressure: tuple[tuple[float, float], ...]
     rated: Ratings
-    notes: tuple[str, ...]  #: what is to be said of it, one sentence each
+    notes: tuple[str, ...]  #: warnings, one sentence each
 
 
 def life(
@@ -82,20 +98,10 @@ def life(
     speed: float = 0.0,
     turning: Ring = "inner",
 ) -> Life:
-    """Life of a bearing at one motion of its inner ring.
+    """Return the life of a bearing at one motion of the inner ring, (6,), m and rad.
 
-    Parameters
-    ----------
-    made : Catalogued
-        From these data.
-    motion : (6,) ndarray
-        m and rad, as an equilibrium found it.
-    lubrication : Lubrication, optional
-        Without it there is no modified life.
-    speed : float
-        rad/s; without one there is no modified life.
-    turning : {'inner', 'outer'}
-        The ring that turns against the load.
+    Without lubrication or speed, rad/s, there is no modified life; `turning` is the ring that turns
+    against the load.
 
     Examples
     --------
@@ -112,28 +118,28 @@ def life(
     # contacts that balance each other leave the rounding of their sum
     at_work = sum(row.load.sum() for row in rows)
     load = np.where(np.abs(load) > ROUNDING * at_work, load, 0.0)
-    own = rated.dynamic / len(rows) ** ROW_POWER[data.balls]
-    done = damage(rows, raceways(made.inside, own), turning)
+    row_rating = rated.dynamic / len(rows) ** ROW_POWER[data.balls]
+    fatigue_damage = damage(rows, raceways(made.inside, row_rating), turning)
     equivalent = equivalent_load(data, made.inside, rated, load)
     static = static_load(data, made.inside, load)
-    found = Life(
+    result = Life(
         basic=1e6 * _quotient(rated.dynamic, equivalent.load) ** LIFE_POWER[data.balls],
-        reference=done.life,
+        reference=fatigue_damage.life,
         modified=None,
         without="",
         equivalent=equivalent,
-        reference_load=done.load,
+        reference_load=fatigue_damage.load,
         static_load=static,
         static_safety=_quotient(rated.static, static),
         pressure=tuple((float(row.inner.max()), float(row.outer.max())) for row in rows),
         rated=rated,
         notes=tuple(_notes(data, rated, rows, equivalent.load, static)),
     )
-    if math.isinf(found.reference):
-        return replace(found, without="it carries nothing")
+    if math.isinf(result.reference):
+        return replace(result, without="it carries nothing")
     if lubrication is None:
-        return replace(found, without="no [lubrication] is given")
-    return _modified(found, done, made.inside.pitch, data.balls, lubrication, speed)
+        return replace(result, without="no [lubrication] is given")
+    return _modified(result, fatigue_damage, made.inside.pitch, data.balls, lubrication, speed)
 
 
 def _quotient(rating: float, load: float) -> float:
@@ -141,42 +147,47 @@ def _quotient(rating: float, load: float) -> float:
 
 
 def _modified(
-    found: Life, done: Damage, pitch: float, balls: bool, lubrication: Lubrication, speed: float
+    result: Life,
+    fatigue_damage: Damage,
+    pitch: float,
+    balls: bool,
+    lubrication: Lubrication,
+    speed: float,
 ) -> Life:
-    """The same life with the modified one, or with why there is none."""
+    """Return the same life with the modified life, or with the reason why there is none."""
     if not speed > 0:
-        return replace(found, without="no speed is given")
-    wanted = reference_viscosity(speed, pitch)
-    kappa = lubrication.viscosity / wanted
+        return replace(result, without="no speed is given")
+    reference = reference_viscosity(speed, pitch)
+    kappa = lubrication.viscosity / reference
     if kappa < LEAST_FILM:
-        without = (
-            f"the viscosity is {kappa:.2g} of the {wanted * 1e6:.3g} mm^2/s that speed and size ask "
+        reason = (
+            f"the viscosity is {kappa:.2g} of the {reference * 1e6:.3g} mm^2/s that speed and size ask "
             f"for, and ISO 281 has no life below {LEAST_FILM:g}"
         )
-        return replace(found, without=without)
+        return replace(result, without=reason)
     a1 = reliability_factor(lubrication.reliability)
-    fatigue = found.rated.fatigue / len(done.each)
+    fatigue = result.rated.fatigue / len(fatigue_damage.by_slice)
     # a slice that carries nothing is far below every limit
-    limit = fatigue / np.maximum(done.slice_loads, 1e-9 * fatigue)
+    limit = fatigue / np.maximum(fatigue_damage.slice_loads, 1e-9 * fatigue)
 
-    def lived(dirt: float) -> float:
-        return a1 * done.modified(life_factor(kappa, dirt * limit, balls))
+    def life_with(dirt: float) -> float:
+        return a1 * fatigue_damage.modified(life_factor(kappa, dirt * limit, balls))
 
     low, high = lubrication.contamination(pitch)
     dirt = (low + high) / 2
-    whole = lived(dirt)
+    life_at_middle = life_with(dirt)
     modified = Modified(
-        life=whole,
+        life=life_at_middle,
         reliability=lubrication.reliability,
         a1=a1,
-        a_iso=whole / a1 / found.reference,
+        a_iso=life_at_middle / a1 / result.reference,
         kappa=kappa,
         contamination=dirt,
-        reference_viscosity=wanted,
-        low=lived(low),
-        high=lived(high),
+        reference_viscosity=reference,
+        low=life_with(low),
+        high=life_with(high),
     )
-    return replace(found, modified=modified)
+    return replace(result, modified=modified)
 
 
 def _notes(
@@ -199,3 +210,56 @@ def _notes(
             f"a contact pressure of {most / 1e6:.0f} MPa is beyond the {limit / 1e6:.0f} MPa of its "
             "static rating (ISO 76)"
         )
+
+
+#: largest a_ISO, and the range of kappa in which it is known
+MOST_LIFE, LEAST_FILM, FULL_FILM = 50.0, 0.1, 4.0
+#: for kappa from: A, B; of balls and of rollers
+_FILM = {
+    True: ((1.0, 1.9987, 0.071739), (0.4, 1.9987, 0.19087), (0.1, 2.2649, 0.054381)),
+    False: ((1.0, 1.2348, 0.071739), (0.4, 1.2348, 0.19087), (0.1, 1.3993, 0.054381)),
+}
+
+
+class Law(NamedTuple):
+    """Constants of a_ISO for a kind of element: see the head of this module."""
+
+    start: float
+    film: float
+    load: float
+    power: float
+
+
+_LAW = {True: Law(2.5671, 0.83, 1 / 3, 9.3), False: Law(1.5859, 1.0, 0.4, 9.185)}
+
+
+def reliability_factor(reliability: float) -> float:
+    """Return a_1 of ISO 281, Table 12."""
+    return 0.05 + 0.95 * (math.log(reliability) / math.log(0.9)) ** (2 / 3)
+
+
+def reference_viscosity(speed: float, pitch: float) -> float:
+    """Return the viscosity nu_1, m^2/s, that a bearing needs at a speed, rad/s, and a diameter of
+    the circle of the elements' centres, m.
+    """
+    turns, size = speed * 30 / math.pi, pitch * 1e3
+    factor = 45000 * turns**-0.83 if turns < 1000 else 4500 * turns**-0.5
+    return factor * size**-0.5 * 1e-6
+
+
+def life_factor(kappa: float, ratio: np.ndarray, balls: bool) -> np.ndarray:
+    """Return a_ISO of ISO 281 for radial bearings, at most 50, from the viscosity ratio, at least
+    0.1, and ``e_C C_u / P``; a viscosity ratio above 4 counts as 4.
+
+    Examples
+    --------
+    >>> life_factor(1.0, np.array([0.1, 2.0]), balls=True).round(2)
+    array([ 2.43, 50.  ])
+    """
+    kappa = min(kappa, FULL_FILM)
+    law = _LAW[balls]
+    _, a, b = next(entry for entry in _FILM[balls] if kappa >= entry[0])
+    inner = 1 - (law.start - a / kappa**b) ** law.film * ratio**law.load
+    # of a film this thick nothing below the fatigue limit fails
+    least = (MOST_LIFE / 0.1) ** (-1 / law.power)
+    return 0.1 * np.maximum(inner, least) ** -law.power

@@ -1,7 +1,7 @@
-"""Newton with a line search, for the equilibrium of what presses and never pulls.
+"""Newton with a line search, for the equilibrium of contacts, which press and never pull.
 
 The energy of contacts and elastic parts is convex (:mod:`solidgear.bearings.row`), so the slope of
-the whole energy along any direction only grows: a step is too long when the slope at its end has
+the whole energy along any direction only grows: a step is too long when the slope at the end has
 turned positive, and the search needs no energy, only loads.  Where nothing presses yet the tangent
 is singular; motions without stiffness take a step of bounded length along the load that is not
 balanced, until a contact meets it.
@@ -22,7 +22,7 @@ MOST = 200
 FIRST_STEP, LOST = 2e-4, 0.05
 #: of the largest stiffness: softer directions have none
 SOFT = 1e-11
-#: of the load: what may stay unbalanced
+#: largest imbalance, relative to the load
 UNBALANCED = 1e-12
 
 
@@ -30,19 +30,15 @@ class Settled(NamedTuple):
     """An equilibrium."""
 
     motion: np.ndarray  #: (n,)
-    #: largest part of the load that is left, of the largest load or of the forces at work without
-    #: any, in scaled units
+    #: largest imbalance, relative to the largest load or to the forces at work without any, in scaled
+    #: units
     unbalanced: float
     iterations: int
 
 
 class NothingHolds(SolidgearError):
-    """A load that nothing balances, however far its point moves.
-
-    Attributes
-    ----------
-    direction : (n,) ndarray
-        Where the motion went.
+    """Load that nothing balances, however far the point moves, with the `direction` (n,) of the
+    motion.
     """
 
     def __init__(self, reason: str, direction: np.ndarray):
@@ -58,26 +54,13 @@ def settle(
     start: np.ndarray | None = None,
     at_work: float = 0.0,
 ) -> Settled:
-    """Motion at which a convex system carries a load.
+    """Return the motion at which a convex system carries a load, N and N m.
 
-    Parameters
-    ----------
-    load, tangent : callable
-        Load (n,) and its derivative (n, n) at a motion (n,).
-    target : (n,) ndarray
-        N and N m.
-    size : (n,) ndarray
-        Motion of each unknown that counts as one metre: 1 for translations, one over a length for
-        rotations.
-    start : (n,) ndarray, optional
-    at_work : float
-        Forces that balance each other at `start`, such as those of a preload, N: what is left of
-        a load is judged on them where they are larger, since its rounding is theirs.
-
-    Raises
-    ------
-    NothingHolds
-        A motion of `LOST` metres has not balanced the load.
+    `load` gives the load (n,) and `tangent` the derivative (n, n) at a motion (n,); `size` (n,) is
+    the motion of each unknown that counts as one metre: 1 for translations, one over a length for
+    rotations. Forces `at_work`, N, balance each other at `start`, such as those of a preload: an
+    imbalance is judged on them where they are larger than the load, since rounding is theirs. A
+    load that is not balanced after a motion of `LOST` metres is refused.
 
     Examples
     --------
@@ -88,29 +71,29 @@ def settle(
     >>> round(float(found.motion[0]) * 1e6, 6)
     10.25
     """
-    at = np.zeros(len(target)) if start is None else np.array(start, float)
+    state = np.zeros(len(target)) if start is None else np.array(start, float)
     goal, reach = size * target, FIRST_STEP
-    missing = goal - size * load(at)
-    scale = max(at_work, *(float(np.abs(one).max(initial=0.0)) for one in (goal, missing)))
+    missing = goal - size * load(state)
+    scale = max(at_work, *(float(np.abs(forces).max(initial=0.0)) for forces in (goal, missing)))
     if scale == 0.0:
-        return Settled(at, 0.0, 0)
-    best, best_at, stalled = np.inf, at, 0
+        return Settled(state, 0.0, 0)
+    best, best_at, stalled = np.inf, state, 0
     iterations = 0
     while iterations < MOST:
         iterations += 1
-        left = float(np.abs(missing).max())
-        if left < best:
-            best, best_at, stalled = left, at, stalled if left > 0.5 * best else 0
+        imbalance = float(np.abs(missing).max())
+        if imbalance < best:
+            best, best_at, stalled = imbalance, state, stalled if imbalance > 0.5 * best else 0
         stalled += 1
-        if left <= UNBALANCED * scale or stalled > 25:
+        if imbalance <= UNBALANCED * scale or stalled > 25:
             break
-        step = size * _step(size[:, None] * tangent(at) * size, missing, scale, reach)
-        way, missing, still_falling = _searched(load, goal, size, at, step, missing)
+        step = size * _step(size[:, None] * tangent(state) * size, missing, scale, reach)
+        way, missing, still_falling = _searched(load, goal, size, state, step, missing)
         if way == 0.0:
             break
-        at = at + way * step
+        state = state + way * step
         reach = 4 * reach if still_falling else reach
-        if np.abs(at / size).max() > LOST:
+        if np.abs(state / size).max() > LOST:
             raise NothingHolds("nothing holds this load", step / size)
     # a tangent that is steep where contact begins turns rounding of motions into load
     return Settled(best_at, best / scale, iterations)
@@ -126,8 +109,10 @@ def _step(stiffness: np.ndarray, missing: np.ndarray, scale: float, reach: float
     return step * min(1.0, reach / length) if length > 0 else step
 
 
-def _searched(load, goal, size, at, step, missing):
-    """Length of the step, what is then missing, and whether the energy still falls steeply."""
+def _searched(load, goal, size, state, step, missing):
+    """Return the length of the step, the imbalance after it, and whether the energy still falls
+    steeply.
+    """
     direction = step / size
     first = float(missing @ direction)
     low, high, way = 0.0, np.inf, 1.0
@@ -135,12 +120,12 @@ def _searched(load, goal, size, at, step, missing):
     if not first > 0:
         return best
     for _ in range(60):
-        here = goal - size * load(at + way * step)
-        slope = float(here @ direction)
+        imbalance = goal - size * load(state + way * step)
+        slope = float(imbalance @ direction)
         if abs(slope) <= 0.5 * first:
-            return way, here, False
+            return way, imbalance, False
         if slope > 0:  # the energy still falls beyond
-            return way, here, True
+            return way, imbalance, True
         high = way
         way = (low + high) / 2
     return best

@@ -1,7 +1,7 @@
 r"""Frequencies of a rolling bearing by rolling without slip: cage, passage of elements, their spin.
 
-A race at the radius ``(Dpw -+ Dw cos a) / 2`` of its contacts moves with its ring, the centre of an
-element at the mean of the two speeds, and its spin takes up their difference.  With g = Dw cos(a) /
+A race at the radius ``(Dpw -+ Dw cos a) / 2`` of the contacts moves with the ring, the centre of an
+element at the mean of the two speeds, and the spin takes up their difference.  With g = Dw cos(a) /
 Dpw, rings that turn at n_i and n_o, and Z elements,
 
     FTF   n_c = (n_i (1 - g) + n_o (1 + g)) / 2        cage
@@ -10,7 +10,7 @@ Dpw, rings that turn at n_i and n_o, and Z elements,
     BSF   Dpw / (2 Dw) (1 - g^2) |n_i - n_o|           turns of an element against the cage
 
 (Harris and Kotzalas, Essential Concepts of Bearing Technology, 5th ed., chapter on internal speeds
-and motions).  A defect of an element meets both rings in each of its turns, so that its second
+and motions).  A defect of an element meets both rings in each turn, so that the second
 harmonic is often the larger one.
 """
 
@@ -26,7 +26,7 @@ from solidgear.bearings.row import Contacts
 
 
 class Passing(NamedTuple):
-    """Frequencies of a row of rolling elements, in the unit of the speeds of its rings."""
+    """Frequencies of a row of rolling elements, in the unit of the speeds of the rings."""
 
     cage: float  #: FTF; negative where the cage turns against the sense of the speeds
     #: outer, inner: BPFO and BPFI
@@ -38,13 +38,12 @@ class Passing(NamedTuple):
 def passing(
     inside: Inside, angle: float | None = None, inner: float = 1.0, outer: float = 0.0
 ) -> Passing:
-    """Frequencies of a row at the signed speeds of its rings, in any unit (by default one turn of
-    the inner ring), and a contact angle at work, rad (by default the nominal one).
+    """Return frequencies of a row at the signed speeds of the rings, in any unit (by default one
+    turn of the inner ring), and a contact angle at work, rad (by default the nominal one).
 
-    Examples
-    --------
-    The 6205 of the Case Western Reserve University's bearing data, 9 balls of 0.3126 in on 1.537 in,
-    for which they give 0.398, 3.5848, 5.4152 and, twice a turn of a ball, 4.7135:
+    Examples -------- The 6205 of the Case Western Reserve University's bearing data, 9 balls of
+    0.3126 in on 1.537 in, for which they give 0.398, 3.5848, 5.4152 and, twice a turn of a ball,
+    4.7135:
 
     >>> ball = Inside(9, 0.3126, 0.0, 1.537, 0.0, (0.52, 0.53))
     >>> [round(value, 4) for value in passing(ball)]
@@ -61,12 +60,12 @@ def passing(
 
 
 def working_angle(contacts: Contacts) -> float | None:
-    """Contact angle of a loaded row, rad: the mean of its elements, each by its load, without the
-    sign that tells the side; None where none is loaded.
+    """Return the contact angle of a loaded row, rad: the mean of the elements, weighted by their
+    loads, without sign; None if none is loaded.
 
     Examples
     --------
-    A deep groove bearing without an angle of its own takes one under an axial load:
+    A deep groove bearing without a nominal angle takes one under an axial load:
 
     >>> from solidgear.bearings.ball import BallRow
     >>> row = BallRow(count=9, diameter=9.5e-3, pitch=46e-3)

@@ -1,4 +1,4 @@
-"""Load ratings of a row from its inside: ISO 281:2007 (dynamic), ISO 76:2006 (static).
+"""Load ratings of a row from the inner geometry: ISO 281:2007 (dynamic), ISO 76:2006 (static).
 
     balls     C = 1.3 f_c (i cos(a))^0.7 Z^(2/3) Dw^1.8,            C_0 = i Z Q_0 cos(a) / 5
     rollers   C = b_m f_c (i l cos(a))^(7/9) Z^(3/4) Dw^(29/27),    C_0 = 44 (1 - g) i Z l Dw cos(a)
@@ -33,7 +33,7 @@ ROW_POWER = {True: 0.7, False: 7 / 9}
 
 
 def ball_rating(inside: Inside, factor: float = 1.3, rows: int = 1) -> float:
-    """Basic dynamic radial load rating of a ball bearing by ISO 281, N."""
+    """Return the basic dynamic radial load rating of a ball bearing by ISO 281, N."""
     size = inside.diameter * 1e3
     # above 25.4 mm the rating grows less
     size = size**1.8 if size <= 25.4 else 3.647 * size**1.4
@@ -44,26 +44,26 @@ def ball_rating(inside: Inside, factor: float = 1.3, rows: int = 1) -> float:
     inner, outer = inside.conformity
     grooves = (inner * (2 * outer - 1) / (outer * (2 * inner - 1))) ** 0.41
     ratio = 1.04 * ((1 - g) / (1 + g)) ** 1.72 * grooves
-    both = (1 + ratio ** (10 / 3)) ** -0.3
-    material = 39.9 * both * g**0.3 * (1 - g) ** 1.39 / (1 + g) ** (1 / 3)
+    both_rings = (1 + ratio ** (10 / 3)) ** -0.3
+    material = 39.9 * both_rings * g**0.3 * (1 - g) ** 1.39 / (1 + g) ** (1 / 3)
     material *= (2 * inner / (2 * inner - 1)) ** 0.41
     angle = math.cos(inside.angle)
     return factor * material * (rows * angle) ** 0.7 * inside.elements ** (2 / 3) * size
 
 
 def roller_rating(inside: Inside, factor: float = 1.1, rows: int = 1) -> float:
-    """Basic dynamic radial load rating of a roller bearing by ISO 281, N."""
+    """Return the basic dynamic radial load rating of a roller bearing by ISO 281, N."""
     g = inside.gamma
     ratio = 1.04 * ((1 - g) / (1 + g)) ** (143 / 108)
-    both = (1 + ratio ** (9 / 2)) ** (-2 / 9)
-    material = 207.0 * 0.83 * both * g ** (2 / 9) * (1 - g) ** (29 / 27) / (1 + g) ** 0.25
+    both_rings = (1 + ratio ** (9 / 2)) ** (-2 / 9)
+    material = 207.0 * 0.83 * both_rings * g ** (2 / 9) * (1 - g) ** (29 / 27) / (1 + g) ** 0.25
     length = rows * inside.length * 1e3 * math.cos(inside.angle)
     size = (inside.diameter * 1e3) ** (29 / 27)
     return factor * material * length ** (7 / 9) * inside.elements**0.75 * size
 
 
 def static_ball_rating(inside: Inside) -> float:
-    """Basic static radial load rating of a row of balls by ISO 76, N."""
+    """Return the basic static radial load rating of a row of balls by ISO 76, N."""
     inner, outer = _rated_conformity(inside)
     row = BallRow(
         count=inside.elements,
@@ -79,31 +79,35 @@ def static_ball_rating(inside: Inside) -> float:
 
 
 def _rated_conformity(inside: Inside) -> tuple[float, float]:
-    """Groove radii over ball diameter, inner and outer, for which ISO 281 and ISO 76 rate balls."""
+    """Return the groove radii over ball diameter, inner and outer, for which ISO 281 and ISO 76
+    rate balls.
+    """
     return SHARES["thrust_ball" if inside.thrust else "deep_groove"].conformity[1]
 
 
 def static_factor(inside: Inside) -> float:
-    """f_0 of ISO 76, by which ISO 281 and ISO 76 tell how deep balls sit in their grooves, N/mm^2."""
+    """Return f_0 of ISO 76, by which ISO 281 and ISO 76 express how deep balls sit in their
+    grooves, N/mm^2.
+    """
     flat = inside.elements * (inside.diameter * 1e3) ** 2 * math.cos(inside.angle)
     return static_ball_rating(inside) / flat
 
 
 def static_roller_rating(inside: Inside) -> float:
-    """Basic static radial load rating of a row of rollers by ISO 76, N."""
+    """Return the basic static radial load rating of a row of rollers by ISO 76, N."""
     mm = inside.length * inside.diameter * 1e6
     return 44.0 * (1 - inside.gamma) * inside.elements * mm * math.cos(inside.angle)
 
 
 def rated(data: Catalogue, inside: Inside) -> float:
-    """Basic dynamic radial load rating of a bearing with such rows by ISO 281, N: of one bearing
-    where it is a pair.
+    """Return the basic dynamic radial load rating of a bearing with such rows by ISO 281, N; for a
+    pair that of one bearing.
     """
     if not data.balls:
         return roller_rating(inside, _factor(data), data.rated_rows)
     # ISO 281 grants tighter grooves than its own nothing
-    own = replace(inside, conformity=_rated_conformity(inside))
-    return ball_rating(own, _factor(data), data.rated_rows)
+    standard = replace(inside, conformity=_rated_conformity(inside))
+    return ball_rating(standard, _factor(data), data.rated_rows)
 
 
 def _factor(data: Catalogue) -> float:
@@ -111,7 +115,7 @@ def _factor(data: Catalogue) -> float:
 
 
 class Ratings(NamedTuple):
-    """Load ratings of a bearing, of all its rows together."""
+    """Load ratings of a bearing, of all rows together."""
 
     #: dynamic, static, fatigue: C, C_0 and C_u, N
     dynamic: float
@@ -121,21 +125,11 @@ class Ratings(NamedTuple):
 
 
 def ratings(data: Catalogue, inside: Inside) -> Ratings:
-    """Load ratings of a bearing: those of its catalogue, or computed from its inside.
+    """Return load ratings of a bearing: those of the catalogue, or computed from the inside.
 
-    Parameters
-    ----------
-    data : Catalogue
-        Its ratings are those of a single bearing where it is a pair, and of both rows of a
-        double_row.
-    inside : Inside
-        Of a row.
-
-    Returns
-    -------
-    Ratings
-        Of both bearings of a pair: ISO 281 takes ``2^0.7`` (balls) or ``2^(7/9)`` (rollers) times
-        the C of one, ISO 76 twice its C_0.
+    Ratings in the catalogue are those of a single bearing of a pair, and of both rows of a
+    double_row; the result is that of both bearings of a pair: ISO 281 takes ``2^0.7`` (balls) or
+    ``2^(7/9)`` (rollers) times the C of one, ISO 76 twice the C_0.
 
     Examples
     --------
@@ -171,7 +165,9 @@ def ratings(data: Catalogue, inside: Inside) -> Ratings:
 
 
 def fatigue_limit(static: float, pitch: float, balls: bool) -> tuple[float, str]:
-    """Fatigue load limit C_u by the simple estimate of ISO 281:2007, B.3.3, N, and its formula."""
+    """Return the fatigue load limit C_u by the simple estimate of ISO 281:2007, B.3.3, N, and the
+    formula.
+    """
     share, power = (22, 0.5) if balls else (8.2, 0.3)
     if pitch <= 0.1:
         return static / share, f"C0 / {share:g} (ISO 281, B.3.3)"

@@ -1,6 +1,7 @@
-"""Basic reference rating life by ISO/TS 16281:2008: fatigue of a row from the loads of its elements.
+"""Basic reference rating life by ISO/TS 16281:2008: fatigue of a row from the loads of the
+elements.
 
-A raceway whose every element presses with its capacity Q_c lives one million revolutions.  The
+A raceway whose every element presses with the capacity Q_c lives one million revolutions.  The
 capacities of the inner and the outer raceway follow from the basic dynamic load rating C of the row
 (one that nothing but a radial load presses, half of it loaded):
 
@@ -11,13 +12,13 @@ capacities of the inner and the outer raceway follow from the basic dynamic load
               Q_ce = C / (0.83 0.364 Z cos(a)) (1 + v^(-9/2))^(2/9),
               v = 1.038 ((1 - g) / (1 + g))^(143/108)
 
-with g = Dw cos(a) / Dpw.  The four constants are Stribeck's integrals of half a loaded row; of thrust balls, whose C is axial,
-they are 1, and so is what stands for cos(a) (sin 90).  A slice
-(lamina) of a roller has ``Q_c / n^(7/9)``.
+with g = Dw cos(a) / Dpw. The four constants are Stribeck's integrals of half a loaded row; of
+thrust balls, whose C is axial, they are 1, and so is the factor in place of cos(a) (sin 90). A
+slice (lamina) of a roller has ``Q_c / n^(7/9)``.
 
 The ring that turns against the load feels all elements in turn, ``Q = (mean Q_j^p)^(1/p)``; the one
-that stands is ruled by its worst loaded places, ``Q = (mean Q_j^s)^(1/s)``: p, s = 3, 10/3 for points
-and 4, 9/2 for lines.  Then, over both rings and all slices and rows,
+that stands is ruled by the worst loaded places, ``Q = (mean Q_j^s)^(1/s)``: p, s = 3, 10/3 for
+points and 4, 9/2 for lines. Then, over both rings and all slices and rows,
 
     L_10r = (sum of (Q / Q_c)^s)^(-p / s)      million revolutions.
 
@@ -55,7 +56,7 @@ class Fatigue(NamedTuple):
     #: element
     inner: float
     outer: float
-    edge: float  #: what uneven loads along an element have already taken off the rating
+    edge: float  #: factor of the rating for uneven loads along an element
 
 
 POINT = Fatigue(3.0, 10 / 3, 0.0, 0.407, 0.389, 1.0)
@@ -75,8 +76,8 @@ class Raceways(NamedTuple):
 
 
 def raceways(inside: Inside, rating: float) -> Raceways:
-    """Capacities of both raceways of a row, of the basic dynamic radial load rating of this row
-    alone, N.
+    """Return capacities of both raceways of a row, of the basic dynamic radial load rating of this
+    row alone, N.
 
     Examples
     --------
@@ -94,11 +95,11 @@ def raceways(inside: Inside, rating: float) -> Raceways:
     share = math.cos(inside.angle)
     if inside.thrust:
         law, share = THRUST, 1.0
-    each = rating / law.edge / (inside.elements * share)
+    element_load = rating / law.edge / (inside.elements * share)
     s = law.standing
     return Raceways(
-        each / law.inner * (1 + ratio**s) ** (1 / s),
-        each / law.outer * (1 + ratio**-s) ** (1 / s),
+        element_load / law.inner * (1 + ratio**s) ** (1 / s),
+        element_load / law.outer * (1 + ratio**-s) ** (1 / s),
         law,
         rating,
     )
@@ -106,7 +107,7 @@ def raceways(inside: Inside, rating: float) -> Raceways:
 
 @functools.cache
 def edge_stress(slices: int) -> np.ndarray:
-    """Factors (slices,) by which the ends of a roller press harder than its slices."""
+    """Return the factors (slices,) by which the ends of a roller press harder than the slices."""
     if slices == 1:
         return np.ones(1)
     place = np.abs(2 * np.arange(slices) - slices + 1) / (2 * slices - 2)
@@ -118,47 +119,49 @@ def edge_stress(slices: int) -> np.ndarray:
 class Damage:
     """Damage of the rows of a bearing in a million revolutions, slice by slice."""
 
-    each: np.ndarray  #: (rows, slices) sum of ``(Q / Q_c)^s`` over both rings
+    by_slice: np.ndarray  #: (rows, slices) sum of ``(Q / Q_c)^s`` over both rings
     law: Fatigue
     rating: float  #: basic dynamic radial load rating of a row, N
 
     @property
     def life(self) -> float:
-        """Basic reference rating life for 90 % reliability, revolutions; infinite where nothing is loaded."""
-        return self.modified(np.ones_like(self.each)) if self.each.any() else math.inf
+        """Basic reference rating life for 90 % reliability, revolutions; infinite where nothing is
+        loaded.
+        """
+        return self.modified(np.ones_like(self.by_slice)) if self.by_slice.any() else math.inf
 
     def modified(self, factor: np.ndarray) -> float:
-        """Life in revolutions whose slices live by factors (rows, slices) longer."""
+        """Return the life in revolutions if slices live by factors (rows, slices) longer."""
         p, s = self.law.turning, self.law.standing
-        return 1e6 * float(np.sum(self.each * factor ** (-s / p))) ** (-p / s)
+        return 1e6 * float(np.sum(self.by_slice * factor ** (-s / p))) ** (-p / s)
 
     @property
     def load(self) -> float:
         """Radial load, N, under which half of every row, loaded evenly, would live as long."""
-        rows = len(self.each)
-        return rows * float(self._felt(self.each.sum() / rows))
+        rows = len(self.by_slice)
+        return rows * float(self._load_of(self.by_slice.sum() / rows))
 
     @property
     def slice_loads(self) -> np.ndarray:
-        """(rows, slices) the same of a row whose slices were all loaded as this one, N."""
-        return self._felt(self.each * self.each.shape[-1])
+        """Load of a row, N, whose slices were all loaded as this one, (rows, slices)."""
+        return self._load_of(self.by_slice * self.by_slice.shape[-1])
 
-    def _felt(self, whole: np.ndarray) -> np.ndarray:
-        """Load of a row that is damaged so as a whole."""
-        return self.rating / self.law.edge * whole ** (1 / self.law.standing)
+    def _load_of(self, damage_sum: np.ndarray) -> np.ndarray:
+        """Return the load of a row with this damage in total, N."""
+        return self.rating / self.law.edge * damage_sum ** (1 / self.law.standing)
 
 
 def damage(rows: Sequence[Contacts], capacity: Raceways, turning: Ring = "inner") -> Damage:
-    """Damage of rows of one make that turn together, from the loads of their elements at one
-    motion and the capacity of each; `turning` is the ring that turns against the load.
+    """Return the damage of rows of one make that turn together, from the loads of their elements at
+    one motion and the capacity of each; `turning` is the ring that turns against the load.
     """
     law = capacity.law
     inner = np.array([row.on_inner for row in rows]) / capacity.inner
     outer = np.array([row.on_outer for row in rows]) / capacity.outer
     slices = inner.shape[-1]
-    each = np.zeros((len(rows), slices))
+    by_slice = np.zeros((len(rows), slices))
     for ring, share in (("inner", inner), ("outer", outer)):
         power = law.turning if ring == turning else law.standing
         felt = share * edge_stress(slices) * slices**law.slices
-        each += np.mean(felt**power, axis=1) ** (law.standing / power)
-    return Damage(each, law, capacity.rating)
+        by_slice += np.mean(felt**power, axis=1) ** (law.standing / power)
+    return Damage(by_slice, law, capacity.rating)

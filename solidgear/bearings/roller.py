@@ -54,12 +54,12 @@ class RollerRow(Elements):
             return -0.00035 * self.diameter * np.log1p(-((2 * self.along / self.length) ** 2))
         # long rollers are straight in the middle, and drop over 1.25 diameters at each end
         end = 2.5 * self.diameter
-        beyond = np.maximum(2 * np.abs(self.along) - (self.length - end), 0.0)
-        return -0.0005 * self.diameter * np.log1p(-((beyond / end) ** 2))
+        from_end = np.maximum(2 * np.abs(self.along) - (self.length - end), 0.0)
+        return -0.0005 * self.diameter * np.log1p(-((from_end / end) ** 2))
 
     @cached_property
     def constant(self) -> float:
-        """Of a whole roller between its rings, N/m^(10/9)."""
+        """Constant of a whole roller between both rings, N/m^(10/9)."""
         return line_constant(self.length, self.E, self.nu)
 
     @cached_property
@@ -87,24 +87,26 @@ class RollerRow(Elements):
         return np.abs(self._normal).max(axis=0)
 
     def _approach(self, motion: np.ndarray) -> np.ndarray:
-        own = np.asarray(motion, float)[..., FELT]
-        found = self._start + own @ self._normal.T
-        largest = np.abs(own) @ self._reach
-        return np.where(found > ROUNDING * (largest[..., None] + np.abs(self._start)), found, 0.0)
+        felt_motion = np.asarray(motion, float)[..., FELT]
+        approach = self._start + felt_motion @ self._normal.T
+        largest = np.abs(felt_motion) @ self._reach
+        return np.where(
+            approach > ROUNDING * (largest[..., None] + np.abs(self._start)), approach, 0.0
+        )
 
     def load(self, motion: np.ndarray) -> np.ndarray:
-        """Load that holds the inner ring at motions (..., 6), N and N m."""
+        """Return the load that holds the inner ring at motions (..., 6), N and N m."""
         press = self.constant / self.slices * self._approach(motion) ** LINE_POWER
         return six(press @ self._normal)
 
     def tangent(self, motion: np.ndarray) -> np.ndarray:
-        """Derivative of the load, (..., 6, 6), exact."""
+        """Return the derivative of the load, (..., 6, 6), exact."""
         factor = self.constant / self.slices * LINE_POWER
         weights = factor * self._approach(motion) ** (LINE_POWER - 1)
         return symmetric(weights @ self._products)
 
     def contacts(self, motion: np.ndarray) -> Contacts:
-        """Loads, angles and pressures of the rollers at motions (..., 6)."""
+        """Return loads, angles and pressures of the rollers at motions (..., 6)."""
         press = self.constant / self.slices * self._approach(motion) ** LINE_POWER
         press = press.reshape(*press.shape[:-1], self.count, self.slices)
         load = press.sum(axis=-1)

@@ -1,4 +1,4 @@
-"""A bearing as its rows of rolling elements: displacement to load and back, and tangent."""
+"""A bearing as rows of rolling elements: displacement to load and back, and tangent."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ import numpy as np
 
 from solidgear.bearings.newton import NothingHolds, settle
 from solidgear.bearings.row import Contacts
-from solidgear.bearings.sliding import FURTHEST, balanced, condensed
+from solidgear.bearings.sliding import FURTHEST, condense_y, slide_to_balance
 from solidgear.errors import SolidgearError
 from solidgear.frames import DOF_NAMES
 
-#: what the unit of each component is, and its load's
+#: units of the components of a load
 UNITS = ("N", "N", "N", "N m", "N m", "N m")
 
 
@@ -27,13 +27,13 @@ class Row(Protocol):
         """Diameter of the circle of the elements' centres, m."""
 
     def load(self, motion: np.ndarray) -> np.ndarray:
-        """Load (..., 6) that holds the inner ring at motions (..., 6)."""
+        """Return the load (..., 6) that holds the inner ring at motions (..., 6)."""
 
     def tangent(self, motion: np.ndarray) -> np.ndarray:
-        """Its derivative, (..., 6, 6)."""
+        """Return the derivative of the load, (..., 6, 6)."""
 
     def contacts(self, motion: np.ndarray) -> Contacts:
-        """Loads of all elements."""
+        """Return loads of all elements."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ class RollingBearing:
 
     rows: tuple[Row, ...]
     #: one of its rings slides along y in its seat, without friction: at every motion the rows stand
-    #: where nothing presses them along y, and the stiffness is what is left then
+    #: where nothing presses them along y, and the stiffness is condensed
     floats: bool = False
 
     @cached_property
@@ -68,13 +68,15 @@ class RollingBearing:
         turn = 2 / max(row.pitch for row in self.rows)
         return np.array([1.0, 1.0, 1.0, turn, turn, turn])
 
-    def seen(self, motion: np.ndarray) -> np.ndarray:
-        """Motions (..., 6) of the inner ring against the outer one, wherever a seat slides."""
+    def ring_motion(self, motion: np.ndarray) -> np.ndarray:
+        """Return the motions (..., 6) of the inner ring against the outer one, at the place to
+        which a seat slides.
+        """
         motion = np.asarray(motion, float)
         if not self.floats:
             return motion
-        far = np.full(motion.shape[:-1], FURTHEST)
-        return balanced(self._load, self._tangent, motion, -far, far)
+        limit = np.full(motion.shape[:-1], FURTHEST)
+        return slide_to_balance(self._load, self._tangent, motion, -limit, limit)
 
     def _load(self, motion: np.ndarray) -> np.ndarray:
         return sum((row.load(motion) for row in self.rows), np.zeros(()))
@@ -83,88 +85,76 @@ class RollingBearing:
         return sum((row.tangent(motion) for row in self.rows), np.zeros(()))
 
     def load(self, motion: np.ndarray) -> np.ndarray:
-        """Load (..., 6) at motions (..., 6)."""
-        load = self._load(self.seen(motion))
+        """Return the load (..., 6) at motions (..., 6)."""
+        load = self._load(self.ring_motion(motion))
         if self.floats:
             load[..., 1] = 0.0
         return load
 
     def tangent(self, motion: np.ndarray) -> np.ndarray:
-        """Tangent stiffness (..., 6, 6) at motions (..., 6): symmetric, with a zero row of thy."""
-        stiffness = self._tangent(self.seen(motion))
+        """Return the tangent stiffness (..., 6, 6) at motions (..., 6): symmetric, with a zero row
+        of thy.
+        """
+        stiffness = self._tangent(self.ring_motion(motion))
         if self.floats:
-            stiffness = condensed(stiffness)
+            stiffness = condense_y(stiffness)
             stiffness[..., 1, :] = stiffness[..., :, 1] = 0.0
         return stiffness
 
     def contacts(self, motion: np.ndarray) -> tuple[Contacts, ...]:
-        """Loads of all elements of all rows at one motion."""
-        seen = self.seen(motion)
-        return tuple(row.contacts(seen) for row in self.rows)
+        """Return loads of all elements of all rows at one motion."""
+        ring_motion = self.ring_motion(motion)
+        return tuple(row.contacts(ring_motion) for row in self.rows)
 
     def at_work(self, motion: np.ndarray) -> float:
-        """Sum of all contact forces at one motion, N, whether or not they balance each other."""
+        """Return the sum of all contact forces at one motion, N, whether or not they balance each
+        other.
+        """
         return float(sum(row.load.sum() for row in self.contacts(motion)))
 
     def motion(
-        self, load: Sequence[float] | np.ndarray, held: Sequence[int] = (), start=None
+        self, load: Sequence[float] | np.ndarray, fixed: Sequence[int] = (), start=None
     ) -> np.ndarray:
-        """Motion at which the bearing carries a load.
+        """Return the motion (6,), m and rad, at which the bearing carries a load (6,), N and N m.
 
-        Parameters
-        ----------
-        load : (6,) array_like
-            N and N m; the torque about y must be zero.
-        held : sequence of int
-            Components that stand still and take what load they must, such as ``(3, 5)`` for a shaft
-            that cannot tilt.
-        start : (6,) ndarray, optional
-            Where to begin.
-
-        Returns
-        -------
-        (6,) ndarray
-            m and rad; components that nothing asks for stay at `start`.
-
-        Raises
-        ------
-        SolidgearError
-            If the bearing cannot carry the load.
+        The torque about y must be zero. Components `fixed`, such as ``(3, 5)`` for a shaft that
+        cannot tilt, stand still and take the load that results; components without stiffness stay
+        at `start`. A load that the bearing cannot carry is refused.
         """
-        wanted = np.array(load, float)
-        if wanted[4] != 0.0:
+        target = np.array(load, float)
+        if target[4] != 0.0:
             raise SolidgearError(
-                f"a bearing carries no torque about its axis, but {wanted[4]:g} N m are asked of it"
+                f"a bearing carries no torque about its axis, but {target[4]:g} N m are asked of it"
             )
-        if self.floats and wanted[1] != 0.0:
+        if self.floats and target[1] != 0.0:
             raise SolidgearError(
-                f"a floating bearing carries nothing along y, but {wanted[1]:g} N are asked of it"
+                f"a floating bearing carries nothing along y, but {target[1]:g} N are asked of it"
             )
         begin = np.zeros(6) if start is None else np.array(start, float)
-        still = {4, *held} | ({1} if self.floats else set())
+        still = {4, *fixed} | ({1} if self.floats else set())
         move = [k for k in range(6) if k not in still]
 
-        def whole(x: np.ndarray) -> np.ndarray:
+        def full_motion(x: np.ndarray) -> np.ndarray:
             full = begin.copy()
             full[move] = x
             return full
 
         try:
-            found = settle(
-                lambda x: self.load(whole(x))[move],
-                lambda x: self.tangent(whole(x))[np.ix_(move, move)],
-                wanted[move],
+            settled = settle(
+                lambda x: self.load(full_motion(x))[move],
+                lambda x: self.tangent(full_motion(x))[np.ix_(move, move)],
+                target[move],
                 self.size[move],
                 begin[move],
                 self.at_work(begin),
             )
         except NothingHolds as error:
-            raise SolidgearError(_not_carried(wanted, move, error.direction)) from None
-        if found.unbalanced > 1e-6:
+            raise SolidgearError(_not_carried(target, move, error.direction)) from None
+        if settled.unbalanced > 1e-6:
             raise SolidgearError(
-                f"no equilibrium under {_load_in_words(wanted)}: {found.unbalanced:.1e} of it is left over"
+                f"no equilibrium under {_load_in_words(target)}: {settled.unbalanced:.1e} of it is left over"
             )
-        return self.seen(whole(found.motion))
+        return self.ring_motion(full_motion(settled.motion))
 
 
 def _not_carried(load: np.ndarray, move: Sequence[int], direction: np.ndarray) -> str:
@@ -173,6 +163,6 @@ def _not_carried(load: np.ndarray, move: Sequence[int], direction: np.ndarray) -
 
 
 def _load_in_words(load: np.ndarray) -> str:
-    """A load in words, its zeros left out."""
+    """Return a load in words, without zeros."""
     parts = [f"{v:.6g} {u} in {n}" for v, u, n in zip(load, UNITS, DOF_NAMES) if v != 0.0]
     return " and ".join(parts) or "no load"

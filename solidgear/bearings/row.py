@@ -7,10 +7,10 @@ of the inner ring at radius R, height a along y and azimuth phi by
     radially   cos(phi) x + sin(phi) z + a (sin(phi) thx - cos(phi) thz)
     along y    y + R (cos(phi) thz - sin(phi) thx),
 
-the components of ``u + th x r``.  Its motion around the axis presses on no rolling element, so that
+the components of ``u + th x r``.  A motion around the axis presses on no rolling element, so that
 thy has no part: the torsional row of every stiffness here is exactly zero.
 
-The load of a row is the gradient of the energy of its contacts, and its tangent the Hessian, so the
+The load of a row is the gradient of the energy of the contacts, and the tangent the Hessian, so the
 latter is symmetric.  Contacts can only press, their force grows with the approach and the distance
 of two points is a convex function: the energy is convex in q, and the tangent positive
 semidefinite.  Whatever minimises it, alone or with a shaft, is the one equilibrium there is.
@@ -77,21 +77,13 @@ class Elements:
 def felt(
     radius: np.ndarray | float, height: np.ndarray | float, azimuth: np.ndarray | float
 ) -> np.ndarray:
-    """Radial and axial motion of points of the inner ring under unit motions of it.
-
-    Parameters
-    ----------
-    radius, height, azimuth : (n,) array_like
-        m, m along y from the reference point, rad.
-
-    Returns
-    -------
-    (2, n, 5) ndarray
-        First radial, then axial; columns x, y, z, thx, thz.
+    """Return the radial and axial motion (2, n, 5) of points of the inner ring under unit motions
+    of it, columns x, y, z, thx, thz, from radius, m, height along y from the reference point, m,
+    and azimuth, rad, (n,) each.
 
     Examples
     --------
-    A tilt about x lifts the point on z by its radius towards -y:
+    A tilt about x lifts the point on z by the radius towards -y:
 
     >>> import numpy as np
     >>> axial = felt(0.02, 0.0, np.pi / 2)[1, 0]
@@ -108,24 +100,15 @@ def felt(
 
 
 def products(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Symmetric products of rows, upper triangles flattened: with weights on the left one matrix
-    product makes any number of tangents.
-
-    Parameters
-    ----------
-    a, b : (n, 5) ndarray
-
-    Returns
-    -------
-    (n, 15) ndarray
-        ``(a b' + b a') / 2``; for equal arguments ``a a'``.
+    """Return symmetric products ``(a b' + b a') / 2`` of rows (n, 5), upper triangles flattened,
+    (n, 15): with weights on the left one matrix product makes any number of tangents.
     """
     i, j = _UPPER
     return (a[:, i] * b[:, j] + a[:, j] * b[:, i]) / 2
 
 
 def symmetric(upper: np.ndarray) -> np.ndarray:
-    """(..., 6, 6) from upper triangles (..., 15) of what is felt; the row of thy is zero."""
+    """Return (..., 6, 6) from upper triangles (..., 15) in felt components; the row of thy is zero."""
     out = np.zeros((*upper.shape[:-1], 6, 6))
     i, j = _PLACE[_UPPER[0]], _PLACE[_UPPER[1]]
     out[..., i, j] = upper
@@ -134,7 +117,7 @@ def symmetric(upper: np.ndarray) -> np.ndarray:
 
 
 def six(load: np.ndarray) -> np.ndarray:
-    """(..., 6) from what is felt (..., 5)."""
+    """Return (..., 6) from the felt components (..., 5)."""
     out = np.zeros((*load.shape[:-1], 6))
     out[..., _PLACE] = load
     return out

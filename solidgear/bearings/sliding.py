@@ -1,8 +1,8 @@
-"""A ring that slides along y: on a spring, or in its seat with nothing to hold it.
+"""A ring that slides along y: on a spring, or free in the seat.
 
-The energy of contacts and spring is convex in the place of the ring, so what is missing from its
-balance only falls with it: a Newton step that leaves the interval is halved.  What the bearing
-resists then is its tangent with y condensed.
+The energy of contacts and spring is convex in the place of the ring, so the imbalance
+only falls with it: a Newton step that leaves the interval is halved.  The stiffness of
+the bearing is then the tangent with y condensed.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ _MOST = 200
 Along = Callable[[np.ndarray], np.ndarray]
 
 
-def balanced(
+def slide_to_balance(
     load: Along,
     tangent: Along,
     motion: np.ndarray,
@@ -29,27 +29,19 @@ def balanced(
     pull: Along | None = None,
     spring: float = 0.0,
 ) -> np.ndarray:
-    """Motions (..., 6) whose y is where contacts and what pulls along y balance.
+    """Return motions (..., 6) whose y, within bounds (...), m, is where contacts and the pull along
+    y balance.
 
-    Parameters
-    ----------
-    load, tangent : callable
-        Load (..., 6) of the contacts at motions (..., 6), and its derivative.
-    motion : (..., 6) ndarray
-        All but y is kept.
-    low, high : (...) ndarray
-        Bounds of y, m.
-    pull : callable, optional
-        Force (...) that holds the ring at y, N; none where nothing does.
-    spring : float
-        How much of it goes with each metre that y grows less, N/m.
+    `load` gives the load (..., 6) of the contacts at motions (..., 6) and `tangent` the derivative;
+    `pull`, if any, the force (...) that holds the ring at y, N, which falls by `spring` for each
+    metre that y grows, N/m.
     """
-    seen = motion.copy()
+    moved = motion.copy()
     y = np.clip(np.zeros_like(low), low, high)
     for _ in range(_MOST):
-        seen[..., 1] = y
-        miss = load(seen)[..., 1] - (0.0 if pull is None else pull(y))
-        slope = tangent(seen)[..., 1, 1] + spring
+        moved[..., 1] = y
+        miss = load(moved)[..., 1] - (0.0 if pull is None else pull(y))
+        slope = tangent(moved)[..., 1, 1] + spring
         low, high = np.where(miss < 0, y, low), np.where(miss > 0, y, high)
         if np.all(np.abs(miss) <= _ROUNDING * slope):
             break
@@ -59,11 +51,11 @@ def balanced(
         if np.array_equal(following, y):
             break
         y = following
-    return seen
+    return moved
 
 
-def condensed(stiffness: np.ndarray, spring: float = 0.0) -> np.ndarray:
-    """Stiffness (..., 6, 6) of what stands on a ring that slides along y on a spring, N/m."""
+def condense_y(stiffness: np.ndarray, spring: float = 0.0) -> np.ndarray:
+    """Return the stiffness (..., 6, 6) on a ring that slides along y on a spring, N/m."""
     soft = (stiffness[..., 1, 1] + spring)[..., None, None]
     outer = stiffness[..., :, 1, None] * stiffness[..., None, 1, :]
     return stiffness - outer / np.where(soft > 0, soft, 1.0)

@@ -1,8 +1,12 @@
-"""Scenes with catalogue bearings: the stiffness of each, at its own load or in equilibrium."""
+"""Scenes with catalogue bearings: the stiffness of each, at a given load or in equilibrium.
+
+A preload of two single bearings that hold a shaft against each other is stated once and holds for
+both.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from typing import TYPE_CHECKING
@@ -12,14 +16,12 @@ import numpy as np
 from solidgear.bearings.balance import Linear, Mounted
 from solidgear.bearings.catalogued import Catalogued, End, catalogued, state
 from solidgear.bearings.equilibrium import Equilibrium, equilibrium
-from solidgear.bearings.pairs import divided, partners
 from solidgear.errors import SceneError
-from solidgear.scene import Scene
+from solidgear.scene import Bearing, Scene
 from solidgear.scene.catalogue import Preload
 
 if TYPE_CHECKING:
     from solidgear.body import Body
-    from solidgear.scene import Bearing
 
 
 @dataclass(frozen=True)
@@ -28,14 +30,14 @@ class Choice:
 
     end: End = "middle"  #: of an estimated inner geometry
     clearance: float = 0.5  #: place in the range of a clearance class, 0 to 1
-    #: preload, load: times what the scene says
+    #: preload, load: factors on the values of the scene
     preload: float = 1.0
     load: float = 1.0
-    #: those of single bearings by name, but for the load
-    apart: Mapping[str, Choice] = field(default_factory=dict)
+    #: choices for single bearings by name, but for the load
+    overrides: Mapping[str, Choice] = field(default_factory=dict)
 
 
-AS_TOLD = Choice()
+AS_STATED = Choice()
 
 
 @dataclass(frozen=True)
@@ -51,7 +53,7 @@ class Solved:
 
 
 def waiting(scene: Scene) -> tuple[str, ...]:
-    """Names of the bearings that wait for the load that the shaft brings them."""
+    """Return names of the bearings that wait for the load that the shaft brings them."""
     if scene.load is None:
         return ()
     return tuple(
@@ -62,31 +64,22 @@ def waiting(scene: Scene) -> tuple[str, ...]:
 
 
 def wants_equilibrium(scene: Scene) -> bool:
-    """True where a bearing of the scene waits for the load that the shaft brings."""
+    """Return whether a bearing of the scene waits for the load that the shaft brings."""
     return bool(waiting(scene))
 
 
 def solved(
     scene: Scene,
     body: Body | None = None,
-    choice: Choice = AS_TOLD,
+    choice: Choice = AS_STATED,
     start: Equilibrium | None = None,
 ) -> Solved:
-    """Stiffness of every catalogue bearing of a scene.
+    """Return the stiffness of every catalogue bearing of a scene, under the loads of the bearings,
+    or that at the port.
 
-    Parameters
-    ----------
-    scene : Scene
-        Loads are those of its bearings, or its own at the port.
-    body : Body, optional
-        The shaft; without one, bearings that wait for its load are taken at rest.
-    start : Equilibrium, optional
-        To begin at.
-
-    Raises
-    ------
-    SceneError
-        Data that make no bearing, loads that one cannot carry, and bearings that hold nothing.
+    Without a body, bearings that wait for the load of the shaft are taken at rest; the search
+    begins at the equilibrium `start`. Refused are data that make no bearing, loads that one cannot
+    carry, and bearings that hold nothing.
 
     Examples
     --------
@@ -98,27 +91,27 @@ def solved(
     1400.0
     """
     places = {b.name: k for k, b in enumerate(scene.bearings) if b.catalogue is not None}
-    made = made_of(scene, choice)
+    bearings_made = catalogued_bearings(scene, choice)
     settled = None
     if body is not None and scene.load is not None and wants_equilibrium(scene):
         loads = {scene.port.name: choice.load * np.array(scene.load.six)}
         around = scene.housing or scene.housing_axial
-        settled = equilibrium(body, mounted(scene, made), loads, around, start)
+        settled = equilibrium(body, mounted(scene, bearings_made), loads, around, start)
     motion, tangent = {}, {}
     for name, k in places.items():
         data = scene.bearings[k].catalogue
         assert data is not None
         waits = settled is not None and data.load is None and data.displacement is None
         try:
-            at = (
+            bearing_motion = (
                 settled.relative[name]
                 if waits and settled
-                else state(data, made[name], choice.load)
+                else state(data, bearings_made[name], choice.load)
             )
         except SceneError as error:
             raise located(error, k) from None
-        motion[name] = made[name].bearing.seen(at)
-        tangent[name] = made[name].bearing.tangent(at)
+        motion[name] = bearings_made[name].bearing.ring_motion(bearing_motion)
+        tangent[name] = bearings_made[name].bearing.tangent(bearing_motion)
         if not tangent[name].any() and not waits:
             once = " (once for both of a pair)" * data.one_sided
             reason = (
@@ -126,51 +119,54 @@ def solved(
                 "a negative clearance, or a [load] on the port"
             )
             raise located(SceneError(reason), k)
-    bearings = tuple(_with(b, tangent) for b in scene.bearings)
-    return Solved(scene.with_changes(bearings=bearings), made, motion, settled)
+    bearings = tuple(_with_stiffness(b, tangent) for b in scene.bearings)
+    return Solved(scene.with_changes(bearings=bearings), bearings_made, motion, settled)
 
 
-def made_of(scene: Scene, choice: Choice = AS_TOLD) -> dict[str, Catalogued]:
-    """Bearings of a scene that catalogue data describe, by name; a preload that one of a pair is told is
-    of both.
+def catalogued_bearings(scene: Scene, choice: Choice = AS_STATED) -> dict[str, Catalogued]:
+    """Return bearings of a scene that catalogue data describe, by name; a preload that is stated
+    for one of a pair holds for both.
     """
     places = {b.name: k for k, b in enumerate(scene.bearings) if b.catalogue is not None}
 
-    def make(name: str, of: str, preload: Preload | None = None) -> Catalogued:
+    def make(name: str, preload_source: str, preload: Preload | None = None) -> Catalogued:
         bearing = scene.bearings[places[name]]
-        own, data = choice.apart.get(name, choice), bearing.catalogue
+        choice_here, data = choice.overrides.get(name, choice), bearing.catalogue
         assert data is not None
         try:
             return catalogued(
                 data if preload is None else data.with_changes(preload=preload),
-                own.end,
-                clearance_share=own.clearance,
-                preload_factor=choice.apart.get(of, choice).preload,
+                choice_here.end,
+                clearance_share=choice_here.clearance,
+                preload_factor=choice.overrides.get(preload_source, choice).preload,
                 floats=bearing.support == "floating",
             )
         except SceneError as error:
             raise located(error, places[name]) from None
 
-    told: dict[str, tuple[str, Preload | None]] = {name: (name, None) for name in places}
+    preloads: dict[str, tuple[str, Preload | None]] = {name: (name, None) for name in places}
     for name, giver in partners(scene).items():
         data = scene.bearings[places[giver]].catalogue
         assert data is not None and data.preload is not None
         first, second = data.preload, data.preload
         if data.preload.displacement is not None:
-            rows = partial(make, giver, giver), partial(make, name, giver)
-            first, second = divided(data.preload.displacement, *rows)
-        told |= {giver: (giver, first), name: (giver, second)}
-    return {name: make(name, *own) for name, own in told.items()}
+            displacement = data.preload.displacement
+            first, second = divided(
+                displacement, partial(make, giver, giver), partial(make, name, giver)
+            )
+        preloads |= {giver: (giver, first), name: (giver, second)}
+    return {name: make(name, source, preload) for name, (source, preload) in preloads.items()}
 
 
 def located(error: SceneError, index: int) -> SceneError:
-    """The same error under the key of a bearing of a file."""
+    """Return the same error under the key of a bearing of a file."""
     return SceneError.of(
-        one.located(None, path=("bearing", index, "catalogue", *one.path)) for one in error.problems
+        problem.located(None, path=("bearing", index, "catalogue", *problem.path))
+        for problem in error.problems
     )
 
 
-def _with(bearing: Bearing, tangent: Mapping[str, np.ndarray]) -> Bearing:
+def _with_stiffness(bearing: Bearing, tangent: Mapping[str, np.ndarray]) -> Bearing:
     if bearing.name not in tangent:
         return bearing
     stiffness = tangent[bearing.name]
@@ -178,13 +174,71 @@ def _with(bearing: Bearing, tangent: Mapping[str, np.ndarray]) -> Bearing:
     return bearing.with_changes(matrix=(stiffness + stiffness.T) / 2)
 
 
-def mounted(scene: Scene, made: Mapping[str, Catalogued]) -> list[Mounted]:
-    """Bearings of a scene as the equilibrium takes them."""
+def mounted(scene: Scene, catalogued: Mapping[str, Catalogued]) -> list[Mounted]:
+    """Return bearings of a scene as the equilibrium takes them."""
     out = []
     for bearing in scene.bearings:
-        if bearing.name not in made:
+        if bearing.name not in catalogued:
             out.append(Mounted(bearing.name, Linear(np.array(bearing.stiffness))))
             continue
-        own, spring = made[bearing.name].bearing, bearing.spring
-        out.append(Mounted(bearing.name, own, spring=spring, housing=bearing.housing))
+        bearing_data, spring = catalogued[bearing.name].bearing, bearing.spring
+        out.append(Mounted(bearing.name, bearing_data, spring=spring, housing=bearing.housing))
     return out
+
+
+#: of a displacement, to which both rows press alike
+ALIKE = 1e-9
+#: makes a row under a preload
+Press = Callable[[Preload], Catalogued]
+
+
+def partners(scene: Scene) -> dict[str, str]:
+    """Return, by the name of each bearing that takes a preload from another, the name of that one:
+    the nearest that holds the shaft the other way and has a preload that no other such row has as
+    well.
+    """
+    rows = [
+        (b, b.catalogue)
+        for b in scene.bearings
+        if b.catalogue is not None and b.catalogue.one_sided
+    ]
+    pressed = [(b, data.holds) for b, data in rows if data.preload is not None]
+    free = [
+        (b, data.holds)
+        for b, data in rows
+        if data.preload is None and data.load is None and data.displacement is None and not b.floats
+    ]
+    for bearing, way in [*pressed]:  # those of a pair that are told both
+        if (bearing, way) in pressed and (partner := _nearest(bearing, way, pressed)) is not None:
+            pressed.remove((bearing, way))
+            pressed = [entry for entry in pressed if entry[0] is not partner]
+    out: dict[str, str] = {}
+    for bearing, way in pressed:
+        if (partner := _nearest(bearing, way, free)) is not None:
+            free = [entry for entry in free if entry[0] is not partner]
+            out[partner.name] = bearing.name
+    return out
+
+
+def _nearest(
+    bearing: Bearing, way: str | None, rows: Sequence[tuple[Bearing, str | None]]
+) -> Bearing | None:
+    """Return the nearest row that holds the shaft the other way; None where there is none."""
+    opposite = [b for b, row_way in rows if b is not bearing and row_way != way]
+    return min(opposite, key=lambda b: abs(b.y - bearing.y), default=None)
+
+
+def divided(displacement: float, first: Press, second: Press) -> tuple[Preload, Preload]:
+    """Return displacements of two rows with a given sum, m, under which both press alike."""
+    from scipy.optimize import brentq  # slow to import, and seldom needed
+
+    def preloads(share: float) -> tuple[Preload, Preload]:
+        of_first, of_second = (part * displacement for part in (share, 1 - share))
+        return Preload(displacement=of_first), Preload(displacement=of_second)
+
+    def difference(share: float) -> float:
+        rows = (press(preload) for press, preload in zip((first, second), preloads(share)))
+        force_first, force_second = (abs(float(row.bearing.load(np.zeros(6))[1])) for row in rows)
+        return force_first - force_second
+
+    return preloads(float(brentq(difference, 0.0, 1.0, xtol=ALIKE)))

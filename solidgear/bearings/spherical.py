@@ -7,7 +7,7 @@ With the radius ``R = Dpw / (2 cos a) + Dw / 2`` of the sphere, that of the roll
 
     P = x^2 / 2 (1/r - 1/R)     at the outer ring,      x^2 / 2 (1/r - 1/(2 f_i r))     at the inner,
 
-less room than its middle, and presses by the law of slices of :mod:`solidgear.bearings.roller`.
+less room than the middle, and presses by the law of slices of :mod:`solidgear.bearings.roller`.
 Under light loads this is within 8 % of Hertz's ellipse of the same curvatures (approach; stiffness
 within 10 %), and beyond a load at which that ellipse would reach the ends of the roller it becomes
 the line contact that it then is.

@@ -1,6 +1,6 @@
 """A row of balls at speed: centrifugal force and gyroscopic moment.
 
-At speed a ball's two contact angles differ, and its centre finds its place between the grooves.
+At speed a ball's two contact angles differ, and the centre finds a place between the grooves.
 With o the vector from the outer groove's centre to the ball's and i from there to the inner
 groove's, ``i + o = s`` (:mod:`solidgear.bearings.ball`), it is in equilibrium where
 
@@ -17,7 +17,7 @@ outer ring alone takes the gyroscopic moment).  With g = D / Dpw and the inner r
 The angle a of the ball's own motion is that of s, between the two contact angles: a ball that has
 left the inner ring has no angle there.  (With both angles in these formulas a 218 at 10,000 r/min
 under 17.8 kN comes out at 45.4 and 37.4 degrees instead of 45.1 and 37.7.)  For a given s the rest
-is a convex problem of the ball. The tangent is implicit differentiation of its equilibrium, with
+is a convex problem of the ball. The tangent is implicit differentiation of this equilibrium, with
 the turning of a in F_c and M_g. Inertia is no spring: the tangent is not quite symmetric.
 """
 
@@ -57,7 +57,7 @@ class SpinningBalls:
         return self.density * np.pi / 6 * self.row.diameter**3
 
     def _grooves(self) -> tuple[tuple[Point, float], tuple[Point, float]]:
-        """Contact and free distance of groove and ball centre, inner and outer."""
+        """Return the contact and free distance of groove and ball centre, inner and outer."""
         row = self.row
         inner, outer = row.rings
         return (
@@ -66,7 +66,7 @@ class SpinningBalls:
         )
 
     def _inertia(self, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Forces (..., 2) of inertia on balls at s, and their derivative (..., 2, 2)."""
+        """Return the forces (..., 2) of inertia on balls at s, and their derivative (..., 2, 2)."""
         g = self.row.diameter / self.row.pitch
         length = np.linalg.norm(s, axis=-1)
         c, sin = s[..., 0] / length, s[..., 1] / length
@@ -89,18 +89,19 @@ class SpinningBalls:
         return force, by_angle[..., :, None] * angle_by_s[..., None, :]
 
     def _contacts(self, s: np.ndarray, o: np.ndarray, nearly: float = 0.0):
-        """Forces (..., n, 2) along both contacts, and their stiffnesses, `nearly` metres
-        further."""
+        """Return the forces (..., n, 2) along both contacts, and their stiffnesses, `nearly` metres
+        further.
+        """
         (inner, free_i), (outer, free_o) = self._grooves()
         q_i, k_i = _contact(s - o, inner.constant, free_i, nearly)
         q_o, k_o = _contact(o, outer.constant, free_o, nearly)
         return q_i, q_o, k_i, k_o
 
     def _settled(self, motion: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Vectors s and o (..., n, 2) at which the balls are in equilibrium."""
+        """Return vectors s and o (..., n, 2) at which the balls are in equilibrium."""
         row = self.row
-        own = np.asarray(motion, float)[..., FELT]
-        s = np.stack([row.start[k] + own @ row._felt[k].T for k in (0, 1)], axis=-1)
+        felt_motion = np.asarray(motion, float)[..., FELT]
+        s = np.stack([row.start[k] + felt_motion @ row._felt[k].T for k in (0, 1)], axis=-1)
         inertia = self._inertia(s)[0]
         (_, free_i), (outer, free_o) = self._grooves()
         length = np.linalg.norm(s, axis=-1, keepdims=True)
@@ -113,44 +114,45 @@ class SpinningBalls:
             # a step must feel a contact that it is about to meet; less and less so
             q_i, q_o, k_i, k_o = self._contacts(s, o, nearly * 0.5**count)
             miss = q_i - q_o + inertia
-            left, wanted = np.abs(miss).max(axis=-1), np.abs(q_o).max(axis=-1) + pull
-            if np.all(left <= _BALANCED * wanted + _NEGLIGIBLE * 1e-3):
+            imbalance, reference = np.abs(miss).max(axis=-1), np.abs(q_o).max(axis=-1) + pull
+            if np.all(imbalance <= _BALANCED * reference + _NEGLIGIBLE * 1e-3):
                 return s, o
             step = np.linalg.solve(k_i + k_o, miss[..., None])[..., 0]
             size = np.maximum(np.linalg.norm(step, axis=-1, keepdims=True), 1e-30)
             step = step * np.minimum(1.0, 0.02 * row.diameter / size)
-            o = _moved(o, self._shortened(s, o, step, miss, inertia)[..., None] * step)
-        if np.all(left <= 1e-8 * wanted + _NEGLIGIBLE):
+            o = _moved(o, self._step_share(s, o, step, miss, inertia)[..., None] * step)
+        if np.all(imbalance <= 1e-8 * reference + _NEGLIGIBLE):
             return s, o
         raise SolidgearError(f"no equilibrium of the balls at {self.speed:.6g} rad/s")
 
-    def _shortened(self, s, o, step, miss, inertia) -> np.ndarray:
-        """Part of the step that every ball takes: not beyond where the force along it has
-        turned."""
+    def _step_share(self, s, o, step, miss, inertia) -> np.ndarray:
+        """Return the part of the step that every ball takes: not beyond where the force along it
+        has turned.
+        """
         first = (miss * step).sum(axis=-1)
         way = np.ones_like(first)
         for _ in range(30):
             q_i, q_o, _, _ = self._contacts(s, _moved(o, way[..., None] * step))
-            beyond = ((q_i - q_o + inertia) * step).sum(axis=-1) < -0.5 * first
-            if not beyond.any():
+            too_far = ((q_i - q_o + inertia) * step).sum(axis=-1) < -0.5 * first
+            if not too_far.any():
                 break
-            way = np.where(beyond, way / 2, way)
+            way = np.where(too_far, way / 2, way)
         return way
 
     def angles(self, motion: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Contact angles (..., n) at the inner and the outer ring, rad."""
+        """Return the contact angles (..., n) at the inner and the outer ring, rad."""
         s, o = self._settled(motion)
         i = s - o
         return np.arctan2(i[..., 1], i[..., 0]), np.arctan2(o[..., 1], o[..., 0])
 
     def load(self, motion: np.ndarray) -> np.ndarray:
-        """Load (..., 6) that holds the inner ring at motions (..., 6), N and N m."""
+        """Return the load (..., 6) that holds the inner ring at motions (..., 6), N and N m."""
         press = self._contacts(*self._settled(motion))[0]
         radial, axial = self.row._felt
         return six(press[..., 0] @ radial + press[..., 1] @ axial)
 
     def tangent(self, motion: np.ndarray) -> np.ndarray:
-        """Derivative of the load, (..., 6, 6), exact."""
+        """Return the derivative of the load, (..., 6, 6), exact."""
         s, o = self._settled(motion)
         _, _, k_i, k_o = self._contacts(s, o)
         follows = np.linalg.solve(k_i + k_o, k_i + self._inertia(s)[1])
@@ -162,37 +164,38 @@ class SpinningBalls:
         return out
 
     def contacts(self, motion: np.ndarray) -> Contacts:
-        """Loads and angles at the inner ring, pressures at both."""
+        """Return loads and angles at the inner ring, pressures at both."""
         s, o = self._settled(motion)
         i = s - o
         (inner, _), (outer, _) = self._grooves()
         q_i, q_o, _, _ = self._contacts(s, o)
-        load, under = np.linalg.norm(q_i, axis=-1), np.linalg.norm(q_o, axis=-1)
+        load, outer_load = np.linalg.norm(q_i, axis=-1), np.linalg.norm(q_o, axis=-1)
         angle = np.where(load > 0, np.arctan2(i[..., 1], i[..., 0]), np.nan)
         return Contacts(
             self.row.azimuth,
             load,
             angle,
             inner.pressure(load),
-            outer.pressure(under),
+            outer.pressure(outer_load),
             load[..., None],
-            under[..., None],
+            outer_load[..., None],
         )
 
 
 def _moved(o: np.ndarray, step: np.ndarray) -> np.ndarray:
-    """A ball's centre moved around and across its groove: a straight step would leave the
-    groove."""
+    """Return a ball's centre moved around and across the groove: a straight step would leave the
+    groove.
+    """
     length = np.linalg.norm(o, axis=-1, keepdims=True)
     normal = o / length
     across = np.stack([-normal[..., 1], normal[..., 0]], axis=-1)
     angle = (step * across).sum(axis=-1, keepdims=True) / length
-    turned = np.cos(angle) * normal + np.sin(angle) * across
-    return (length + (step * normal).sum(axis=-1, keepdims=True)) * turned
+    direction = np.cos(angle) * normal + np.sin(angle) * across
+    return (length + (step * normal).sum(axis=-1, keepdims=True)) * direction
 
 
 def _contact(between: np.ndarray, constant: float, free: float, nearly: float):
-    """Force (..., 2) along the vector between two centres, and its derivative."""
+    """Return the force (..., 2) along the vector between two centres, and the derivative."""
     length = np.linalg.norm(between, axis=-1)
     normal = between / length[..., None]
     press = constant * np.maximum(length - free, 0.0) ** POINT_POWER

@@ -19,7 +19,7 @@ from solidgear.report.stress_files import headline, sentences, shaft_tables, wri
 from solidgear.report.units import in_ascii, units_named
 from solidgear.scene.units import quantity
 from solidgear.studies.loading import explained
-from solidgear.studies.stress.at_rest import Asked, stress_of_scene, stress_of_train
+from solidgear.studies.stress.at_rest import StressSettings, stress_of_scene, stress_of_train
 from solidgear.studies.stress.rating import Conditions
 
 
@@ -91,7 +91,11 @@ def stress(
     ] = None,
     run: Shown,
 ) -> None:
-    asked, given, shown = Asked(tol, rated.conditions()), acting.read(file), units_named(run.units)
+    asked, given, shown = (
+        StressSettings(tol, rated.conditions()),
+        acting.read(file),
+        units_named(run.units),
+    )
     torques = dict(map(_torque, drive or ()))
     with held(out) if out else nullcontext(), run.progress() as progress:
         if isinstance(given, tuple):

@@ -1,12 +1,13 @@
-r"""Harmonic balance: periodic motion as a Fourier series of the stretches of links with a law alone.
+r"""Harmonic balance: periodic motion as a Fourier series of the stretches of links with a law
+alone.
 
-With S_h the harmonics of the stretches, P_h those of the excess force of the laws over their tangents
-and H the receptance of all that is linear,
+With S_h the harmonics of the stretches, P_h those of the excess force of the laws over their
+tangents and H the receptance of all that is linear,
 
     S_h = S_lin,h + H(h w) P_h + F p_h,
 
-P from the motion in time (alternating frequency and time) and the Jacobian from its tangents there,
-exact for the sampled law.  A system of any size costs its few stretches.
+P from the motion in time (alternating frequency and time) and the Jacobian from the tangents there,
+exact for the sampled law.  A system of any size costs as much as its few stretches.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ ITERATIONS = 12
 
 @cache
 def series(count: int, instants: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Synthesis (T, 2H+1) of a0, a_h, b_h, the derivative of it over the angle, and analysis."""
+    """Return synthesis (T, 2H+1) of a0, a_h, b_h, the derivative over the angle, and analysis."""
     angle = 2 * np.pi * np.arange(instants) / instants
     h = np.arange(1, count + 1)
     c, s = np.cos(angle[:, None] * h), np.sin(angle[:, None] * h)
@@ -44,26 +45,26 @@ def series(count: int, instants: int) -> tuple[np.ndarray, np.ndarray, np.ndarra
 
 
 def as_real(harmonics: np.ndarray) -> np.ndarray:
-    """(2H+1, m) coefficients a0, a_h, b_h of complex harmonics (H+1, m)."""
+    """Return coefficients (2H+1, m) a0, a_h, b_h of complex harmonics (H+1, m)."""
     return np.concatenate([harmonics[:1].real, harmonics[1:].real, -harmonics[1:].imag])
 
 
 def as_complex(parts: np.ndarray) -> np.ndarray:
-    """(H+1, m) complex harmonics of coefficients (2H+1, m)."""
+    """Return complex harmonics (H+1, m) of coefficients (2H+1, m)."""
     count = len(parts) // 2
     return np.concatenate([parts[:1] + 0j, parts[1 : count + 1] - 1j * parts[count + 1 :]])
 
 
 @dataclass(frozen=True, eq=False)
 class Residual:
-    """The balance that is left at a trial motion, with its derivatives."""
+    """Imbalance at a trial motion, with derivatives."""
 
     value: np.ndarray  #: (n,)
     jacobian: np.ndarray  #: (n, n)
     by_omega: np.ndarray  #: (n,)
     #: some link carries a force at some instant, or none needs to: where laws alone hold the
     #: system, a motion without any leaves the Jacobian singular
-    held: bool
+    carries: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +77,7 @@ class Balance:
 
     @property
     def samples(self) -> int:
-        """Instants of a period."""
+        """Return the number of instants of a period."""
         return max(LEAST_INSTANTS, self.instants * self.count)
 
     @cached_property
@@ -85,12 +86,12 @@ class Balance:
 
     @cached_property
     def factor(self) -> np.ndarray | None:
-        """(T, m) what forces are multiplied by at every instant; None where nothing varies."""
+        """Return the factor (T, m) of forces at every instant; None where nothing varies."""
         angle = 2 * np.pi * np.arange(self.samples) / self.samples
         return self.remainder.factor(angle) if self.remainder.varies else None
 
     def line(self, omega: float) -> Line | None:
-        """Shares of the rows at every instant; None where no line of action turns."""
+        """Return shares of the rows at every instant; None where no line of action turns."""
         if self._line is None:
             return None
         return self._line._replace(slope=omega * self._line.slope)
@@ -100,79 +101,79 @@ class Balance:
         return self.remainder.line(2 * np.pi * np.arange(self.samples) / self.samples, 1.0)
 
     def linear(self, omega: float) -> np.ndarray:
-        """(n,) motion of the linear system, whose rest is where its forces are none."""
+        """Return the motion (n,) of the linear system, whose rest is where the forces are zero."""
         return as_real(self.remainder.linear(omega, self.count)[0]).ravel()
 
     def start(self, omega: float) -> np.ndarray:
-        """(n,) motion of the linear system around where laws carry its mean forces; a link without
-        stiffness carries none, and moves with the others.
+        """Return the motion (n,) of the linear system around the place where laws carry the mean
+        forces; a link without stiffness carries none, and moves with the others.
         """
-        out, own = self.linear(omega).reshape(-1, self.remainder.rows), self.remainder
-        stiffness = np.diag(own.stiffness)
+        out, remainder = self.linear(omega).reshape(-1, self.remainder.rows), self.remainder
+        stiffness = np.diag(remainder.stiffness)
         # what a law wants at its mean force beyond the linear stretch, as a force of its spring
-        lacking = np.zeros(own.rows)
-        for law, at in own.laws:
+        lacking = np.zeros(remainder.rows)
+        for law, rows in remainder.laws:
             depth = getattr(law, "depth", None)
             if depth is not None:
-                for row in own.rows_of(at):
-                    force = stiffness[row] * own.mean[row]
+                for row in remainder.rows_of(rows):
+                    force = stiffness[row] * remainder.mean[row]
                     lacking[row] = stiffness[row] * depth(force) - force
-        still = own.receptance(np.zeros(1))[0][0].real + own.flexible
+        still = remainder.receptance(np.zeros(1))[0][0].real + remainder.flexible
         out[0] += still @ lacking
         return out.ravel()
 
     def stretch(self, motion: np.ndarray, omega: float) -> tuple[np.ndarray, np.ndarray]:
-        """Stretches and rates (T, m) over a period."""
+        """Return stretches and rates (T, m) over a period."""
         make, slope, _ = self._series
         parts = motion.reshape(-1, self.remainder.rows)
         return make @ parts, omega * (slope @ parts)
 
     def residual(self, motion: np.ndarray, omega: float) -> Residual:
-        """Residual of the balance at a motion (n,) and a frequency, rad/s."""
-        own = self.remainder
+        """Compute the residual of the balance at a motion (n,) and a frequency, rad/s."""
+        remainder = self.remainder
         make, slope, read = self._series
         s, v = self.stretch(motion, omega)
         line = self.line(omega)
-        excess, held = own.excess(s, v, self.factor, line)
-        parts, by = self._parts(excess, s, line)
+        excess, carries = remainder.excess(s, v, self.factor, line)
+        parts, slopes = self._parts(excess, s, line)
         h = np.arange(self.count + 1)
-        receptance, change = own.receptance(h * omega)
-        linear, linear_change = own.linear(omega, self.count)
-        still, soft = parts, by
+        receptance, change = remainder.receptance(h * omega)
+        linear, linear_change = remainder.linear(omega, self.count)
+        still, soft = parts, slopes
         by_omega = np.zeros_like(parts)
-        if own.drags:
-            if own.flexible.any():
-                at_rest = own.excess(s, np.zeros_like(v), self.factor, self.line(0.0))[0]
+        if remainder.drags:
+            if remainder.flexible.any():
+                at_rest = remainder.excess(s, np.zeros_like(v), self.factor, self.line(0.0))[0]
                 still, soft = self._parts(at_rest, s, line)
-            by = by + omega * over_parts(read, excess.by_rate, slope)
+            slopes = slopes + omega * over_parts(read, excess.by_rate, slope)
             by_omega = read @ np.einsum("tij,tj->ti", excess.by_rate, v / omega)
             if line is not None:
-                drift = (line.drifting(s, v) - v) / omega
-                by_omega += read @ np.einsum("tij,tj->ti", excess.by_rate - own.damper, drift)
+                drift = (line.with_drift(s, v) - v) / omega
+                by_omega += read @ np.einsum("tij,tj->ti", excess.by_rate - remainder.damper, drift)
             added, by_added = self._leaps(s, v, line, omega)
-            parts, by, by_omega = parts + added, by + by_added, by_omega + added / omega
-        changed = as_real(linear_change) + applied(h[:, None, None] * change, parts)
-        changed = changed + applied(receptance, by_omega)
-        moved = applied(receptance, parts) + still @ own.flexible
-        taken = applied(receptance, by.reshape(len(parts), -1)).reshape(by.shape)
-        if own.flexible.any():
-            taken = taken + np.einsum("ij,njkl->nikl", own.flexible, soft)
-        jacobian = np.eye(motion.size) - taken.reshape((motion.size,) * 2)
+            parts, slopes, by_omega = parts + added, slopes + by_added, by_omega + added / omega
+        changed = as_real(linear_change) + apply_to_parts(h[:, None, None] * change, parts)
+        changed = changed + apply_to_parts(receptance, by_omega)
+        moved = apply_to_parts(receptance, parts) + still @ remainder.flexible
+        by_motion = apply_to_parts(receptance, slopes.reshape(len(parts), -1)).reshape(slopes.shape)
+        if remainder.flexible.any():
+            by_motion = by_motion + np.einsum("ij,njkl->nikl", remainder.flexible, soft)
+        jacobian = np.eye(motion.size) - by_motion.reshape((motion.size,) * 2)
         value = motion - (as_real(linear) + moved).ravel()
-        return Residual(value, jacobian, -changed.ravel(), held or not own.hangs)
+        return Residual(value, jacobian, -changed.ravel(), carries or not remainder.hangs)
 
     def _parts(
         self, excess: Force, s: np.ndarray, line: Line | None
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Coefficients (2H+1, m) of an excess, and their derivatives (2H+1, m, 2H+1, m) by those of
-        the stretch.
+        """Return coefficients (2H+1, m) of an excess, and their derivatives (2H+1, m, 2H+1, m) by
+        those of the stretch.
 
         Between two instants on both sides of a kink of a law a sampled sum takes a straight line
-        for a bent one; what lies between is added, exact for a straight stretch.  Without it the
-        error jumps as kinks pass from one interval to the next, and a branch has false folds.
+        for a bent one; the difference is added, exact for a straight stretch. Without it the error
+        jumps as kinks pass from one interval to the next, and a branch has false folds.
         """
         make, _, read = self._series
-        parts, by = read @ excess.value, over_parts(read, excess.by_stretch, make)
+        parts, slopes = read @ excess.value, over_parts(read, excess.by_stretch, make)
         for kink in kinks(self.remainder, s, line):
             gap, first = kink.gap, kink.crossed
             if not len(first):
@@ -180,31 +181,33 @@ class Balance:
             ends = first, (first + 1) % len(gap)
             u, v = (np.abs(gap[end]) for end in ends)
             # slopes of u v / (u + v)
-            slopes = [
-                np.sign(gap[end]) * (other / (u + v)) ** 2 for end, other in zip(ends, (v, u))
+            weights = [
+                np.sign(gap[end]) * (opposite / (u + v)) ** 2 for end, opposite in zip(ends, (v, u))
             ]
             bent = sum(
-                slope[:, None, None] * make[end][:, :, None] * kink.into[end][:, None, :]
-                for end, slope in zip(ends, slopes)
+                slope[:, None, None] * make[end][:, :, None] * kink.direction[end][:, None, :]
+                for end, slope in zip(ends, weights)
             )
             for end in ends:
                 weight = kink.jump / 4 * read[:, end]
                 share = 1.0 if self.factor is None else self.factor[end]
-                into, area = share * kink.into[end], u * v / (u + v)
-                parts += (weight * area) @ into
-                by += np.einsum("hk,ki,knj->hinj", weight, into, bent)
+                direction, area = share * kink.direction[end], u * v / (u + v)
+                parts += (weight * area) @ direction
+                slopes += np.einsum("hk,ki,knj->hinj", weight, direction, bent)
                 if kink.bend is not None:
                     turned = area[:, None, None] * np.reshape(share, (-1, 1, 1)) * kink.bend[end]
-                    by += np.einsum("hk,kij,kn->hinj", weight, turned, make[end])
-        return parts, by
+                    slopes += np.einsum("hk,kij,kn->hinj", weight, turned, make[end])
+        return parts, slopes
 
     def _leaps(
         self, s: np.ndarray, v: np.ndarray, line: Line | None, omega: float
     ) -> tuple[np.ndarray, np.ndarray]:
-        """The same as :meth:`_parts` adds, of dampers that set in at once: where in an interval."""
+        """Return the same as :meth:`_parts` adds, for dampers that set in at once: where in an
+        interval.
+        """
         make, slope, read = self._series
         parts = np.zeros((len(read), s.shape[1]))
-        by = np.zeros((*parts.shape, *parts.shape))
+        slopes = np.zeros((*parts.shape, *parts.shape))
         for kink in kinks(self.remainder, s, line):
             gap, first = kink.gap, kink.crossed
             if not len(first) or not kink.damper:
@@ -212,28 +215,28 @@ class Balance:
             speed = kink.speed(s, v)
             after = (first + 1) % len(gap)
             ends = np.where(gap[first] > 0, (first, after), (after, first))
-            on, off = np.abs(gap[ends])
-            share = on / (on + off)
+            inside, outside = np.abs(gap[ends])
+            share = inside / (inside + outside)
             bent = sum(
-                (other / (on + off) ** 2)[:, None, None]
+                (opposite / (inside + outside) ** 2)[:, None, None]
                 * make[end][:, :, None]
-                * kink.into[end][:, None, :]
-                for end, other in zip(ends, (off, on))
+                * kink.direction[end][:, None, :]
+                for end, opposite in zip(ends, (outside, inside))
             )
             # a product that is linear between both ends, from where it sets in
-            counted = (-((1 - share) ** 2) / 2, share**2 / 2)
-            for end, much, more in zip(ends, counted, (1 - share, share)):
+            weights = (-((1 - share) ** 2) / 2, share**2 / 2)
+            for end, much, more in zip(ends, weights, (1 - share, share)):
                 weight = -kink.damper * read[:, end]
-                into = kink.into[end]
-                rates = omega * slope[end][:, :, None] * into[:, None, :]
+                direction = kink.direction[end]
+                rates = omega * slope[end][:, :, None] * direction[:, None, :]
                 if kink.turning is not None:
                     rates = rates + make[end][:, :, None] * kink.turning[end][:, None, :]
                 if self.factor is not None:
-                    into = into * self.factor[end]
-                parts += (weight * (much * speed[end])) @ into
+                    direction = direction * self.factor[end]
+                parts += (weight * (much * speed[end])) @ direction
                 changes = much[:, None, None] * rates + (more * speed[end])[:, None, None] * bent
-                by += np.einsum("hk,ki,knj->hinj", weight, into, changes)
-        return parts, by
+                slopes += np.einsum("hk,ki,knj->hinj", weight, direction, changes)
+        return parts, slopes
 
     def solve(
         self,
@@ -244,28 +247,17 @@ class Balance:
         close: float = ARRIVED,
         far: float | None = None,
     ) -> np.ndarray:
-        """Motion (n,) at a frequency by Newton's method, from a guess.
+        """Return the motion (n,) at a frequency by Newton's method, from a guess.
 
-        Parameters
-        ----------
-        steps : int
-            At most.
-        close : float
-            Last change, relative.
-        far : float, optional
-            Times the size of the guess, beyond which it is given up.
-
-        Raises
-        ------
-        SolidgearError
-            If it does not converge; begin nearer.
+        It ends at a last change below `close`, relative; it is given up after `steps`, or beyond
+        `far` times the size of the guess, with SolidgearError.
         """
         most = np.inf if far is None else far * np.abs(motion).max()
         for _ in range(steps):
-            left = self.residual(motion, omega)
-            if not left.held:
+            residual = self.residual(motion, omega)
+            if not residual.carries:
                 break
-            step = np.linalg.solve(left.jacobian, -left.value)
+            step = np.linalg.solve(residual.jacobian, -residual.value)
             motion = motion + step
             if not np.abs(motion).max() < most:
                 break
@@ -274,20 +266,22 @@ class Balance:
         raise SolidgearError("harmonic balance does not converge from this motion; begin nearer")
 
     def resized(self, motion: np.ndarray, count: int) -> tuple[Balance, np.ndarray]:
-        """The same motion with more harmonics, the new ones zero, or fewer."""
+        """Return the same motion with more harmonics, the new ones zero, or fewer."""
         parts = as_complex(motion.reshape(-1, self.remainder.rows))
         out = np.zeros((count + 1, self.remainder.rows), complex)
         out[: len(parts)] = parts[: count + 1]
         return Balance(self.remainder, count, self.instants), as_real(out).ravel()
 
     def tail(self, motion: np.ndarray) -> float:
-        """Largest of the two highest harmonics over that of all but the mean."""
+        """Return the largest of the two highest harmonics over that of all but the mean."""
         size = np.abs(as_complex(motion.reshape(-1, self.remainder.rows))[1:]).max(axis=1)
         return float(size[-2:].max() / max(size.max(), np.finfo(float).tiny))
 
 
 def over_parts(read: np.ndarray, tangent: np.ndarray, make: np.ndarray) -> np.ndarray:
-    """(2H+1, m, 2H+1, m) coefficients of a force by those of what its tangent (T, m, m) is of."""
+    """Return coefficients (2H+1, m, 2H+1, m) of a force by those of the motion that the tangent (T,
+    m, m) acts on.
+    """
     m = tangent.shape[1]
     out = np.empty((len(read), m, make.shape[1], m))
     for i, j in np.ndindex(m, m):
@@ -295,11 +289,15 @@ def over_parts(read: np.ndarray, tangent: np.ndarray, make: np.ndarray) -> np.nd
     return out
 
 
-def applied(matrix: np.ndarray, parts: np.ndarray) -> np.ndarray:
-    """Matrices (H+1, m, m) on coefficients (2H+1, m), or on columns of them (2H+1, m k)."""
+def apply_to_parts(matrix: np.ndarray, parts: np.ndarray) -> np.ndarray:
+    """Apply matrices (H+1, m, m) to coefficients (2H+1, m), or to columns of them (2H+1, m k)."""
     count, m = len(matrix) - 1, matrix.shape[1]
     columns = parts.reshape(len(parts), m, -1)
-    up, down = columns[1 : count + 1], columns[count + 1 :]
+    cosines, sines = columns[1 : count + 1], columns[count + 1 :]
     real, imag = matrix[1:].real, matrix[1:].imag
-    out = [matrix[:1].real @ columns[:1], real @ up + imag @ down, real @ down - imag @ up]
+    out = [
+        matrix[:1].real @ columns[:1],
+        real @ cosines + imag @ sines,
+        real @ sines - imag @ cosines,
+    ]
     return np.concatenate(out).reshape(parts.shape)

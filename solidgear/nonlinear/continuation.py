@@ -1,10 +1,10 @@
 r"""Branches of periodic motion over speed, through turning points, by pseudo-arclength.
 
-A step is a tangent of the branch and Newton's method across it.  Along one branch the determinant of
-the Jacobian bordered by the tangent keeps its sign (Allgower and Georg 2003, chapter 2): a step after
-which it differs has turned back on itself, or leapt to another branch, and is halved.  A branch is
-complete when it leaves the range of speeds; it may leave where it began only with another motion
-than it began with, or it has gone back the way it came.
+A step is a tangent of the branch and Newton's method across it. Along one branch the determinant of
+the Jacobian bordered by the tangent keeps the sign (Allgower and Georg 2003, chapter 2): a step
+after which it differs has turned back on itself, or leapt to another branch, and is halved. A
+branch is complete when it leaves the range of speeds; it may leave where it began only with another
+motion than it began with, or it has gone back the way it came.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ SAME = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Point:
-    """A periodic motion."""
+    """Periodic motion."""
 
     omega: float  #: of the excitation, rad/s
     motion: np.ndarray = field(repr=False)  #: (n,) coefficients of the balance
@@ -51,46 +51,52 @@ class Point:
 
     @property
     def harmonics(self) -> np.ndarray:
-        """(H+1, m) complex."""
+        """Return the complex harmonics (H+1, m) of the stretches."""
         return as_complex(self.motion.reshape(-1, self.balance.remainder.rows))
 
     def waves(self) -> tuple[np.ndarray, np.ndarray]:
-        """Stretches and rates (T, m) over a period."""
+        """Return stretches and rates (T, m) over a period."""
         return self.balance.stretch(self.motion, self.omega)
 
     @property
     def rms(self) -> np.ndarray:
-        """(m,) root mean square of the stretches about their mean."""
+        """Return the root mean square (m,) of the stretches about their mean."""
         return np.sqrt((np.abs(self.harmonics[1:]) ** 2).sum(axis=0) / 2)
 
     def state(self) -> np.ndarray:
-        """(2r,) modal state ``(omega q, q')`` at the beginning of a period, where time can begin."""
-        own, count = self.balance.remainder, self.balance.count
-        excess, _ = own.excess(*self.waves(), self.balance.factor, self.balance.line(self.omega))
+        """Return the modal state (2r,) ``(omega q, q')`` at the beginning of a period."""
+        remainder, count = self.balance.remainder, self.balance.count
+        excess, _ = remainder.excess(
+            *self.waves(), self.balance.factor, self.balance.line(self.omega)
+        )
         push = np.fft.rfft(excess.value, axis=0)[: count + 1] / len(excess.value)
         push[1:] *= 2
         n = 1j * self.omega * np.arange(count + 1)
-        orders = min(count, len(own.error))
-        error = own.error[:orders]
-        push[1 : orders + 1] += error @ own.stiffness + n[1 : orders + 1, None] * (error @ own.drag)
-        stiff = np.diag(own.omega**2) + n[:, None, None] * own.losses
-        stiff = stiff + n[:, None, None] ** 2 * np.eye(len(own.omega))
-        modal = push @ own.seen
-        modal[1 : orders + 1] += own.growth(self.omega) * own.push[:orders]
+        orders = min(count, len(remainder.error))
+        error = remainder.error[:orders]
+        push[1 : orders + 1] += error @ remainder.stiffness + n[1 : orders + 1, None] * (
+            error @ remainder.drag
+        )
+        stiff = np.diag(remainder.omega**2) + n[:, None, None] * remainder.losses
+        stiff = stiff + n[:, None, None] ** 2 * np.eye(len(remainder.omega))
+        modal = push @ remainder.shapes
+        modal[1 : orders + 1] += remainder.growth(self.omega) * remainder.push[:orders]
         q = np.linalg.solve(stiff, modal[..., None])[..., 0]
-        return np.concatenate([own.omega * q.sum(axis=0).real, (n[:, None] * q).sum(axis=0).real])
+        return np.concatenate(
+            [remainder.omega * q.sum(axis=0).real, (n[:, None] * q).sum(axis=0).real]
+        )
 
     def forces(self) -> np.ndarray:
-        """(T, m) forces of the laws over a period, those of their dampers among them."""
-        own, line = self.balance.remainder, self.balance.line(self.omega)
-        return own.forces(*self.waves(), self.balance.factor, line).value
+        """Return forces (T, m) of the laws over a period, those of their dampers among them."""
+        remainder, line = self.balance.remainder, self.balance.line(self.omega)
+        return remainder.forces(*self.waves(), self.balance.factor, line).value
 
     def along(self, law: int = 0) -> np.ndarray:
-        """(T,) stretch over a period of a link with a law, along its line of action."""
-        line, at = self.balance.line(self.omega), self.balance.remainder.laws[law][1]
-        if line is not None and at in line.links:
-            return line.along(at, self.waves()[0])
-        return self.waves()[0][:, at.start]
+        """Return the stretch (T,) over a period of a link with a law, along the line of action."""
+        line, rows = self.balance.line(self.omega), self.balance.remainder.laws[law][1]
+        if line is not None and rows in line.links:
+            return line.along(rows, self.waves()[0])
+        return self.waves()[0][:, rows.start]
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,29 +110,29 @@ class Branch:
 
     @property
     def omega(self) -> np.ndarray:
-        """(p,) rad/s."""
-        return np.array([one.omega for one in self.points])
+        """Return the frequencies (p,), rad/s."""
+        return np.array([point.omega for point in self.points])
 
     def at(self, omega: float) -> list[Point]:
-        """All motions of the branch at a speed, rad/s, in order."""
+        """Return all motions of the branch at a speed, rad/s, in order."""
         out = []
         for before, after in zip(self.points, self.points[1:]):
             low, high = sorted((before.omega, after.omega))
             if low <= omega < high or (omega == high and after is self.points[-1]):
-                out.append(self._between(before, after, lambda point: point.omega - omega))
+                out.append(self._sign_change(before, after, lambda point: point.omega - omega))
         return out
 
     def crossings(self, value: Callable[[Point], float]) -> list[Point]:
-        """Motions at which a value of a motion changes its sign, in order."""
+        """Return motions at which a value of a motion changes sign, in order."""
         out = []
         values = [value(point) for point in self.points]
         for k, (before, after) in enumerate(zip(values, values[1:])):
             if before * after < 0:
-                out.append(self._between(self.points[k], self.points[k + 1], value))
+                out.append(self._sign_change(self.points[k], self.points[k + 1], value))
         return out
 
-    def _between(self, before: Point, after: Point, value: Callable[[Point], float]) -> Point:
-        """Change of sign of a value between two neighbours."""
+    def _sign_change(self, before: Point, after: Point, value: Callable[[Point], float]) -> Point:
+        """Return the motion between two neighbours at which a value changes sign."""
         walk = Follower(before.balance, *self.scale)
         if after.balance.count > before.balance.count:
             before = walk.refit(before, after.balance.count)
@@ -134,58 +140,58 @@ class Branch:
         away = np.append(
             (end - before.motion) / walk.size, (after.omega - before.omega) / walk.width
         )
-        found = walk.where(before, float(away @ before.tangent), value)
-        return before if found is None else found
+        crossing = walk.sign_change(before, float(away @ before.tangent), value)
+        return before if crossing is None else crossing
 
 
 class Follower:
-    """One walk along a branch, of motions of so many periods of the excitation."""
+    """Walk along a branch, of motions of so many periods of the excitation."""
 
     def __init__(self, balance: Balance, size: float, width: float, periods: int = 1):
         self.balance, self.size, self.width, self.periods = balance, size, width, periods
 
-    def bordered(self, left, row: np.ndarray) -> np.ndarray:
-        n = len(left.value)
+    def bordered(self, residual, row: np.ndarray) -> np.ndarray:
+        n = len(residual.value)
         out = np.empty((n + 1, n + 1))
-        out[:n, :n] = left.jacobian
-        out[:n, n] = left.by_omega * self.width / self.size
+        out[:n, :n] = residual.jacobian
+        out[:n, n] = residual.by_omega * self.width / self.size
         out[n] = row
         return out
 
-    def point(self, motion: np.ndarray, omega: float, along: np.ndarray, left=None) -> Point:
-        """A converged motion with its tangent, on the side of `along`."""
-        left = left or self.balance.residual(motion, omega)
-        matrix = self.bordered(left, along)
+    def point(self, motion: np.ndarray, omega: float, along: np.ndarray, residual=None) -> Point:
+        """Return a converged motion with the tangent, on the side of `along`."""
+        residual = residual or self.balance.residual(motion, omega)
+        matrix = self.bordered(residual, along)
         right = np.zeros(len(along))
         right[-1] = 1.0
         tangent = np.linalg.solve(matrix, right)
         tangent /= np.linalg.norm(tangent)
-        sign = float(np.linalg.slogdet(self.bordered(left, tangent))[0])
+        sign = float(np.linalg.slogdet(self.bordered(residual, tangent))[0])
         return Point(omega, motion, self.balance, tangent, sign)
 
     def correct(self, from_: Point, step: float) -> tuple[Point, int] | None:
-        """The point a step further, and the iterations it took; None where it fails."""
+        """Return the point a step further, and the iterations it took; None where it fails."""
         motion = from_.motion + step * self.size * from_.tangent[:-1]
         omega = from_.omega + step * self.width * from_.tangent[-1]
         for iteration in range(1, ITERATIONS + 1):
             if not omega > 0:
                 return None
-            left = self.balance.residual(motion, omega)
-            if not left.held:  # singular: back off
+            residual = self.balance.residual(motion, omega)
+            if not residual.carries:  # singular: back off
                 return None
-            right = np.append(-left.value / self.size, 0.0)
+            right = np.append(-residual.value / self.size, 0.0)
             try:
-                change = np.linalg.solve(self.bordered(left, from_.tangent), right)
+                change = np.linalg.solve(self.bordered(residual, from_.tangent), right)
             except np.linalg.LinAlgError:
                 return None
             motion = motion + self.size * change[:-1]
             omega = omega + self.width * change[-1]
             if np.abs(change).max() <= CLOSE:
-                return self.point(motion, omega, from_.tangent, left), iteration
+                return self.point(motion, omega, from_.tangent, residual), iteration
         return None
 
     def refit(self, point: Point, count: int) -> Point:
-        """The same point with another number of harmonics."""
+        """Return the same point with another number of harmonics."""
         balance, motion = point.balance.resized(point.motion, count)
         self.balance = balance
         along = np.append(balance.resized(point.tangent[:-1], count)[1], point.tangent[-1])
@@ -195,29 +201,31 @@ class Follower:
         except SolidgearError:
             # beside a turning point more harmonics may have no motion at this speed
             near = replace(point, motion=motion, balance=balance, tangent=along)
-            found = self.correct(near, 0.0)
-            if found is None:
+            corrected = self.correct(near, 0.0)
+            if corrected is None:
                 raise
-            return found[0]
+            return corrected[0]
 
-    def where(self, before: Point, step: float, value: Callable[[Point], float]) -> Point | None:
-        """Place at which a value changes its sign within a step, by Illinois' method; None if none can be
-        told.
+    def sign_change(
+        self, before: Point, step: float, value: Callable[[Point], float]
+    ) -> Point | None:
+        """Return the point at which a value changes sign within a step, by Illinois' method;
+        None if none can be located.
         """
-        found = self.correct(before, step)
-        if found is None:
+        corrected = self.correct(before, step)
+        if corrected is None:
             return None
-        low, high, out = (0.0, value(before)), (step, value(found[0])), found[0]
+        low, high, out = (0.0, value(before)), (step, value(corrected[0])), corrected[0]
         if low[1] * high[1] > 0:
             return None
         for _ in range(LOOKS):
             if high[1] == 0 or abs(high[0] - low[0]) <= NEAR * abs(step):
                 break
             middle = high[0] - high[1] * (high[0] - low[0]) / (high[1] - low[1])
-            found = self.correct(before, middle)
-            if found is None:
+            corrected = self.correct(before, middle)
+            if corrected is None:
                 return None
-            out, new = found[0], value(found[0])
+            out, new = corrected[0], value(corrected[0])
             low = (low[0], low[1] / 2) if new * high[1] > 0 else high
             high = (middle, new)
         return out
@@ -232,21 +240,13 @@ def follow(
     harmonics: int | None = None,
     step: float = 0.05,
 ) -> Branch:
-    """The branch of periodic motions from one speed to another.
+    """Return the branch of periodic motions between two frequencies of the excitation, rad/s,
+    either one the larger, by the method of Allgower and Georg (2003), Introduction to Numerical
+    Continuation Methods, chapters 2 and 6.
 
-    Parameters
-    ----------
-    begin, end : float
-        Frequencies of the excitation, rad/s, either one the larger.
-    harmonics : int, optional
-        Fixed number; as many as the decay of the highest asks for without it.
-    step : float
-        Longest step, in shares of the range of speeds and of the largest linear motion.
-
-    Raises
-    ------
-    SolidgearError
-        For a range that holds zero, or a branch that comes back the way it went, or does not end.
+    The number of harmonics is fixed, or as many as the decay of the highest requires; `step` is the
+    longest, in shares of the range of speeds and of the largest linear motion. A range that holds
+    zero, and a branch that comes back the way it went or does not end, are refused.
 
     Examples
     --------
@@ -260,10 +260,6 @@ def follow(
     >>> branch = follow(found, 0.5, 1.3)
     >>> [round(float(branch.points[k].omega), 3) for k in branch.turning]
     [0.828, 0.708]
-
-    References
-    ----------
-    Allgower and Georg (2003), Introduction to Numerical Continuation Methods, chapters 2 and 6.
     """
     if not (begin > 0 and end > 0 and begin != end and np.isfinite([begin, end]).all()):
         raise SolidgearError(
@@ -271,9 +267,9 @@ def follow(
         )
     count = harmonics or LEAST_HARMONICS
     for _ in range(SHORTER):
-        found = _followed(remainder, begin, end, count, harmonics is None, step)
-        if found is not None:
-            return found
+        branch = _followed(remainder, begin, end, count, harmonics is None, step)
+        if branch is not None:
+            return branch
         step /= 2
     raise SolidgearError(
         f"the branch from {begin:g} rad/s comes back the way it went, at the shortest steps too"
@@ -281,7 +277,9 @@ def follow(
 
 
 def _begun(remainder: Remainder, count: int, omega: float) -> tuple[Balance, np.ndarray]:
-    """Motion at the first speed: the linear one where it is sound, else grown with the excitation."""
+    """Return the motion at the first speed: the linear one where it is sound, else grown with the
+    excitation.
+    """
     balance = Balance(remainder, count)
     motion = balance.start(omega)
     try:
@@ -295,7 +293,7 @@ def _begun(remainder: Remainder, count: int, omega: float) -> tuple[Balance, np.
 
 
 def _followed(remainder, begin, end, count, adaptive, longest) -> Branch | None:
-    """The branch, or None where it came back the way it went."""
+    """Return the branch, or None where it came back the way it went."""
     balance, motion = _begun(remainder, count, begin)
     low, high = min(begin, end), max(begin, end)
     grid = np.linspace(low, high, 200)
@@ -310,8 +308,8 @@ def _followed(remainder, begin, end, count, adaptive, longest) -> Branch | None:
     points, turning = walked(walk, first, longest, adaptive, lambda p: not low <= p.omega <= high)
     cut(points, walk, low, high)
     if points[-1].omega == begin:
-        end, known = points[-1].motion, first.balance.resized(first.motion, walk.balance.count)[1]
-        if np.abs(end - known).max() <= SAME * np.abs(known).max():
+        end, start = points[-1].motion, first.balance.resized(first.motion, walk.balance.count)[1]
+        if np.abs(end - start).max() <= SAME * np.abs(start).max():
             return None
     return Branch(tuple(points), tuple(turning), (walk.size, walk.width))
 
@@ -323,15 +321,15 @@ def walked(
     adaptive: bool,
     ended: Callable[[Point], bool],
 ) -> tuple[list[Point], list[int]]:
-    """Points of a branch from the first one until one ends it, and which of them turn."""
+    """Return the points of a branch from the first one until one ends it, and which of them turn."""
     points, turning = [first], []
     step = longest / 4
     while len(points) < MOST_POINTS:
         last = points[-1]
         if adaptive:
             last = points[-1] = fitted(walk, last)
-        taken = walk.correct(last, step)
-        if taken is None or not _sound(last, taken[0]):
+        correction = walk.correct(last, step)
+        if correction is None or not _sound(last, correction[0]):
             step /= 2
             if step < SHORTEST * longest:
                 raise SolidgearError(
@@ -339,9 +337,9 @@ def walked(
                     "two branches may cross there"
                 )
             continue
-        new, iterations = taken
+        new, iterations = correction
         if last.tangent[-1] * new.tangent[-1] < 0:
-            turn = walk.where(last, step, lambda p: p.tangent[-1])
+            turn = walk.sign_change(last, step, lambda p: p.tangent[-1])
             if turn is not None:
                 turning.append(len(points))
                 points.append(turn)
@@ -354,12 +352,12 @@ def walked(
 
 
 def _sound(last: Point, new: Point) -> bool:
-    """Tell whether a step followed the branch: little bent, on the same side of it, and no leap."""
+    """Return whether a step followed the branch: little bent, on the same side of it, and no leap."""
     return bool(last.sign in (0.0, new.sign) and new.tangent @ last.tangent > STRAIGHT)
 
 
 def fitted(walk: Follower, point: Point) -> Point:
-    """The point with as many harmonics as its highest ask for."""
+    """Return the point with as many harmonics as the highest need."""
     count = point.balance.count
     tail = point.balance.tail(point.motion)
     while tail > TAIL and count < MOST_HARMONICS * walk.periods:
@@ -370,7 +368,7 @@ def fitted(walk: Follower, point: Point) -> Point:
 
 
 def cut(points: list[Point], walk: Follower, low: float, high: float) -> None:
-    """The last point, which is beyond the range, moved to its end."""
+    """Move the last point, which is beyond the range, to the end."""
     last, before = points[-1], points[-2]
     edge = low if last.omega < low else high
     share = (edge - before.omega) / (last.omega - before.omega)

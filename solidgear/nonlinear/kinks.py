@@ -13,10 +13,10 @@ from solidgear.system.law import Force, Gap, RadialGap
 
 
 class Kink(NamedTuple):
-    """One edge of a law at T instants; what it adds is ``(jump gap + damper its rate) into``."""
+    """Edge of a law at T instants; it adds ``(jump gap + damper gap') direction`` to the force."""
 
     gap: np.ndarray  #: (T,) how far beyond it, m
-    into: np.ndarray  #: (T, m) slope of that over the stretches
+    direction: np.ndarray  #: (T, m) slope of that over the stretches
     jump: float  #: of the stiffness, N/m
     damper: float  #: that sets in at once, N s/m
     bend: np.ndarray | None = None  #: (T, m, m) slope of ``into``
@@ -24,71 +24,77 @@ class Kink(NamedTuple):
 
     @property
     def crossed(self) -> np.ndarray:
-        """Instants of a period between which and the next the edge lies."""
-        on = self.gap > 0
-        first = np.flatnonzero(on[:-1] != on[1:])
-        return first if on[0] == on[-1] else np.append(first, len(on) - 1)
+        """Return instants of a period between which and the next the edge lies."""
+        outside = self.gap > 0
+        first = np.flatnonzero(outside[:-1] != outside[1:])
+        return first if outside[0] == outside[-1] else np.append(first, len(outside) - 1)
 
     def speed(self, stretch: np.ndarray, rate: np.ndarray) -> np.ndarray:
-        """(T,) rate of the gap."""
-        own = (self.into * rate).sum(axis=1)
-        return own if self.turning is None else own + (self.turning * stretch).sum(axis=1)
+        """Return the rate (T,) of the gap."""
+        speed = (self.direction * rate).sum(axis=1)
+        return speed if self.turning is None else speed + (self.turning * stretch).sum(axis=1)
 
 
-def kinks(own: Remainder, stretch: np.ndarray, line: Line | None = None) -> Iterator[Kink]:
-    """All kinks of all laws, from stretches (T, m)."""
-    for law, at in own.laws:
+def kinks(remainder: Remainder, stretch: np.ndarray, line: Line | None = None) -> Iterator[Kink]:
+    """Yield all kinks of all laws, from stretches (T, m)."""
+    for law, rows in remainder.laws:
         if isinstance(law, RadialGap):
-            yield _circle(law, at, stretch)
+            yield _circle(law, rows, stretch)
             continue
         damper = law.damper if isinstance(law, Gap) and not law.ramp else 0.0
-        for row in own.rows_of(at):
-            into, turning = np.zeros_like(stretch), None
-            if line is not None and at in line.links:
+        for row in remainder.rows_of(rows):
+            direction, turning = np.zeros_like(stretch), None
+            if line is not None and rows in line.links:
                 turning = np.zeros_like(stretch)
-                turning[:, at] = line.slope[:, at]
-                into[:, at] = line.share[:, at]
+                turning[:, rows] = line.slope[:, rows]
+                direction[:, rows] = line.share[:, rows]
             else:
-                into[:, row] = 1.0
-            along = (into * stretch).sum(axis=1)
+                direction[:, row] = 1.0
+            along = (direction * stretch).sum(axis=1)
             for edge, jump in law.kinks:
                 # a side that carries nothing has no damper either
-                yield Kink(along - edge, into, jump, damper * float(np.sign(jump)), None, turning)
+                yield Kink(
+                    along - edge, direction, jump, damper * float(np.sign(jump)), None, turning
+                )
 
 
-def _circle(law: RadialGap, at: slice, stretch: np.ndarray) -> Kink:
-    away = np.linalg.norm(stretch[:, at], axis=1)
+def _circle(law: RadialGap, rows: slice, stretch: np.ndarray) -> Kink:
+    away = np.linalg.norm(stretch[:, rows], axis=1)
     safe = np.where(away > 0, away, 1.0)[:, None]
-    into = np.zeros_like(stretch)
-    into[:, at] = stretch[:, at] / safe
+    direction = np.zeros_like(stretch)
+    direction[:, rows] = stretch[:, rows] / safe
     bend = np.zeros((*stretch.shape, stretch.shape[1]))
-    own = into[:, at]
-    bend[:, at, at] = (np.eye(own.shape[1]) - own[:, :, None] * own[:, None, :]) / safe[:, None]
-    return Kink(away - law.clearance, into, law.radial, 0.0, bend)
+    radial = direction[:, rows]
+    bend[:, rows, rows] = (
+        np.eye(radial.shape[1]) - radial[:, :, None] * radial[:, None, :]
+    ) / safe[:, None]
+    return Kink(away - law.clearance, direction, law.radial, 0.0, bend)
 
 
 def continued(
-    own: Remainder,
-    beyond: Sequence[bool],
+    remainder: Remainder,
+    sides: Sequence[bool],
     stretch: np.ndarray,
     rate: np.ndarray,
     factor: np.ndarray | None,
     line: Line | None,
 ) -> Force:
-    """The excess of the laws were each of their kinks on one side all the time: smooth, so that
-    a step in time may go a little too far before it is cut at the kink.
+    """Return the excess of the laws as if each of their kinks stayed on one side: smooth, so that a
+    step in time may go a little too far before it is cut at the kink.
     """
-    excess, _ = own.excess(stretch, rate, factor, line)
-    for on, kink in zip(beyond, kinks(own, stretch, line)):
-        off = float(on) - (kink.gap > 0)
-        if not off.any():
+    excess, _ = remainder.excess(stretch, rate, factor, line)
+    for side, kink in zip(sides, kinks(remainder, stretch, line)):
+        difference = float(side) - (kink.gap > 0)
+        if not difference.any():
             continue
-        into = kink.into if factor is None else kink.into * factor
-        outer = into[:, :, None] * kink.into[:, None, :]
-        added = off * (kink.jump * kink.gap + kink.damper * kink.speed(stretch, rate))
-        value = excess.value - added[:, None] * into
-        by = excess.by_stretch - (off * kink.jump)[:, None, None] * outer
+        direction = kink.direction if factor is None else kink.direction * factor
+        outer = direction[:, :, None] * kink.direction[:, None, :]
+        added = difference * (kink.jump * kink.gap + kink.damper * kink.speed(stretch, rate))
+        value = excess.value - added[:, None] * direction
+        slope = excess.by_stretch - (difference * kink.jump)[:, None, None] * outer
         if kink.bend is not None:
-            by = by - (off * kink.jump * kink.gap)[:, None, None] * kink.bend
-        excess = Force(value, by, excess.by_rate - (off * kink.damper)[:, None, None] * outer)
+            slope = slope - (difference * kink.jump * kink.gap)[:, None, None] * kink.bend
+        excess = Force(
+            value, slope, excess.by_rate - (difference * kink.damper)[:, None, None] * outer
+        )
     return excess

@@ -14,12 +14,11 @@ from solidgear.nonlinear.integrated import LOOKS, TOLERANCE, Integrated
 from solidgear.nonlinear.model import Remainder
 from solidgear.nonlinear.motion import Run
 
-#: cycles of the excitation that a run may take: fewer tell no envelope, more take hours
+#: cycles of the excitation that a run may take: fewer show no envelope, more take hours
 FEWEST_CYCLES, MOST_CYCLES = 10, 20_000
-#: spectra of a run; least and most cycles of the excitation, and looks at each, that one is made of;
-#: orders that it has
+#: spectra of a run; least and most cycles of the excitation in each, and looks a cycle; its orders
 SPECTRA, WINDOW, SEEN, HIGHEST = 40, (16, 64), 64, 8
-#: cycles between two words on how far a run is
+#: cycles between two calls with the share that is done
 TOLD = 50
 
 
@@ -44,11 +43,11 @@ class RunUp:
     most: np.ndarray
     state: np.ndarray  #: (2r,) at the end
     spectra: Spectra  #: of this force, at speeds that are evenly apart
-    others: tuple[RunUp, ...] = ()  #: the same of the other links with a law
+    other_links: tuple[RunUp, ...] = ()  #: the same of the other links with a law
 
     @property
     def swing(self) -> np.ndarray:
-        """(c,) half of the swing of the force, N."""
+        """Return half of the swing of the force, (c,), N."""
         return (self.highest - self.lowest) / 2
 
 
@@ -61,29 +60,14 @@ def run_up(
     *,
     state: np.ndarray | None = None,
     tolerance: float = TOLERANCE,
-    told: Callable[[float], None] | None = None,
+    progress: Callable[[float], None] | None = None,
 ) -> RunUp:
-    """Motion while the frequency of the excitation goes from one to another.
+    """Compute the motion while the frequency of the excitation goes from `begin` to `end`, rad/s.
 
-    Parameters
-    ----------
-    begin, end : float
-        rad/s.
-    ramp : float
-        How fast, rad/s^2; above zero whichever of the two is the larger.
-    state : (2r,) ndarray, optional
-        To begin at; rest at the linear mean without it.
-    told : callable, optional
-        Called with the share that is done.
-
-    Raises
-    ------
-    SolidgearError
-        For a ramp that passes in a few cycles or takes very many, or a range that holds zero.
-
-    References
-    ----------
-    Lewis (1932), Vibration during acceleration through a critical speed, Trans. ASME 54, 253-261.
+    The ramp, rad/s^2, is above zero whichever of the two is the larger; one that passes in a few
+    cycles or takes very many is refused. The motion begins at `state` (2r,), or at rest at the
+    linear mean; `progress` is called with the share that is done. See Lewis (1932), Vibration
+    during acceleration through a critical speed, Trans. ASME 54, 253-261.
     """
     if not (begin > 0 and end > 0 and begin != end and ramp > 0):
         raise SolidgearError(
@@ -101,10 +85,10 @@ def run_up(
     duration = 4 * np.pi * cycles / (begin + np.sqrt(begin**2 + 4 * np.pi * cycles * slope))
     straight = all(law.pieces for law, _ in remainder.laws) and not remainder.varies
     if straight and not remainder.unbalance:
-        times, s, v, modal = Run(remainder, begin, slope, duration).whole(modal, told)
+        times, s, v, modal = Run(remainder, begin, slope, duration).integrate(modal, progress)
     else:
         run = Integrated(remainder, begin, tolerance=tolerance, ramp=slope)
-        times, s, v, modal = _by_cycles(run, cycles, modal, told)
+        times, s, v, modal = _by_cycles(run, cycles, modal, progress)
     omega = begin + slope * times
     angle = times * (begin + omega) / 2
     factor = remainder.factor(angle) if remainder.varies else None
@@ -113,21 +97,29 @@ def run_up(
     first = np.searchsorted(angle, 2 * np.pi * np.arange(cycles) - 1e-9)
     speed = np.sqrt(begin**2 + 4 * np.pi * slope * (np.arange(cycles) + 0.5))
     runs = []
-    for _, at in remainder.laws:
-        along = line.along(at, s) if line is not None and at in line.links else s[:, at.start]
-        force = forces[:, at.start]
-        least, most = np.minimum.reduceat(along, first), np.maximum.reduceat(along, first)
-        ends = np.minimum.reduceat(force, first), np.maximum.reduceat(force, first)
-        heard = _spectra(angle, force, cycles, begin, slope)
-        runs.append(RunUp(speed, *ends, least, most, modal, heard))
-    return replace(runs[0], others=tuple(runs[1:]))
+    for _, rows in remainder.laws:
+        along = line.along(rows, s) if line is not None and rows in line.links else s[:, rows.start]
+        force = forces[:, rows.start]
+        runs.append(
+            RunUp(
+                omega=speed,
+                lowest=np.minimum.reduceat(force, first),
+                highest=np.maximum.reduceat(force, first),
+                least=np.minimum.reduceat(along, first),
+                most=np.maximum.reduceat(along, first),
+                state=modal,
+                spectra=_spectra(angle, force, cycles, begin, slope),
+            )
+        )
+    return replace(runs[0], other_links=tuple(runs[1:]))
 
 
 def _spectra(
     angle: np.ndarray, force: np.ndarray, cycles: int, begin: float, slope: float
 ) -> Spectra:
-    """Of a force over the angle of the excitation."""
-    long = min(int(np.clip(cycles // SPECTRA, *WINDOW)), cycles // 2)
+    """Return the spectra of a force over the angle of the excitation."""
+    shortest, longest = WINDOW
+    long = min(int(np.clip(cycles // SPECTRA, shortest, longest)), cycles // 2)
     count = min(SPECTRA, cycles // long)
 
     def speed(cycle):
@@ -140,18 +132,20 @@ def _spectra(
     bell = 1 - np.cos(2 * np.pi * inside / long)
     size = 2 * np.abs(np.fft.rfft(waves * bell, axis=1)) / bell.sum()
     # a window ends between orders: the mean leaks into the first two
-    kept = np.arange(2, HIGHEST * long + 1)
-    return Spectra(omega, kept / long, size[:, kept])
+    lines = np.arange(2, HIGHEST * long + 1)
+    return Spectra(omega, lines / long, size[:, lines])
 
 
-def _by_cycles(run: Integrated, cycles: int, modal: np.ndarray, told):
-    """Times (t,), stretches and rates (t, m) of a run that is integrated, and its last state."""
+def _by_cycles(run: Integrated, cycles: int, modal: np.ndarray, progress):
+    """Return times (t,), stretches and rates (t, m) of a run that is integrated, and the last
+    state.
+    """
     rows = []
     for cycle in range(cycles):
-        if told and cycle % TOLD == 0:
-            told(cycle / cycles)
+        if progress and cycle % TOLD == 0:
+            progress(cycle / cycles)
         angle = 2 * np.pi * (cycle + np.arange(LOOKS + 1) / LOOKS)
         times = 2 * angle / (run.omega + np.sqrt(run.omega**2 + 2 * run.ramp * angle))
-        modal, s, v = run.over(modal, times)
+        modal, s, v = run.integrate(modal, times)
         rows.append((times[:-1], s, v))
-    return *(np.concatenate(own) for own in zip(*rows)), modal
+    return *(np.concatenate(parts) for parts in zip(*rows)), modal

@@ -20,7 +20,7 @@ from solidgear.machine.threads import pinned
 from solidgear.nonlinear.balance import (
     ARRIVED,
     Residual,
-    applied,
+    apply_to_parts,
     as_complex,
     as_real,
     over_parts,
@@ -33,28 +33,8 @@ ITERATIONS, HALVINGS = 40, 8
 
 @dataclass(frozen=True, eq=False)
 class TwoTone:
-    """The equations of a system under two excitations of their own frequencies.
-
-    Raises
-    ------
-    SolidgearError
-        For laws of straight pieces, whose corners a grid does not see.
-
-    Examples
-    --------
-    A mass on a Hertzian contact, pushed at 2 and at 0.1 rad/s, has sidebands:
-
-    >>> from solidgear.nonlinear.model import remainder
-    >>> from solidgear.system import Inertia, RowSpring, System
-    >>> from solidgear.system.law import Gap
-    >>> law = Gap(1.0, 0.0, exponent=1.5)
-    >>> spring = RowSpring("mass", [0, 0, 1, 0, 0, 0], law.stiffness(1.0), law=law)
-    >>> one = System({"mass": Inertia(1.0, "z")}, {"contact": spring})
-    >>> known = dict(loss={"contact": 0.1}, load=np.ones(1))
-    >>> fast, slow = (remainder(one, forces=[[size]], **known) for size in (0.5, 0.2))
-    >>> lines = TwoTone(fast, slow, (2.0, 0.1), (4, 4)).lines()
-    >>> [round(float(abs(lines[1, k][0])), 4) for k in (-1, 0, 1)]
-    [0.0047, 0.1985, 0.0034]
+    """Equations of a system under two excitations, of different frequencies; refuse laws of
+    straight pieces, whose corners a grid does not see.
     """
 
     #: fast, slow: one system under its constant load, with the excitation and the cycle of either
@@ -73,25 +53,27 @@ class TwoTone:
 
     @cached_property
     def pairs(self) -> tuple[tuple[int, int], ...]:
-        """Multiples (j, k) of both frequencies, the constant first; of (j, k) and (-j, -k) one."""
+        """Return multiples (j, k) of both frequencies, the constant first; either (j, k) or (-j,
+        -k).
+        """
         fast, slow = self.counts
         first = [(0, k) for k in range(slow + 1)]
         return (*first, *((j, k) for j in range(1, fast + 1) for k in range(-slow, slow + 1)))
 
     @property
     def frequencies(self) -> np.ndarray:
-        """(p,) of all pairs, rad/s, some negative."""
+        """Return the frequencies (p,) of all pairs, rad/s, some negative."""
         return np.array(self.pairs) @ np.array(self.omega)
 
     @cached_property
     def _angles(self) -> np.ndarray:
-        """(T, 2) of the grid."""
+        """Return the angles (T, 2) of the grid."""
         turns = (2 * np.pi * np.arange(count) / count for count in self.instants)
         return np.stack(np.meshgrid(*turns, indexing="ij"), axis=-1).reshape(-1, 2)
 
     @cached_property
     def _series(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Synthesis (T, 2p-1) of a0, a, b, the rate of it, and analysis."""
+        """Return synthesis (T, 2p-1) of a0, a, b, the rate, and analysis."""
         angle, w = self._angles @ np.array(self.pairs[1:]).T, self.frequencies[1:]
         c, s = np.cos(angle), np.sin(angle)
         make = np.hstack([np.ones((len(angle), 1)), c, s])
@@ -102,7 +84,7 @@ class TwoTone:
 
     @cached_property
     def factor(self) -> np.ndarray | None:
-        """(T, m) what forces are multiplied by at every instant; None where nothing varies."""
+        """Return the factor (T, m) of forces at every instant; None where nothing varies."""
         if not (self.fast.varies or self.slow.varies):
             return None
         fast, slow = self._angles.T
@@ -110,83 +92,83 @@ class TwoTone:
 
     @cached_property
     def linear(self) -> np.ndarray:
-        """(n,) motion of the linear system."""
+        """Return the motion (n,) of the linear system."""
         out = np.zeros((len(self.pairs), self.fast.rows), complex)
-        own, other = (
-            one.linear(w, count)[0]
-            for one, w, count in zip((self.fast, self.slow), self.omega, self.counts)
+        by_fast, by_slow = (
+            remainder.linear(w, count)[0]
+            for remainder, w, count in zip((self.fast, self.slow), self.omega, self.counts)
         )
         for k, (fast, slow) in enumerate(self.pairs):
             if not slow:
-                out[k] = own[fast]
+                out[k] = by_fast[fast]
             elif not fast:
-                out[k] = other[slow]
+                out[k] = by_slow[slow]
         return as_real(out).ravel()
 
     @cached_property
     def _moves(self) -> np.ndarray:
-        """(p, m, m) receptance at all pairs."""
+        """Return the receptance (p, m, m) at all pairs."""
         return self.fast.receptance(self.frequencies)[0]
 
     def waves(self, motion: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Stretches and rates (T, m) on the grid."""
+        """Return stretches and rates (T, m) on the grid."""
         make, rate, _ = self._series
         parts = motion.reshape(-1, self.fast.rows)
         return make @ parts, rate @ parts
 
     def residual(self, motion: np.ndarray) -> Residual:
-        """Residual of the balance at a motion (n,)."""
-        own = self.fast
+        """Compute the residual of the balance at a motion (n,)."""
+        remainder = self.fast
         make, rate, read = self._series
         s, v = self.waves(motion)
-        excess, held = own.excess(s, v, self.factor)
-        parts, by = read @ excess.value, over_parts(read, excess.by_stretch, make)
-        still, soft = parts, by
-        if own.drags:
-            by = by + over_parts(read, excess.by_rate, rate)
-        if own.drags and own.flexible.any():
-            slowly, _ = own.excess(s, np.zeros_like(v), self.factor)
+        excess, carries = remainder.excess(s, v, self.factor)
+        parts, slopes = read @ excess.value, over_parts(read, excess.by_stretch, make)
+        still, soft = parts, slopes
+        if remainder.drags:
+            slopes = slopes + over_parts(read, excess.by_rate, rate)
+        if remainder.drags and remainder.flexible.any():
+            slowly, _ = remainder.excess(s, np.zeros_like(v), self.factor)
             still = read @ slowly.value
             soft = over_parts(read, slowly.by_stretch, make)
-        moved = applied(self._moves, parts) + still @ own.flexible
-        taken = applied(self._moves, by.reshape(len(parts), -1)).reshape(by.shape)
-        taken = taken + np.einsum("ij,njkl->nikl", own.flexible, soft)
-        jacobian = np.eye(motion.size) - taken.reshape((motion.size,) * 2)
+        moved = apply_to_parts(self._moves, parts) + still @ remainder.flexible
+        by_motion = apply_to_parts(self._moves, slopes.reshape(len(parts), -1)).reshape(
+            slopes.shape
+        )
+        by_motion = by_motion + np.einsum("ij,njkl->nikl", remainder.flexible, soft)
+        jacobian = np.eye(motion.size) - by_motion.reshape((motion.size,) * 2)
         value = motion - self.linear - moved.ravel()
-        return Residual(value, jacobian, np.zeros(0), held or not own.hangs)
+        return Residual(value, jacobian, np.zeros(0), carries or not remainder.hangs)
 
     @cached_property
     def start(self) -> np.ndarray:
-        """(n,) motion of the linear system around where laws carry its mean forces."""
+        """Return the motion (n,) of the linear system around the place where laws carry the mean
+        forces.
+        """
         out = self.linear.reshape(-1, self.fast.rows).copy()
         mean = np.diag(self.fast.stiffness) * self.fast.mean
-        for law, at in self.fast.laws:
+        for law, rows in self.fast.laws:
             depth = getattr(law, "depth", None)
             if depth is not None:
-                out[0, at] = [depth(force) for force in mean[at]]
+                out[0, rows] = [depth(force) for force in mean[rows]]
         return out.ravel()
 
     @pinned
     def solve(self, motion: np.ndarray | None = None) -> np.ndarray:
-        """Motion (n,) by Newton's method, from a guess or from the linear one.
-
-        Raises
-        ------
-        SolidgearError
-            If it does not converge; begin nearer.
+        """Return the motion (n,) by Newton's method, from a guess or from the linear one; refuse
+        one that does not converge.
         """
         motion = self.start if motion is None else motion
-        left = self.residual(motion)
+        residual = self.residual(motion)
         for _ in range(ITERATIONS):
-            step = np.linalg.solve(left.jacobian, -left.value)
+            step = np.linalg.solve(residual.jacobian, -residual.value)
             for _ in range(HALVINGS):
                 after = self.residual(motion + step)
-                if np.linalg.norm(after.value) <= np.linalg.norm(left.value):
+                if np.linalg.norm(after.value) <= np.linalg.norm(residual.value):
                     break
                 if np.abs(step).max() <= ARRIVED * np.abs(motion).max():
                     return motion
                 step = step / 2
-            motion, left = motion + step, after
+            motion, residual = motion + step, after
             if np.abs(step).max() <= ARRIVED * np.abs(motion).max():
                 return motion
         raise SolidgearError(
@@ -194,12 +176,14 @@ class TwoTone:
         )
 
     def lines(self, motion: np.ndarray | None = None) -> dict[tuple[int, int], np.ndarray]:
-        """(m,) complex amplitude of the stretches at every pair, solved for without a motion."""
+        """Return the complex amplitude (m,) of the stretches at every pair, solved for without a
+        motion.
+        """
         motion = self.solve() if motion is None else motion
-        found = as_complex(motion.reshape(-1, self.fast.rows))
-        return dict(zip(self.pairs, found))
+        amplitudes = as_complex(motion.reshape(-1, self.fast.rows))
+        return dict(zip(self.pairs, amplitudes))
 
     def force_lines(self, motion: np.ndarray) -> dict[tuple[int, int], np.ndarray]:
-        """(m,) complex amplitude of the forces of the laws at every pair, N."""
+        """Return the complex amplitude (m,) of the forces of the laws at every pair, N."""
         forces = self.fast.forces(*self.waves(motion), self.factor).value
         return dict(zip(self.pairs, as_complex(self._series[2] @ forces)))

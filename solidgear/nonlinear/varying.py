@@ -1,14 +1,15 @@
 r"""Mesh stiffness and line of action that vary over the mesh cycle, and where that alone makes
 motions grow.
 
-Teeth that keep contact, with ``k (1 + c(t))`` along a line that turns, make a linear system with periodic coefficients.  Near
-speeds at which the excitation, or a multiple of it, is the sum of two natural frequencies or twice
-one, its motions grow by themselves (tongues of Mathieu and Hill).  Floquet's multipliers tell which
-do.  Edges at which a multiplier is +1 or -1 have a motion that repeats itself after one cycle or two,
+Teeth that keep contact, with ``k (1 + c(t))`` along a line that turns, make a linear system with
+periodic coefficients. Near speeds at which the excitation, or a multiple of it, is the sum of two
+natural frequencies or twice one, its motions grow by themselves (tongues of Mathieu and Hill), as
+Floquet's multipliers show. Edges at which a multiplier is +1 or -1 have a motion that repeats
+itself after one cycle or two,
 
     s_h - H(h w) (P s)_h = 0,        h = ..., -1, 0, 1, ...   or   ..., -1/2, 1/2, 3/2, ...
 
-with P what the tangent lacks at every instant, so that Hill's determinant is zero there, from
+with P the tangent of the excess at every instant, so that Hill's determinant is zero there, from
 receptances alone.
 """
 
@@ -30,7 +31,8 @@ PLACES = 400
 
 
 def growth(remainder: Remainder, omega: float) -> complex:
-    """Largest Floquet multiplier of teeth that keep contact, at a frequency of the cycle, rad/s.
+    """Return the largest Floquet multiplier of teeth that keep contact, at a frequency of the
+    cycle, rad/s.
 
     Examples
     --------
@@ -51,28 +53,29 @@ def growth(remainder: Remainder, omega: float) -> complex:
 
 
 def _varied(remainder: Remainder, omega: float) -> tuple[np.ndarray, np.ndarray]:
-    """(INSTANTS, m, m) tangents of the excess of teeth that keep contact, over stretch and rate."""
+    """Return tangents (INSTANTS, m, m) of the excess of teeth that keep contact, over stretch and
+    rate.
+    """
     angle = 2 * np.pi * np.arange(INSTANTS) / INSTANTS
     line, factor = remainder.line(angle, omega), remainder.factor(angle)[..., None]
     stiffness, damper = remainder.stiffness, remainder.damper
     if line is None:
         return stiffness - factor * stiffness, damper - factor * damper
-    # the tangent of a law is told on the first row of its link: taken there, and given back to all
-    into = np.tile(np.eye(remainder.rows), (INSTANTS, 1, 1))
-    drift = np.zeros_like(into)
-    for at in line.links:
-        into[:, at.start, at], drift[:, at.start, at] = line.share[:, at], line.slope[:, at]
-    out = factor * into.transpose(0, 2, 1)
-    return stiffness - out @ (stiffness @ into + damper @ drift), damper - out @ damper @ into
+    # the tangent of a law is that of the first row of its link, shared out to all its rows
+    on_line = np.tile(np.eye(remainder.rows), (INSTANTS, 1, 1))
+    drift = np.zeros_like(on_line)
+    for rows in line.links:
+        on_line[:, rows.start, rows], drift[:, rows.start, rows] = (
+            line.share[:, rows],
+            line.slope[:, rows],
+        )
+    out = factor * on_line.transpose(0, 2, 1)
+    return stiffness - out @ (stiffness @ on_line + damper @ drift), damper - out @ damper @ on_line
 
 
 def hill(remainder: Remainder, omega: float, half: bool, count: int = HARMONICS) -> float:
-    """Hill's determinant, whose sign changes where a multiplier is +1, or -1 with `half`.
-
-    Parameters
-    ----------
-    count : int
-        Harmonics on either side.
+    """Return Hill's determinant with `count` harmonics on either side; it changes sign where a
+    multiplier is +1, or -1 with `half`.
     """
     m = remainder.rows
     place = np.arange(-count, count + 1 - half) + (0.5 if half else 0.0)
@@ -87,13 +90,9 @@ def hill(remainder: Remainder, omega: float, half: bool, count: int = HARMONICS)
 
 @pinned
 def edges(remainder: Remainder, low: float, high: float, half: bool) -> tuple[float, ...]:
-    """Frequencies of the cycle between two at which Hill's determinant is zero, rad/s.
-
-    Parameters
-    ----------
-    half : bool
-        True for motions that repeat themselves after two cycles, such as about twice a natural
-        frequency.
+    """Return the frequencies of the cycle between two at which Hill's determinant is zero, rad/s;
+    with `half` for motions that repeat themselves after two cycles, such as about twice a natural
+    frequency.
     """
     places: Sequence[float] = np.geomspace(low, high, PLACES).tolist()
     values = [hill(remainder, w, half) for w in places]
@@ -101,7 +100,7 @@ def edges(remainder: Remainder, low: float, high: float, half: bool) -> tuple[fl
     for a, b, before, after in zip(places, places[1:], values, values[1:]):
         # an undamped pole of a receptance changes the sign too, by way of infinity
         if before * after < 0:
-            at = float(brentq(lambda w: hill(remainder, w, half), a, b, xtol=1e-12 * b))
-            if abs(hill(remainder, at, half)) <= min(abs(before), abs(after)):
-                out.append(at)
+            edge = float(brentq(lambda w: hill(remainder, w, half), a, b, xtol=1e-12 * b))
+            if abs(hill(remainder, edge, half)) <= min(abs(before), abs(after)):
+                out.append(edge)
     return tuple(out)

@@ -254,7 +254,7 @@ def write_correlation(
     if found.measured.responses is not None:
         lines["peaks"] = peaks(found, overlay)
         drawn = {"overlay": partial(overlay_chart, overlay, found, title)} if overlay else {}
-        words = overlay.told if overlay else ""
+        words = overlay.description if overlay else ""
         sections.append(Section("responses", "Responses", words, drawn, [lines["peaks"]]))
     return write_files(
         folder,

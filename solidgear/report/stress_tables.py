@@ -56,7 +56,7 @@ def section_forces(
     """
     rows = [
         (y, name, side, six[1], math.hypot(six[0], six[2]), math.hypot(six[3], six[5]), six[4])
-        for y, name, side, six in _sides(forces, forces.told)
+        for y, name, side, six in _sides(forces, forces.names_without_weights)
     ]
     force = _of_weight(value for row in rows for value in (row[3], row[4]))
     moment = _of_weight(value for row in rows for value in (row[5], row[6]))
@@ -70,7 +70,7 @@ def section_forces(
         quantity("T", "N m", units, lambda row: moment(row[6])),
     ]
     note = f"{CONVENTION} N is positive in tension; Q and M are sizes of two components."
-    if forces.told != forces.names:
+    if forces.names_without_weights != forces.names:
         note += " Weight acts between, at the middle of each segment."
     if open_ is not None and open_[1] > (1 + LITTLE) * open_[0]:
         low, high = (units.number(value, "N m", 4) for value in open_)

@@ -9,7 +9,7 @@ import numpy as np
 
 from solidgear.bearings.catalogued import Catalogued, End
 from solidgear.bearings.life import Life, life
-from solidgear.bearings.solved import AS_TOLD, Choice, Solved, solved
+from solidgear.bearings.solved import AS_STATED, Choice, Solved, solved
 from solidgear.body import Body
 from solidgear.scene import Bearing, Lubrication, Scene
 
@@ -58,7 +58,7 @@ def bearing_lives(
     [('A', 13.8), ('B', 23.1)]
     """
     label, choices = left_open([scene])
-    states = [solved(scene, body, choice) for choice in (AS_TOLD, *choices)]
+    states = [solved(scene, body, choice) for choice in (AS_STATED, *choices)]
     return [
         life_of(bearing, scene.lubrication, label, speed, [_place(s, bearing) for s in states])
         for bearing in scene.bearings
@@ -89,7 +89,7 @@ def left_open(scenes: Iterable[Scene]) -> tuple[str, list[Choice]]:
     corners = [Choice(end, place) for end in insides for place in places]
     names = {"estimated insides": estimated, "clearance classes": by_class}
     label = " and ".join(name for name, unknown in names.items() if unknown)
-    return label, [corner for corner in corners if corner != AS_TOLD]
+    return label, [corner for corner in corners if corner != AS_STATED]
 
 
 def life_of(

@@ -11,7 +11,7 @@ from solidgear.bearings.balance import Mounted
 from solidgear.bearings.catalogued import Catalogued
 from solidgear.bearings.life import Life, life
 from solidgear.bearings.row import Contacts
-from solidgear.bearings.solved import AS_TOLD, Choice, made_of, mounted
+from solidgear.bearings.solved import AS_STATED, Choice, catalogued_bearings, mounted
 from solidgear.body import Body
 from solidgear.errors import SolidgearError
 from solidgear.frames import shift
@@ -201,11 +201,11 @@ class ShaftAtRest:
         self.system = System({SHAFT: rubin(self.body, n=FEW)})
         self.load = self.system.load({f"{SHAFT}.{scene.port.name}": load_of(scene)})
 
-    def settled(self, choice: Choice = AS_TOLD) -> ShaftDeflection:
+    def settled(self, choice: Choice = AS_STATED) -> ShaftDeflection:
         """Compute the deflection with the bearings at a choice in the ranges of their data; refuse
         a shaft that nothing holds.
         """
-        bearings = {f"{SHAFT}.{name}": rows for name, rows in made_of(self.scene, choice).items()}
+        bearings = {f"{SHAFT}.{name}": rows for name, rows in catalogued_bearings(self.scene, choice).items()}
         supported = OnBearings(self.system, (seats_of(SHAFT, self.scene, bearings),))
         state = supported.equilibrium(self.load)
         return shaft_deflection(

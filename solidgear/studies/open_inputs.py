@@ -188,7 +188,7 @@ def _choice(values: Mapping[str, float]) -> Choice:
         field = {INSIDE: "end", CLEARANCE: "clearance", PRELOAD: "preload"}[key]
         apart.setdefault(name, {})[field] = put
     each = {name: Choice(**fields) for name, fields in apart.items()}
-    return Choice(load=values.get("load", 1.0), apart=each)
+    return Choice(load=values.get("load", 1.0), overrides=each)
 
 
 def _softer(scene: Scene, e: float) -> Scene:

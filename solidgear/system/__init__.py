@@ -1,6 +1,4 @@
-"""Parts with ports and links between them; the geared pair, its mesh, and identification of what a
-source leaves out.
-"""
+"""Parts with ports and links between them, gear meshes and planetary stages."""
 
 from solidgear.scene.planetary_teeth import PlanetaryTeeth
 from solidgear.system.carrier_turn import CarrierTurn, FixedSupport, PlanetError, carrier_turn

@@ -1,25 +1,26 @@
-r"""Equilibrium of a planetary stage over a turn of its carrier.
+r"""Equilibrium of a planetary stage over a turn of the carrier.
 
-In axes that turn with the carrier the stage stays as it is, and what stands still outside turns
-backwards.  With u the shift of a central member, C its flexibility and ``u_0`` what torque and
-errors make of it, both on a mean bearing k, a support K fixed in space, whose seat is off by e, gives
+In axes that turn with the carrier the stage stays as it is, and a part that stands still outside
+turns backwards. With u the shift of a central member, C the flexibility and ``u_0`` the shift by
+torque and errors, both on a mean bearing k, a support K fixed in space, whose seat is off by e,
+gives
 
     (1 + C (K' - k)) u = u_0 + C K' e',        K' = R' K R,    e' = R' e,
 
 at every position R: six equations for each such support, whatever the size of the stage.  A load f
-that keeps its direction in space, such as weight, is ``R' f`` in these axes, so that ``u_0`` of it
+that keeps the direction in space, such as weight, is ``R' f`` in these axes, so that ``u_0`` of it
 goes with the cosine and the sine of the position.
 
-With the other members held, N >= 3 equal planets at equal angles are to the sun one spring, the same
-in all directions: ``N k_e / 2`` with ``k_e`` the stiffness through one planet
-(:attr:`solidgear.system.planetary.PlanetaryStage.path_stiffness`).  So the sun stands still at
-``e k_s / (k_s + N k_e / 2)``, and every mesh force varies once a turn of the carrier by
+With the other members held, N >= 3 equal planets at equal angles are to the sun one spring, the
+same in all directions: ``N k_e / 2`` with ``k_e`` the stiffness through one planet
+(:attr:`solidgear.system.planetary.PlanetaryStage.path_stiffness`). So the sun stands still at ``e
+k_s / (k_s + N k_e / 2)``, and every mesh force varies once a turn of the carrier by
 
     k_e e k_s / (k_s + N k_e / 2),
 
-with phases ``2 pi / N`` apart and sum zero.  That is of a sun locked in the plane, and of spur teeth;
-a helical sun that is held against tilting has ``N k_e cos^2(b) / 2`` and forces by ``cos b``, b its
-base helix angle.
+with phases ``2 pi / N`` apart and sum zero. That is of a sun locked in the plane, and of spur
+teeth; a helical sun that is held against tilting has ``N k_e cos^2(b) / 2`` and forces by ``cos
+b``, b the base helix angle.
 """
 
 from __future__ import annotations
@@ -74,19 +75,19 @@ class FixedSupport:
     @property
     def matrix(self) -> np.ndarray:
         """(6, 6) stiffness."""
-        given = np.asarray(self.stiffness, float)
-        if given.shape == (6, 6):
-            return given
+        stiffness = np.asarray(self.stiffness, float)
+        if stiffness.shape == (6, 6):
+            return stiffness
         full = np.zeros((6, 6))
-        own = given * np.eye(2) if given.ndim == 0 else given
-        full[np.ix_(ACROSS, ACROSS)] = frozen("the stiffness of a support", own, (2, 2))
+        planar = stiffness * np.eye(2) if stiffness.ndim == 0 else stiffness
+        full[np.ix_(ACROSS, ACROSS)] = frozen("the stiffness of a support", planar, (2, 2))
         return full
 
     @property
     def off(self) -> np.ndarray:
-        """(6,) shift of its seat."""
-        given = np.asarray(self.shift, float)
-        return given if given.shape == (6,) else np.insert(np.zeros(4), [0, 1], given)
+        """(6,) shift of the seat."""
+        shift = np.asarray(self.shift, float)
+        return shift if shift.shape == (6,) else np.insert(np.zeros(4), [0, 1], shift)
 
 
 @dataclass(frozen=True)
@@ -123,7 +124,7 @@ class PlanetError:
 
 @dataclass(frozen=True, eq=False)
 class CarrierTurn:
-    """Forces of a planetary stage over a turn of its carrier."""
+    """Forces of a planetary stage over a turn of the carrier."""
 
     angle: np.ndarray  #: (a,) of the carrier, rad
     #: sun_mesh, ring_mesh: (a, N) of every planet, N; negative ones would need teeth that pull
@@ -144,8 +145,8 @@ class CarrierTurn:
         return self.pin_load[:, :, ACROSS] * [1.0, -1.0]
 
     def amplitude(self, order: int) -> np.ndarray:
-        """(N,) amplitude of every mesh force with the sun at a multiple of the carrier's frequency,
-        from 1 to below half the positions, N.
+        """Return the amplitude (N,) of every mesh force with the sun at a multiple of the carrier's
+        frequency, from 1 to below half the positions, N.
         """
         if not 0 < order < len(self.angle) / 2:
             raise SolidgearError(
@@ -164,12 +165,12 @@ def carrier_turn(
     weights: Mapping[str, ArrayLike] | None = None,
     carried: Mapping[str, ArrayLike] | None = None,
 ) -> CarrierTurn:
-    """Equilibrium of a planetary stage at positions of its carrier.
+    """Return the equilibrium of a planetary stage at positions of the carrier.
 
     Parameters
     ----------
     torque : float
-        On the sun, N m; what turns freely of carrier or ring takes the other torque, and that of the
+        On the sun, N m; carrier or ring, if free, takes the other torque, and that of the
         other loads.
     supports : mapping of str to FixedSupport
         Of ``sun``, ``ring`` or ``carrier``, beside bearings of the stage, which turn with it.
@@ -210,7 +211,7 @@ def carrier_turn(
     >>> round(float(closed), 3), round(float(turn.amplitude(1)[0]), 3)
     (56.82, 56.82)
     """
-    _fits(stage)
+    _refuse_misfit(stage)
     frozen("the torque on the sun", torque, ())
     supports = supports or {}
     unknown = supports.keys() - set(CENTRAL)
@@ -225,41 +226,45 @@ def carrier_turn(
         raise SolidgearError(
             f"{len(errors)} errors for {len(stage.planets)} planets; give each its own"
         )
-    mean = {name: _mean(own.matrix) for name, own in supports.items()}
+    mean = {name: _mean(fixed.matrix) for name, fixed in supports.items()}
     members = {name: getattr(stage, name) for name in supports}
-    held = replace(
+    system = replace(
         stage,
         **{
-            name: replace(one, bearing=one.support + mean[name], turning=0.0)
-            for name, one in members.items()
+            name: replace(member, bearing=member.support + mean[name], turning=0.0)
+            for name, member in members.items()
         },
     ).system
-    strains, where = held.strains
-    gaps = _gaps(len(strains), where, stage, errors)
-    at = [held.motion(f"{name}.centre") for name in supports]
-    roots = [root_of(own) for own in mean.values()]
-    rows = np.vstack([np.zeros((0, held.size)), *(root.T @ one for root, one in zip(roots, at))])
+    strains, rows_of = system.strains
+    gaps = _gaps(len(strains), rows_of, stage, errors)
+    motions = [system.motion(f"{name}.centre") for name in supports]
+    roots = [root_of(matrix) for matrix in mean.values()]
+    rows = np.vstack(
+        [np.zeros((0, system.size)), *(root.T @ motion for root, motion in zip(roots, motions))]
+    )
     angle = 2 * np.pi * np.arange(positions) / positions
     turns = np.array([rotation(1, a) for a in angle])
-    always, *swinging = _swinging(held, stage, weights or {})
-    always += held.load({"sun.centre": np.array([0, 0, 0, 0, torque, 0])})
-    always += _load(held, stage, carried or {})
-    loads = [_balanced(held, load) for load in (always, *swinging)]
+    always, *swinging = _swinging(system, stage, weights or {})
+    always += system.load({"sun.centre": np.array([0, 0, 0, 0, torque, 0])})
+    always += _load(system, stage, carried or {})
+    loads = [_balanced(system, load) for load in (always, *swinging)]
     loads[0] -= strains.T @ gaps
-    found = held.static(np.column_stack([*loads, rows.T]))
-    moved, give = found[:, : len(loads)] @ _swing(angle), found[:, len(loads) :]
-    pushed = _pushed(turns, list(supports.values()), roots, (rows @ moved).T, rows @ give)
-    moved = moved + give @ pushed.T
+    solution = system.static(np.column_stack([*loads, rows.T]))
+    moved, give = solution[:, : len(loads)] @ _swing(angle), solution[:, len(loads) :]
+    loads_beyond = _loads_beyond_mean(
+        turns, list(supports.values()), roots, (rows @ moved).T, rows @ give
+    )
+    moved = moved + give @ loads_beyond.T
     shift, support = {}, {}
-    for (name, own), one in zip(supports.items(), at):
-        shift[name] = np.einsum("aij,ja->ai", turns, one @ moved)
-        support[name] = (shift[name] - own.off) @ own.matrix
+    for (name, fixed), motion in zip(supports.items(), motions):
+        shift[name] = np.einsum("aij,ja->ai", turns, motion @ moved)
+        support[name] = (shift[name] - fixed.off) @ fixed.matrix
     springs = (strains @ moved).T + gaps
-    return _turn(stage, angle, springs, where, shift, support)
+    return _turn(stage, angle, springs, rows_of, shift, support)
 
 
-def _fits(stage: PlanetaryStage) -> None:
-    """Refusal of tooth forces that are no pairs on one line."""
+def _refuse_misfit(stage: PlanetaryStage) -> None:
+    """Refuse tooth forces that are no pairs on one line."""
     worst = max(map(abs, stage.apart))
     if worst > ONE_LINE * stage.carrier.radius:
         raise SolidgearError(
@@ -268,108 +273,110 @@ def _fits(stage: PlanetaryStage) -> None:
         )
 
 
-def _load(held: System, stage: PlanetaryStage, forces: Mapping[str, ArrayLike]) -> np.ndarray:
-    """(N,) load of forces (6,) on centres of members in the axes of the stage."""
-    out = np.zeros(held.size)
+def _load(system: System, stage: PlanetaryStage, forces: Mapping[str, ArrayLike]) -> np.ndarray:
+    """Return the load (N,) of forces (6,) on centres of members in the axes of the stage."""
+    out = np.zeros(system.size)
     for name, six in forces.items():
         if name not in stage.parts:
             raise SolidgearError(
                 f"{name!r} is no member to be loaded; {listed([*stage.parts])} are"
             )
-        axes = np.kron(np.eye(2), held.port(f"{name}.centre").axes)
-        out += held.load({f"{name}.centre": axes.T @ frozen(f"the load of {name}", six, (6,))})
+        axes = np.kron(np.eye(2), system.port(f"{name}.centre").axes)
+        out += system.load({f"{name}.centre": axes.T @ frozen(f"the load of {name}", six, (6,))})
     return out
 
 
 def _swinging(
-    held: System, stage: PlanetaryStage, weights: Mapping[str, ArrayLike]
+    system: System, stage: PlanetaryStage, weights: Mapping[str, ArrayLike]
 ) -> list[np.ndarray]:
-    """Loads (N,) of forces that keep their direction in space: what is so at every position, and what
-    goes with its cosine and sine.
+    """Return the loads (N,) of forces that keep their direction in space: the part constant over
+    positions, and those that go with the cosine and the sine of the position.
     """
-    each = {name: frozen(f"the weight of {name}", six, (6,)) for name, six in weights.items()}
+    arrays = {name: frozen(f"the weight of {name}", six, (6,)) for name, six in weights.items()}
     axial = np.diag([0.0, 1.0, 0.0, 0.0, 1.0, 0.0])
     across, quarter = np.eye(6) - axial, rotation(1, np.pi / 2).T
     ways = (axial, across, quarter @ across)
-    return [_load(held, stage, {name: way @ six for name, six in each.items()}) for way in ways]
+    return [_load(system, stage, {name: way @ six for name, six in arrays.items()}) for way in ways]
 
 
 def _swing(angle: np.ndarray) -> np.ndarray:
-    """(3, a) shares of the loads of :func:`_swinging` at positions."""
+    """Return (3, a) shares of the loads of :func:`_swinging` at positions."""
     return np.array([np.ones_like(angle), np.cos(angle), np.sin(angle)])
 
 
-def _balanced(held: System, load: np.ndarray) -> np.ndarray:
-    """A load with what balances its torque on a member that is free to turn."""
+def _balanced(system: System, load: np.ndarray) -> np.ndarray:
+    """Return a load with the reaction that balances the torque on a member that is free to turn."""
     for name in ("carrier", "ring"):
-        motion = held.motion(f"{name}.centre")[4]
-        freely = motion @ held.free
+        motion = system.motion(f"{name}.centre")[4]
+        freely = motion @ system.free
         if np.linalg.norm(freely) > TURNS:
-            return load - motion * (load @ held.free @ freely) / (freely @ freely)
+            return load - motion * (load @ system.free @ freely) / (freely @ freely)
     return load
 
 
-def _gaps(size: int, where, stage: PlanetaryStage, errors: Sequence[PlanetError]) -> np.ndarray:
-    """(r,) strain of rows that errors make where nothing moves."""
+def _gaps(size: int, rows_of, stage: PlanetaryStage, errors: Sequence[PlanetError]) -> np.ndarray:
+    """Return the strain (r,) of rows that errors make where nothing moves."""
     out = np.zeros(size)
     for k, (planet, error) in enumerate(zip(stage.planets, errors), 1):
         (away, forward), (about_away, about_forward) = error.pin, error.tilt
-        off = np.array([away, 0.0, -forward, about_away, 0.0, -about_forward])
-        out[where[f"planet {k} pin"]] = -root_of(planet.support).T @ off
+        error_motion = np.array([away, 0.0, -forward, about_away, 0.0, -about_forward])
+        out[rows_of[f"planet {k} pin"]] = -root_of(planet.support).T @ error_motion
         for mate in ("sun", "ring"):
-            own = where[f"planet {k} {mate} mesh"]
+            rows = rows_of[f"planet {k} {mate} mesh"]
             stiffness = getattr(planet, f"{mate}_mesh")
-            out[own] = _each(stiffness, own) * getattr(error, f"{mate}_tooth")
+            out[rows] = _root_share(stiffness, rows) * getattr(error, f"{mate}_tooth")
     return out
 
 
-def _each(stiffness: float, rows: slice) -> float:
-    """Root of the share that each of the springs of a mesh has in its stiffness."""
+def _root_share(stiffness: float, rows: slice) -> float:
+    """Return the root of the share of each spring of a mesh in the stiffness."""
     return float(np.sqrt(stiffness / max(rows.stop - rows.start, 1)))
 
 
 def _mean(matrix: np.ndarray) -> np.ndarray:
-    """(6, 6) mean of a stiffness over a turn: of its two harmonics a quarter turn leaves none."""
+    """Return the mean (6, 6) of a stiffness over a turn: a quarter turn cancels two harmonics."""
     quarters = [rotation(1, k * np.pi / 2) for k in range(4)]
     mean = sum((turn.T @ matrix @ turn for turn in quarters), np.zeros((6, 6))) / 4
     return (mean + mean.T) / 2
 
 
-def _pushed(
+def _loads_beyond_mean(
     turns: np.ndarray,
     supports: Sequence[FixedSupport],
     roots: Sequence[np.ndarray],
-    seen: np.ndarray,
+    motions: np.ndarray,
     give: np.ndarray,
 ) -> np.ndarray:
-    """(a, s) loads on the stage beyond its mean bearings ``L L'``, in the coordinates ``L'u`` in
-    which these are one; from ``L'u`` (a, s) under load and (s, s) under unit loads.
+    """Return loads (a, s) on the stage beyond the mean bearings ``L L'``, in the coordinates
+    ``L'u`` in which these are one; from ``L'u`` (a, s) under load and (s, s) under unit loads.
     """
     size = len(give)
     stiffness, pressed = np.zeros((len(turns), size, size)), np.zeros((len(turns), size))
     start = 0
-    for own, root in zip(supports, roots):
+    for fixed, root in zip(supports, roots):
         place = slice(start, start := start + root.shape[1])
-        into = np.linalg.pinv(root) @ turns.transpose(0, 2, 1)
-        stiffness[:, place, place] = into @ own.matrix @ into.transpose(0, 2, 1)
-        pressed[:, place] = into @ (own.matrix @ own.off)
-    beyond = stiffness - np.eye(size)
-    right = seen + pressed @ give.T
-    moved = np.linalg.solve(np.eye(size) + give @ beyond, right[..., None])[..., 0]
-    return pressed - np.einsum("aij,aj->ai", beyond, moved)
+        to_stage = np.linalg.pinv(root) @ turns.transpose(0, 2, 1)
+        stiffness[:, place, place] = to_stage @ fixed.matrix @ to_stage.transpose(0, 2, 1)
+        pressed[:, place] = to_stage @ (fixed.matrix @ fixed.off)
+    excess = stiffness - np.eye(size)
+    right = motions + pressed @ give.T
+    moved = np.linalg.solve(np.eye(size) + give @ excess, right[..., None])[..., 0]
+    return pressed - np.einsum("aij,aj->ai", excess, moved)
 
 
-def _turn(stage: PlanetaryStage, angle, springs: np.ndarray, where, shift, support) -> CarrierTurn:
-    """Forces from the strains (a, r) of all rows."""
+def _turn(
+    stage: PlanetaryStage, angle, springs: np.ndarray, rows_of, shift, support
+) -> CarrierTurn:
+    """Return forces from the strains (a, r) of all rows."""
     forces: dict[str, list[np.ndarray]] = {"sun": [], "ring": []}
     pins = []
     for k, planet in enumerate(stage.planets, 1):
-        for mate, found in forces.items():
-            own = where[f"planet {k} {mate} mesh"]
-            each = _each(getattr(planet, f"{mate}_mesh"), own)
-            found.append(each * springs[:, own].sum(axis=1))
-        pins.append(springs[:, where[f"planet {k} pin"]] @ root_of(planet.support).T)
-    sun, ring = (np.column_stack(found) for found in forces.values())
+        for mate, mesh_forces in forces.items():
+            rows = rows_of[f"planet {k} {mate} mesh"]
+            root_share = _root_share(getattr(planet, f"{mate}_mesh"), rows)
+            mesh_forces.append(root_share * springs[:, rows].sum(axis=1))
+        pins.append(springs[:, rows_of[f"planet {k} pin"]] @ root_of(planet.support).T)
+    sun, ring = (np.column_stack(mesh_forces) for mesh_forces in forces.values())
     pin = np.stack(pins, axis=1)
     across = cos(stage.base_helix)
     torque = {

@@ -1,11 +1,11 @@
-r"""From contact cells to one mesh point, one line of action, and what they cannot carry.
+r"""From contact cells to one mesh point, one line of action, and the moment that they cannot carry.
 
 Cells at r_i push along n_i with f_i.  Their sum is a force and a moment about the origin,
 
     F = sum f_i n_i,      M = sum f_i r_i x n_i,      n = F / |F|,
 
-and a force F at a point r balances M only up to the part along n: ``n . (r x F) = 0``.  What is
-left, ``M . n``, is a moment about the line of action that *no* mesh point carries; over |F| it is
+and a force F at a point r balances M only up to the part along n: ``n . (r x F) = 0``.  The
+rest, ``M . n``, is a moment about the line of action that *no* mesh point carries; over |F| it is
 the pitch of the wrench.  Points that leave nothing else are those of the central axis, ``r = F x M
 / F^2 + t n``.
 
@@ -65,12 +65,8 @@ class ContactWrench:
 
     @property
     def thesis_point(self) -> np.ndarray:
-        """(3,) the point by the formulas of the thesis, m.
-
-        Raises
-        ------
-        SolidgearError
-            If the force has no component along x or y, by which they divide.
+        """(3,) point by the formulas of the thesis, m; a force without a component along x or y, by
+        which they divide, is refused.
         """
         fx, fy, fz = self.force
         if min(abs(fx), abs(fy)) < 1e-9 * np.linalg.norm(self.force):
@@ -84,11 +80,11 @@ class ContactWrench:
         return np.array([x, y, (self.moment[1] + fz * x) / fx])
 
     def left_over(self, point: ArrayLike) -> float:
-        """Size of the moment that the force at a point does not balance, N m."""
+        """Return the size of the moment that the force at a point does not balance, N m."""
         return float(np.linalg.norm(self.moment - np.cross(np.asarray(point), self.force)))
 
     def mesh_stiffness(self, loaded_error: float, unloaded_error: float) -> float:
-        """``|F| / (e_L - e_0)`` (Hua 2010, 3.2.1), N/m."""
+        """Return ``|F| / (e_L - e_0)`` (Hua 2010, 3.2.1), N/m."""
         if loaded_error == unloaded_error:
             raise SolidgearError(
                 "the transmission error with and without load is the same; "
@@ -102,21 +98,8 @@ def contact_wrench(
     normals: Sequence[ArrayLike] | np.ndarray,
     forces: ArrayLike,
 ) -> ContactWrench:
-    """Sum of contact cells.
-
-    Parameters
-    ----------
-    points : (n, 3) array_like
-        r_i, m.
-    normals : (n, 3) array_like
-        n_i, unit vectors along the force on this member.
-    forces : (n,) array_like
-        f_i, N, not negative.
-
-    Raises
-    ------
-    SolidgearError
-        For normals that are no unit vectors, forces that pull, or cells that cancel.
+    """Return the wrench of contact cells at points (n, 3), m, with unit normals (n, 3) along the
+    force on this member and forces (n,), N, not negative; cells that cancel are refused.
     """
     r, n, f = (np.asarray(a, float) for a in (points, normals, forces))
     if r.ndim != 2 or r.shape[1:] != (3,) or n.shape != r.shape or f.shape != (len(r),):

@@ -6,8 +6,8 @@ the stiffness along each and D that of all else less ``w^2 M``,
 
     D q + g' s = f,     g q - s / (k (1 + i eta)) = 0.
 
-A load on such a seat goes for the most part straight into what holds it.  Where they span it, ``f =
-g' a``, it is taken as the motion ``a / (k (1 + i eta))`` of their feet, so that the small rest is no
+A load on such a seat goes for the most part straight into the ground. Where they span it, ``f = g'
+a``, it is taken as the motion ``a / (k (1 + i eta))`` of their feet, so that the small rest is no
 difference; and a motion that they span is read from q or from s, whichever rounds less.
 """
 
@@ -31,22 +31,18 @@ SPARE = 1e-12
 
 
 class Elimination:
-    """Matrices of a system, those of the parts apart from the rows of the links.
-
-    Parameters
-    ----------
-    loss : mapping of str to float
-        Loss factor eta of parts and links.
+    """Matrices of a system with loss factors of parts and links, those of the parts separate from
+    the rows of the links.
     """
 
     def __init__(self, system: System, loss: Mapping[str, float]):
-        g, where = system.strains
+        g, rows_of = system.strains
         eta = np.zeros(len(g))
-        for name, place in where.items():
+        for name, place in rows_of.items():
             eta[place] = loss.get(name, 0.0)
         linked = np.zeros(len(g), bool)
-        for name in system.links.keys() & where.keys():
-            linked[where[name]] = True
+        for name in system.links.keys() & rows_of.keys():
+            linked[rows_of[name]] = True
         self.mass = system.mass
         stiff = linked & self._stiff(g, linked)
         self.elastic = g[~stiff].T @ g[~stiff]
@@ -55,53 +51,49 @@ class Elimination:
         self.unit, self.stiffness, self.eta = g[stiff] / length[:, None], length**2, eta[stiff]
 
     def _stiff(self, g: np.ndarray, linked: np.ndarray) -> np.ndarray:
-        """Strain rows far above all that parts have by themselves."""
-        alone = np.einsum("ij,ji->i", g, np.linalg.solve(self.mass, g.T))
-        return alone > STIFF * alone[~linked].max(initial=np.inf if linked.all() else 0.0)
+        """Return which strain rows are far stiffer than all parts."""
+        own_stiffness = np.einsum("ij,ji->i", g, np.linalg.solve(self.mass, g.T))
+        return own_stiffness > STIFF * own_stiffness[~linked].max(
+            initial=np.inf if linked.all() else 0.0
+        )
 
     def motion(
         self, omega: np.ndarray, growth: np.ndarray, load: np.ndarray, rows: np.ndarray
     ) -> np.ndarray:
-        """Amplitudes (f, q) of some motions (q, N) under a load (N,).
-
-        Parameters
-        ----------
-        omega : (f,) ndarray
-            rad/s.
-        growth : (f,) ndarray
-            Losses over what they are where they were told.
-        load : (N,) ndarray
-        rows : (q, N) ndarray
+        """Return amplitudes (f, q) of the motions `rows` (q, N) under a load (N,), at frequencies
+        (f,), rad/s; `growth` (f,) multiplies the losses.
         """
         n = len(self.mass)
-        gives = 1 / (self.stiffness * (1 + 1j * growth[:, None] * self.eta))
-        left = np.zeros((len(omega), n + len(self.eta), n + len(self.eta)), complex)
+        flexibility = 1 / (self.stiffness * (1 + 1j * growth[:, None] * self.eta))
+        matrix = np.zeros((len(omega), n + len(self.eta), n + len(self.eta)), complex)
         w2, grown = omega[:, None, None] ** 2, growth[:, None, None]
-        left[:, :n, :n] = self.elastic - w2 * self.mass + 1j * grown * self.lost
-        left[:, n:, :n], left[:, :n, n:] = self.unit, self.unit.T
-        at = np.arange(n, left.shape[1])
-        left[:, at, at] = -gives
+        matrix[:, :n, :n] = self.elastic - w2 * self.mass + 1j * grown * self.lost
+        matrix[:, n:, :n], matrix[:, :n, n:] = self.unit, self.unit.T
+        links = np.arange(n, matrix.shape[1])
+        matrix[:, links, links] = -flexibility
         straight, spanned = self._spanned(load[None])
-        right = np.zeros((len(omega), left.shape[1], 1), complex)
+        right = np.zeros((len(omega), matrix.shape[1], 1), complex)
         right[:, :n, 0] = 0.0 if spanned[0] else load
-        right[:, n:, 0] = gives * straight[0]
-        found = np.linalg.solve(left, right)[:, :, 0]
-        return self._seen(found[:, :n], found[:, n:], straight[0], gives, rows)
+        right[:, n:, 0] = flexibility * straight[0]
+        solution = np.linalg.solve(matrix, right)[:, :, 0]
+        return self._motions(solution[:, :n], solution[:, n:], straight[0], flexibility, rows)
 
-    def _seen(self, q, force, straight, gives, rows) -> np.ndarray:
-        """Motions from coordinates, or from the forces of links where those round less."""
-        seen = q @ rows.T
+    def _motions(self, q, force, straight, flexibility, rows) -> np.ndarray:
+        """Return motions from coordinates, or from the forces of links where those round less."""
+        by_coordinates = q @ rows.T
         weight, spanned = self._spanned(rows)
-        by_force = ((force + straight) * gives) @ weight.T
-        blur = (np.abs(force) + np.abs(straight)) * np.abs(gives)
+        by_force = ((force + straight) * flexibility) @ weight.T
+        blur = (np.abs(force) + np.abs(straight)) * np.abs(flexibility)
         less = blur @ np.abs(weight).T < np.abs(q) @ np.abs(rows).T
-        return np.where(spanned & less, by_force, seen)
+        return np.where(spanned & less, by_force, by_coordinates)
 
     def _spanned(self, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Combinations (q, r) of the rows of links, zero where rows (q, N) are none, and which are."""
+        """Return combinations (q, r) of the rows of links, zero where rows (q, N) are none, and
+        which are.
+        """
         weight = np.linalg.lstsq(self.unit.T, rows.T, rcond=None)[0].T
         # rounding on a soft spring far away would be as large as what a clamp lets through
         weight[np.abs(weight) <= SPARE * np.abs(weight).max(axis=1, initial=0.0, keepdims=True)] = 0
-        away = np.linalg.norm(rows - weight @ self.unit, axis=1)
-        spanned = away <= SAME * np.linalg.norm(rows, axis=1)
+        miss = np.linalg.norm(rows - weight @ self.unit, axis=1)
+        spanned = miss <= SAME * np.linalg.norm(rows, axis=1)
         return np.where(spanned[:, None], weight, 0.0), spanned

@@ -1,5 +1,5 @@
-r"""Line of action, mesh point and mesh vector of a bevel gear pair, and of cylindrical gears, one of
-which may be a ring.
+r"""Line of action, mesh point and mesh vector of a bevel gear pair, and of cylindrical gears, one
+of which may be a ring.
 
 Each member has its own frame, right-handed, y along its shaft from the pitch apex towards its back,
 z up for both. Seen from above, z towards the reader, crossing axes at 90 degrees, O the pitch
@@ -55,7 +55,7 @@ def line_of_action(
     loaded_side: str,
     member: str = "pinion",
 ) -> np.ndarray:
-    """Direction of the tooth force *on* one member, in that member's frame.
+    """Return the direction of the tooth force *on* one member, in that member's frame.
 
     With s as in the head of this module and t = +1 where the force turns the member about +y, the
     normal force divides into (standard spiral bevel force formulas)
@@ -65,11 +65,11 @@ def line_of_action(
         to the axis  sin(phi) cos(gamma) + s t cos(phi) sin(psi) sin(gamma)
 
     The concave flank faces the way its teeth lean, so a load on it pushes the other way: t = -s for
-    the concave side and +s for the convex one.  Hence a loaded concave side drives the member away
+    the concave side and +s for the convex one. Hence a loaded concave side drives the member away
     from the apex and a convex one pulls it in, whatever the hand; for a *given* direction of load,
-    changing the hand changes the sign of the spiral part.  Left and right flanks are those of a tooth
-    with its tip upwards, seen from the apex (ISO 21771: from the datum face): a load on the left one
-    turns the member about +y, t = +1.
+    changing the hand changes the sign of the spiral part. Left and right flanks are those of a
+    tooth with its tip upwards, seen from the apex (ISO 21771: from the datum face): a load on the
+    left one turns the member about +y, t = +1.
 
     Parameters
     ----------
@@ -131,28 +131,10 @@ def line_of_action(
 def mesh_point(
     mean_radius: float, axial: float = 0.0, height: float = 0.0, member: str = "pinion"
 ) -> np.ndarray:
-    """Mesh point relative to the lumped point, in the member's frame.
-
-    Parameters
-    ----------
-    mean_radius : float
-        Distance of the mesh point from the axis, m.
-    axial : float
-        How far the mesh point lies behind the lumped point, along +y, m; zero where the
-        lumped point is at the middle of the face.
-    height : float
-        z of the mesh point, m: where along the path of contact the load sits.
-    member : {"pinion", "gear"}
-
-    Returns
-    -------
-    (3,) ndarray
-        m.
-
-    Raises
-    ------
-    SolidgearError
-        For a length that is not finite, or a height beyond the radius.
+    """Return the mesh point (3,) relative to the lumped point, in the member's frame, m, from its
+    distance from the axis, from `axial`, its distance behind the lumped point along +y (zero where
+    the lumped point is at the middle of the face), and `height`, its z along the path of contact,
+    all m; a height beyond the radius is refused.
 
     Examples
     --------
@@ -172,53 +154,27 @@ def mesh_point(
 
 
 def mean_radius(pitch_radius: float, pitch_angle: float, face_width: float) -> float:
-    """Pitch radius at the middle of the face.
-
-    Parameters
-    ----------
-    pitch_radius : float
-        At the heel, m.
-    pitch_angle : float
-        Between the axis and the pitch cone, rad.
-    face_width : float
-        Along the cone, m.
-
-    Returns
-    -------
-    float
-        m.
-
-    Raises
-    ------
-    SolidgearError
-        If the face reaches past the apex.
+    """Return the pitch radius at the middle of the face, m, from that at the heel, m, the angle
+    between the axis and the pitch cone, rad, and the face width along the cone, m; a face that
+    reaches past the apex is refused.
 
     Examples
     --------
     >>> round(mean_radius(0.067, 0.391, 0.063), 4)
     0.055
     """
-    out = pitch_radius - face_width / 2 * sin(pitch_angle)
-    if not out > 0:
+    radius = pitch_radius - face_width / 2 * sin(pitch_angle)
+    if not radius > 0:
         raise SolidgearError(
             f"a face of {face_width} m reaches past the apex "
             f"of a pitch cone of {pitch_radius} m radius"
         )
-    return out
+    return radius
 
 
 def to_gear_frame(vector: ArrayLike, shaft_angle: float = pi / 2) -> np.ndarray:
-    """A direction or an offset given in the pinion's frame, in the gear's frame.
-
-    Parameters
-    ----------
-    vector : (3,) array_like
-    shaft_angle : float
-        Between the two axes, rad.
-
-    Returns
-    -------
-    (3,) ndarray
+    """Return a direction or an offset (3,) given in the pinion's frame, in the gear's frame, at an
+    angle between the two axes, rad.
 
     Examples
     --------
@@ -311,35 +267,17 @@ def cylindrical_mesh(
     internal: bool = False,
     base_helix: float = 0.0,
 ) -> tuple[MeshVector, MeshVector]:
-    """Mesh vectors of two spur or helical gears on parallel axes, of one physical direction.
+    """Return mesh vectors of two spur or helical gears on parallel axes, of one physical direction,
+    in axes that both share.
 
-    Their line of action is the one of a gear that drives its mate about +y; their point is the
-    pitch point, as seen from each axis.
-
-    Parameters
-    ----------
-    radius, mate_radius : float
-        Of the base circles, m.
-    pressure_angle : float
-        Transverse, at work, 0 to below pi/2, rad.
-    azimuth : float
-        Of the mate's axis as seen from the gear's, right-handed about y from x, rad.
-    internal : bool
-        For a ring, whose mate turns inside it.
-    base_helix : float
-        Helix angle on the base cylinder, ``tan b = tan(helix) cos(pressure angle)`` on any other,
-        rad; positive where the gear is right-handed.  The mate outside has the other hand, that
-        inside a ring the same.
-
-    Returns
-    -------
-    tuple of MeshVector
-        Of the gear and of its mate, in axes that both share.
-
-    Raises
-    ------
-    SolidgearError
-        For a radius that is not positive, an angle out of range, or a mate as large as its ring.
+    The line of action is the one of a gear that drives the mate about +y; the point is the pitch
+    point, as seen from each axis. Radii are those of the base circles, m, the pressure angle is
+    transverse, at work, rad, and the azimuth that of the mate's axis as seen from the gear's,
+    right-handed about y from x, rad. With `internal` the gear is a ring, whose mate turns inside
+    it. The helix angle on the base cylinder, ``tan b = tan(helix) cos(pressure angle)`` on any
+    other, rad, is positive where the gear is right-handed; the mate outside has the other hand,
+    that inside a ring the same. A radius that is not positive, an angle out of range, and a mate as
+    large as the ring are refused.
 
     Examples
     --------
@@ -363,8 +301,8 @@ def cylindrical_mesh(
     # the tooth of a right-handed screw that turns about +y pushes its mate back along -y
     normal = turn @ [across * sin(leans), -sin(base_helix), -across * cos(leans)]
     pitch = turn @ [1 / cos(pressure_angle), 0.0, 0.0]
-    other = mate_radius if internal else -mate_radius
-    return MeshVector(normal, radius * pitch), MeshVector(normal, other * pitch)
+    mate_pitch = mate_radius if internal else -mate_radius
+    return MeshVector(normal, radius * pitch), MeshVector(normal, mate_pitch * pitch)
 
 
 def _angle(name: str, value: float, closed: bool = False) -> None:

@@ -1,7 +1,8 @@
-r"""Laws of force on a link: teeth with backlash, Hertzian contact, impacts, bearings with clearance.
+r"""Laws of force on a link: teeth with backlash, Hertzian contact, impacts, bearings with
+clearance.
 
-A law gives the force of a link over its stretch s and its rate.  The linear stiffness of the link is
-the tangent of its law at the operating point, so that motions that stay on one piece of a law are
+A law gives the force of a link over the stretch s and the rate. The linear stiffness of the link is
+the tangent of the law at the operating point, so that motions that stay on one piece of a law are
 those of the linear system.
 """
 
@@ -34,28 +35,30 @@ class Law(Protocol):
 
     @property
     def pieces(self) -> bool:
-        """Straight pieces alone, each with a tangent of its own, parted at ``edges``."""
+        """Return whether the law has straight pieces alone, each with a tangent, which meet at
+        ``edges``.
+        """
 
     @property
     def edges(self) -> tuple[float, ...]:
-        """Stretches at which pieces meet, ascending; none of a law that has no pieces."""
+        """Stretches at which pieces meet, ascending; empty for a law without pieces."""
 
     @property
     def drags(self) -> bool:
-        """True if the force depends on the rate."""
+        """Return whether the force depends on the rate."""
 
     @property
     def kinks(self) -> tuple[tuple[float, float], ...]:
-        """Stretches at which the slope jumps, each row by itself, and by how much, N/m."""
+        """Stretches at which the slope jumps, for each row, and the jumps, N/m."""
 
     def force(self, stretch: np.ndarray, rate: np.ndarray) -> Force:
-        """Force at T instants, from stretches and rates (T, r)."""
+        """Return the force at T instants, from stretches and rates (T, r)."""
 
     def stiffness(self, force: float) -> float:
-        """Tangent where the law carries a force, N/m."""
+        """Return the tangent where the law carries a force, N/m."""
 
     def damping(self, force: float) -> float:
-        """Tangent over the rate where the law carries a force, N s/m."""
+        """Return the tangent over the rate where the law carries a force, N s/m."""
 
 
 @dataclass(frozen=True)
@@ -66,13 +69,9 @@ class Gap:
 
         k d^exponent + c(d) ds/dt        d > 0, else none,
 
-    and c(d) grows from zero to `damper` over the depth `ramp` as ``3 u^2 - 2 u^3``, so that an impact
-    begins without a jump; :meth:`impact` has it as multi-body programs do.
-
-    Raises
-    ------
-    SolidgearError
-        For a stiffness or gap that is negative, or an exponent below 1.
+    and c(d) grows from zero to `damper` over the depth `ramp` as ``3 u^2 - 2 u^3``, so that an
+    impact begins without a jump; :meth:`impact` is the law of multi-body programs. A negative
+    stiffness or gap, and an exponent below 1, are refused.
 
     Examples
     --------
@@ -93,7 +92,7 @@ class Gap:
     #: width over which the edge is rounded, m; the force is then off by ``rounding / 2`` times its
     #: slope at most, at the edge itself
     rounding: float = 0.0
-    #: whether the damper may hold back what leaves; without it sides that touch only ever press
+    #: whether the damper may hold back parting sides; without it sides that touch only ever press
     pulls: bool = True
 
     @classmethod
@@ -108,27 +107,13 @@ class Gap:
         ramp: float = 1e-4,
         reduced_modulus: float = STEEL,
     ) -> Gap:
-        """Teeth in contact as the impact function of a multi-body program has them.
+        """Return teeth in contact as the impact function of a multi-body program has them.
 
-        ``K d^1.5 + c(d) d'``, never below zero, with ``K = 4/3 E* sqrt(R)`` and ``1 / R`` the sum of
-        both curvatures, of an internal mesh their difference.
-
-        Parameters
-        ----------
-        radius, mate_radius : float
-            Of curvature of both flanks, m.
-        share : float
-            The largest damping over K, as numbers in N, mm and s: it is no ratio, and the same number
-            in N, m and s would be 32 times the damping.
-        ramp : float
-            Depth of full damping, m.
-        reduced_modulus : float
-            E*, Pa; by default of steel on steel.
-
-        Raises
-        ------
-        SolidgearError
-            For radii that are not positive, or a flank that does not fit into its ring's.
+        ``K d^1.5 + c(d) d'``, never below zero, with ``K = 4/3 E* sqrt(R)`` and ``1 / R`` the sum
+        of both curvatures, of an internal mesh their difference. Radii of curvature of both flanks
+        are in m; `share` is the largest damping over K, as numbers in N, mm and s: it is no ratio,
+        and the same number in N, m and s would be 32 times the damping. `ramp` is the depth of full
+        damping, m, `reduced_modulus` is E*, Pa, by default of steel on steel.
 
         Examples
         --------
@@ -161,13 +146,13 @@ class Gap:
 
     @property
     def pieces(self) -> bool:
-        """True if it is linear on either side."""
+        """Return whether the law is linear on either side."""
         plain = self.damper == 0 or (self.ramp == 0 and self.pulls)
         return self.exponent == 1 and self.rounding == 0 and plain
 
     @property
     def drags(self) -> bool:
-        """True if it has a damper."""
+        """Return whether the law has a damper."""
         return self.damper > 0
 
     @property
@@ -180,13 +165,13 @@ class Gap:
 
     @property
     def edges(self) -> tuple[float, ...]:
-        """Both ends of the gap; one where it has no width."""
+        """Both ends of the gap; one if it has no width."""
         if not self.pieces:
             return ()
         return (-self.half_gap, self.half_gap) if self.half_gap else (0.0,)
 
     def force(self, stretch: np.ndarray, rate: np.ndarray) -> Force:
-        """Force and tangents; rows are independent of each other."""
+        """Return the force and tangents; rows are independent of each other."""
         drive, coast = self.drive, self.drive if self.coast is None else self.coast
         side = np.where(stretch >= 0, 1.0, -1.0)
         stiffness = np.where(stretch >= 0, drive, coast)
@@ -207,40 +192,40 @@ class Gap:
         lost = np.zeros_like(value)
         if self.damper:
             part = np.minimum(depth / self.ramp, 1.0) if self.ramp else 1.0 * (depth > 0)
-            on = (slope > 0) & (stiffness > 0)
-            lost = self.damper * part * part * (3 - 2 * part) * on
+            active = (slope > 0) & (stiffness > 0)
+            lost = self.damper * part * part * (3 - 2 * part) * active
             value = value + lost * rate
             if self.ramp:
-                tangent = tangent + side * slope * on * rate * (
+                tangent = tangent + side * slope * active * rate * (
                     6 * self.damper * part * (1 - part) / self.ramp
                 )
             if not self.pulls:
                 presses = side * value > 0
-                value, tangent, lost = (presses * one for one in (value, tangent, lost))
+                value, tangent, lost = (presses * part for part in (value, tangent, lost))
         eye = np.eye(stretch.shape[-1])
         return Force(value, tangent[..., None] * eye, lost[..., None] * eye)
 
     def depth(self, force: float) -> float:
-        """Stretch at which it carries a force, m."""
+        """Return the stretch at which it carries a force, m."""
         side = 1.0 if force >= 0 else -1.0
         stiffness = self.drive if force >= 0 or self.coast is None else self.coast
         return side * (self.half_gap + (abs(force) / stiffness) ** (1 / self.exponent))
 
-    def _at(self, force: float) -> Force:
+    def _force_at(self, force: float) -> Force:
         if force < 0 and self.coast == 0:
             raise SolidgearError("a contact that holds on one side alone carries no force back")
         inside = self.depth(force) * (1 + 1e-12) if self.pieces else self.depth(force)
         return self.force(np.array([[inside]]), np.zeros((1, 1)))
 
     def stiffness(self, force: float) -> float:
-        """Tangent where it carries a force; of straight pieces that of the side."""
+        """Return the tangent where it carries a force; of straight pieces that of the side."""
         if self.pieces:
             return self.drive if force >= 0 or self.coast is None else self.coast
-        return float(self._at(force).by_stretch[0, 0, 0])
+        return float(self._force_at(force).by_stretch[0, 0, 0])
 
     def damping(self, force: float) -> float:
-        """Damper where it carries a force."""
-        return self.damper if self.pieces else float(self._at(force).by_rate[0, 0, 0])
+        """Return the damper where it carries a force."""
+        return self.damper if self.pieces else float(self._force_at(force).by_rate[0, 0, 0])
 
 
 @dataclass(frozen=True)
@@ -263,39 +248,39 @@ class RadialGap:
 
     @property
     def pieces(self) -> bool:
-        """None are straight."""
+        """Return False: it has no straight pieces."""
         return False
 
     @property
     def drags(self) -> bool:
-        """Not at all."""
+        """Return False: it has no damper."""
         return False
 
     @property
     def kinks(self) -> tuple[tuple[float, float], ...]:
-        """None that a single row tells."""
+        """Empty: no single row has a kink."""
         return ()
 
     @property
     def edges(self) -> tuple[float, ...]:
-        """None."""
+        """Empty: it has no pieces."""
         return ()
 
     def force(self, stretch: np.ndarray, rate: np.ndarray) -> Force:
-        """Force along the motion from the middle."""
-        away = np.linalg.norm(stretch, axis=-1)
-        on = away > self.clearance
-        safe = np.where(on, away, 1.0)
-        share = np.where(on, 1 - self.clearance / safe, 0.0)
-        turned = stretch[..., :, None] * stretch[..., None, :]
-        bend = np.where(on, self.clearance / safe**3, 0.0)[..., None, None] * turned
+        """Return the force along the motion from the middle."""
+        distance = np.linalg.norm(stretch, axis=-1)
+        touching = distance > self.clearance
+        safe = np.where(touching, distance, 1.0)
+        share = np.where(touching, 1 - self.clearance / safe, 0.0)
+        outer = stretch[..., :, None] * stretch[..., None, :]
+        bend = np.where(touching, self.clearance / safe**3, 0.0)[..., None, None] * outer
         tangent = self.radial * (share[..., None, None] * np.eye(2) + bend)
         return Force(self.radial * share[..., None] * stretch, tangent, np.zeros_like(tangent))
 
     def stiffness(self, force: float) -> float:
-        """That of the contact, at any force."""
+        """Return the stiffness of the contact, at any force."""
         return self.radial
 
     def damping(self, force: float) -> float:
-        """None."""
+        """Return zero: there is no damper."""
         return 0.0

@@ -1,9 +1,9 @@
 """Links between parts: springs between ports of any two parts, or of one and ground.
 
-A link kind is one class with the two members of :class:`Link`; nothing else needs to know of it.  A
-spring gives *strain rows* g on the coordinates of the system: its stiffness is ``g'g``, its energy
-the square of the stretch ``g q`` over two.  So no spring has to cancel another, and what no row
-touches is free, exactly.
+A link kind is one class with the two members of :class:`Link`; nothing else needs to know of it. A
+spring gives *strain rows* g on the coordinates of the system: the stiffness is ``g'g``, the energy
+the square of the stretch ``g q`` over two. So no spring has to cancel another, and a motion that no
+row touches is free, exactly.
 
 Ends are written ``part.port``; a part with one port may be named alone.
 """
@@ -36,7 +36,7 @@ class Link(Protocol):
         """Ports it acts on, each ``part.port``; ground needs none."""
 
     def strain(self, *ends: PortMotion) -> np.ndarray:
-        """(r, N) strain rows from the motion of every end, on the coordinates of the system."""
+        """Return (r, N) strain rows from the motion of every end, on the coordinates of the system."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,8 +67,8 @@ class BearingSpring:
     to: str | None = None
 
     def __post_init__(self):
-        checked = spd(f"the stiffness of the spring at {self.at}", self.stiffness, definite=False)
-        object.__setattr__(self, "stiffness", checked)
+        stiffness = spd(f"the stiffness of the spring at {self.at}", self.stiffness, definite=False)
+        object.__setattr__(self, "stiffness", stiffness)
 
     @property
     def ends(self) -> tuple[str, ...]:
@@ -76,15 +76,15 @@ class BearingSpring:
         return (self.at,) if self.to is None else (self.at, self.to)
 
     def strain(self, *ends: PortMotion) -> np.ndarray:
-        """Root of the stiffness times the motion of one end relative to the other."""
-        return Supports(("spring",), self.stiffness).root.T @ apart(*ends)
+        """Return the root of the stiffness times the motion of one end relative to the other."""
+        return Supports(("spring",), self.stiffness).root.T @ relative_motion(*ends)
 
 
-def apart(here: PortMotion, *others: PortMotion) -> np.ndarray:
-    """(6, N) motion of a port against others, carried to it rigidly."""
-    motion = here.rows
-    for other in others:
-        motion = motion - other.seen_from(here)
+def relative_motion(port: PortMotion, *bases: PortMotion) -> np.ndarray:
+    """Return (6, N) motion of a port against others, carried to it rigidly."""
+    motion = port.rows
+    for base in bases:
+        motion = motion - base.seen_from(port)
     return motion
 
 
@@ -128,10 +128,10 @@ class RowSpring:
         name = f"the spring at {self.at}"
         not_negative(f"the stiffness of {name}", self.stiffness)
         for field in ("row", "to_row"):
-            given = getattr(self, field)
-            if given is None:
+            rows_given = getattr(self, field)
+            if rows_given is None:
                 continue
-            rows = np.atleast_2d(np.asarray(given, float))
+            rows = np.atleast_2d(np.asarray(rows_given, float))
             object.__setattr__(self, field, frozen(f"the row of {name}", rows, (len(rows), 6)))
 
     @property
@@ -140,20 +140,20 @@ class RowSpring:
         return (self.at,) if self.to is None else (self.at, self.to)
 
     def stretch(self, *ends: PortMotion) -> np.ndarray:
-        """(r, N) rows of the stretch itself, m."""
+        """Return (r, N) rows of the stretch itself, m."""
         stretch = self.row @ ends[0].rows
         if len(ends) > 1:
             stretch = stretch - (self.row if self.to_row is None else self.to_row) @ ends[1].rows
         return stretch
 
     def strain(self, *ends: PortMotion) -> np.ndarray:
-        """Root of the stiffness times the stretch; no row for no stiffness."""
+        """Return the root of the stiffness times the stretch; no row for no stiffness."""
         stretch = self.stretch(*ends)
         return np.sqrt(self.stiffness) * stretch if self.stiffness > 0 else stretch[:0]
 
 
 def torsion_spring(at: str, stiffness: float, to: str | None = None, dof: str = "thy") -> RowSpring:
-    """A spring on one component of a port, against the same of another or ground.
+    """Return a spring on one component of a port, against the same of another or ground.
 
     Parameters
     ----------
@@ -187,7 +187,7 @@ def torsion_spring(at: str, stiffness: float, to: str | None = None, dof: str = 
 def mesh_spring(
     pinion: str, pinion_mesh: MeshVector, gear: str, gear_mesh: MeshVector, stiffness: float
 ) -> RowSpring:
-    """The teeth of two gears: a spring on their transmission error ``h_p q_p - h_g q_g``.
+    """Return the teeth of two gears: a spring on their transmission error ``h_p q_p - h_g q_g``.
 
     Parameters
     ----------
@@ -245,11 +245,11 @@ class PortInertia:
         return (self.at,)
 
     def strain(self, *ends: PortMotion) -> np.ndarray:
-        """(0, N): nothing gives."""
+        """Return (0, N): nothing gives."""
         return np.zeros((0, ends[0].rows.shape[1]))
 
     def mass(self, *ends: PortMotion) -> np.ndarray:
-        """(N, N)."""
+        """Return a matrix (N, N)."""
         return ends[0].rows.T @ self.matrix @ ends[0].rows
 
 
@@ -266,12 +266,12 @@ class HousedSprings:
         return self.at
 
     def strain(self, *ends: PortMotion) -> np.ndarray:
-        """Root of the common stiffness times all motions."""
+        """Return the root of the common stiffness times all motions."""
         return self.supports.root.T @ np.vstack([end.rows for end in ends])
 
 
 def grounded(part: str, supports) -> dict[str, Link]:
-    """Supports of one shaft as links to ground.
+    """Return supports of one shaft as links to ground.
 
     Parameters
     ----------
@@ -296,7 +296,7 @@ def grounded(part: str, supports) -> dict[str, Link]:
     supports = as_supports(supports)
     ends = tuple(f"{part}.{name}" for name in supports.ports)
     k = np.array(supports.stiffness)
-    own = {end: k[6 * i : 6 * i + 6, 6 * i : 6 * i + 6].copy() for i, end in enumerate(ends)}
+    by_end = {end: k[6 * i : 6 * i + 6, 6 * i : 6 * i + 6].copy() for i, end in enumerate(ends)}
     for i in range(len(ends)):
         k[6 * i : 6 * i + 6, 6 * i : 6 * i + 6] = 0.0
     masses: dict[str, Link] = {}
@@ -306,5 +306,5 @@ def grounded(part: str, supports) -> dict[str, Link]:
             masses[f"{end}.mass"] = PortInertia(end, inertia)
     if k.any():
         return {f"{part}.bearings": HousedSprings(ends, supports), **masses}
-    springs = {end: BearingSpring(end, matrix) for end, matrix in own.items() if matrix.any()}
+    springs = {end: BearingSpring(end, matrix) for end, matrix in by_end.items() if matrix.any()}
     return {**springs, **masses}

@@ -1,4 +1,4 @@
-"""Checks of what people give as matrices, each told in one sentence; roots of stiffnesses."""
+"""Checks of matrices and numbers that users give, each refused in one sentence."""
 
 from __future__ import annotations
 
@@ -13,12 +13,7 @@ ROUNDING = 1e-9
 
 
 def frozen(name: str, value: Any, shape: tuple[int, ...]) -> np.ndarray:
-    """A read-only array of finite numbers of that shape.
-
-    Raises
-    ------
-    SolidgearError
-    """
+    """Return a read-only array of finite numbers of that shape, or refuse the value by name."""
     try:
         out = np.array(value, float)
     except (TypeError, ValueError):
@@ -32,13 +27,8 @@ def frozen(name: str, value: Any, shape: tuple[int, ...]) -> np.ndarray:
 
 
 def spd(name: str, value: Any, definite: bool = True) -> np.ndarray:
-    """A read-only 6x6 that is symmetric and positive definite, or semidefinite.
-
-    Judged relative to the diagonal, since rows mix N/m with N m/rad.
-
-    Raises
-    ------
-    SolidgearError
+    """Return a read-only 6x6 that is symmetric and positive definite, or semidefinite, judged
+    relative to the diagonal, since rows mix N/m with N m/rad.
     """
     out = np.array(frozen(name, value, (6, 6)))
     d = np.diag(out)
@@ -63,12 +53,7 @@ def spd(name: str, value: Any, definite: bool = True) -> np.ndarray:
 
 
 def not_negative(name: str, value: Any) -> float:
-    """A finite number that is not negative.
-
-    Raises
-    ------
-    SolidgearError
-    """
+    """Return a finite number that is not negative, or refuse it by name."""
     number = _number(value)
     if not (np.isfinite(number) and number >= 0):
         raise SolidgearError(f"{name} is {value}; it must be finite and not negative")
@@ -76,12 +61,7 @@ def not_negative(name: str, value: Any) -> float:
 
 
 def positive(name: str, value: Any) -> float:
-    """A finite number above zero.
-
-    Raises
-    ------
-    SolidgearError
-    """
+    """Return a finite number above zero, or refuse it by name."""
     number = _number(value)
     if not (np.isfinite(number) and number > 0):
         raise SolidgearError(f"{name} is {value}; it must be finite and positive")
@@ -89,7 +69,7 @@ def positive(name: str, value: Any) -> float:
 
 
 def _number(value: Any) -> float:
-    """A scalar as it is, anything else as no number."""
+    """Return a scalar as it is, anything else as NaN."""
     try:
         return float(value)
     except (TypeError, ValueError):

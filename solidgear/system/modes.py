@@ -1,4 +1,4 @@
-"""Modes of a system as a reader sees them, and the singular values that they are."""
+"""Modes of a system, and the singular values that they are."""
 
 from __future__ import annotations
 
@@ -33,7 +33,9 @@ class SystemModes:
         return int((self.frequency_hz == 0).sum())
 
     def dominant(self) -> list[str]:
-        """Part or link with most of the strain energy of every mode; ``rigid`` if none has any."""
+        """Return the part or link with most of the strain energy of every mode; ``rigid`` if none
+        has any.
+        """
         names = list(self.energy)
         if not names:
             return ["rigid"] * len(self.frequency_hz)
@@ -45,7 +47,7 @@ class SystemModes:
 def relative_residual(
     stiffness: np.ndarray, mass: np.ndarray, shapes: np.ndarray, omega: np.ndarray
 ) -> float:
-    """Largest ``|K u - w^2 M u|`` relative to ``|K| |u|``."""
+    """Return the largest ``|K u - w^2 M u|`` relative to ``|K| |u|``."""
     size = np.abs(stiffness)
     scale = (size @ np.abs(shapes)).max(axis=0, initial=0.0)
     # A rigid motion may touch no spring at all, or by rounding only.
@@ -57,7 +59,7 @@ def relative_residual(
 
 
 def singular(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Singular values, descending, and right vectors (rows) of a matrix of full column rank.
+    """Return singular values, descending, and right vectors (rows) of a matrix of full column rank.
 
     Jacobi's method with pivoting (Drmac and Veselic 2008): rows of very different size, springs of
     1 and of 1e20 N/m, cost no digits of the small values, where bidiagonalisation rounds by 1e-16

@@ -22,9 +22,9 @@ from solidgear.system.matrices import frozen, positive, spd
 
 
 class Part(Protocol):
-    """Interface of a part with n coordinates of its own.
+    """Interface of a part with n coordinates.
 
-    A part that stands for more than its coordinates say may further have ``truncation``, a
+    A part that stands for more than the coordinates may further have ``truncation``, a
     :class:`solidgear.reduction.superelement.Truncation`: frequencies then come with their bound.
     One that has something to draw may have ``expand(coordinates)``.
     """
@@ -69,7 +69,7 @@ class RigidBody:
 
     @classmethod
     def of(cls, body: Body) -> RigidBody:
-        """The rigid limit of a body: its mass about the origin of the scene, and its ports."""
+        """Return the rigid limit of a body: the mass about the origin of the scene, and the ports."""
         points = {p.name: (0.0, p.y, 0.0) for p in body.ports}
         return cls(body.mass_matrix(), points)
 
@@ -134,7 +134,7 @@ class Inertia:
 
 @dataclass(frozen=True, eq=False)
 class PlanarBody:
-    """A rigid body that moves across its axis and turns about it: x, z and thy.
+    """A rigid body that moves across an axis and turns about it: x, z and thy.
 
     Examples
     --------
@@ -160,10 +160,10 @@ class PlanarBody:
     @cached_property
     def ports(self) -> Mapping[str, PortMotion]:
         """Of all points, in the axes of the part."""
-        whole = RigidBody(np.eye(6), self.points).ports
+        full = RigidBody(np.eye(6), self.points).ports
         return {
             name: PortMotion(port.rows[:, [0, 2, 4]], port.point, port.axes)
-            for name, port in whole.items()
+            for name, port in full.items()
         }
 
 
@@ -195,8 +195,8 @@ class Placed:
 
     def __post_init__(self):
         turn = frozen("the rotation of a part", self.rotation, (3, 3))
-        away = np.abs(turn.T @ turn - np.eye(3)).max()
-        if away > 1e-9 or np.linalg.det(turn) < 0:
+        error = np.abs(turn.T @ turn - np.eye(3)).max()
+        if error > 1e-9 or np.linalg.det(turn) < 0:
             raise SolidgearError(
                 "the rotation of a part must be a right-handed orthogonal matrix, within 1e-9"
             )
@@ -220,12 +220,12 @@ class Placed:
 
     @property
     def ports(self) -> Mapping[str, PortMotion]:
-        """Those of the part, where they now are."""
+        """Ports of the part, at their new places."""
         return {
             name: PortMotion(p.rows, self.origin + self.rotation @ p.point, self.rotation @ p.axes)
             for name, p in self.part.ports.items()
         }
 
     def expand(self, coordinates: np.ndarray) -> dict[int, np.ndarray]:
-        """Back to the mesh of the part, in the part's own frame."""
+        """Return the motion of the mesh of the part, in the frame of the part."""
         return self.part.expand(coordinates)  # type: ignore[attr-defined]

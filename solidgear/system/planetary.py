@@ -3,10 +3,10 @@ r"""Planetary stages as systems of bodies and meshes.
 Sun, ring, carrier and planets have six motions each, or are locked in the plane across their axis,
 where they move in x and z and turn about y: that is the stage of Lin and Parker (1999).  Azimuths
 are right-handed about y from x, in axes that turn with the carrier; in these a stage does not
-change with time.  Axes of a planet are its own: x points away from the sun, y along the axis.
+change with time.  Axes of a planet: x points away from the sun, y along the axis.
 
-A mesh gives along its line of action and passes through neither pin nor bearing.  With h =
-{n, r x n}, n the direction of the tooth force and r the pitch point in the middle of the face, its
+A mesh gives along the line of action and passes through neither pin nor bearing.  With h =
+{n, r x n}, n the direction of the tooth force and r the pitch point in the middle of the face, the
 stretch is
 
     h_1 q_1 - h_2 q_2,
@@ -16,8 +16,8 @@ springs of half the stiffness at b / sqrt(12) to both sides, which resist tiltin
 distribution does, ``k b^2 cos^2 / 12``.  Tooth stiffnesses are means over a mesh period, contact is
 never lost, and no teeth are there to be counted.
 
-Modes are those of a carrier that stands still; :mod:`solidgear.system.planetary_turning` tells what
-its turning adds.
+Modes are those of a carrier that stands still; :mod:`solidgear.system.planetary_turning` adds
+the effect of the turning.
 
 References
 ----------
@@ -42,7 +42,7 @@ from solidgear.system.gear_mesh import MeshVector, cylindrical_mesh
 from solidgear.system.links import BearingSpring, Link, RowSpring
 from solidgear.system.matrices import not_negative
 from solidgear.system.parts import Part, Placed
-from solidgear.system.planetary_members import CentralMember, Planet, body_of, checked
+from solidgear.system.planetary_members import CentralMember, Planet, body_of, check_member
 from solidgear.system.planetary_modes import CENTRAL, SAME, PlanetaryMode, named_modes
 from solidgear.system.planetary_turning import (
     TurningMode,
@@ -64,7 +64,7 @@ GIVES = 1e-9
 class PlanetaryStage:
     """Sun, ring, carrier and any number of planets, each of its own and at any angle.
 
-    Base circles, pressure angle and pins are told apart from each other, as Lin and Parker do; where
+    Base circles, pressure angle and pins are independent of each other, as Lin and Parker do; where
     they do not fit, :attr:`apart` says by how much.
 
     Attributes
@@ -131,19 +131,19 @@ class PlanetaryStage:
             raise SolidgearError("a planetary stage needs at least one planet")
         not_negative("face_width", self.face_width)
         for name in CENTRAL:
-            checked(name, getattr(self, name))
+            check_member(name, getattr(self, name))
         for name, planet in zip(self._names, self.planets):
-            checked(name, planet)
+            check_member(name, planet)
         for mesh in ("sun_mesh", "ring_mesh"):
             if not any(getattr(planet, mesh) for planet in self.planets):
                 raise SolidgearError(f"{mesh} is 0 N/m of every planet; nothing is in mesh there")
         turns = np.array([planet.azimuth for planet in self.planets])
         between = (turns - turns[:, None]) % (2 * pi)
         between = np.minimum(between, 2 * pi - between) + pi * np.eye(len(turns))
-        one, other = np.unravel_index(int(between.argmin()), between.shape)
-        if between[one, other] < SAME:
+        first, second = np.unravel_index(int(between.argmin()), between.shape)
+        if between[first, second] < SAME:
             raise SolidgearError(
-                f"{self._names[one]} and {self._names[other]} are at one angle; "
+                f"{self._names[first]} and {self._names[second]} are at one angle; "
                 "give each an azimuth of its own"
             )
         if np.shape(self.pressure_angle) not in ((), (2,)):
@@ -154,24 +154,24 @@ class PlanetaryStage:
         for k in range(len(self.planets)):
             self.meshes(k)
         for name in CENTRAL:
-            self._meets(name)
+            self._refuse_ports_beside_planets(name)
 
-    def _meets(self, name: str) -> None:
-        """Refusal of an elastic member whose ports are not where planets are."""
+    def _refuse_ports_beside_planets(self, name: str) -> None:
+        """Refuse an elastic member whose ports are not where planets are."""
         part = getattr(self, name).part
         ports = {} if part is None or not len(part.strain) else part.ports
         if not any(planet in ports for planet in self._names):
             return
-        for planet, one in zip(self._names, self.planets):
+        for planet, body in zip(self._names, self.planets):
             if planet not in ports:
                 raise SolidgearError(
                     f"the {name} has no port for {planet}, though it has one for others"
                 )
-            place = one.axes.T @ ports[planet].point
+            place = body.axes.T @ ports[planet].point
             if abs(place[2]) > ONE_PLACE * place[0]:
                 raise SolidgearError(
                     f"the port of the {name} for {planet} lies {1e3 * abs(place[2]):.3g} mm beside "
-                    f"it, for it is at {np.degrees(one.azimuth):.6g} deg; "
+                    f"it, for it is at {np.degrees(body.azimuth):.6g} deg; "
                     f"make the {name} for planets of these angles"
                 )
 
@@ -182,8 +182,8 @@ class PlanetaryStage:
     @property
     def angles(self) -> tuple[float, float]:
         """Pressure angles of the meshes with the sun and with the ring, rad."""
-        both = np.broadcast_to(np.asarray(self.pressure_angle, float), (2,))
-        return float(both[0]), float(both[1])
+        pair = np.broadcast_to(np.asarray(self.pressure_angle, float), (2,))
+        return float(pair[0]), float(pair[1])
 
     @property
     def apart(self) -> tuple[float, float]:
@@ -203,7 +203,7 @@ class PlanetaryStage:
         """(N,) stiffness along the line of action from the sun through each planet to ring and
         carrier that stand still, N/m; without the face width.
 
-        Both tooth forces of a planet are equal, and its pin carries their sum, in the plane
+        Both tooth forces of a planet are equal, and the pin carries their sum, in the plane
         ``1 / k = 1 / k_sun + 1 / k_ring + (2 + 2 cos(a_sun + a_ring)) / k_pin``.
         """
         out = []
@@ -213,27 +213,29 @@ class PlanetaryStage:
             pin = planet.support[np.ix_(moves, moves)]
             size = np.sqrt(np.where(np.diag(pin) > 0, np.diag(pin), 1.0))
             unit, load = pin / np.outer(size, size), carried / size
-            moved = np.linalg.lstsq(unit, load, rcond=GIVES)[0]
-            give = float(load @ moved)
-            if np.abs(unit @ moved - load).max() > GIVES * np.abs(load).max():
-                give = np.inf
+            motion = np.linalg.lstsq(unit, load, rcond=GIVES)[0]
+            flexibility = float(load @ motion)
+            if np.abs(unit @ motion - load).max() > GIVES * np.abs(load).max():
+                flexibility = np.inf
             with np.errstate(divide="ignore"):
-                give += 1 / np.float64(planet.sun_mesh) + 1 / np.float64(planet.ring_mesh)
-            out.append(1 / give)
+                flexibility += 1 / np.float64(planet.sun_mesh) + 1 / np.float64(planet.ring_mesh)
+            out.append(1 / flexibility)
         return np.array(out)
 
     def meshes(self, planet: int) -> dict[str, tuple[MeshVector, MeshVector]]:
-        """Mesh vectors of sun and ring, each in its axes, with those of a planet in the planet's."""
-        one = self.planets[planet]
+        """Return mesh vectors of sun and ring, each in the member's axes, with those of a planet in
+        the axes of the planet.
+        """
+        body = self.planets[planet]
         out = {}
         for name, angle in zip(("sun", "ring"), self.angles):
             internal = name == "ring"
-            sizes = (getattr(self, name).radius, one.radius, angle)
+            sizes = (getattr(self, name).radius, body.radius, angle)
             # planets have the other hand than the sun, and a ring that of its planets
             hand = -self.base_helix if internal else self.base_helix
             (outer, _), (_, inner) = (
-                cylindrical_mesh(*sizes, at, internal=internal, base_helix=hand)
-                for at in (one.azimuth, 0.0)
+                cylindrical_mesh(*sizes, azimuth, internal=internal, base_helix=hand)
+                for azimuth in (body.azimuth, 0.0)
             )
             out[name] = (outer, inner)
         return out
@@ -262,49 +264,53 @@ class PlanetaryStage:
         return out | self.joints(self._port)
 
     def joints(
-        self, port: Callable[[str, str], tuple[str, PortMotion] | None], before: str = ""
+        self, port: Callable[[str, str], tuple[str, PortMotion] | None], prefix: str = ""
     ) -> dict[str, Link]:
-        """Pins and meshes of all planets, on any ports.
+        """Return pins and meshes of all planets, on any ports.
 
         Parameters
         ----------
         port : callable
             Of ``sun``, ``ring`` or ``carrier`` and the name of a planet: the end that a link acts on
-            there, and its port in the axes of the stage; None for the ground.
+            there, and the port in the axes of the stage; None for the ground.
         before : str
             Put before the names of planets where they are parts of a larger system.
         """
         out: dict[str, Link] = {}
         for k, (name, planet) in enumerate(zip(self._names, self.planets)):
-            centre = f"{before}{name}.centre"
+            centre = f"{prefix}{name}.centre"
             carrier = port("carrier", name)
-            to = carrier and carrier[0]
-            out[f"{before}{name} pin"] = BearingSpring(centre, planet.support, to)
+            carrier_end = carrier and carrier[0]
+            out[f"{prefix}{name} pin"] = BearingSpring(centre, planet.support, carrier_end)
             for mate, (outer, inner) in self.meshes(k).items():
-                there = port(mate, name)
-                own = self._rows(inner, body_of(planet, {}).ports["centre"])
-                stiffness = getattr(planet, f"{mate}_mesh") / len(own)
-                spring = RowSpring(centre, -own, stiffness)
-                if there is not None:
-                    rows = self._rows(outer, there[1])
-                    spring = RowSpring(there[0], rows, stiffness, centre, own)
-                out[f"{before}{name} {mate} mesh"] = spring
+                mate_port = port(mate, name)
+                planet_rows = self._rows(inner, body_of(planet, {}).ports["centre"])
+                stiffness = getattr(planet, f"{mate}_mesh") / len(planet_rows)
+                spring = RowSpring(centre, -planet_rows, stiffness)
+                if mate_port is not None:
+                    rows = self._rows(outer, mate_port[1])
+                    spring = RowSpring(mate_port[0], rows, stiffness, centre, planet_rows)
+                out[f"{prefix}{name} {mate} mesh"] = spring
         return out
 
     def _port(self, member: str, planet: str) -> tuple[str, PortMotion]:
-        """Port where a central member meets a planet: one of its own, or its centre."""
+        """Return the port where a central member meets a planet: the port for that planet, or the
+        centre.
+        """
         ports = self.parts[member].ports
         name = planet if planet in ports else "centre"
         return f"{member}.{name}", ports[name]
 
     def _rows(self, mesh: MeshVector, port: PortMotion) -> np.ndarray:
-        """(r, 6) stretch by motions of a port that carries the teeth, at one place or two."""
-        aside = self.face_width / sqrt(12)
-        places = [-aside, aside] if aside else [0.0]
+        """Return the stretch (r, 6) by motions of a port that carries the teeth, at one place or
+        two.
+        """
+        offset = self.face_width / sqrt(12)
+        places = [-offset, offset] if offset else [0.0]
         normal = port.axes.T @ mesh.normal
         from_port = port.axes.T @ (mesh.point - port.point)
-        along = port.axes.T @ [0.0, 1.0, 0.0]
-        return np.array([MeshVector(normal, from_port + y * along).vector for y in places])
+        axis = port.axes.T @ [0.0, 1.0, 0.0]
+        return np.array([MeshVector(normal, from_port + y * axis).vector for y in places])
 
     @cached_property
     def system(self) -> System:
@@ -312,11 +318,12 @@ class PlanetaryStage:
         return System(self.parts, self.links)
 
     def modes(self) -> list[PlanetaryMode]:
-        """All modes, by ascending frequency, those of one frequency and kind together."""
+        """Return all modes, by ascending frequency, those of one frequency and kind together."""
         return named_modes(self)
 
     def turning_terms(self, carrier: float, ring: float = 0.0) -> TurningTerms:
-        """Gyroscopic and centrifugal terms in axes that turn with the carrier, of rigid members.
+        """Return the gyroscopic and centrifugal terms in axes that turn with the carrier, of rigid
+        members.
 
         Parameters
         ----------
@@ -331,7 +338,7 @@ class PlanetaryStage:
         return turning_terms(self, carrier, ring)
 
     def turning_modes(self, carrier: float, ring: float = 0.0) -> list[TurningMode]:
-        """All modes in axes that turn with the carrier, by ascending frequency; as
+        """Return all modes in axes that turn with the carrier, by ascending frequency; as
         :meth:`turning_terms`.
         """
         return turning_modes(self, carrier, ring)

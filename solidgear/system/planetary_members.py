@@ -1,7 +1,7 @@
 """Members of a planetary stage: rigid with six motions, locked in the plane, or parts of one's own.
 
 A member without a diametral moment of inertia moves in x and z and turns about y alone; with one it
-has all six motions.  A part, such as a reduced elastic body, brings its own.
+has all six motions.  A part, such as a reduced elastic body, brings others.
 """
 
 from __future__ import annotations
@@ -66,7 +66,7 @@ class CentralMember:
 
     @classmethod
     def of(cls, part: Part, radius: float, bearing: ArrayLike = 0.0, turning: float = 0.0) -> Self:
-        """A member that is a part, with the mass of its rigid motions.
+        """Return a member that is a part, with the mass of the rigid motions.
 
         Examples
         --------
@@ -80,14 +80,20 @@ class CentralMember:
         _centred("a member", part)
         free = sla.null_space(part.strain) if len(part.strain) else np.eye(len(part.mass))
         unit = np.linalg.pinv(part.ports["centre"].rows @ free)
-        own = np.diag(unit.T @ free.T @ part.mass @ free @ unit)
+        inertia = np.diag(unit.T @ free.T @ part.mass @ free @ unit)
         return cls(
-            float(own[0]), float(own[4]), radius, bearing, turning, float(own[3] + own[5]) / 2, part
+            float(inertia[0]),
+            float(inertia[4]),
+            radius,
+            bearing,
+            turning,
+            float(inertia[3] + inertia[5]) / 2,
+            part,
         )
 
     @property
     def support(self) -> np.ndarray:
-        """(6, 6) stiffness of its centre to ground."""
+        """(6, 6) stiffness of the centre to ground."""
         return _radial(self.bearing) + self.turning * np.diag([0, 0, 0, 0, 1.0, 0])
 
 
@@ -142,61 +148,61 @@ class Planet:
     part: Part | None = None
 
     def spaced(self, count: int) -> tuple[Planet, ...]:
-        """So many of it, at equal angles from its own on."""
+        """Return so many copies, at equal angles from the first."""
         if count < 1:
             raise SolidgearError(f"{count} is not a number of planets; ask for 1 or more")
         return tuple(replace(self, azimuth=self.azimuth + 2 * pi * k / count) for k in range(count))
 
     @property
     def axes(self) -> np.ndarray:
-        """(3, 3) its own axes as columns: away from the sun, along the axis, backwards."""
+        """(3, 3) axes of the planet as columns: away from the sun, along the axis, backwards."""
         return rotation(1, self.azimuth)[:3, :3]
 
     @property
     def support(self) -> np.ndarray:
-        """(6, 6) stiffness of its centre to the carrier, in its own axes."""
+        """(6, 6) stiffness of the centre to the carrier, in the planet's axes."""
         return _radial(self.pin)
 
 
 def _radial(stiffness: ArrayLike) -> np.ndarray:
-    """(6, 6) stiffness, of a number that on x and z."""
-    given = np.asarray(stiffness, float)
-    return given * np.diag([1.0, 0, 1.0, 0, 0, 0]) if given.ndim == 0 else given
+    """Return the stiffness (6, 6); a number acts on x and z."""
+    matrix = np.asarray(stiffness, float)
+    return matrix * np.diag([1.0, 0, 1.0, 0, 0, 0]) if matrix.ndim == 0 else matrix
 
 
 def weights(member: CentralMember | Planet) -> np.ndarray:
-    """(6,) mass and moments of inertia of the motions of its centre."""
+    """Return mass and moments of inertia (6,) of the motions of a member's centre."""
     across, about = member.diametral, member.inertia
     return np.array([member.mass] * 3 + [across, about, across])
 
 
 def body_of(member: CentralMember | Planet, points: Mapping[str, np.ndarray]) -> Part:
-    """Its part, or a rigid body with ports at some points beside its centre."""
+    """Return the part of a member, or a rigid body with ports at some points beside the centre."""
     if member.part is not None:
         return member.part
-    every = {"centre": np.zeros(3), **points}
-    own = weights(member)
+    all_points = {"centre": np.zeros(3), **points}
+    masses = weights(member)
     if member.diametral:
-        return RigidBody(np.diag(own), every)
-    return PlanarBody(np.diag(own[[0, 2, 4]]), every)
+        return RigidBody(np.diag(masses), all_points)
+    return PlanarBody(np.diag(masses[[0, 2, 4]]), all_points)
 
 
-def checked(name: str, member: CentralMember | Planet) -> None:
-    """Refusal of numbers that are none of a gear on its bearing."""
-    held = "bearing" if isinstance(member, CentralMember) else "pin"
-    for one in fields(member):
-        value = getattr(member, one.name)
-        if one.name == "azimuth":
+def check_member(name: str, member: CentralMember | Planet) -> None:
+    """Refuse numbers that are none of a gear on a bearing."""
+    support_field = "bearing" if isinstance(member, CentralMember) else "pin"
+    for field in fields(member):
+        value = getattr(member, field.name)
+        if field.name == "azimuth":
             if not np.isfinite(value):
                 raise SolidgearError(f"azimuth of {name} is {value}; give a finite angle in rad")
-        elif one.name == held:
+        elif field.name == support_field:
             if np.ndim(value):
-                spd(f"{held} of {name}", value, definite=False)
+                spd(f"{support_field} of {name}", value, definite=False)
             else:
-                not_negative(f"{held} of {name}", value)
-        elif one.name != "part":
-            check = not_negative if one.name in MAY_BE_ZERO else positive
-            check(f"{one.name} of {name}", value)
+                not_negative(f"{support_field} of {name}", value)
+        elif field.name != "part":
+            check = not_negative if field.name in MAY_BE_ZERO else positive
+            check(f"{field.name} of {name}", value)
     if 0 < member.diametral < (1 - TYPED) * member.inertia / 2:
         raise SolidgearError(
             f"diametral of {name} is {member.diametral:g} kg m^2; about a diameter no body has less "

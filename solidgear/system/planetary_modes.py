@@ -1,4 +1,4 @@
-r"""Names of the modes of a planetary stage, by what moves.
+r"""Names of the modes of a planetary stage, by the moving members.
 
 Of N equal planets at equal angles a turn by 2 pi / N changes nothing, so that every mode belongs to
 one phase from planet to planet.  Where all planets do the same, central members turn and move along
@@ -70,15 +70,15 @@ class PlanetaryMode(NamedTuple):
 
 
 class Phases:
-    """Shares that the phases of planets have in a motion of a stage."""
+    """Shares of the phases of planets in a motion of a stage."""
 
     def __init__(self, stage: PlanetaryStage):
         system = stage.system
         rows: list[list[np.ndarray]] = [[] for _ in range(6)]
 
         def add(phase: int, moved: np.ndarray) -> None:
-            for plane, own in enumerate((IN_PLANE, OUT_OF_PLANE)):
-                chosen = moved[..., own, :]
+            for plane, components in enumerate((IN_PLANE, OUT_OF_PLANE)):
+                chosen = moved[..., components, :]
                 rows[2 * phase + plane].append(chosen.reshape(-1, system.size))
 
         for name in CENTRAL:
@@ -95,66 +95,68 @@ class Phases:
         )
         for phase, pattern in enumerate(patterns([p.azimuth for p in stage.planets])):
             add(phase, np.einsum("pk,pic->kic", pattern, planets))
-        self._rows = [np.vstack(own) for own in rows]
+        self._rows = [np.vstack(parts) for parts in rows]
 
     def shares(self, shapes: np.ndarray) -> np.ndarray:
-        """(3, 2, k) squares of motions (n, k) by phase, in the plane and out of it."""
-        found = [(np.abs(own @ shapes) ** 2).sum(axis=0) for own in self._rows]
-        return np.array(found).reshape(3, 2, -1)
+        """Return squares (3, 2, k) of motions (n, k) by phase, in the plane and out of it."""
+        squares = [(np.abs(rows @ shapes) ** 2).sum(axis=0) for rows in self._rows]
+        return np.array(squares).reshape(3, 2, -1)
 
     def kinds(self, shapes: np.ndarray) -> list[str]:
-        """Kind of each of some motions."""
+        """Return the kind of each of some motions."""
         out = []
         for share in np.moveaxis(self.shares(shapes), -1, 0):
-            there = share > NO_SHARE * max(share.sum(), 1.0)
-            phases = np.flatnonzero(there.any(axis=1))
+            present = share > NO_SHARE * max(share.sum(), 1.0)
+            phases = np.flatnonzero(present.any(axis=1))
             if len(phases) == 1:
-                inside, outside = there[phases[0]]
+                inside, outside = present[phases[0]]
                 out.append(NAMES[phases[0]][1 + inside if outside else 0])
             else:
                 out.append("mixed" if len(phases) else "ring")
         return out
 
-    def parted(self, shapes: np.ndarray) -> np.ndarray:
-        """Shapes of one frequency, turned so that each is of one kind where that can be."""
+    def separated(self, shapes: np.ndarray) -> np.ndarray:
+        """Return shapes of one frequency, combined so that each is of one kind where possible."""
         form = sum(
-            weight * (own @ shapes).T @ (own @ shapes)
-            for weight, own in zip(np.sqrt([1.0, 2.0, 3.0, 5.0, 6.0, 7.0]), self._rows)
+            weight * (rows @ shapes).T @ (rows @ shapes)
+            for weight, rows in zip(np.sqrt([1.0, 2.0, 3.0, 5.0, 6.0, 7.0]), self._rows)
         )
         return shapes @ np.linalg.eigh(form)[1]
 
 
 def patterns(azimuths: list[float]) -> list[np.ndarray]:
-    """Orthonormal patterns (N, k) over the planets: all the same, cosine and sine, all others."""
+    """Return orthonormal patterns (N, k) over the planets: all the same, cosine and sine, all
+    others.
+    """
     raw = np.column_stack([np.ones(len(azimuths)), np.cos(azimuths), np.sin(azimuths)])
     size = np.sqrt(len(azimuths))
-    found = np.zeros((len(azimuths), 0))
+    basis = np.zeros((len(azimuths), 0))
     counts = []
     for column in raw.T:
-        rest = column - found @ (found.T @ column)
-        rest -= found @ (found.T @ rest)
-        length = np.linalg.norm(rest)
+        remainder = column - basis @ (basis.T @ column)
+        remainder -= basis @ (basis.T @ remainder)
+        length = np.linalg.norm(remainder)
         counts.append(int(length > DEPENDENT * size))
         if counts[-1]:
-            found = np.column_stack([found, rest / length])
-    others = np.linalg.svd(found)[0][:, found.shape[1] :]
-    return [found[:, :1], found[:, 1:], others]
+            basis = np.column_stack([basis, remainder / length])
+    complement = np.linalg.svd(basis)[0][:, basis.shape[1] :]
+    return [basis[:, :1], basis[:, 1:], complement]
 
 
 def named_modes(stage: PlanetaryStage) -> list[PlanetaryMode]:
-    """All modes, by ascending frequency, those of one frequency and kind together."""
-    found, phases = stage.system.modes(), Phases(stage)
+    """Return all modes, by ascending frequency, those of one frequency and kind together."""
+    modes, phases = stage.system.modes(), Phases(stage)
     out: list[PlanetaryMode] = []
-    hz = found.frequency_hz
+    hz = modes.frequency_hz
     starts = [k for k in range(len(hz)) if not k or not isclose(hz[k], hz[k - 1], rel_tol=SAME)]
     for start, end in zip(starts, [*starts[1:], len(hz)]):
-        shapes = found.shapes[:, start:end]
+        shapes = modes.shapes[:, start:end]
         kinds = phases.kinds(shapes)
         if len(set(kinds)) > 1 or "mixed" in kinds:
-            shapes = stage.system.signed(phases.parted(shapes))
+            shapes = stage.system.signed(phases.separated(shapes))
             kinds = phases.kinds(shapes)
         for kind in dict.fromkeys(kinds):
-            own = shapes[:, [k == kind for k in kinds]]
+            members = shapes[:, [k == kind for k in kinds]]
             number = 1 + sum(mode.kind == kind for mode in out)
-            out.append(PlanetaryMode(kind, number, float(hz[start]), own.shape[1], own))
+            out.append(PlanetaryMode(kind, number, float(hz[start]), members.shape[1], members))
     return out

@@ -1,8 +1,8 @@
 r"""Terms that a turning carrier adds to a planetary stage, in axes that turn with it.
 
-With W the speed of the carrier, y its axis, and w the speed of a body about its own, all in space,
-rates of change in turning axes give for the shift u and the tilt t of a rigid body of mass m,
-diametral and polar moments of inertia J and I
+With W the speed of the carrier, y its axis, and w the speed of a body about the body's axis, all in
+space, rates of change in turning axes give for the shift u and the tilt t of a rigid body of mass
+m, diametral and polar moments of inertia J and I
 
     m (u'' + 2 W y x u' - W^2 u),        J t'' + (2 J W - I w) y x t' + W (I w - J W) t,
 
@@ -10,12 +10,12 @@ u and t across the axis; motions along and about it are left alone.  Together
 
     M q'' + G q' + (K - C + P) q = 0.
 
-P is what the centrifugal force of planets does, ``F = m W^2 R`` on each pin away from the axis e:
-it turns with the carrier, where it has the energy ``-F e . (t x (u_p - u_c)) - F R |t x e|^2 / 2``,
-t the turn of the carrier.  Lin and Parker (1999) have G and C in the plane and leave P out; it is
-of the size of C, and without it a stage that is free to turn would run away from its own centrifugal
-force.  Pins are taken to carry all of that force; that it loads meshes, bends the ring, or shifts
-frequencies by stretching what it loads is left out.
+P is the effect of the centrifugal force of planets, ``F = m W^2 R`` on each pin away from the axis
+e: it turns with the carrier, where it has the energy ``-F e . (t x (u_p - u_c)) - F R |t x e|^2 /
+2``, t the turn of the carrier. Lin and Parker (1999) have G and C in the plane and leave P out; it
+is of the size of C, and without it a stage that is free to turn would run away under centrifugal
+force. Pins are taken to carry all of that force; that it loads meshes, bends the ring, or shifts
+frequencies by stretching loaded parts is left out.
 
 In these axes a motion that stands still in space turns backwards at W: a frequency p in space is ``p
 - W`` and ``p + W`` here.  Bearings that are not the same all around would change with time.
@@ -62,16 +62,18 @@ class TurningMode(NamedTuple):
 
 
 def speeds(stage: PlanetaryStage, carrier: float, ring: float) -> dict[str, float]:
-    """Speed of every body about its axis in space, rad/s, from those of carrier and ring."""
-    beyond = (ring - carrier) * stage.ring.radius
-    out = {"sun": carrier - beyond / stage.sun.radius, "ring": ring, "carrier": carrier}
+    """Return the speed of every body about the axis in space, rad/s, from those of carrier and
+    ring.
+    """
+    relative = (ring - carrier) * stage.ring.radius
+    out = {"sun": carrier - relative / stage.sun.radius, "ring": ring, "carrier": carrier}
     for k, planet in enumerate(stage.planets, 1):
-        out[f"planet {k}"] = carrier + beyond / planet.radius
+        out[f"planet {k}"] = carrier + relative / planet.radius
     return {name: 2 * np.pi * speed for name, speed in out.items()}
 
 
 def turning_terms(stage: PlanetaryStage, carrier: float, ring: float = 0.0) -> TurningTerms:
-    """Terms of a carrier and a ring at some speeds, turns a second."""
+    """Return terms of a carrier and a ring at some speeds, turns a second."""
     for name, speed in (("carrier", carrier), ("ring", ring)):
         if not np.isfinite(speed):
             raise SolidgearError(
@@ -79,7 +81,7 @@ def turning_terms(stage: PlanetaryStage, carrier: float, ring: float = 0.0) -> T
             )
     bodies: dict[str, CentralMember | Planet] = {n: getattr(stage, n) for n in CENTRAL}
     bodies |= {f"planet {k}": planet for k, planet in enumerate(stage.planets, 1)}
-    elastic = [n for n, one in bodies.items() if one.part is not None and len(one.part.strain)]
+    elastic = [n for n, body in bodies.items() if body.part is not None and len(body.part.strain)]
     if elastic:
         raise SolidgearError(
             f"the {elastic[0]} is an elastic body; terms of a turning carrier are those of rigid ones"
@@ -88,24 +90,24 @@ def turning_terms(stage: PlanetaryStage, carrier: float, ring: float = 0.0) -> T
     gyroscopic, centrifugal, pull = np.zeros((3, system.size, system.size))
     spins = speeds(stage, carrier, ring)
     carried = system.motion("carrier.centre")
-    for name, one in bodies.items():
+    for name, body in bodies.items():
         shifts, tilts = np.vsplit(system.motion(f"{name}.centre"), 2)
-        polar, across = one.inertia * spins[name], one.diametral * about
-        gyroscopic += 2 * about * one.mass * shifts.T @ AXIS @ shifts
+        polar, across = body.inertia * spins[name], body.diametral * about
+        gyroscopic += 2 * about * body.mass * shifts.T @ AXIS @ shifts
         gyroscopic += (2 * across - polar) * tilts.T @ AXIS @ tilts
-        centrifugal += about**2 * one.mass * shifts.T @ ROUND @ shifts
+        centrifugal += about**2 * body.mass * shifts.T @ ROUND @ shifts
         centrifugal += about * (across - polar) * tilts.T @ ROUND @ tilts
-        if isinstance(one, Planet):
-            apart, out = one.axes @ shifts - carried[:3], one.axes[:, 0]
-            force = one.mass * about**2 * stage.carrier.radius
-            turned = -force * apart.T @ cross_matrix(out) @ carried[3:]
-            lever = stage.carrier.radius * (np.eye(3) - np.outer(out, out))
+        if isinstance(body, Planet):
+            relative, outward = body.axes @ shifts - carried[:3], body.axes[:, 0]
+            force = body.mass * about**2 * stage.carrier.radius
+            turned = -force * relative.T @ cross_matrix(outward) @ carried[3:]
+            lever = stage.carrier.radius * (np.eye(3) - np.outer(outward, outward))
             pull += turned + turned.T - force * carried[3:].T @ lever @ carried[3:]
     return TurningTerms(gyroscopic, centrifugal, pull)
 
 
 def turning_modes(stage: PlanetaryStage, carrier: float, ring: float = 0.0) -> list[TurningMode]:
-    """All modes at some speeds, turns a second, by ascending frequency."""
+    """Return all modes at some speeds, turns a second, by ascending frequency."""
     terms, system = turning_terms(stage, carrier, ring), stage.system
     lower = np.linalg.cholesky(system.mass)
 
@@ -115,20 +117,20 @@ def turning_modes(stage: PlanetaryStage, carrier: float, ring: float = 0.0) -> l
 
     stiff = normal(system.stiffness - terms.centrifugal + terms.pull)
     scale = np.sqrt(np.linalg.norm(stiff, 2))
-    none, one = np.zeros_like(stiff), np.eye(len(stiff))
-    state = np.block([[none, one], [-stiff / scale**2, -normal(terms.gyroscopic) / scale]])
+    zero, unit = np.zeros_like(stiff), np.eye(len(stiff))
+    state = np.block([[zero, unit], [-stiff / scale**2, -normal(terms.gyroscopic) / scale]])
     value, vector = np.linalg.eig(state)
     # eigenvalues come in fours or in pairs of two signs: one of each is kept
     value = np.where(np.abs(value) < STILL, 0.0, value)
     still = np.abs(value.imag) < STILL
     resting = np.flatnonzero(still)[np.argsort(-value[still].real, kind="stable")]
-    kept = np.concatenate([resting[: len(resting) // 2], np.flatnonzero(value.imag >= STILL)])
-    kept = kept[np.argsort(np.abs(value[kept].imag), kind="stable")]
-    shapes = vector[: len(stiff), kept]
+    selected = np.concatenate([resting[: len(resting) // 2], np.flatnonzero(value.imag >= STILL)])
+    selected = selected[np.argsort(np.abs(value[selected].imag), kind="stable")]
+    shapes = vector[: len(stiff), selected]
     shapes = sla.solve_triangular(lower.T, shapes / np.linalg.norm(shapes, axis=0), lower=False)
-    found = scale * value[kept]
+    eigenvalues = scale * value[selected]
     kinds = Phases(stage).kinds(shapes)
     return [
-        TurningMode(kind, float(abs(own.imag)) / (2 * np.pi), float(own.real), shape)
-        for kind, own, shape in zip(kinds, found, shapes.T)
+        TurningMode(kind, float(abs(eigenvalue.imag)) / (2 * np.pi), float(eigenvalue.real), shape)
+        for kind, eigenvalue, shape in zip(kinds, eigenvalues, shapes.T)
     ]

@@ -9,16 +9,8 @@ from solidgear.system.system import System
 
 
 def port_forces(system: System, coordinates: np.ndarray) -> dict[str, np.ndarray]:
-    """Force of all links on each port.
-
-    Parameters
-    ----------
-    coordinates : (N,) ndarray
-
-    Returns
-    -------
-    dict of str to (6,) ndarray
-        By ``part.port``, N and N m, in the axes and at the point of the port.
+    """Return the forces (6,) of all links on each port, ``part.port``, N and N m, in the axes and
+    at the point of the port, from coordinates (N,) of the system.
 
     Examples
     --------

@@ -1,6 +1,7 @@
-r"""Steady motion over many frequencies, with losses of several kinds, and a grid that misses no peak.
+r"""Steady motion over many frequencies, with losses of several kinds, and a grid that misses no
+peak.
 
-A loss factor eta_j of a part or link makes its stiffness complex,
+A loss factor eta_j of a part or link makes the stiffness complex,
 
     K_j (1 + i eta_j)              hysteretic: no frequency in it
     K_j (1 + i eta_j w / w0)       viscous, with the same loss at w0
@@ -11,15 +12,16 @@ with the loss factor zeta at w0 = 1 rad/s, so that zeta counts as seconds.
 
 Hysteretic and modal losses have complex modes ``mu_r`` that serve all frequencies, all modes of the
 system and those of residual fields among them, so that no static remainder is missing.  With H the
-lost stiffness in elastic modes they are those of its flexibility,
+lost stiffness in elastic modes they are those of the flexibility,
 
     (diag(w_r^2) + i H)^-1 = W (I + i W H W)^-1 W = V diag(1 / mu_r) V^-1,      W = diag(1 / w_r),
 
 whose largest entries are those of the lowest modes: rounding is that of the softest motion, not of
-the stiffest spring.  Twins share their mu, and any two vectors of their plane may come out, so that
-those on the left are the rows of V^-1 and not V' again.  What is asked for is ``sum_r a_r / (mu_r -
-w^2)``, smooth but within some half-widths ``Im mu_r / (2 sqrt(Re mu_r))`` of a pole.  So a grid with points at every pole and around it can miss no peak; between
-them intervals are halved until their middles are foretold.
+the stiffest spring. Twins share their mu, and any two vectors of their plane may come out, so that
+those on the left are the rows of V^-1 and not V' again. The motion is ``sum_r a_r / (mu_r - w^2)``,
+smooth but within some half-widths ``Im mu_r / (2 sqrt(Re mu_r))`` of a pole. So a grid with points
+at every pole and around it can miss no peak; between them intervals are halved until their middles
+are foretold.
 
 Where all but a few springs share one loss factor, real modes do without the complex ones
 (:mod:`solidgear.system.common_loss`).
@@ -67,12 +69,7 @@ ON_A_POLE = 8 * float(np.finfo(float).eps)
 
 @dataclass(frozen=True, eq=False)
 class SteadyState:
-    """A system with its losses, ready for many loads and frequencies.
-
-    Raises
-    ------
-    SolidgearError
-        For an unknown kind, negative losses or names, or viscous losses matched nowhere.
+    """System with losses, ready for many loads and frequencies.
 
     Examples
     --------
@@ -105,9 +102,9 @@ class SteadyState:
                 raise SolidgearError(f"{name} is {eta}; a loss factor is finite and not negative")
 
     def factor(self, name: str, frequency_hz: np.ndarray) -> np.ndarray:
-        """(f,) complex factor on the stiffness of a part or link."""
-        eta, ones = self.loss.get(name, 0.0), np.ones(len(frequency_hz))
-        return 1 + 1j * eta * (frequency_hz / self.matched_hz if self._grows else ones)
+        """Return the complex factor (f,) on the stiffness of a part or link."""
+        eta, constant = self.loss.get(name, 0.0), np.ones(len(frequency_hz))
+        return 1 + 1j * eta * (frequency_hz / self.matched_hz if self._grows else constant)
 
     @property
     def _grows(self) -> bool:
@@ -115,13 +112,15 @@ class SteadyState:
 
     @cached_property
     def _lost(self) -> np.ndarray:
-        """(m, m) ``sum eta_j K_j`` in elastic modes; its diagonal alone for modal losses."""
+        """Lost stiffness ``sum eta_j K_j`` (m, m) in elastic modes; the diagonal alone for modal
+        losses.
+        """
         lost = lost_stiffness(self.system, self.loss)
         return np.diag(np.diag(lost)) if self.kind == "modal" else lost
 
     @cached_property
     def _common(self) -> CommonLoss | None:
-        """The loss that nearly all stiffness has, and what differs from it, where that is little."""
+        """Loss of nearly all stiffness, and the few rows that differ from it."""
         return common_loss(self.system, self.loss) if self.kind == "hysteretic" else None
 
     @cached_property
@@ -134,7 +133,9 @@ class SteadyState:
 
     @cached_property
     def _complex(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """mu (m,), shapes (N, m) and what a load does on them (m, N)."""
+        """Eigenvalues mu (m,), shapes (N, m) and left vectors (m, N), which give the work of a
+        load.
+        """
         elastic = self.system.elastic[1]
         value, turn = np.linalg.eig(self._flexible)
         return 1 / value, elastic @ turn, np.linalg.solve(turn, elastic.T)
@@ -149,8 +150,8 @@ class SteadyState:
             # overcritical motions have no peak; their place does no harm
             return hz, np.maximum(lost / 2, SHARPEST) * hz
         # where real modes do, nobody asks for the shapes, which are half of the work
-        alone = self._common is not None
-        value = 1 / np.linalg.eigvals(self._flexible) if alone else self._complex[0]
+        real_modes = self._common is not None
+        value = 1 / np.linalg.eigvals(self._flexible) if real_modes else self._complex[0]
         hz = np.sqrt(np.abs(value.real)) / (2 * np.pi)
         order = np.argsort(hz)
         width = np.maximum(np.abs(value.imag / value.real) / 2, SHARPEST)
@@ -158,24 +159,10 @@ class SteadyState:
 
     @pinned
     def motion(self, frequency_hz: np.ndarray, load: np.ndarray, rows: np.ndarray) -> np.ndarray:
-        """Amplitudes of some motions under a load that has the same amplitude at all frequencies.
+        """Return complex amplitudes (f, q) of the motions `rows` (q, N), such as
+        ``system.motion(end)``, under a load (N,) that has the same amplitude at all frequencies.
 
-        Parameters
-        ----------
-        frequency_hz : (f,) ndarray
-            Above zero where the load drives a free motion.
-        load : (N,) ndarray
-        rows : (q, N) ndarray
-            Such as ``system.motion(end)``.
-
-        Returns
-        -------
-        (f, q) complex ndarray
-
-        Raises
-        ------
-        SolidgearError
-            On a resonance without damping, or at 0 Hz if a free motion is driven.
+        Refused are a resonance without damping, and 0 Hz if the load drives a free motion.
         """
         frequency_hz, load = np.asarray(frequency_hz, float), np.asarray(load)
         w2 = (2 * np.pi * frequency_hz) ** 2
@@ -194,41 +181,32 @@ class SteadyState:
         return out + free_motion(self.system, w2, load, rows).T
 
     def _one_by_one(self, frequency_hz, load, rows) -> np.ndarray:
-        """One solution for each frequency where the loss depends on it, in elastic modes for each."""
+        """Return one solution for each frequency where the loss depends on it, in elastic modes for
+        each.
+        """
         omega, shapes = self.system.elastic
         # unit strain energy, so that equations of very stiff and soft modes are alike
         scale = 1 / omega
-        push, seen = scale * (shapes.T @ load), (rows @ shapes) * scale
+        push, observed = scale * (shapes.T @ load), (rows @ shapes) * scale
         lost = scale[:, None] * self._lost * scale
         out = np.empty((len(frequency_hz), len(rows)), complex)
         for start in range(0, len(frequency_hz), BATCH):
             part = slice(start, start + BATCH)
             hz = frequency_hz[part, None, None]
-            left = 1j * hz / self.matched_hz * lost
+            matrix = 1j * hz / self.matched_hz * lost
             diagonal = 1 - (2 * np.pi * frequency_hz[part, None]) ** 2 * scale**2
-            left[:, np.arange(len(omega)), np.arange(len(omega))] += diagonal
-            right = np.broadcast_to(push[:, None].astype(complex), (len(left), len(push), 1))
-            out[part] = np.linalg.solve(left, right)[:, :, 0] @ seen.T
+            matrix[:, np.arange(len(omega)), np.arange(len(omega))] += diagonal
+            right = np.broadcast_to(push[:, None].astype(complex), (len(matrix), len(push), 1))
+            out[part] = np.linalg.solve(matrix, right)[:, :, 0] @ observed.T
         return out
 
     @pinned
     def solved(self, frequency_hz: np.ndarray, load: np.ndarray, rows: np.ndarray) -> np.ndarray:
-        """The same as :meth:`motion`, each frequency solved by itself.
+        """Return the same as :meth:`motion`, each frequency solved by itself.
 
-        Between ends far from each other a sum over modes cancels: engine to load of a train at
-        4 kHz is 1e-14 of its terms. Five digits are left of a sum over modes, all of an
-        elimination.
-
-        Parameters
-        ----------
-        frequency_hz : (f,) ndarray
-        load : (N,) ndarray
-        rows : (q, N) ndarray
-
-        Returns
-        -------
-        (f, q) complex ndarray
-            Sums over modes for modal losses, which are told in modes alone.
+        Between ends far from each other a sum over modes cancels: engine to load of a train at 4
+        kHz is 1e-14 of the terms. Five digits are left of a sum over modes, all of an elimination;
+        modal losses exist in modes alone and are summed.
         """
         if self.kind == "modal":
             return self.motion(frequency_hz, load, rows)
@@ -236,26 +214,17 @@ class SteadyState:
         elimination = Elimination(self.system, self.loss)
         out = np.empty((len(frequency_hz), len(rows)), complex)
         for start in range(0, len(frequency_hz), BATCH):
-            part = slice(start, start + BATCH)
-            hz = frequency_hz[part]
+            batch = slice(start, start + BATCH)
+            hz = frequency_hz[batch]
             growth = hz / self.matched_hz if self._grows else np.ones(len(hz))
-            out[part] = elimination.motion(2 * np.pi * hz, growth, load, rows)
+            out[batch] = elimination.motion(2 * np.pi * hz, growth, load, rows)
         return out
 
     def grid(
-        self, lowest_hz: float, highest_hz: float, seen: Callable[[np.ndarray], np.ndarray]
+        self, lowest_hz: float, highest_hz: float, motions_at: Callable[[np.ndarray], np.ndarray]
     ) -> np.ndarray:
-        """Frequencies between two ends on which no peak of some motions is missed.
-
-        Parameters
-        ----------
-        seen : callable
-            ``seen(frequency_hz)`` gives the motions (f, q) that are looked at.
-
-        Returns
-        -------
-        (f,) ndarray
-            Ascending, both ends among them.
+        """Return ascending frequencies (f,) between two ends, both among them, on which no peak of
+        some motions is missed; ``motions_at(frequency_hz)`` gives the motions (f, q).
         """
         if not 0 < lowest_hz < highest_hz:
             raise SolidgearError(
@@ -267,31 +236,31 @@ class SteadyState:
         count = int(np.ceil(PER_DECADE * np.log10(highest_hz / lowest_hz))) + 2
         points = np.concatenate([np.geomspace(lowest_hz, highest_hz, count), around])
         points = np.unique(points[(points >= lowest_hz) & (points <= highest_hz)])
-        first = seen(points)
+        first = motions_at(points)
         largest = np.abs(first).max(axis=0)
         level = _decibels(first, largest)
         fresh = np.ones(len(points) - 1, bool)
         for _ in range(HALVINGS):
-            left = np.flatnonzero(fresh)
-            if not len(left) or len(points) + len(left) > MOST_POINTS:
+            intervals = np.flatnonzero(fresh)
+            if not len(intervals) or len(points) + len(intervals) > MOST_POINTS:
                 break
-            middle = (points[left] + points[left + 1]) / 2
-            found = _decibels(seen(middle), largest)
-            off = np.abs(found - (level[left] + level[left + 1]) / 2).max(axis=1)
+            middle = (points[intervals] + points[intervals + 1]) / 2
+            middle_level = _decibels(motions_at(middle), largest)
+            error = np.abs(middle_level - (level[intervals] + level[intervals + 1]) / 2).max(axis=1)
             # an interval whose middle was foretold is left with it, and not halved again
-            again = np.zeros(len(points) - 1, bool)
-            again[left] = off > FORETOLD
-            points = np.insert(points, left + 1, middle)
-            level = np.insert(level, left + 1, found, axis=0)
-            was = np.repeat(again, 1 + np.isin(np.arange(len(again)), left))
-            fresh = was
+            missed = np.zeros(len(points) - 1, bool)
+            missed[intervals] = error > FORETOLD
+            points = np.insert(points, intervals + 1, middle)
+            level = np.insert(level, intervals + 1, middle_level, axis=0)
+            inherited = np.repeat(missed, 1 + np.isin(np.arange(len(missed)), intervals))
+            fresh = inherited
         return points
 
 
 def free_motion(
     system: System, w2: np.ndarray, load: np.ndarray, rows: np.ndarray | None = None
 ) -> np.ndarray:
-    """Accelerations of free motions, twice integrated; of all coordinates, or seen by some rows."""
+    """Return accelerations of free motions, twice integrated; of all coordinates, or by some rows."""
     push = system.free.T @ load
     if np.any(w2 == 0):
         if np.abs(push).max(initial=0.0) > UNBALANCED * np.linalg.norm(system.elastic[1].T @ load):
@@ -299,33 +268,33 @@ def free_motion(
                 "at 0 Hz the load drives a motion that nothing resists; leave 0 Hz out"
             )
     moving = np.where(w2 > 0, w2, 1.0)
-    free = system.free if rows is None else rows @ system.free
-    return free @ (push[:, None] * (w2 > 0) / -moving)
+    motions = system.free if rows is None else rows @ system.free
+    return motions @ (push[:, None] * (w2 > 0) / -moving)
 
 
 def lost_stiffness(system: System, loss: Mapping[str, float]) -> np.ndarray:
-    """``sum eta_j K_j`` in elastic modes."""
-    g, where = system.strains
+    """Return ``sum eta_j K_j`` in elastic modes."""
+    g, rows_of = system.strains
     shapes = system.elastic[1]
     out = np.zeros((shapes.shape[1],) * 2)
     for name, eta in loss.items():
         if name not in system.parts and name not in system.links:
             raise SolidgearError(f"a loss factor for {name!r}, which is no part and no link")
-        if name in where:
-            stretch = g[where[name]] @ shapes
+        if name in rows_of:
+            stretch = g[rows_of[name]] @ shapes
             out += eta * (stretch.T @ stretch)
     return out
 
 
 def peaks(size: np.ndarray) -> np.ndarray:
-    """Places of local maxima of a curve, ends left out; the first of equal neighbours."""
+    """Return places of local maxima of a curve, ends left out; the first of equal neighbours."""
     inner = size[1:-1]
     return 1 + np.flatnonzero((inner > size[:-2]) & (inner >= size[2:]))
 
 
 def stands_out(size: np.ndarray, k: int) -> bool:
-    """Tell whether a local maximum rises by more than a ripple above the dips beside it."""
-    left, right = size[:k][::-1], size[k + 1 :]
+    """Return whether a local maximum rises by more than a ripple above the dips beside it."""
+    before, after = size[:k][::-1], size[k + 1 :]
     least = size[k] / 10 ** (STANDS_OUT / 20)
 
     def dips(side):
@@ -333,9 +302,9 @@ def stands_out(size: np.ndarray, k: int) -> bool:
         near = side[: higher[0]] if len(higher) else side
         return bool(len(near) and near.min() < least)
 
-    return dips(left) and dips(right)
+    return dips(before) and dips(after)
 
 
 def _decibels(motions: np.ndarray, largest: np.ndarray) -> np.ndarray:
-    """Levels under the largest; what is rounding beside it is all one level."""
+    """Return levels under the largest, where rounding is all one level."""
     return 20 * np.log10(np.maximum(np.abs(motions), NOISE * largest) + 1e-300)

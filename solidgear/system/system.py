@@ -40,7 +40,7 @@ from solidgear.system.modes import TINY, SystemModes, relative_residual, singula
 from solidgear.system.parts import Part
 from solidgear.system.steady import UNBALANCED, SteadyState
 
-#: A row that moves rigid parts by less than this of what it moves at all is rounding.
+#: A row that moves rigid parts by less than this share of all its motion is rounding.
 ROUNDING = 1e-9
 
 
@@ -98,12 +98,12 @@ class System:
         return max(place.stop for place in self._places.values())
 
     def place(self, part: str) -> slice:
-        """Range of the coordinates of a part."""
+        """Return the range of the coordinates of a part."""
         if part not in self._places:
-            ends = [f"{name}.{part}" for name, one in self.parts.items() if part in one.ports]
+            ends = [f"{name}.{part}" for name, body in self.parts.items() if part in body.ports]
             meant = f"; did you mean {' or '.join(ends)}?" if ends else "; there is "
-            known = "" if ends else ", ".join(self.parts)
-            raise SolidgearError(f"there is no part {part!r}{meant}{known}")
+            names = "" if ends else ", ".join(self.parts)
+            raise SolidgearError(f"there is no part {part!r}{meant}{names}")
         return self._places[part]
 
     def _at(self, end: str) -> tuple[str, PortMotion]:
@@ -119,7 +119,7 @@ class System:
         return part, ports[port]
 
     def port(self, end: str) -> PortMotion:
-        """A port with its rows on the coordinates of the system.
+        """Return a port with rows on the coordinates of the system.
 
         Parameters
         ----------
@@ -131,26 +131,28 @@ class System:
         SolidgearError
             If there is no such port.
         """
-        part, own = self._at(end)
+        part, port = self._at(end)
         rows = np.zeros((6, self.size))
-        rows[:, self.place(part)] = own.rows
-        return PortMotion(rows, own.point, own.axes)
+        rows[:, self.place(part)] = port.rows
+        return PortMotion(rows, port.point, port.axes)
 
     def motion(self, end: str) -> np.ndarray:
-        """(6, N) rows that give the motion of a port: times ``shapes``, a static answer or a
+        """Return (6, N) rows that give the motion of a port: times ``shapes``, a static answer or a
         response.
         """
         return self.port(end).rows
 
     def load(self, forces: Mapping[str, np.ndarray]) -> np.ndarray:
-        """(N,) load on the coordinates from forces and moments (6,) at ports, in their own axes."""
+        """Return (N,) load on the coordinates from forces and moments (6,) at ports, in their own
+        axes.
+        """
         return sum(
             (self.motion(e).T @ np.asarray(f) for e, f in forces.items()), np.zeros(self.size)
         )
 
     def expand(self, part: str, coordinates: np.ndarray) -> dict[int, np.ndarray]:
-        """Unknowns of the body a part was made of, block by block, from coordinates (N,) or (N, k)
-        of the system.
+        """Return unknowns of the body a part was made of, block by block, from coordinates (N,) or
+        (N, k) of the system.
         """
         place = self.place(part)
         way = getattr(self.parts[part], "expand", None)
@@ -174,22 +176,22 @@ class System:
     @cached_property
     def strains(self) -> tuple[np.ndarray, dict[str, slice]]:
         """G with ``K = G'G``, and which rows belong to which part or link."""
-        found: dict[str, np.ndarray] = {}
+        by_name: dict[str, np.ndarray] = {}
         for name, part in self.parts.items():
             if len(part.strain):
-                found[name] = np.zeros((len(part.strain), self.size))
-                found[name][:, self.place(name)] = part.strain
+                by_name[name] = np.zeros((len(part.strain), self.size))
+                by_name[name][:, self.place(name)] = part.strain
         for name, link in self.links.items():
-            own = np.asarray(link.strain(*map(self.port, link.ends)), float)
-            if own.ndim != 2 or own.shape[1] != self.size or not np.isfinite(own).all():
+            rows = np.asarray(link.strain(*map(self.port, link.ends)), float)
+            if rows.ndim != 2 or rows.shape[1] != self.size or not np.isfinite(rows).all():
                 raise SolidgearError(
-                    f"the link {name!r} gives strain rows of shape {own.shape}; "
+                    f"the link {name!r} gives strain rows of shape {rows.shape}; "
                     f"they must be finite and (r, {self.size})"
                 )
-            found[name] = own
-        cuts = np.cumsum([0] + [len(rows) for rows in found.values()])
-        where = {name: slice(int(a), int(b)) for name, a, b in zip(found, cuts, cuts[1:])}
-        return np.vstack([np.zeros((0, self.size)), *found.values()]), where
+            by_name[name] = rows
+        cuts = np.cumsum([0] + [len(rows) for rows in by_name.values()])
+        places = {name: slice(int(a), int(b)) for name, a, b in zip(by_name, cuts, cuts[1:])}
+        return np.vstack([np.zeros((0, self.size)), *by_name.values()]), places
 
     @property
     def stiffness(self) -> np.ndarray:
@@ -201,10 +203,10 @@ class System:
         """Truncation of all reduced parts."""
         cut, defect = np.inf, np.zeros((self.size, self.size))
         for name, part in self.parts.items():
-            own = getattr(part, "truncation", None)
-            if own is not None:
-                cut = min(cut, own.cut)
-                defect[self.place(name), self.place(name)] = own.defect
+            truncation = getattr(part, "truncation", None)
+            if truncation is not None:
+                cut = min(cut, truncation.cut)
+                defect[self.place(name), self.place(name)] = truncation.defect
         return Truncation(cut, defect)
 
     @cached_property
@@ -222,20 +224,24 @@ class System:
         """(N, z) mass-normalised motions that strain nothing."""
         basis = [np.zeros((self.size, 0))]
         for name, part in self.parts.items():
-            own = _null(_unit(part.strain)) if len(part.strain) else np.eye(part.mass.shape[0])
-            basis.append(np.zeros((self.size, own.shape[1])))
-            basis[-1][self.place(name)] = own
+            motions = (
+                _null_space(_unit_rows(part.strain))
+                if len(part.strain)
+                else np.eye(part.mass.shape[0])
+            )
+            basis.append(np.zeros((self.size, motions.shape[1])))
+            basis[-1][self.place(name)] = motions
         rigid = np.hstack(basis)
         if not rigid.shape[1]:
             return rigid
         lower = np.linalg.cholesky(rigid.T @ self.mass @ rigid)
         rigid = sla.solve_triangular(lower, rigid.T, lower=True).T
-        g, where = self.strains
-        rows = np.vstack([np.zeros((0, self.size)), *(g[where[name]] for name in self.links)])
-        whole = np.linalg.norm(sla.solve_triangular(self._lower, rows.T, lower=True), axis=0)
+        g, rows_of = self.strains
+        rows = np.vstack([np.zeros((0, self.size)), *(g[rows_of[name]] for name in self.links)])
+        sizes = np.linalg.norm(sla.solve_triangular(self._lower, rows.T, lower=True), axis=0)
         rows = rows @ rigid
-        rows[np.linalg.norm(rows, axis=1) < ROUNDING * whole] = 0.0
-        return rigid @ _null(_unit(rows))
+        rows[np.linalg.norm(rows, axis=1) < ROUNDING * sizes] = 0.0
+        return rigid @ _null_space(_unit_rows(rows))
 
     @cached_property
     def elastic(self) -> tuple[np.ndarray, np.ndarray]:
@@ -244,16 +250,16 @@ class System:
         lower = self._lower
         rows = sla.solve_triangular(lower, g.T, lower=True).T
         still = lower.T @ self.free
-        held = np.linalg.qr(still, mode="complete")[0][:, still.shape[1] :]
-        if not held.shape[1]:
+        complement = np.linalg.qr(still, mode="complete")[0][:, still.shape[1] :]
+        if not complement.shape[1]:
             return np.zeros(0), np.zeros((self.size, 0))
-        omega, turn = singular(rows @ held)
-        shapes = sla.solve_triangular(lower.T, held @ turn.T, lower=False)
+        omega, turn = singular(rows @ complement)
+        shapes = sla.solve_triangular(lower.T, complement @ turn.T, lower=False)
         return omega[::-1], shapes[:, ::-1]
 
     @pinned
     def modes(self, n: int | None = None, *, bounded: int | None = None) -> SystemModes:
-        """Lowest modes.
+        """Return the lowest modes.
 
         Parameters
         ----------
@@ -287,8 +293,8 @@ class System:
         )
 
     def signed(self, shapes: np.ndarray) -> np.ndarray:
-        """Shapes with a sign that does not depend on the library: the largest component (in energy)
-        is positive.
+        """Return shapes with a sign that does not depend on the library: the largest component (in
+        energy) is positive.
         """
         if not shapes.size:
             return shapes
@@ -296,16 +302,16 @@ class System:
         return shapes * np.where(np.take_along_axis(shapes, largest[None, :], 0)[0] < 0, -1.0, 1.0)
 
     def _energy(self, shapes: np.ndarray, omega: np.ndarray) -> dict[str, np.ndarray]:
-        g, where = self.strains
+        g, rows_of = self.strains
         stretch = (g @ shapes) ** 2
         stretch[:, omega == 0] = 0.0
         total = stretch.sum(axis=0)
         total = np.where(total > 0, total, 1.0)
-        return {name: stretch[rows].sum(axis=0) / total for name, rows in where.items()}
+        return {name: stretch[rows].sum(axis=0) / total for name, rows in rows_of.items()}
 
     @pinned
     def static(self, load: np.ndarray) -> np.ndarray:
-        """Displacements under constant loads, without free motions.
+        """Return displacements under constant loads, without free motions.
 
         Parameters
         ----------
@@ -340,9 +346,10 @@ class System:
         damping: float = 0.0,
         loss: Mapping[str, float] | None = None,
     ) -> np.ndarray:
-        """Steady motion of all coordinates under a load that oscillates, with structural damping.
+        """Return the steady motion of all coordinates under a load that oscillates, with structural
+        damping.
 
-        A damping ratio zeta counts as loss factor 2 zeta of all parts and links, which is what
+        A damping ratio zeta counts as loss factor 2 zeta of all parts and links, as
         viscous damping is at resonance; see :class:`solidgear.system.steady.SteadyState` for other
         losses, and for few motions of many coordinates.
 
@@ -379,21 +386,21 @@ class System:
         """
         if not (np.isfinite(damping) and damping >= 0):
             raise SolidgearError(f"damping is {damping}; damping is finite and not negative")
-        every = dict.fromkeys(self.strains[1], 2 * damping)
-        every |= {name: every.get(name, 0.0) + eta for name, eta in (loss or {}).items()}
-        return SteadyState(self, every).motion(
+        losses = dict.fromkeys(self.strains[1], 2 * damping)
+        losses |= {name: losses.get(name, 0.0) + eta for name, eta in (loss or {}).items()}
+        return SteadyState(self, losses).motion(
             np.asarray(frequency_hz, float), load, np.eye(self.size)
         )
 
 
-def _unit(rows: np.ndarray) -> np.ndarray:
-    """Rows of unit length; those of no length stay."""
+def _unit_rows(rows: np.ndarray) -> np.ndarray:
+    """Return rows scaled to unit length; those of no length stay."""
     size = np.linalg.norm(rows, axis=1, keepdims=True)
     return rows / np.where(size > 0, size, 1.0)
 
 
-def _null(rows: np.ndarray) -> np.ndarray:
-    """(n, z) orthonormal motions that no row feels; of unit rows."""
+def _null_space(rows: np.ndarray) -> np.ndarray:
+    """Return orthonormal motions (n, z) that no unit row feels."""
     _, s, vt = np.linalg.svd(rows)
     null = vt[int((s > ROUNDING).sum()) :].T
     return np.where(np.abs(null) < TINY, 0.0, null)

@@ -10,7 +10,7 @@ import numpy as np
 
 import solidgear as sg
 from solidgear.errors import SolidgearError
-from solidgear.nonlinear.motion import settled
+from solidgear.nonlinear.motion import steady_motion
 from solidgear.studies.train.backlash import Backlash
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.nonlinear import FADED, teeth_of, with_backlash
@@ -143,7 +143,7 @@ def apart(name: str, model: str, force: float) -> list[dict[str, Any]]:
         if one.calm:
             point = one.points[int(np.argmin(abs(one.force - size)))]
             omega = one.periods * point.omega
-            time = settled(found.remainder, omega, point.state(), steady=FADED)
+            time = steady_motion(found.remainder, omega, point.state(), steady=FADED)
             row["stable"] = [one.calm.low, one.calm.high]
             row["largest"] = [hz, size]
             row["in time"] = [time.cycle, float(np.ptp(time.force)) / 2]

@@ -226,8 +226,8 @@ def scaled_axle(own: Remainder) -> dict:
     """Plain data for pyHarm: stretch, and what each mode but one has of it, as unknowns, half gap and
     mesh stiffness one.
     """
-    heard = np.abs(own.seen[0]) > STILL * np.abs(own.seen[0]).max()
-    seen, omega = own.seen[0, heard], own.omega[heard]
+    heard = np.abs(own.shapes[0]) > STILL * np.abs(own.shapes[0]).max()
+    seen, omega = own.shapes[0, heard], own.omega[heard]
     losses = own.losses[np.ix_(heard, heard)]
     gap, teeth = own.laws[0][0].edges[-1], own.stiffness[0, 0]
     way = np.diag(seen)

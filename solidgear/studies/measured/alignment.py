@@ -1,14 +1,14 @@
 """Pairs of measured resonances and computed modes, by frequencies, multiplicities and, where they
 were measured, shapes, and how sure that is.
 
-Both lists ascend. They are laid beside each other by a hidden Markov model: a step takes one of
-each (the same mode), two measured and one computed (a pair that was measured split), one measured
-and two computed (two modes too near each other to be told apart), two of each crosswise, three of each
-in another order, or one of either alone (a spurious peak; a mode that was missed). Logarithms of frequencies of one mode differ
-by a common shift, such as that of a modulus which is not known well, and a scatter beside what is
-told of each; both are found with the pairing (expectation maximisation). Forward and backward sums
-(Rabiner 1989, Proc. IEEE 77, 257, eqs. 19 to 27) give the probability of every pair, which is what
-is told.
+Both lists ascend. They are aligned by a hidden Markov model: a step takes one of each (the same
+mode), two measured and one computed (a pair that was measured split), one measured and two computed
+(two modes too near each other to be separated), two of each crosswise, three of each in another
+order, or one of either alone (a spurious peak; a mode that was missed). Logarithms of frequencies
+of one mode differ by a common shift, such as that of a modulus which is not known well, and a
+scatter beyond the stated uncertainties; both are estimated with the pairing (expectation
+maximisation). Forward and backward sums (Rabiner 1989, Proc. IEEE 77, 257, eqs. 19 to 27) give the
+probability of every pair.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ from scipy.special import betaln, erf, gammaln
 #: how likely steps are before any frequency is looked at: one of each, a pair measured split, a
 #: peak or a mode alone
 SAME, SPLIT, SPURIOUS, MISSED = 0.8, 0.02, 0.03, 0.12
-#: modes nearer than this, relative, are under one peak: what half power spans at the damping ratio of
-#: which a measurement says nothing, 0.1 %, the upper end of metal parts that hang freely
+#: modes nearer than this, relative, are under one peak: the half-power bandwidth at a damping ratio of
+#: 0.1 %, assumed where none is stated: the upper end of metal parts that hang freely
 BANDWIDTH = 2e-3
 #: two crosswise: scatter of both alone decides whether they changed places
 CROSSED = SAME**2
@@ -37,12 +37,12 @@ HALF, DOUBLE = 0.2, 0.02
 RENAMED = 1e-3
 #: of shapes that are of no mode at all: points that were numbered otherwise
 OTHER = 1e-4
-#: least of 1 - MAC that is told from none
+#: smallest 1 - MAC that counts
 FINEST = 1e-6
-#: shifts of logarithms that are begun with, and the scatter; both settle on what the lists say. The
+#: shifts of logarithms that are begun with, and the scatter; both are then estimated. The
 #: outermost are a modulus 20 % off: cast iron of one name has 90 to 130 GPa, steel and aluminium 5 %
 SHIFTS, SCATTER = (-0.1, -0.05, -0.02, 0.0, 0.02, 0.05, 0.1), 0.02
-#: scatter that is usual beside what is told of each, and how many pairs that counts for: the five
+#: scatter that is usual beyond stated uncertainties, and how many pairs that counts for: the five
 #: measured bodies (validation/experiments) kept 0.09 to 0.5 % with two constants fitted, and a tenth of
 #: a pair is overruled by the first few that say otherwise
 USUAL, WORTH = 5e-3, 0.1
@@ -58,7 +58,7 @@ ROUNDS, TRIED = 12, 2
 
 @dataclass(frozen=True)
 class Peak:
-    """A measured resonance, or a computed mode, as the pairing sees it."""
+    """Measured resonance, or computed mode, as the pairing takes it."""
 
     log_frequency: float
     width: float  #: standard deviation of that
@@ -68,7 +68,7 @@ class Peak:
 
 
 @dataclass(frozen=True, eq=False)
-class Seen:
+class ShapeLikeness:
     """Likeness of measured and computed shapes."""
 
     mac: np.ndarray  #: (n, m) not a number where no shape was measured
@@ -78,34 +78,37 @@ class Seen:
     noise: float
 
     def log_likelihoods(self, modes: Sequence[Peak], scatter: float) -> np.ndarray:
-        """(n, m) logarithms of how much likelier a shape is if it is a mode than if it is none.
+        """Return logarithms (n, m) of how much likelier a shape is if it is a mode than if it is
+        none.
 
-        Of a mode, 1 - MAC is the noise outside its span, ``s^2 chi^2(n - d) / n``, and what is mixed
-        into it of others of its family by the changes that scatter frequencies, to first order
-        ``s_jk / sinh(ln f_j / f_k)`` of each, with the geometric mean of both scatters as one spring
-        makes it; the sum has one chi-square of the same mean and
-        variance (Satterthwaite). Of a shape that is none 1 - MAC has a beta distribution.
+        Of a mode, 1 - MAC is the noise outside its span, ``s^2 chi^2(n - d) / n``, and the share
+        mixed into it from others of its family by the changes that scatter frequencies, to first
+        order ``s_jk / sinh(ln f_j / f_k)`` of each, with the geometric mean of both scatters as one
+        spring makes it; the sum has one chi-square of the same mean and variance (Satterthwaite).
+        Of a shape that is none 1 - MAC has a beta distribution.
         """
         n, free = self.components, self.components - self.spans
-        logs = np.array([one.log_frequency for one in modes])
-        family = np.array([one.family for one in modes])
-        apart = np.sinh(np.abs(np.subtract.outer(logs, logs)))
-        own = np.array([math.sqrt(math.hypot(one.width, scatter)) for one in modes])
-        mixed = np.outer(own, own) / np.maximum(apart, 1e-12)
+        logs = np.array([peak.log_frequency for peak in modes])
+        family = np.array([peak.family for peak in modes])
+        distance = np.sinh(np.abs(np.subtract.outer(logs, logs)))
+        widths = np.array([math.sqrt(math.hypot(peak.width, scatter)) for peak in modes])
+        mixed = np.outer(widths, widths) / np.maximum(distance, 1e-12)
         # of two alone: square of the sine of the angle by which they turn
         mixed = (1 - 1 / np.sqrt(1 + 4 * mixed**2)) / 2
         mixed[(family[:, None] != family) | np.eye(len(modes), dtype=bool)] = 0.0
         mean = self.noise**2 * free / n + mixed.sum(axis=1)
         half_variance = self.noise**4 * free / n**2 + (mixed**2).sum(axis=1)
-        known = (free > 0) & (self.spans > 0)
-        free = np.where(known, free, 1)
-        order = mean**2 / np.where(known, half_variance, 1.0) / 2
-        away = np.clip(1 - np.nan_to_num(self.mac), FINEST, 1 - FINEST)
+        defined = (free > 0) & (self.spans > 0)
+        free = np.where(defined, free, 1)
+        order = mean**2 / np.where(defined, half_variance, 1.0) / 2
+        misfit = np.clip(1 - np.nan_to_num(self.mac), FINEST, 1 - FINEST)
         scale, a, b = mean / order, free / 2, self.spans / 2
-        one = (order - 1) * np.log(away) - away / scale - gammaln(order) - order * np.log(scale)
-        none = (a - 1) * np.log(away) + (b - 1) * np.log1p(-away) - betaln(a, b)
-        out = np.logaddexp(math.log1p(-OTHER) + one - none, math.log(OTHER))
-        return np.where(known & np.isfinite(self.mac), out, 0.0)
+        as_mode = (
+            (order - 1) * np.log(misfit) - misfit / scale - gammaln(order) - order * np.log(scale)
+        )
+        as_no_mode = (a - 1) * np.log(misfit) + (b - 1) * np.log1p(-misfit) - betaln(a, b)
+        out = np.logaddexp(math.log1p(-OTHER) + as_mode - as_no_mode, math.log(OTHER))
+        return np.where(defined & np.isfinite(self.mac), out, 0.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,11 +130,11 @@ _Steps = dict[tuple[int, int, int], np.ndarray]
 def align(
     measured: Sequence[Peak],
     computed: Sequence[Peak],
-    seen: Seen | None = None,
+    shapes: ShapeLikeness | None = None,
     shifts: Sequence[float] = SHIFTS,
 ) -> Alignment:
-    """Lay measured resonances beside computed modes, both by ascending frequency, and by shapes
-    where they were measured; `shifts` of logarithms are begun with.
+    """Align measured resonances and computed modes, both by ascending frequency, and by shapes
+    where they were measured, beginning with some shifts of logarithms.
 
     Examples
     --------
@@ -142,43 +145,45 @@ def align(
     ([0, 1, 3], True)
     """
     starts = sorted(
-        shifts, key=lambda shift: -_Lattice(measured, computed, shift, SCATTER, seen).total
+        shifts, key=lambda shift: -_Lattice(measured, computed, shift, SCATTER, shapes).total
     )
-    ends = [_settled(measured, computed, shift, seen) for shift in starts[:TRIED]]
+    ends = [_settled_lattice(measured, computed, shift, shapes) for shift in starts[:TRIED]]
     return max(ends, key=lambda lattice: lattice.total).alignment()
 
 
-def _settled(
-    measured: Sequence[Peak], computed: Sequence[Peak], shift: float, seen: Seen | None
+def _settled_lattice(
+    measured: Sequence[Peak], computed: Sequence[Peak], shift: float, shapes: ShapeLikeness | None
 ) -> _Lattice:
-    """Sums once shift and scatter have settled from a start."""
-    apart = np.subtract.outer(
-        [one.log_frequency for one in measured], [one.log_frequency for one in computed]
+    """Return sums once shift and scatter have settled from a start."""
+    differences = np.subtract.outer(
+        [peak.log_frequency for peak in measured], [peak.log_frequency for peak in computed]
     )
-    told = np.hypot.outer([one.width for one in measured], [one.width for one in computed]) ** 2
-    lattice = _Lattice(measured, computed, shift, SCATTER, seen)
+    stated = (
+        np.hypot.outer([peak.width for peak in measured], [peak.width for peak in computed]) ** 2
+    )
+    lattice = _Lattice(measured, computed, shift, SCATTER, shapes)
     for _ in range(ROUNDS):
         pairs = lattice.alignment().pairs
         weight = float(pairs.sum())
         if weight < 1e-6:
             break
-        heavy = pairs / (told + lattice.scatter**2)
-        shift = float((heavy * apart).sum() / heavy.sum())
+        heavy = pairs / (stated + lattice.scatter**2)
+        shift = float((heavy * differences).sum() / heavy.sum())
         # of what is off, the part that what is told of each does not explain
-        own = lattice.scatter**2 / (told + lattice.scatter**2)
-        part = (own * (apart - shift)) ** 2 + own * told
+        share = lattice.scatter**2 / (stated + lattice.scatter**2)
+        part = (share * (differences - shift)) ** 2 + share * stated
         # drawn towards what is usual, for a scatter of none has no likelihood; the shift took a pair
         square = float((pairs * part).sum()) + WORTH * USUAL**2
         scatter = max(math.sqrt(square / (max(weight - 1, 0.0) + WORTH)), LEAST)
         moved = abs(shift - lattice.shift) + abs(scatter - lattice.scatter)
-        lattice = _Lattice(measured, computed, shift, scatter, seen)
+        lattice = _Lattice(measured, computed, shift, scatter, shapes)
         if moved < 1e-3 * scatter:
             break
     return lattice
 
 
 class _Lattice:
-    """Forward and backward sums over all ways to lay two lists beside each other, as logarithms."""
+    """Forward and backward sums over all ways to align two lists, as logarithms."""
 
     def __init__(
         self,
@@ -186,13 +191,13 @@ class _Lattice:
         computed: Sequence[Peak],
         shift: float,
         scatter: float,
-        seen: Seen | None,
+        shapes: ShapeLikeness | None,
     ):
         self.shift, self.scatter = shift, scatter
         shape = len(measured), len(computed)
-        shaped = np.zeros(shape) if seen is None else seen.log_likelihoods(computed, scatter)
+        shaped = np.zeros(shape) if shapes is None else shapes.log_likelihoods(computed, scatter)
         #: that a sum of two shapes is within noise of one alone: of its angle
-        chance = 0.0 if seen is None else math.log(2 * seen.noise / math.pi)
+        chance = 0.0 if shapes is None else math.log(2 * shapes.noise / math.pi)
         #: log-likelihoods of every step by where it begins
         self.steps = _steps(measured, computed, shift, scatter, shaped, chance)
         self.forward = _sums(self.steps, shape)
@@ -202,7 +207,7 @@ class _Lattice:
         self.total = float(self.forward[-1, -1])
 
     def alignment(self) -> Alignment:
-        """Probabilities of pairs."""
+        """Return probabilities of pairs."""
         share = {}
         for (a, b, kind), logs in self.steps.items():
             begun = self.forward[: logs.shape[0], : logs.shape[1]]
@@ -215,8 +220,8 @@ class _Lattice:
         pairs[:-1, 1:] += share[2, 2, 0]
         pairs[1:, :-1] += share[2, 2, 0]
         for kind, order in enumerate(ORDERS):
-            for one in _ordered(pairs, order) if (3, 3, kind) in share else ():
-                one += share[3, 3, kind]
+            for view in _ordered(pairs, order) if (3, 3, kind) in share else ():
+                view += share[3, 3, kind]
         spurious, missed = share[1, 0, 0].sum(axis=1), share[0, 1, 0].sum(axis=0)
         return Alignment(pairs, spurious, missed, self.shift, self.scatter)
 
@@ -230,54 +235,60 @@ def _steps(
     chance: float,
 ) -> _Steps:
     n, m = len(measured), len(computed)
-    own, its = (np.array([one.log_frequency for one in peaks]) for peaks in (measured, computed))
-    told = np.array([one.width for one in measured])[:, None] ** 2
-    moved = scatter**2 + np.array([one.width for one in computed]) ** 2
-    away = own[:, None] - its - shift
-    named = np.log([[_named(one, mode) for mode in computed] for one in measured])
-    near = away**2 <= FAR**2 * (moved + told)
-    like = np.where(near, named + _normal(away, moved + told), -np.inf) + shaped
-    alike = np.log([[_alike(one, mode) for mode in computed] for one in measured])
+    of_measured, of_computed = (
+        np.array([peak.log_frequency for peak in peaks]) for peaks in (measured, computed)
+    )
+    stated = np.array([peak.width for peak in measured])[:, None] ** 2
+    moved = scatter**2 + np.array([peak.width for peak in computed]) ** 2
+    difference = of_measured[:, None] - of_computed - shift
+    name = np.log([[_name_probability(peak, mode) for mode in computed] for peak in measured])
+    near = difference**2 <= FAR**2 * (moved + stated)
+    likeness = np.where(near, name + _normal(difference, moved + stated), -np.inf) + shaped
+    multiplicity = np.log(
+        [[_multiplicity_probability(peak, mode) for mode in computed] for peak in measured]
+    )
     # a peak that is nothing is anywhere in the range
-    logs = np.concatenate([own, its])
+    logs = np.concatenate([of_measured, of_computed])
     alone = math.log(SPURIOUS / max(float(np.ptp(logs)), scatter))
     pair = np.array([mode.multiplicity == 2 for mode in computed], bool)
-    single = np.array([one.multiplicity != 2 for one in measured])[:, None]
+    single = np.array([peak.multiplicity != 2 for peak in measured])[:, None]
     split = np.where(pair & single[:-1] & single[1:], math.log(SPLIT), -np.inf)
     # the peak is amid both, which differ by less than they can be told apart
-    amid = _normal((away[:, :-1] + away[:, 1:]) / 2, told + (moved[:-1] + moved[1:]) / 4)
-    sigma, gap = np.sqrt(2 * (moved[:-1] + moved[1:])), np.diff(its)
+    amid = _normal(
+        (difference[:, :-1] + difference[:, 1:]) / 2, stated + (moved[:-1] + moved[1:]) / 4
+    )
+    sigma, gap = np.sqrt(2 * (moved[:-1] + moved[1:])), np.diff(of_computed)
     band = np.array([mode.bandwidth for mode in computed])[:-1]
-    within = (erf((band - gap) / sigma) + erf((band + gap) / sigma)) / 2
+    merged = (erf((band - gap) / sigma) + erf((band + gap) / sigma)) / 2
     # a shape of both at once is within noise of one alone by chance
-    one = np.maximum(shaped[:, :-1], shaped[:, 1:])
-    amid += one + np.where(one > 0, chance, 0.0) + named[:, :-1] + named[:, 1:]
+    best = np.maximum(shaped[:, :-1], shaped[:, 1:])
+    amid += best + np.where(best > 0, chance, 0.0) + name[:, :-1] + name[:, 1:]
     amid = np.where(near[:, :-1] & near[:, 1:], amid, -np.inf)
-    crossed = like[:-1, 1:] + like[1:, :-1] + alike[:-1, 1:] + alike[1:, :-1]
-    # frequencies alone tell no orders of three apart
+    crossed = likeness[:-1, 1:] + likeness[1:, :-1] + multiplicity[:-1, 1:] + multiplicity[1:, :-1]
+    # frequencies alone cannot distinguish orders of three
     turned = {
-        (3, 3, kind): sum(_ordered(like + alike, order)) + math.log(TURNED)
+        (3, 3, kind): sum(_ordered(likeness + multiplicity, order)) + math.log(TURNED)
         for kind, order in enumerate(ORDERS if shaped.any() else ())
     }
     return {
         (1, 0, 0): np.full((n, m + 1), alone),
         (0, 1, 0): np.full((n + 1, m), math.log(MISSED)),
-        (1, 1, 0): like + alike + math.log(SAME),
-        (2, 1, 0): like[:-1] + like[1:] + split,
-        (1, 2, 0): amid + np.log(np.maximum(SAME * within, TINY)),
+        (1, 1, 0): likeness + multiplicity + math.log(SAME),
+        (2, 1, 0): likeness[:-1] + likeness[1:] + split,
+        (1, 2, 0): amid + np.log(np.maximum(SAME * merged, TINY)),
         (2, 2, 0): crossed + math.log(CROSSED),
         **turned,
     }
 
 
 def _ordered(pairs: np.ndarray, order: Sequence[int]) -> list[np.ndarray]:
-    """Views of a matrix of pairs: of three of each from every place on, each with its own in an order."""
+    """Return views of a matrix of pairs: three of each from every place on, in an order."""
     n, m = (max(size - 2, 0) for size in pairs.shape)
-    return [pairs[k : k + n, own : own + m] for k, own in enumerate(order)]
+    return [pairs[k : k + n, column : column + m] for k, column in enumerate(order)]
 
 
 def _sums(steps: _Steps, shape: tuple[int, int]) -> np.ndarray:
-    """(n + 1, m + 1) logarithms of sums over all ways from the beginning of both lists."""
+    """Return logarithms (n + 1, m + 1) of sums over all ways from the beginning of both lists."""
     n, m = shape
     out = np.full((n + 1, m + 1), -np.inf)
     missed = np.concatenate([np.zeros((n + 1, 1)), np.cumsum(steps[0, 1, 0], axis=1)], axis=1)
@@ -292,18 +303,18 @@ def _sums(steps: _Steps, shape: tuple[int, int]) -> np.ndarray:
     return out
 
 
-def _normal(away: np.ndarray, variance: np.ndarray) -> np.ndarray:
-    """Logarithms of the density of a normal distribution."""
-    return -(away**2) / (2 * variance) - np.log(2 * np.pi * variance) / 2
+def _normal(difference: np.ndarray, variance: np.ndarray) -> np.ndarray:
+    """Return logarithms of the density of a normal distribution."""
+    return -(difference**2) / (2 * variance) - np.log(2 * np.pi * variance) / 2
 
 
-def _named(one: Peak, mode: Peak) -> float:
-    """Probability that a mode is called as it is."""
-    return RENAMED if one.family and mode.family and one.family != mode.family else 1.0
+def _name_probability(peak: Peak, mode: Peak) -> float:
+    """Return the probability that a mode has the name that was measured."""
+    return RENAMED if peak.family and mode.family and peak.family != mode.family else 1.0
 
 
-def _alike(one: Peak, mode: Peak) -> float:
-    """Probability that a multiplicity is measured of a mode."""
-    if one.multiplicity is None or one.multiplicity == mode.multiplicity:
+def _multiplicity_probability(peak: Peak, mode: Peak) -> float:
+    """Return the probability that a multiplicity is measured of a mode."""
+    if peak.multiplicity is None or peak.multiplicity == mode.multiplicity:
         return 1.0
-    return HALF if one.multiplicity == 1 else DOUBLE
+    return HALF if peak.multiplicity == 1 else DOUBLE

@@ -1,6 +1,6 @@
-"""Units of responses as the labels of their axes say them: ``m/s^2``, ``g``, ``lbf``, ``kHz``.
+"""Units of responses by the labels of their axes: ``m/s^2``, ``g``, ``lbf``, ``kHz``.
 
-A label is free text that test equipment writes; what is not known here says nothing.
+A label is free text that test equipment writes; an unknown one is ignored.
 """
 
 from __future__ import annotations
@@ -32,32 +32,40 @@ _MOTION = re.compile(
 
 
 def motion(label: str) -> tuple[float, int] | None:
-    """SI units in the unit of a motion, and how often the displacement is differentiated in it."""
+    """Return SI units in the unit of a motion, and how often the displacement is differentiated in
+    it.
+    """
     word = _bare(label)
     if word in GRAVITY:
         return GRAVITY[word], 2
     parts = _MOTION.fullmatch(word)
     if parts is None or parts["length"] not in LENGTHS:
         return None
-    times = 0 if "/" not in word else 2 if parts["square"] else 1
-    return LENGTHS[parts["length"]], times
+    order = 0 if "/" not in word else 2 if parts["square"] else 1
+    return LENGTHS[parts["length"]], order
 
 
 def force(label: str) -> float | None:
-    """Newtons in the unit of a force."""
+    """Return newtons in the unit of a force."""
     return FORCES.get(_bare(label))
 
 
 def frequency(label: str) -> float | None:
-    """Hertz in the unit of a frequency."""
+    """Return hertz in the unit of a frequency."""
     return FREQUENCIES.get(_bare(label))
 
 
 def response(label: str) -> tuple[float, int] | None:
-    """SI units in the unit of a motion over a force, and derivatives, such as of ``mm/s^2/N``."""
+    """Return SI units in the unit of a motion over a force, and derivatives, such as of
+    ``mm/s^2/N``.
+    """
     above, _, below = label.rpartition("/")
-    over, under = motion(above.strip().strip("()")), force(below)
-    return None if over is None or under is None else (over[0] / under, over[1])
+    numerator, denominator = motion(above.strip().strip("()")), force(below)
+    return (
+        None
+        if numerator is None or denominator is None
+        else (numerator[0] / denominator, numerator[1])
+    )
 
 
 def _bare(label: str) -> str:

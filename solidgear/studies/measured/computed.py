@@ -1,4 +1,4 @@
-"""Natural frequencies of a scene up to where something was measured, each with its bar."""
+"""Natural frequencies of a scene up to the highest measured one, each with an error bar."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from solidgear.studies.sweep.bench import surface
 Progress = Callable[[str], None]
 #: of the highest measured frequency: modes above it may be what was measured
 BEYOND = 1.1
-#: shapes that are asked for first, and beside those that are thought to be there
+#: shapes that are solved for first, and in addition to the expected ones
 FEW, MORE = 24, 6
 #: highest order of elements that is tried, and steps between
 HIGHEST, STEP = 11, 2
@@ -40,8 +40,8 @@ class Computed:
     scene: Scene
     body: Body
     modes: tuple[Mode, ...]  #: elastic ones by frequency
-    bars: tuple[float, ...]  #: relative; infinite where nothing tells it
-    rung: str  #: model
+    bars: tuple[float, ...]  #: relative; infinite where none is known
+    model: str  #: model
     options: dict[str, Any]  #: of its builder
     limit: float  #: hz, up to which there are all modes
 
@@ -49,29 +49,31 @@ class Computed:
     def mesh(self) -> str:
         """Model and mesh in words."""
         order = self.options.get("order")
-        return f"{self.rung}, order {order}" if order else self.rung
+        return f"{self.model}, order {order}" if order else self.model
 
     def widths(self, springs: float) -> np.ndarray:
-        """(modes,) standard deviations of logarithms of frequencies that those of the stiffnesses of
-        all bearings make, each on its own: half the share of a mode's energy (Rayleigh).
+        """Return standard deviations (modes,) of logarithms of frequencies from those of the
+        stiffnesses of all bearings, each independent: half the share of a mode's energy (Rayleigh).
 
-        A stiffness has the deviation that the scene's ``[uncertain]`` states, else ``springs``; with
-        none of these there are no widths, for stiffnesses are what they are.
+        A stiffness has the deviation that the scene's ``[uncertain]`` states, else ``springs``; if
+        that is zero the widths are zero.
         """
         if not springs:
             return np.zeros(len(self.modes))
         supports = as_supports(self.scene)
-        said = {u.path: u.deviation for u in self.scene.uncertain}
-        known = [said.get(f"bearing.{name}.stiffness", springs) for name in supports.ports]
-        count, there = len(supports.ports), supports.rows(self.body)
-        own = np.einsum("piqj->pqij", supports.stiffness.reshape(count, 6, count, 6))
-        own, out = own[range(count), range(count)], []
+        stated = {u.path: u.deviation for u in self.scene.uncertain}
+        deviations = [stated.get(f"bearing.{name}.stiffness", springs) for name in supports.ports]
+        count, rows = len(supports.ports), supports.rows(self.body)
+        stiffness = np.einsum("piqj->pqij", supports.stiffness.reshape(count, 6, count, 6))
+        stiffness, widths = stiffness[range(count), range(count)], []
         for mode in self.modes:
             states = [state for state, _ in mode_form(self.body, supports, mode).pairs]
-            held = np.array([state.motions[there].reshape(count, 6) for state in states])
-            energy = np.einsum("spi,pij,spj->p", held, own, held) / len(states)
-            out.append(np.linalg.norm(known * energy) / (2 * np.pi * mode.frequency_hz) ** 2)
-        return np.array(out) / 2
+            motions = np.array([state.motions[rows].reshape(count, 6) for state in states])
+            energy = np.einsum("spi,pij,spj->p", motions, stiffness, motions) / len(states)
+            widths.append(
+                np.linalg.norm(deviations * energy) / (2 * np.pi * mode.frequency_hz) ** 2
+            )
+        return np.array(widths) / 2
 
     @property
     def barred(self) -> tuple[BarredMode, ...]:
@@ -90,99 +92,103 @@ def computed_up_to(
     progress: Progress = lambda _: None,
     before: Computed | None = None,
 ) -> Computed:
-    """All modes up to a little above a frequency, Hz, by the cheapest solid; one of revolution is
-    refined until the bar of every mode is within a relative tolerance. It begins on the mesh of
-    what was computed `before` of a scene like it.
+    """Compute all modes up to a little above a frequency, Hz, by the cheapest solid; one of
+    revolution is refined until the error bar of every mode is within a relative tolerance. It
+    begins on the mesh of an earlier result `before` of a similar scene.
     """
     limit = BEYOND * highest
     settled = None
-    if before is None or not (LADDER[before.rung].bounded or without_axis(scene)):
+    if before is None or not (LADDER[before.model].bounded or without_axis(scene)):
         settled = settle(scene, tolerance, "modes", progress=progress)
-        rung, options, body = settled.rung, dict(settled.options), settled.body
+        model, options, body = settled.rung, dict(settled.options), settled.body
     else:
-        rung, options = before.rung, dict(before.options)
-        alike = surface(scene) == surface(before.scene)
-        body = before.body if alike else build(scene, rung, **options)
+        model, options = before.model, dict(before.options)
+        same_surface = surface(scene) == surface(before.scene)
+        body = before.body if same_surface else build(scene, model, **options)
     progress("modes and how sure they are")
     listed, bars = _barred(scene, body, limit, options, settled)
-    while LADDER[rung].bounded and _largest(listed, bars, highest) > tolerance:
+    while LADDER[model].bounded and _largest(listed, bars, highest) > tolerance:
         if options.get("order", 3) + STEP > HIGHEST:
             break
         options["order"] = options.get("order", 3) + STEP
         progress(f"order {options['order']}: bars of all modes")
-        body = build(scene, rung, **options)
+        body = build(scene, model, **options)
         listed, bars = _barred(scene, body, limit, options, settled)
-    return Computed(scene, body, tuple(listed), tuple(bars), rung, options, limit)
+    return Computed(scene, body, tuple(listed), tuple(bars), model, options, limit)
 
 
 @pinned
 def computed_like(before: Computed, scene: Scene) -> Computed:
-    """The same modes of a scene like one that was solved, on its mesh; bars are those it had there."""
+    """Compute the same modes of a similar scene, on the mesh and with the error bars of an earlier
+    result.
+    """
     body = before.body
     if surface(scene) != surface(before.scene):
-        body = build(scene, before.rung, **before.options)
+        body = build(scene, before.model, **before.options)
     shapes = sum(mode.multiplicity for mode in before.modes)
     listed = _elastic(_modes(scene, body, before.limit, shapes + MORE))
     bars = {str(mode.name): bar for mode, bar in zip(before.modes, before.bars)}
     # planes that part have other names, and bars like the others
     usual = max((bar for bar in before.bars if math.isfinite(bar)), default=math.inf)
-    told = tuple(bars.get(str(mode.name), usual) for mode in listed)
-    return replace(before, scene=scene, body=body, modes=tuple(listed), bars=told)
+    listed_bars = tuple(bars.get(str(mode.name), usual) for mode in listed)
+    return replace(before, scene=scene, body=body, modes=tuple(listed), bars=listed_bars)
 
 
 @pinned
 def motions_up_to(computed: Computed, limit: float) -> list[tuple[Mode, float]]:
-    """All modes up to a frequency, Hz, with the rigid motions that nothing holds, and their bars: of
-    the highest of a family the largest of all, and infinite where nothing tells one.
+    """Return all modes up to a frequency, Hz, with free rigid motions, and their error bars: the
+    largest of all for the highest of a family, infinite where none is known.
     """
     scene, body = computed.scene, computed.body
-    found = _modes(scene, body, limit, 2 * len(computed.modes))
-    known = {str(mode.name): bar for mode, bar in zip(computed.modes, computed.bars)}
-    bars = known | _bars(scene, body, found, computed.options, None)
+    solved = _modes(scene, body, limit, 2 * len(computed.modes))
+    known_bars = {str(mode.name): bar for mode, bar in zip(computed.modes, computed.bars)}
+    bars = known_bars | _bars(scene, body, solved, computed.options, None)
     usual = max((bar for bar in bars.values() if math.isfinite(bar)), default=math.inf)
-    told = [
+    all_bars = [
         usual if math.isinf(bars.get(str(m.name), math.inf)) else bars[str(m.name)]
-        for m in found.modes
+        for m in solved.modes
     ]
-    return [(m, bar if m.frequency_hz > 0 else 0.0) for m, bar in zip(found.modes, told)]
+    return [(m, bar if m.frequency_hz > 0 else 0.0) for m, bar in zip(solved.modes, all_bars)]
 
 
 def _barred(
     scene: Scene, body: Body, limit: float, options: Mapping[str, Any], settled: Settled | None
 ) -> tuple[list[Mode], list[float]]:
-    """Modes of a body and their bars."""
-    found = _modes(scene, body, limit)
-    told = _bars(scene, body, found, options, settled)
-    listed = _elastic(found)
-    return listed, [told.get(str(mode.name), math.inf) for mode in listed]
+    """Return modes of a body and their error bars."""
+    solved = _modes(scene, body, limit)
+    by_name = _bars(scene, body, solved, options, settled)
+    listed = _elastic(solved)
+    return listed, [by_name.get(str(mode.name), math.inf) for mode in listed]
 
 
 def _bars(
-    scene: Scene, body: Body, found: ModeSet, options: Mapping[str, Any], settled: Settled | None
+    scene: Scene, body: Body, solved: ModeSet, options: Mapping[str, Any], settled: Settled | None
 ) -> dict[str, float]:
-    """Relative bars by the names of modes."""
+    """Return relative error bars by the names of modes."""
     if LADDER[body.fidelity].bounded:
-        return mode_bars(scene, body, as_supports(scene), found)
+        return mode_bars(scene, body, as_supports(scene), solved)
     if without_axis(scene):
-        return coarser_bars(scene, body, found, options)
-    return bars_of_modes(scene, body, found, settled)
+        return coarser_bars(scene, body, solved, options)
+    return bars_of_modes(scene, body, solved, settled)
 
 
 def _modes(scene: Scene, body: Body, limit: float, count: int = FEW) -> ModeSet:
-    """All modes up to a frequency: as many shapes are asked for as it takes to pass it."""
+    """Return all modes up to a frequency: the number of shapes grows until it is passed."""
     while True:
-        found = modes(body, scene, n=min(count, MOST_MODES), max_frequency=limit)
-        listed = _elastic(found)
+        solved = modes(body, scene, n=min(count, MOST_MODES), max_frequency=limit)
+        listed = _elastic(solved)
         if count >= MOST_MODES or sum(m.multiplicity for m in listed) < count:
-            return found
+            return solved
         count = math.ceil(count * limit / listed[-1].frequency_hz) + MORE
 
 
-def _elastic(found: ModeSet) -> list[Mode]:
-    return [mode for mode in found.modes if mode.frequency_hz > 0]
+def _elastic(solved: ModeSet) -> list[Mode]:
+    return [mode for mode in solved.modes if mode.frequency_hz > 0]
 
 
 def _largest(listed: list[Mode], bars: list[float], highest: float) -> float:
-    """Largest bar up to a frequency; the highest mode of a family may have none."""
-    told = [b for m, b in zip(listed, bars) if m.frequency_hz <= highest and math.isfinite(b)]
-    return max(told, default=0.0)
+    """Return the largest error bar up to a frequency; the highest mode of a family may have none."""
+    finite_bars = [
+        b for m, b in zip(listed, bars) if m.frequency_hz <= highest and math.isfinite(b)
+    ]
+    return max(finite_bars, default=0.0)

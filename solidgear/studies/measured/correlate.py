@@ -1,5 +1,5 @@
-"""Measured resonances beside those of a scene: which is which, how sure that is, and how far apart
-they are.
+"""Measured resonances paired with modes of a scene: which is which, how sure that is, and how much
+they differ.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from solidgear.studies.measured.data import Measured, MeasuredMode
 from solidgear.studies.measured.same_part import FAR_SHIFTS, Common, Likeness, alignment_of
 from solidgear.studies.measured.shapes import OnPoints
 
-#: a pair is sure from this probability on; below the second it is not told as a possibility
+#: a pair is sure from this probability on; below the second it is not listed as a possibility
 SURE, POSSIBLE = 0.95, 0.05
 #: standard deviations of a measured frequency that count as its bar
 DEVIATIONS = 2.0
@@ -36,7 +36,7 @@ SPRINGS = 0.2
 
 @dataclass(frozen=True)
 class Pair:
-    """A measured resonance and the mode it is."""
+    """Measured resonance and mode."""
 
     number: int  #: of the resonance in its file, from one
     measured: MeasuredMode
@@ -49,7 +49,7 @@ class Pair:
 
     @property
     def sure(self) -> bool:
-        """Tell whether no other mode comes into question."""
+        """Return whether no other mode is possible."""
         return self.computed is not None and self.probability >= SURE and not self.others
 
     @property
@@ -61,8 +61,8 @@ class Pair:
 
     @property
     def band(self) -> float | None:
-        """Two standard deviations of the measured frequency and the bar of the computed one, relative
-        to the measured; None where one of them is not known.
+        """Two standard deviations of the measured frequency and the bar of the computed one,
+        relative to the measured; None where one of them is not known.
         """
         width = self.measured.width_hz
         if self.computed is None or width is None or self.computed.width is None:
@@ -82,7 +82,7 @@ class Pair:
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Correlation(Displayed):
-    """Measured resonances beside computed modes."""
+    """Measured resonances paired with computed modes."""
 
     shown: ClassVar[str] = "correlation"
 
@@ -104,8 +104,8 @@ class Correlation(Displayed):
     @property
     def rms(self) -> float:
         """Root mean square of the differences of all that have a mode, relative."""
-        apart = [pair.relative for pair in self.pairs if pair.relative is not None]
-        return float(np.sqrt(np.mean(np.square(apart)))) if apart else math.nan
+        differences = [pair.relative for pair in self.pairs if pair.relative is not None]
+        return float(np.sqrt(np.mean(np.square(differences)))) if differences else math.nan
 
     @property
     def common(self) -> Common | None:
@@ -114,9 +114,9 @@ class Correlation(Displayed):
 
     @property
     def worst(self) -> Pair | None:
-        """The pair that is furthest apart."""
-        known = [pair for pair in self.pairs if pair.relative is not None]
-        return max(known, key=lambda pair: abs(pair.relative or 0.0), default=None)
+        """Pair with the largest difference."""
+        paired = [pair for pair in self.pairs if pair.relative is not None]
+        return max(paired, key=lambda pair: abs(pair.relative or 0.0), default=None)
 
     @property
     def sentences(self) -> list[str]:
@@ -124,11 +124,14 @@ class Correlation(Displayed):
         return list(_sentences(self))
 
     def _damping(self, number: int) -> dict[str, float]:
-        """Damping ratio of a resonance found in responses, and its deviation."""
-        found = self.measured.responses
-        if found is None:
+        """Return the damping ratio of a resonance found in responses, and the deviation."""
+        responses = self.measured.responses
+        if responses is None:
             return {}
-        ratio, deviation = found.fit.damping[number - 1], found.fit.deviations[1][number - 1]
+        ratio, deviation = (
+            responses.fit.damping[number - 1],
+            responses.fit.deviations[1][number - 1],
+        )
         return {"damping": float(ratio), "damping_deviation": float(deviation)}
 
     @property
@@ -176,29 +179,29 @@ def correlate(
     tol: float | None = None,
     progress: Callable[[str], None] = lambda _: None,
 ) -> Correlation:
-    """Hold measured resonances against the modes of a scene, whose relative bars are brought below
-    `tol`, by default a tenth of the tolerance of the scene.
+    """Pair measured resonances with the modes of a scene, whose relative error bars are brought
+    below `tol`, by default a tenth of the tolerance of the scene.
     """
     tol = scene.ask.tolerance / 10 if tol is None else tol
     highest = measured.modes[-1].frequency
-    correlation = _beside(measured, computed_up_to(scene, highest, tol, progress))
+    correlation = _paired(measured, computed_up_to(scene, highest, tol, progress))
     if correlation.likeness.sentence or correlation.likeness.condition:
         # of a part that is much softer than the scene more modes lie below
         highest *= math.exp(max(FAR_SHIFTS))
         before = correlation.computed
-        wider = _beside(measured, computed_up_to(scene, highest, tol, progress, before))
+        wider = _paired(measured, computed_up_to(scene, highest, tol, progress, before))
         if wider.likeness.believed:
             return wider
     return correlation
 
 
 def placed_in(measured: Measured, computed: Computed) -> Measured:
-    """Measured resonances with their points in the frame of the scene."""
+    """Return measured resonances with their points in the frame of the scene."""
     return measured.placed(computed.body.surface({}), not without_axis(computed.scene))
 
 
 def on_points_of(measured: Measured, computed: Computed) -> OnPoints | None:
-    """Modes on the measuring points; None without measured shapes."""
+    """Return modes on the measuring points; None without measured shapes."""
     shapes = measured.on_points
     return None if shapes is None else OnPoints(shapes, measured.noise[0], computed)
 
@@ -206,19 +209,19 @@ def on_points_of(measured: Measured, computed: Computed) -> OnPoints | None:
 def peaks_of(
     measured: Measured, computed: Computed, springs: float = 0.0
 ) -> tuple[list[Peak], list[Peak]]:
-    """Both lists as the pairing sees them; `springs` is the standard deviation of the logarithm of a
-    bearing's stiffness.
+    """Return both lists as the pairing takes them; `springs` is the standard deviation of the
+    logarithm of a bearing's stiffness.
     """
-    mine = [
+    of_measured = [
         Peak(
-            math.log(one.frequency),
-            UNTOLD if one.width_hz is None else one.width_hz / one.frequency,
-            one.multiplicity,
-            ModeName(one.name).family if one.name else "",
+            math.log(mode.frequency),
+            UNTOLD if mode.width_hz is None else mode.width_hz / mode.frequency,
+            mode.multiplicity,
+            ModeName(mode.name).family if mode.name else "",
         )
-        for one in measured.modes
+        for mode in measured.modes
     ]
-    its = [
+    of_computed = [
         Peak(
             math.log(m.frequency_hz),
             math.hypot(min(bar, 0.1), width),
@@ -228,85 +231,87 @@ def peaks_of(
         )
         for m, bar, width in zip(computed.modes, computed.bars, computed.widths(springs).tolist())
     ]
-    return mine, its
+    return of_measured, of_computed
 
 
-def _beside(measured: Measured, computed: Computed) -> Correlation:
-    """Measured resonances and modes that were computed."""
+def _paired(measured: Measured, computed: Computed) -> Correlation:
+    """Pair measured resonances with computed modes."""
     measured = placed_in(measured, computed)
     on_points = on_points_of(measured, computed)
     peaks = peaks_of(measured, computed, SPRINGS)
-    found = alignment_of(*peaks, on_points.seen if on_points else None)
-    return _correlation(computed.scene, measured, computed, found, on_points)
+    alignment = alignment_of(*peaks, on_points.likeness if on_points else None)
+    return _correlation(computed.scene, measured, computed, alignment, on_points)
 
 
 def _correlation(
     scene: Scene,
     measured: Measured,
     computed: Computed,
-    found: Alignment,
+    alignment: Alignment,
     on_points: OnPoints | None,
 ) -> Correlation:
     barred = computed.barred
-    mac = None if on_points is None else on_points.seen.mac
+    mac = None if on_points is None else on_points.likeness.mac
     pairs = []
-    for k, one in enumerate(measured.modes):
-        likely = [int(j) for j in np.argsort(-found.pairs[k]) if found.pairs[k, j] > POSSIBLE]
-        mode, share, like = None, float(found.spurious[k]), None
-        if likely and found.pairs[k, likely[0]] >= found.spurious[k]:
+    for k, resonance in enumerate(measured.modes):
+        likely = [
+            int(j) for j in np.argsort(-alignment.pairs[k]) if alignment.pairs[k, j] > POSSIBLE
+        ]
+        mode, share, like = None, float(alignment.spurious[k]), None
+        if likely and alignment.pairs[k, likely[0]] >= alignment.spurious[k]:
             first, *likely = likely
-            mode, share = barred[first], float(found.pairs[k, first])
+            mode, share = barred[first], float(alignment.pairs[k, first])
             like = None if mac is None or np.isnan(mac[k, first]) else float(mac[k, first])
-        others = tuple((barred[j], float(found.pairs[k, j])) for j in likely)
-        pairs.append(Pair(k + 1, one, mode, share, others, like))
-    highest = measured.modes[-1].frequency * math.exp(-found.shift)
+        alternatives = tuple((barred[j], float(alignment.pairs[k, j])) for j in likely)
+        pairs.append(Pair(k + 1, resonance, mode, share, alternatives, like))
+    highest = measured.modes[-1].frequency * math.exp(-alignment.shift)
     below = [mode for mode in computed.modes if mode.frequency_hz <= highest]
     missed = tuple(
         (mode, float(share))
-        for mode, share in zip(barred, found.missed)
+        for mode, share in zip(barred, alignment.missed)
         if share > POSSIBLE and mode.frequency_hz <= highest
     )
     return Correlation(
-        scene.title or scene.name,
-        measured.title,
-        tuple(pairs),
-        missed,
-        computed.mesh,
-        mac,
-        measured,
-        computed,
-        Likeness.of(found),
-        () if on_points is None else on_points.sentences(below),
+        scene=scene.title or scene.name,
+        title=measured.title,
+        pairs=tuple(pairs),
+        missed=missed,
+        mesh=computed.mesh,
+        mac=mac,
+        measured=measured,
+        computed=computed,
+        likeness=Likeness.of(alignment),
+        of_points=() if on_points is None else on_points.sentences(below),
     )
 
 
-def _sentences(found: Correlation) -> Iterator[str]:
-    paired = [pair for pair in found.pairs if pair.computed is not None]
+def _sentences(correlation: Correlation) -> Iterator[str]:
+    paired = [pair for pair in correlation.pairs if pair.computed is not None]
     sure = [pair for pair in paired if pair.sure]
-    doubt = found.likeness.sentence
+    doubt = correlation.likeness.sentence
     if doubt:
         yield doubt
     yield (
-        f"{len(paired)} of {len(found.pairs)} measured resonances have a mode, {len(sure)} of them "
+        f"{len(paired)} of {len(correlation.pairs)} measured resonances have a mode, {len(sure)} of them "
         f"with a probability of {100 * SURE:.0f} % and no other in question"
         f"{', if they are of this part' if doubt else ''}."
     )
-    worst = found.worst
+    worst = correlation.worst
     if worst is not None and worst.computed is not None and worst.relative is not None:
         yield (
-            f"Computed frequencies are {100 * found.rms:.2g} % rms from the measured ones, at most "
+            f"Computed frequencies are {100 * correlation.rms:.2g} % rms from the measured ones, at most "
             f"{100 * worst.relative:+.2g} %, of {worst.computed.name}."
         )
-    if found.common is not None and not doubt:
-        yield found.common.sentence
-    if found.likeness.condition:
-        yield found.likeness.condition
+    if correlation.common is not None and not doubt:
+        yield correlation.common.sentence
+    if correlation.likeness.condition:
+        yield correlation.likeness.condition
     if worst is not None and all(pair.measured.width_hz is None for pair in paired):
         yield (
             "No resonance says how sure it is, so that none has a band: write for example "
             'uncertainty = "0.1 %".'
         )
-    for pair in found.pairs:
+    for pair in correlation.pairs:
         if pair.computed is None:
             yield (
                 f"{pair.measured.frequency:.6g} Hz was measured and not computed: no resonance of this "
@@ -314,17 +319,19 @@ def _sentences(found: Correlation) -> Iterator[str]:
             )
         elif not pair.sure:
             names = ", ".join(f"{mode.name} ({100 * share:.0f} %)" for mode, share in pair.others)
-            own = f"{pair.computed.name} ({100 * pair.probability:.0f} %)"
-            yield f"{pair.measured.frequency:.6g} Hz is {own}" + (
+            likeliest = f"{pair.computed.name} ({100 * pair.probability:.0f} %)"
+            yield f"{pair.measured.frequency:.6g} Hz is {likeliest}" + (
                 f", or with it {names}." if names else "."
             )
-    yield from found.measured.remarks
-    yield from found.of_points
-    if found.missed:
-        named = ", ".join(f"{mode.name} at {mode.frequency_hz:.6g} Hz" for mode, _ in found.missed)
-        yield f"Computed and not measured: {named}."
+    yield from correlation.measured.remarks
+    yield from correlation.of_points
+    if correlation.missed:
+        missed = ", ".join(
+            f"{mode.name} at {mode.frequency_hz:.6g} Hz" for mode, _ in correlation.missed
+        )
+        yield f"Computed and not measured: {missed}."
 
 
 def _plain(row: np.ndarray) -> list[float] | None:
-    """A row of MAC; None of a resonance without a shape."""
+    """Return a row of MAC as a list; None for a resonance without a shape."""
     return None if np.isnan(row).any() else row.tolist()

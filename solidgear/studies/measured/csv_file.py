@@ -18,8 +18,8 @@ from solidgear.studies.measured.universal import Responses
 _HEAD = re.compile(r"\s*(?P<word>\w+)\s*(?:\[\s*(?P<unit>[^\]]+?)\s*\])?\s*")
 
 
-def read_csv(path: Path, known: Sequence[str]) -> dict[str, Any] | Responses:
-    """The list of resonances of a file whose columns have `known` words, or its responses."""
+def read_csv(path: Path, words: Sequence[str]) -> dict[str, Any] | Responses:
+    """Return the list of resonances of a file whose columns have `known` words, or its responses."""
     try:
         with path.open(newline="", encoding="utf-8-sig") as file:
             rows = [row for row in csv.reader(file) if any(cell.strip() for cell in row)]
@@ -31,18 +31,18 @@ def read_csv(path: Path, known: Sequence[str]) -> dict[str, Any] | Responses:
         )
     if any(head.split("[")[0].strip() == "real" for head in rows[0]):
         return _columns(rows)
-    heads = [_head(head, known) for head in rows[0]]
+    heads = [_head(head, words) for head in rows[0]]
     if "frequency" not in [word for word, _ in heads]:
         raise SceneError('has no column "frequency [Hz]"')
     return {"mode": [_entry(heads, row) for row in rows[1:]]}
 
 
 def _columns(rows: Sequence[Sequence[str]]) -> Responses:
-    """Responses of columns: the frequency, then real and imaginary parts in turn."""
+    """Return responses of columns: the frequency, then real and imaginary parts in turn."""
     words = [head.split("[")[0].strip() for head in rows[0]]
     unit = _HEAD.fullmatch(rows[0][0])
-    told = words == ["frequency"] + ["real", "imaginary"] * (len(words) // 2)
-    if not told or unit is None or not unit["unit"]:
+    as_stated = words == ["frequency"] + ["real", "imaginary"] * (len(words) // 2)
+    if not as_stated or unit is None or not unit["unit"]:
         raise SceneError(
             'has responses under other heads than "frequency [Hz], real, imaginary" and as many more '
             "pairs of real and imaginary as there are responses"
@@ -55,17 +55,17 @@ def _columns(rows: Sequence[Sequence[str]]) -> Responses:
     return Responses(hertz, (numbers[:, 1::2] + 1j * numbers[:, 2::2]).T)
 
 
-def _head(text: str, known: Sequence[str]) -> tuple[str, str]:
-    """Word and unit of a head."""
-    found = _HEAD.fullmatch(text)
-    if found is None or found["word"] not in known:
+def _head(text: str, words: Sequence[str]) -> tuple[str, str]:
+    """Return the word and unit of a head."""
+    match = _HEAD.fullmatch(text)
+    if match is None or match["word"] not in words:
         raise SceneError(
-            f"column {show(text)} is unknown; there are {', '.join(known)}, with a unit as in "
+            f"column {show(text)} is unknown; there are {', '.join(words)}, with a unit as in "
             '"frequency [kHz]"'
         )
-    if found["word"] in ("frequency", "uncertainty") and not found["unit"]:
-        raise SceneError(f'column {show(text)} has no unit; write it as in "{found["word"]} [Hz]"')
-    return found["word"], found["unit"] or ""
+    if match["word"] in ("frequency", "uncertainty") and not match["unit"]:
+        raise SceneError(f'column {show(text)} has no unit; write it as in "{match["word"]} [Hz]"')
+    return match["word"], match["unit"] or ""
 
 
 def _entry(heads: Sequence[tuple[str, str]], row: Sequence[str]) -> dict[str, Any]:

@@ -1,10 +1,9 @@
-"""Measured resonances from a file: frequencies, how sure they are, and what is known of each.
+"""Measured resonances from a file: frequencies, their uncertainty, and known properties.
 
 A TOML file holds a list ``mode``; a CSV file has a head such as ``frequency [kHz], multiplicity``;
 a universal file has shapes as well, which a TOML file may join to its resonances, or frequency
-responses; a CSV file of those has the head ``frequency [Hz], real, imaginary``. A TOML
-file with ``file = "tap.uff"`` in place of a list says where the points of one lie and of what unit it
-is.
+responses; a CSV file of those has the head ``frequency [Hz], real, imaginary``. A TOML file with
+``file = "tap.uff"`` in place of a list states where the points of that file lie, and in which unit.
 
     title = "Tap test, hung on two cords"
     uncertainty = "0.1 %"           # of all modes that say nothing else
@@ -50,7 +49,9 @@ NOISE = (0.05, "relative")
 
 
 def _uncertainty(value: Any) -> tuple[float, str]:
-    """A share such as ``0.1 %`` or 0.001, or a frequency such as ``2 Hz``; and which of the two."""
+    """Return a share such as ``0.1 %`` or 0.001, or a frequency such as ``2 Hz``; and which of the
+    two.
+    """
     if isinstance(value, tuple):  # read already
         return value
     try:
@@ -81,15 +82,17 @@ Uncertainty = Annotated[
 
 
 def _response_unit(value: Any) -> tuple[float, int] | None:
-    """A motion over a force such as ``m/s^2/N``: SI units in one, and derivatives of displacement."""
+    """Return a motion over a force such as ``m/s^2/N``: SI units in one, and derivatives of
+    displacement.
+    """
     if not value:
         return None
-    known = response(value) if isinstance(value, str) else None
-    if known is None:
+    unit = response(value) if isinstance(value, str) else None
+    if unit is None:
         raise SceneError(
             'must be a motion over a force, such as "m/s^2/N" or "g/N"', value=show(value)
         )
-    return known
+    return unit
 
 
 ResponseUnit = Annotated[tuple[float, int] | None, BeforeValidator(_response_unit)]
@@ -109,7 +112,7 @@ class MeasuredMode(Model):
 
     @property
     def width_hz(self) -> float | None:
-        """Its standard deviation, Hz."""
+        """Standard deviation, Hz."""
         if self.uncertainty is None:
             return None
         value, kind = self.uncertainty
@@ -152,7 +155,7 @@ class Measured(Model):
         return self._remarks
 
     def placed(self, still: Surface, revolved: bool) -> Measured:
-        """The same with its points in the frame of a scene, on the surface of its body."""
+        """Return the same data with points in the frame of a scene, on the surface of its body."""
         shapes = self._on_points
         if shapes is None:
             return self
@@ -186,10 +189,10 @@ class Measured(Model):
                 f"holds {len(self.mode)} resonances; give 1 to {MOST}, or the file of them, file =",
                 path=("mode",),
             )
-        for k, (one, following) in enumerate(zip(self.mode, self.mode[1:]), start=1):
-            if following.frequency < one.frequency:
+        for k, (mode, following) in enumerate(zip(self.mode, self.mode[1:]), start=1):
+            if following.frequency < mode.frequency:
                 raise SceneError(
-                    f"is below the one before it, {one.frequency:g} Hz: frequencies ascend",
+                    f"is below the one before it, {mode.frequency:g} Hz: frequencies ascend",
                     path=("mode", k, "frequency"),
                     value=f"{following.frequency:g} Hz",
                 )
@@ -197,60 +200,60 @@ class Measured(Model):
 
     @property
     def modes(self) -> tuple[MeasuredMode, ...]:
-        """Resonances, each with the uncertainty of all where it has none of its own."""
+        """Resonances, each with the uncertainty of all where it has none."""
         return tuple(
-            one
-            if one.uncertainty is not None
-            else one.model_copy(update={"uncertainty": self.uncertainty})
-            for one in self.mode
+            mode
+            if mode.uncertainty is not None
+            else mode.model_copy(update={"uncertainty": self.uncertainty})
+            for mode in self.mode
         )
 
 
 def load_measured(path: str | os.PathLike) -> Measured:
-    """Measured resonances of a ``.toml`` or ``.csv`` file, or of a universal file ``.unv``,
+    """Return measured resonances of a ``.toml`` or ``.csv`` file, or of a universal file ``.unv``,
     ``.uff`` of mode shapes, or of frequency responses, in which resonances are then found; an error
-    tells the file, the entry, its value and what would be right.
+    names the file, the entry, its value and the right form.
     """
-    where = os.fspath(path)
-    if where.lower().endswith(ENDINGS):
-        read = read_universal(where)
-        if isinstance(read, Responses):
-            return of_responses(read, where)
-        return _of_shapes(*read, where)
+    name = os.fspath(path)
+    if name.lower().endswith(ENDINGS):
+        content = read_universal(name)
+        if isinstance(content, Responses):
+            return measured_from_responses(content, name)
+        return _from_shapes(*content, name)
     tables: Mapping[str, Any] | Responses
-    if where.lower().endswith(".csv"):
-        with explained(where, {}):
+    if name.lower().endswith(".csv"):
+        with explained(name, {}):
             tables = read_csv(Path(path), tuple(MeasuredMode.model_fields))
     else:
-        tables = parse(where)
+        tables = parse(name)
     if isinstance(tables, Responses):
-        return of_responses(tables, where)
+        return measured_from_responses(tables, name)
     try:
         out = Measured(**tables)
         if out.file:
-            return _named(out, Path(where).parent)
-        if out.shapes or any(one.shape for one in out.mode):
-            out._on_points = _joined(out, Path(where).parent)
+            return _from_universal(out, Path(name).parent)
+        if out.shapes or any(mode.shape for mode in out.mode):
+            out._on_points = _joined_shapes(out, Path(name).parent)
     except SceneError as error:
         # what is wrong in the file of shapes is told with that
-        raise error if error.where else error.located(tables, where=where) from None
+        raise error if error.where else error.located(tables, where=name) from None
     return out
 
 
-def _named(table: Measured, folder: Path) -> Measured:
-    """Resonances of the universal file that a table names, with what the table says of them."""
-    where = folder / table.file
+def _from_universal(table: Measured, folder: Path) -> Measured:
+    """Return resonances of the universal file that a table names, with the entries of the table."""
+    path = folder / table.file
     if not table.file.lower().endswith(ENDINGS):
         raise SceneError(
             "must be a universal file, .unv or .uff", path=("file",), value=show(table.file)
         )
-    read = read_universal(where, table.response_unit)
-    if isinstance(read, Responses):
-        out = of_responses(read, str(where))
+    content = read_universal(path, table.response_unit)
+    if isinstance(content, Responses):
+        out = measured_from_responses(content, str(path))
     elif table.response_unit:
         raise SceneError(f"{table.file} holds no responses", path=("response_unit",))
     else:
-        out = _of_shapes(*read, str(where))
+        out = _from_shapes(*content, str(path))
     listed = out.mode
     if table.uncertainty is not None:
         listed = tuple(m.model_copy(update={"uncertainty": table.uncertainty}) for m in listed)
@@ -264,52 +267,54 @@ def _named(table: Measured, folder: Path) -> Measured:
     )
 
 
-def _joined(measured: Measured, folder: Path) -> Shapes:
-    """Shapes of all resonances, from the file that is named; zero of those without."""
+def _joined_shapes(measured: Measured, folder: Path) -> Shapes:
+    """Return shapes of all resonances, from the file that is named; zero of those without."""
     if not measured.shapes:
         raise SceneError('shapes of what file? write shapes = "test.unv"', path=("shapes",))
-    read = read_universal(folder / measured.shapes)
-    if isinstance(read, Responses):
+    content = read_universal(folder / measured.shapes)
+    if isinstance(content, Responses):
         raise SceneError(
             f"{measured.shapes} holds responses: give it in place of this file", path=("shapes",)
         )
-    _, found = read
-    if found is None:
+    _, shapes = content
+    if shapes is None:
         raise SceneError(
             f"{measured.shapes} gives no places of its points (dataset 15 or 2411)",
             path=("shapes",),
         )
-    values = np.zeros((len(measured.mode), *found.values.shape[1:]), found.values.dtype)
-    for k, one in enumerate(measured.mode):
-        if one.shape is not None and one.shape > len(found.values):
+    values = np.zeros((len(measured.mode), *shapes.values.shape[1:]), shapes.values.dtype)
+    for k, mode in enumerate(measured.mode):
+        if mode.shape is not None and mode.shape > len(shapes.values):
             raise SceneError(
-                f"{measured.shapes} holds {len(found.values)} shapes",
+                f"{measured.shapes} holds {len(shapes.values)} shapes",
                 path=("mode", k, "shape"),
-                value=str(one.shape),
+                value=str(mode.shape),
             )
-        if one.shape is not None:
-            values[k] = found.values[one.shape - 1]
+        if mode.shape is not None:
+            values[k] = shapes.values[mode.shape - 1]
     if not values.any():
         raise SceneError(
             "no mode names one of its shapes; write for example shape = 1", path=("shapes",)
         )
-    return replace(found, values=values)
+    return replace(shapes, values=values)
 
 
-def of_responses(responses: Responses, where: str = "responses") -> Measured:
-    """Resonances that are found in responses of a file; refused where none stands out of the noise."""
-    with explained(where, {}):
-        found = ResponseFit.of(responses)
-    both = zip(found.fit.frequencies.tolist(), found.widths_hz.tolist())
-    modes = [{"frequency": f, "uncertainty": f"{d} Hz"} for f, d in both]
-    out = _of_modes(modes, where, found.shapes, found)
-    out._remarks = tuple(found.remarks)
+def measured_from_responses(responses: Responses, name: str = "responses") -> Measured:
+    """Return resonances that are found in responses of a file; refused where none stands out of the
+    noise.
+    """
+    with explained(name, {}):
+        fit = ResponseFit.of(responses)
+    pairs = zip(fit.fit.frequencies.tolist(), fit.widths_hz.tolist())
+    modes = [{"frequency": f, "uncertainty": f"{d} Hz"} for f, d in pairs]
+    out = _from_modes(modes, name, fit.shapes, fit)
+    out._remarks = tuple(fit.remarks)
     return out
 
 
-def _of_shapes(frequencies: Sequence[float], shapes: Shapes | None, where: str) -> Measured:
-    """Resonances of a file of shapes."""
-    out = _of_modes([{"frequency": hertz} for hertz in frequencies], where, shapes)
+def _from_shapes(frequencies: Sequence[float], shapes: Shapes | None, name: str) -> Measured:
+    """Return resonances of a file of shapes."""
+    out = _from_modes([{"frequency": hertz} for hertz in frequencies], name, shapes)
     if shapes is None:
         out._remarks = (
             "The file gives no places of its points (dataset 15 or 2411), so its shapes take no part.",
@@ -317,11 +322,11 @@ def _of_shapes(frequencies: Sequence[float], shapes: Shapes | None, where: str) 
     return out
 
 
-def _of_modes(
-    modes: list[dict[str, Any]], where: str, shapes: Shapes | None, fit: ResponseFit | None = None
+def _from_modes(
+    modes: list[dict[str, Any]], name: str, shapes: Shapes | None, fit: ResponseFit | None = None
 ) -> Measured:
-    """Resonances of a file that is no table of them."""
-    with explained(where, {"mode": modes}):
-        out = Measured(title=Path(where).stem, mode=modes)
+    """Return resonances of a file that is no table of them."""
+    with explained(name, {"mode": modes}):
+        out = Measured(title=Path(name).stem, mode=modes)
     out._on_points, out._responses = shapes, fit
     return out

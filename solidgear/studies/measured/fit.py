@@ -1,4 +1,4 @@
-"""A linear fit of the logarithms of entries to those of measured frequencies, about one scene."""
+"""Linear fit of the logarithms of entries to those of measured frequencies, about one scene."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ TINY = 1e-24
 
 
 class Fit:
-    """A linear fit about one scene."""
+    """Linear fit about one scene."""
 
     def __init__(
         self,
@@ -41,26 +41,26 @@ class Fit:
         varied: Sequence[Varied],
         x: np.ndarray,
         computed: Computed,
-        every: np.ndarray,
+        all_rows: np.ndarray,
         sure: float,
     ):
-        """Pair and weigh; `every` are derivatives of all modes, at logarithms `x`, and `sure` is
+        """Pair and weigh; `all_rows` are derivatives of all modes, at logarithms `x`, and `sure` is
         the least probability of a pair.
         """
         self.measured, self.computed, self.labels = measured, computed, [v.label for v in varied]
-        self.low = np.array([one.low for one in varied]) - x
-        self.high = np.array([one.high for one in varied]) - x
+        self.low = np.array([entry.low for entry in varied]) - x
+        self.high = np.array([entry.high for entry in varied]) - x
         on_points = on_points_of(measured, computed)
-        seen = on_points.seen if on_points else None
-        found = alignment_of(*peaks_of(measured, computed), seen)
-        self.likeness = Likeness.of(found)
-        likely = found.pairs.argmax(axis=1)
+        likeness = on_points.likeness if on_points else None
+        alignment = alignment_of(*peaks_of(measured, computed), likeness)
+        self.likeness = Likeness.of(alignment)
+        likely = alignment.pairs.argmax(axis=1)
         #: resonance and mode of each pair that is sure enough to be fitted
-        self.pairs = [(i, int(j)) for i, j in enumerate(likely) if found.pairs[i, j] >= sure]
+        self.pairs = [(i, int(j)) for i, j in enumerate(likely) if alignment.pairs[i, j] >= sure]
         #: one over the deviations of what is known beforehand, and how far off it is
-        self.known = 1 / np.array([one.deviation for one in varied])
-        self.middle = np.array([one.middle for one in varied]) - x
-        unknowns = int(np.count_nonzero(self.known == 0))
+        self.prior_weight = 1 / np.array([entry.deviation for entry in varied])
+        self.prior = np.array([entry.middle for entry in varied]) - x
+        unknowns = int(np.count_nonzero(self.prior_weight == 0))
         if len(self.pairs) < max(unknowns, 1):
             bare = not np.isfinite(computed.bars).any()
             raise SolidgearError(
@@ -73,38 +73,40 @@ class Fit:
                 )
             )
         modes = [measured.modes[i] for i, _ in self.pairs]
-        at = [j for _, j in self.pairs]
-        self.every, self.rows = every, every[at]
+        mode_numbers = [j for _, j in self.pairs]
+        self.all_rows, self.rows = all_rows, all_rows[mode_numbers]
         #: (pairs,) measured, Hz
         self.frequencies = np.array([m.frequency for m in modes])
-        self.residual = np.log(self.frequencies / [computed.modes[j].frequency_hz for j in at])
-        own = np.array([(m.width_hz or 0.0) / m.frequency for m in measured.modes])
+        self.residual = np.log(
+            self.frequencies / [computed.modes[j].frequency_hz for j in mode_numbers]
+        )
+        widths = np.array([(m.width_hz or 0.0) / m.frequency for m in measured.modes])
         mesh = np.minimum(computed.bars, 1.0) / DEVIATIONS
         #: of every resonance, were it any of the modes
-        self.variances = own[:, None] ** 2 + mesh**2
+        self.variances = widths[:, None] ** 2 + mesh**2
         self.variance = self.variances[tuple(np.transpose(self.pairs))]
-        # the scatter that is left counts for all alike, and what is known leaves more of it
-        told = float(self.variance.mean())
-        size = math.sqrt(told + TINY)
-        known = np.vstack([self.rows / size, np.diag(self.known)])
-        left, sizes, _ = np.linalg.svd(known, full_matrices=False)
-        left = left[:, sizes > 1e-9 * sizes[0]]
-        aim = np.concatenate([self.residual / size, self.known * self.middle])
-        best = size * (aim - left @ (left.T @ aim))[: len(at)]
-        spare = max(len(at) - float(np.sum(left[: len(at)] ** 2)), 1.0)
-        whole = float(best @ best) / spare
-        self.scatter = math.sqrt(max(whole - told, 0.0))
-        # degrees of freedom of what is told in part and estimated in part (Welch and Satterthwaite)
-        freedom = spare * (max(whole, told) / max(self.scatter**2, 1e-6 * told, TINY)) ** 2
+        # the remaining scatter counts for all resonances; prior values leave more of it
+        stated = float(self.variance.mean())
+        size = math.sqrt(stated + TINY)
+        system = np.vstack([self.rows / size, np.diag(self.prior_weight)])
+        left_vectors, sizes, _ = np.linalg.svd(system, full_matrices=False)
+        left_vectors = left_vectors[:, sizes > 1e-9 * sizes[0]]
+        target = np.concatenate([self.residual / size, self.prior_weight * self.prior])
+        misfit = size * (target - left_vectors @ (left_vectors.T @ target))[: len(mode_numbers)]
+        spare = max(len(mode_numbers) - float(np.sum(left_vectors[: len(mode_numbers)] ** 2)), 1.0)
+        variance = float(misfit @ misfit) / spare
+        self.scatter = math.sqrt(max(variance - stated, 0.0))
+        # degrees of freedom of a variance stated in part, estimated in part (Welch, Satterthwaite)
+        freedom = spare * (max(variance, stated) / max(self.scatter**2, 1e-6 * stated, TINY)) ** 2
         #: deviations on either side that hold 95 %
         self.students = float(stdtrit(min(freedom, 1e6), 0.975))
         self.weight = 1 / np.sqrt(self.variance + self.scatter**2 + TINY)
         self.linear = self._weighed(self.rows, self.weight)
         _, self.sizes, self.right = np.linalg.svd(self.linear, full_matrices=False)
         sizes, right = self.sizes, self.right
-        kept = np.maximum(sizes, 1e-30)
+        stable_sizes = np.maximum(sizes, 1e-30)
         #: of the logarithms of entries
-        self.covariance = (right.T / kept**2) @ right
+        self.covariance = (right.T / stable_sizes**2) @ right
 
     def step(
         self,
@@ -113,33 +115,32 @@ class Fit:
         moved: np.ndarray | float = 0.0,
         weight: np.ndarray | None = None,
     ) -> np.ndarray:
-        """Change of the logarithms of entries within their bounds; none along what the data do not
-        tell. Other residuals and derivatives are those at logarithms `moved` from here, or of other
-        pairs with weights of their own.
+        """Return the change of the logarithms of entries within their bounds; none along directions
+        that the data leave open. Other residuals and derivatives are those at logarithms `moved`
+        from here, or of other pairs with their weights.
         """
         residual = self.residual if residual is None else residual
         weight = self.weight if weight is None else weight
-        aim = np.concatenate([residual * weight, self.known * (self.middle - moved)])
+        target = np.concatenate([residual * weight, self.prior_weight * (self.prior - moved)])
         low, high = self.low - moved, self.high - moved
         linear = self.linear if rows is None else self._weighed(rows, weight)
-        left, sizes, right = np.linalg.svd(linear, full_matrices=False)
-        told = sizes > 1 / UNDETERMINED
-        step = ((left.T @ aim)[told] / sizes[told]) @ right[told]
+        left_vectors, sizes, right = np.linalg.svd(linear, full_matrices=False)
+        determined = sizes > 1 / UNDETERMINED
+        step = ((left_vectors.T @ target)[determined] / sizes[determined]) @ right[determined]
         if np.all((low <= step) & (step <= high)):
             return step
-        return lsq_linear(linear, aim, (low, high)).x
+        return lsq_linear(linear, target, (low, high)).x
 
     def _weighed(self, rows: np.ndarray, weight: np.ndarray) -> np.ndarray:
-        """Derivatives of frequencies over their deviations, and of what is known beforehand."""
-        return np.vstack([rows * weight[:, None], np.diag(self.known)])
+        """Return derivatives of frequencies over their deviations, and of prior values."""
+        return np.vstack([rows * weight[:, None], np.diag(self.prior_weight)])
 
     def exchanges(self, farthest: float) -> list[np.ndarray]:
-        """Changes of the logarithms of entries by which two modes of a family change places, as two
-        bearings do that are nearly alike, or one takes a resonance that was left out, be it instead
-        of its own; those that fit best first, and change
-        no logarithm by more than `farthest`.
+        """Return changes of the logarithms of entries, at most `farthest`, by which two modes of a
+        family change places, as two similar bearings do, or a mode takes a resonance that was left
+        out in place of the present one; best fits first.
         """
-        logs = np.log([one.frequency for one in self.measured.modes])
+        logs = np.log([mode.frequency for mode in self.measured.modes])
         modes, pairs = self.computed.modes, {j: i for i, j in self.pairs}
         left_out = set(range(len(logs))) - set(pairs.values())
         moves = [
@@ -147,92 +148,94 @@ class Fit:
             for a, b in combinations(pairs, 2)
             if modes[a].name.family == modes[b].name.family
         ] + [{j: i} for j in range(len(modes)) for i in left_out]
-        now = np.log([mode.frequency_hz for mode in modes])
-        begun = now.copy()
+        computed_logs = np.log([mode.frequency_hz for mode in modes])
+        begun = computed_logs.copy()
         begun[list(pairs)] = logs[list(pairs.values())]
         out = []
         for move in moves:
             j, i = (np.array(list(part)) for part in zip(*(pairs | move).items()))
-            aim, weight = (
-                logs[i] - now[j],
+            target, weight = (
+                logs[i] - computed_logs[j],
                 1 / np.sqrt(self.variances[i, j] + self.scatter**2 + TINY),
             )
-            change = self.step(aim, self.every[j], weight=weight)
-            left = aim - self.every[j] @ change
+            change = self.step(target, self.all_rows[j], weight=weight)
+            residual = target - self.all_rows[j] @ change
             moved = np.isin(j, list(move))
-            done = abs(left[moved]) < EXCHANGED * abs(logs[i] - begun[j])[moved]
-            apart = float(np.linalg.norm(self._weighed(self.every[j], weight) @ change))
-            if done.all() and apart > SAME and abs(change).max() <= farthest:
-                misfit = float(np.sum((left * weight) ** 2)) + DOUBT * (len(logs) - len(j))
+            reached = abs(residual[moved]) < EXCHANGED * abs(logs[i] - begun[j])[moved]
+            distance = float(np.linalg.norm(self._weighed(self.all_rows[j], weight) @ change))
+            if reached.all() and distance > SAME and abs(change).max() <= farthest:
+                misfit = float(np.sum((residual * weight) ** 2)) + DOUBT * (len(logs) - len(j))
                 out.append((misfit, change))
-        return [change for _, change in sorted(out, key=lambda one: one[0])][:STARTS]
+        return [change for _, change in sorted(out, key=lambda fit: fit[0])][:STARTS]
 
-    def apart(self, change: np.ndarray) -> float:
-        """Size of a change of logarithms, in deviations."""
+    def distance(self, change: np.ndarray) -> float:
+        """Return the size of a change of logarithms, in deviations."""
         return float(np.linalg.norm(self.sizes * (self.right @ change)))
 
     def deviations(self) -> np.ndarray:
-        """(entries,) standard deviations of logarithms."""
+        """Return standard deviations (entries,) of logarithms."""
         return np.sqrt(np.diag(self.covariance))
 
     def correlations(self) -> np.ndarray:
-        """(entries, entries) correlations."""
+        """Return correlations (entries, entries)."""
         size = self.deviations()
         return self.covariance / np.outer(size, size)
 
     @property
     def determined(self) -> bool:
-        """Tell whether no direction is left open."""
+        """Return whether no direction is left open."""
         return bool(self.sizes[-1] * UNDETERMINED >= 1)
 
     def refuse_undetermined(self) -> None:
-        """Refuse entries of which a direction is not told by the data."""
+        """Refuse entries that have a direction which the data leave open."""
         if self.determined:
             return
         deviation = 1 / max(float(self.sizes[-1]), 1e-30)
         direction = self.right[-1]
-        among = [
+        parts = [
             f"{label} {'up' if part > 0 else 'down'}"
             for label, part in zip(
                 self.labels, direction * np.sign(direction[abs(direction).argmax()])
             )
             if abs(part) >= SHARE * abs(direction).max()
         ]
-        said, out = f"leave {among[0]} open", "leave it out"
-        if len(among) > 1:
-            said, out = f"cannot separate {' and '.join(among)}", "leave one of them out"
+        problem, advice = f"leave {parts[0]} open", "leave it out"
+        if len(parts) > 1:
+            problem, advice = f"cannot separate {' and '.join(parts)}", "leave one of them out"
         raise SolidgearError(
-            f"identify: these resonances {said}: {_factor(deviation)}; {out}, or measure a mode that "
+            f"identify: these resonances {problem}: {_factor(deviation)}; {advice}, or measure a mode that "
             "it moves"
         )
 
 
 @dataclass(frozen=True, eq=False)
 class End:
-    """Logarithms that a search ended at, and its last step."""
+    """Logarithms at which a search ended, and the last step."""
 
     x: np.ndarray
     fit: Fit
     step: np.ndarray
 
     def misfit(self, scatter: float) -> float:
-        """Twice what the logarithm of the likelihood lacks, at a scatter of all frequencies."""
+        """Return the missing logarithm of the likelihood times two, at a scatter of all
+        frequencies.
+        """
         fit = self.fit
-        left = fit.residual - fit.rows @ self.step
+        residual = fit.residual - fit.rows @ self.step
         unpaired = len(fit.measured.modes) - len(fit.pairs)
-        known = fit.known * (fit.middle - self.step)
-        own = left**2 / (fit.variance + scatter**2 + TINY)
-        return float(own.sum() + known @ known + DOUBT * unpaired)
+        prior_misfit = fit.prior_weight * (fit.prior - self.step)
+        terms = residual**2 / (fit.variance + scatter**2 + TINY)
+        return float(terms.sum() + prior_misfit @ prior_misfit + DOUBT * unpaired)
 
 
 def best_of(ends: Sequence[End]) -> End:
-    """The one that fits best, at the least scatter of all."""
+    """Return the end that fits best, at the least scatter of all."""
     scatter = min(end.fit.scatter for end in ends)
     return min(ends, key=lambda end: end.misfit(scatter))
 
 
 def _factor(deviation: float) -> str:
-    """Standard deviation of a logarithm in words."""
+    """Return the standard deviation of a logarithm in words."""
     return (
         "however far it is changed that way, they move by less than their scatter"
         if deviation > 10

@@ -1,17 +1,18 @@
-"""Resonances from measured responses, each with its damping, its shape and how sure they are.
+"""Resonances from measured responses, each with damping, shape and uncertainty.
 
 In a band of lines a response is a sum over modes, accelerance over s = i w,
 
-    H_o(s) = sum_r  A_or / (s - p_r) + A_or* / (s - p_r*)  + a polynomial of what lies outside,
+    H_o(s) = sum_r  A_or / (s - p_r) + A_or* / (s - p_r*)  + a polynomial of the modes outside,
 
-with poles p that all responses share. Poles are begun with by least squares in the complex frequency
-domain (Guillaume, Verboven et al. 2003, A poly-reference implementation of the least-squares complex
-frequency-domain estimator, IMAC 21), with the numerator left at its highest order so that one set of
-normal equations serves the denominators of all orders; what stays where it is over the orders is a
-mode. They are then brought to the least squares of the sum itself by Gauss and Newton, residues being
-eliminated (Golub and Pereyra 1973, SIAM J. Numer. Anal. 10, 413), each response weighed by its noise.
-Deviations are those of that fit, of the residuals as they are (White 1980, Econometrica 48, 817, in the
-form that leverage widens): noise that grows with the response counts as well as a floor does.
+with poles p that all responses share. Poles are begun with by least squares in the complex
+frequency domain (Guillaume, Verboven et al. 2003, A poly-reference implementation of the
+least-squares complex frequency-domain estimator, IMAC 21), with the numerator left at the highest
+order so that one set of normal equations serves the denominators of all orders; a pole that stays
+where it is over the orders is a mode. They are then brought to the least squares of the sum itself
+by Gauss and Newton, residues being eliminated (Golub and Pereyra 1973, SIAM J. Numer. Anal. 10,
+413), each response weighed by the noise. Deviations are those of that fit, of the residuals as they
+are (White 1980, Econometrica 48, 817, in the form that leverage widens): noise that grows with the
+response counts as well as a floor does.
 """
 
 from __future__ import annotations
@@ -82,7 +83,7 @@ class ModalFit:
 
 @pinned
 def fit_modes(hertz: np.ndarray, accelerance: np.ndarray) -> ModalFit:
-    """Modes of accelerances (m, k), in any unit, over ascending frequencies (k,), Hz."""
+    """Return modes of accelerances (m, k), in any unit, over ascending frequencies (k,), Hz."""
     ahead = hertz > 0
     omega, data = 2 * np.pi * hertz[ahead], accelerance[:, ahead]
     if len(omega) < FEWEST:
@@ -90,7 +91,7 @@ def fit_modes(hertz: np.ndarray, accelerance: np.ndarray) -> ModalFit:
     moved = np.sqrt(np.mean(np.abs(data) ** 2, axis=1))
     if not np.all(np.isfinite(data)) or not np.all(moved > 0):
         raise SolidgearError("a response is zero everywhere, or holds what is no number")
-    found: list[tuple[complex, np.ndarray, np.ndarray]] = []
+    modes_found: list[tuple[complex, np.ndarray, np.ndarray]] = []
     count = max(math.ceil((len(omega) - 2 * MARGIN) / (LINES - 2 * MARGIN)), 1)
     edges = np.linspace(0, len(omega), count + 1).astype(int)
     for first, last in zip(edges[:-1], edges[1:]):
@@ -98,17 +99,17 @@ def fit_modes(hertz: np.ndarray, accelerance: np.ndarray) -> ModalFit:
         band = _Band(omega[lines], data[:, lines])
         low = omega[first] if first else -math.inf
         high = omega[last] if last < len(omega) else math.inf
-        before = [other for other, *_ in found]
-        for one in band.modes():
+        before = [pole for pole, *_ in modes_found]
+        for mode in band.modes():
             # a mode on an edge is found from both sides
-            near = any(abs(one[0] - other) < -one[0].real / 2 for other in before)
-            slack = -one[0].real
-            if low - slack <= one[0].imag < high + slack and not near:
-                found.append(one)
-    if not found:
+            near = any(abs(mode[0] - pole) < -mode[0].real / 2 for pole in before)
+            slack = -mode[0].real
+            if low - slack <= mode[0].imag < high + slack and not near:
+                modes_found.append(mode)
+    if not modes_found:
         raise SolidgearError("no resonance stands out of the noise of these responses")
-    found.sort(key=lambda one: abs(one[0]))
-    poles, covariances, residues = (np.array(part) for part in zip(*found))
+    modes_found.sort(key=lambda mode: abs(mode[0]))
+    poles, covariances, residues = (np.array(part) for part in zip(*modes_found))
     return ModalFit(poles, covariances, residues)
 
 
@@ -127,35 +128,35 @@ class _Band:
         self.smooth = np.polynomial.legendre.legvander(x, DEGREE)
 
     def modes(self) -> list[tuple[complex, np.ndarray, np.ndarray]]:
-        """Pole, covariance of it, and residues of every mode."""
+        """Return the pole, covariance of it, and residues of every mode."""
         poles = self.starts()
         while len(poles):
-            poles = self.settled(poles)
-            power, covariance, residues = self.told(poles)
+            poles = self.refined(poles)
+            power, covariance, residues = self.estimates(poles)
             width = -poles.real
             inside = self.inside(poles)
             mode = (width > 0) & (width < DAMPED * abs(poles)) & (width < self.half)
             # the nearer a stronger pole, the more a second one takes of noise that grows with peaks
-            apart = np.abs(poles - poles[:, None]) / np.maximum(width, width[:, None])
-            stronger = np.where(power > power[:, None], apart, np.inf).min(axis=1)
-            asked = SIGNIFICANT * np.maximum(1.0, NEAR / np.maximum(stronger, 1e-3)) ** STEEP
+            distance = np.abs(poles - poles[:, None]) / np.maximum(width, width[:, None])
+            stronger = np.where(power > power[:, None], distance, np.inf).min(axis=1)
+            required = SIGNIFICANT * np.maximum(1.0, NEAR / np.maximum(stronger, 1e-3)) ** STEEP
             located = covariance[:, 1, 1] < (LOCATED * width) ** 2
-            kept = mode & ((power > asked) & located | ~inside)
-            if kept.all():
-                at = np.flatnonzero(inside)
+            accepted = mode & ((power > required) & located | ~inside)
+            if accepted.all():
+                places = np.flatnonzero(inside)
                 scaled = residues * self.scale[:, None]
-                return [(complex(poles[k]), covariance[k], scaled[:, k]) for k in at]
+                return [(complex(poles[k]), covariance[k], scaled[:, k]) for k in places]
             # the weakest goes, and the others are fitted without it
-            worst = int(np.where(kept, np.inf, np.where(mode & located, power, -1.0)).argmin())
+            worst = int(np.where(accepted, np.inf, np.where(mode & located, power, -1.0)).argmin())
             poles = np.delete(poles, worst)
         return []
 
     def inside(self, poles: np.ndarray) -> np.ndarray:
-        """Tell which poles lie in the band."""
+        """Return which poles lie in the band."""
         return np.abs(poles.imag - self.middle) <= self.half
 
     def starts(self) -> np.ndarray:
-        """Poles that stay where they are over the orders."""
+        """Return poles that are stable over the orders."""
         rate = CIRCLE * math.pi / self.half
         most = min(ORDERS[-1], len(self.omega) // 4)
         z = np.exp(1j * rate * (self.omega - self.middle))
@@ -163,8 +164,8 @@ class _Band:
         numerator = np.linalg.qr(powers)[0].conj().T
         normal = (powers.conj().T * np.sum(np.abs(self.data) ** 2, axis=0)) @ powers
         for row in self.data:
-            seen = (numerator * row) @ powers
-            normal = normal - seen.conj().T @ seen
+            projected = (numerator * row) @ powers
+            normal = normal - projected.conj().T @ projected
         chains: list[list[complex]] = []
         orders = [n for n in ORDERS if n <= most]
         for n in orders:
@@ -183,8 +184,8 @@ class _Band:
                     chains.append([complex(pole)])
         return np.array([c[-1] for c in chains if len(c) >= STABLE], complex)
 
-    def settled(self, poles: np.ndarray) -> np.ndarray:
-        """Poles of least squares."""
+    def refined(self, poles: np.ndarray) -> np.ndarray:
+        """Return the poles of least squares."""
         weight = np.ones(len(self.data))
         cost = math.inf
         step = np.zeros_like(poles)
@@ -207,93 +208,106 @@ class _Band:
                 break
         return poles
 
-    def told(self, poles: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Power of every mode over that of the noise, covariances of poles, and residues."""
+    def estimates(self, poles: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return the power of every mode over that of the noise, covariances of poles, and
+        residues.
+        """
         fit = _Fit(self, poles, _Fit(self, poles, np.ones(len(self.data))).weight())
         return fit.power(), fit.covariances(), fit.residues
 
 
 class _Fit:
-    """Residues, and the linear fit about some poles, in real numbers: lines are twice."""
+    """Residues, and the linear fit about some poles, in real numbers: each line has two."""
 
     def __init__(self, band: _Band, poles: np.ndarray, weight: np.ndarray):
         self.poles, self.count = poles, len(poles)
         s = 1j * band.omega[:, None]
-        one, other = 1 / (s - poles), 1 / (s - poles.conj())
+        pole_terms, conjugate_terms = 1 / (s - poles), 1 / (s - poles.conj())
         # in units of the half width, for the condition
         unit = np.maximum(-poles.real, band.step)
-        parts = [(one + other) * unit, 1j * (one - other) * unit, band.smooth, 1j * band.smooth]
+        parts = [
+            (pole_terms + conjugate_terms) * unit,
+            1j * (pole_terms - conjugate_terms) * unit,
+            band.smooth,
+            1j * band.smooth,
+        ]
         self.basis = _real(np.hstack(parts))
         self.data = _real((band.data * weight[:, None]).T)
         self.left, upper = np.linalg.qr(self.basis)
         self.inverse = np.linalg.pinv(upper, rcond=1e-12)
         self.solved = self.inverse @ (self.left.T @ self.data)
-        self.rest = self.data - self.basis @ self.solved
-        self.cost = float(np.sum(self.rest**2))
+        self.residual = self.data - self.basis @ self.solved
+        self.cost = float(np.sum(self.residual**2))
         #: (part, mode, response): factors of both columns of every mode
         self.parts = self.solved[: 2 * self.count].reshape(2, self.count, -1)
         scaled = (self.parts[0] + 1j * self.parts[1]) * unit[:, None]
         self.residues = (scaled / weight).T
-        self.given = weight
-        fall, mirrored = unit * one**2, unit * other**2
+        self.weights = weight
+        fall, mirrored = unit * pole_terms**2, unit * conjugate_terms**2
         along = (fall + mirrored, 1j * (fall - mirrored))
-        up = (1j * (fall - mirrored), -(fall + mirrored))
+        across = (1j * (fall - mirrored), -(fall + mirrored))
         #: (real or imaginary part of the pole, part, mode, line)
-        self.slopes = np.array([[self._free(part).T for part in way] for way in (along, up)])
+        self.slopes = np.array([[self._free(part).T for part in way] for way in (along, across)])
 
     def _free(self, slopes: np.ndarray) -> np.ndarray:
-        """Slopes without what the residues take of them."""
+        """Return slopes without the part that the residues explain."""
         real = _real(slopes)
         return real - self.left @ (self.left.T @ real)
 
     @property
     def spare(self) -> float:
-        """Numbers of a response that are left for its noise."""
+        """Degrees of freedom of a response that are left for noise."""
         lines, unknowns = self.basis.shape
         return max(lines - unknowns - 2 * self.count / self.data.shape[1], 1.0)
 
     def weight(self) -> np.ndarray:
-        """Of every response, by the noise that is left of it."""
-        noise = np.sqrt(np.sum(self.rest**2, axis=0) / self.spare) / self.given
+        """Return the weight of every response, by the remaining noise."""
+        noise = np.sqrt(np.sum(self.residual**2, axis=0) / self.spare) / self.weights
         return 1 / np.maximum(noise, 1e-12 * max(float(noise.max()), 1e-300))
 
     def step(self) -> np.ndarray:
         """Change of the poles."""
         flat = self.slopes.reshape(4 * self.count, -1)
         gram = (flat @ flat.T).reshape(2 * self.slopes.shape[:3])
-        both = self.parts.reshape(2 * self.count, -1)
-        shared = (both @ both.T).reshape(2 * self.parts.shape[:2])
+        parts = self.parts.reshape(2 * self.count, -1)
+        shared = (parts @ parts.T).reshape(2 * self.parts.shape[:2])
         normal = np.einsum("acmbdn,cmdn->ambn", gram, shared).reshape(2 * (2 * self.count,))
-        seen = (flat @ self.rest).reshape(*self.slopes.shape[:3], -1)
-        right = np.sum(seen * self.parts, axis=(1, 3)).ravel()
+        projected = (flat @ self.residual).reshape(*self.slopes.shape[:3], -1)
+        right = np.sum(projected * self.parts, axis=(1, 3)).ravel()
         move = np.linalg.lstsq(normal, right, rcond=1e-14)[0]
         return move[: self.count] + 1j * move[self.count :]
 
     def power(self) -> np.ndarray:
-        """Power that each mode explains, over the noise of as many unknowns where the mode is seen."""
+        """Return the power that each mode explains, over the noise of as many unknowns where the
+        mode is seen.
+        """
         # of the lines about: a pole may fit the noise of one line altogether
-        square = np.sum(self.rest.reshape(2, -1, self.rest.shape[1]) ** 2, axis=0) / 2
+        square = np.sum(self.residual.reshape(2, -1, self.residual.shape[1]) ** 2, axis=0) / 2
         noise = np.tile(uniform_filter1d(square, ABOUT, axis=0, mode="nearest"), (2, 1))
-        taken = self.inverse @ self.left.T
+        solution = self.inverse @ self.left.T
         out = np.zeros(self.count)
         for k in range(self.count):
-            at = [k, k + self.count]
-            spread = np.einsum("il,lo,jl->oij", taken[at], noise, taken[at], optimize=True)
-            solved = np.linalg.solve(spread, self.solved[at].T[:, :, None])[:, :, 0]
-            out[k] = np.sum(self.solved[at].T * solved)
+            pair = [k, k + self.count]
+            spread = np.einsum(
+                "il,lo,jl->oij", solution[pair], noise, solution[pair], optimize=True
+            )
+            solved = np.linalg.solve(spread, self.solved[pair].T[:, :, None])[:, :, 0]
+            out[k] = np.sum(self.solved[pair].T * solved)
         return out / (2 * self.data.shape[1] + 2)
 
     def covariances(self) -> np.ndarray:
-        """Of the real and imaginary part of every pole."""
-        each = np.einsum("acml,cmo->olam", self.slopes, self.parts, optimize=True)
-        each = each.reshape(*each.shape[:2], 2 * self.count)
-        rows = each.reshape(-1, 2 * self.count)
+        """Return covariances of the real and imaginary part of every pole."""
+        gradients = np.einsum("acml,cmo->olam", self.slopes, self.parts, optimize=True)
+        gradients = gradients.reshape(*gradients.shape[:2], 2 * self.count)
+        rows = gradients.reshape(-1, 2 * self.count)
         bread = np.linalg.pinv(rows.T @ rows)
-        lever = np.sum(self.left**2, axis=1)[:, None] + np.einsum("oli,oli->lo", each @ bread, each)
-        rest = (self.rest / np.maximum(1 - lever, 0.1)).T.ravel()
-        whole = bread @ ((rows.T * rest**2) @ rows) @ bread
-        at = [[k, k + self.count] for k in range(self.count)]
-        return np.array([whole[np.ix_(pair, pair)] for pair in at])
+        lever = np.sum(self.left**2, axis=1)[:, None] + np.einsum(
+            "oli,oli->lo", gradients @ bread, gradients
+        )
+        residual = (self.residual / np.maximum(1 - lever, 0.1)).T.ravel()
+        covariance = bread @ ((rows.T * residual**2) @ rows) @ bread
+        pairs = [[k, k + self.count] for k in range(self.count)]
+        return np.array([covariance[np.ix_(pair, pair)] for pair in pairs])
 
 
 def _real(values: np.ndarray) -> np.ndarray:

@@ -1,8 +1,9 @@
 """Places of measuring points in a scene, by the unit, axis and origin of the file that gives them.
 
-They are stated by a table ``points``, with the keys of ``[body]``; what is not stated is the scene's own
-frame where the points then lie on its surface, and else is looked for: the unit, the axis, and for
-a body of revolution the place along it. What fits in more than one way is refused.
+They are stated by a table ``points``, with the keys of ``[body]``; entries that are not stated are
+those of the scene's frame where the points then lie on the surface, and else are searched for: the
+unit, the axis, and for a body of revolution the place along it. Points that fit in more than one
+way are refused.
 """
 
 from __future__ import annotations
@@ -50,9 +51,9 @@ class PointsTable(Model):
     origin: Origin = None
 
     def states(self, frame: Frame, length: float | None) -> bool:
-        """Tell whether a frame is the stated one, in a file whose unit is `length` m by itself."""
-        unit = length if self.unit is None else UNITS[self.unit]
-        return frame == Frame(unit or math.nan, self.axis or "y", self.origin or 0.0)
+        """Return whether a frame is the stated one, in a file whose unit is `length` m by itself."""
+        length_unit = length if self.unit is None else UNITS[self.unit]
+        return frame == Frame(length_unit or math.nan, self.axis or "y", self.origin or 0.0)
 
 
 @dataclass(frozen=True)
@@ -86,7 +87,7 @@ class Frame:
 
 
 class Places:
-    """Measuring points (p, 3), in units of `length` m or of a file that does not tell its own, to be
+    """Measuring points (p, 3), in units of `length` m or of a file whose unit is unknown, to be
     placed on the surface of a body.
     """
 
@@ -96,8 +97,8 @@ class Places:
         self.limit = OFF * self.radius
 
     def frame(self, table: PointsTable) -> tuple[Frame, float]:
-        """The frame that is stated, or the one in which the points lie on the surface, and how far off
-        it the farthest is.
+        """Return the stated frame, or the one in which the points lie on the surface, and the
+        distance of the farthest from it.
         """
         unit = self.length if table.unit is None else UNITS[table.unit]
         if unit is not None:
@@ -116,14 +117,14 @@ class Places:
             return stated, away
         least = [fit for fit in fits if fit[0] == fits[0][0]]
         if len(least) > 1 or least[0][3]:
-            both = " or ".join(fit[2].table for fit in least)
+            tables = " or ".join(fit[2].table for fit in least)
             raise SolidgearError(
                 "measuring points do not lie on the surface where their file places them, and fit "
                 + (
-                    f"in more than one way: write {both}"
+                    f"in more than one way: write {tables}"
                     if len(least) > 1
                     else "at many places along the axis: write the origin of the file, where y = 0 of "
-                    f"the scene lies, such as {both}"
+                    f"the scene lies, such as {tables}"
                 )
             )
         _, away, frame, _ = least[0]
@@ -132,8 +133,8 @@ class Places:
     def fits(
         self, table: PointsTable, unit: float | None
     ) -> Iterator[tuple[int, float, Frame, bool]]:
-        """Frames in which the points lie on the surface: how much they differ from the scene's, the
-        largest distance, and whether the points slide along the axis.
+        """Yield frames in which the points lie on the surface: the number of differences from the
+        scene's frame, the largest distance, and whether the points slide along the axis.
         """
         longest = float(np.ptp(self.still.points, axis=0).max())
         extent = float(np.ptp(self.points, axis=0).max()) / (self.length or 1.0)
@@ -147,11 +148,13 @@ class Places:
             away = self.away(frame)
             if away <= self.limit:
                 yield changes, away, frame, False
-            elif self.revolved and table.origin is None and (found := self._along(frame)):
-                yield changes + 1, *found
+            elif self.revolved and table.origin is None and (placed := self._along(frame)):
+                yield changes + 1, *placed
 
     def away(self, frame: Frame) -> float:
-        """Largest distance from the surface; infinite of points that are all in one place."""
+        """Return the largest distance from the surface; infinite of points that are all in one
+        place.
+        """
         points = self.placed(frame)
         size = max(np.ptp(self.still.points, axis=0).max(), self.radius)
         spread = float(np.ptp(points, axis=0).max())
@@ -160,12 +163,12 @@ class Places:
         return float(nearest(self.still, points)[2].max())
 
     def placed(self, frame: Frame) -> np.ndarray:
-        """(p, 3) points in the scene."""
+        """Return (p, 3) points in the scene."""
         return frame.placing.to_scene(self.points.T / (self.length or 1.0)).T
 
     def _along(self, frame: Frame) -> tuple[float, Frame, bool] | None:
-        """The place along the axis where the points lie on the surface of a body of revolution, the
-        largest distance there, and whether they lie on it elsewhere as well.
+        """Return the place along the axis where the points lie on the surface of a body of
+        revolution, the largest distance there, and whether they lie on it elsewhere as well.
         """
         points = self.placed(frame)
         along, radii = points[:, 1], np.hypot(points[:, 0], points[:, 2])
@@ -182,7 +185,7 @@ class Places:
 
         shifts = np.linspace(first, last, max(int(STEPS * (last - first) / self.limit), 2))
         size = distances(shifts)
-        there = shifts[size.max(axis=1) <= self.limit]
+        fitting = shifts[size.max(axis=1) <= self.limit]
         shift = float(shifts[np.square(size).sum(axis=1).argmin()])
         for step in (self.limit, 2 * self.limit / FINER):
             finer = shift + np.linspace(-step, step, FINER)
@@ -191,7 +194,7 @@ class Places:
         away = self.away(placed)
         if away > self.limit:
             return None
-        slides = len(there) > 0 and float(np.ptp(there)) > SLIDE * self.limit
+        slides = len(fitting) > 0 and float(np.ptp(fitting)) > SLIDE * self.limit
         return away, placed, slides
 
 
@@ -200,15 +203,15 @@ def _millimetres(place: float) -> str:
 
 
 def nearest(still: Surface, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Corners of the triangle that is nearest to every point, their weights there, and how far it is."""
+    """Return corners of the nearest triangle of every point, their weights there, and the distance."""
     triangles = _triangles(still)
     near = cKDTree(still.points).query(points, NEAR)[1]
     corners, weights, distances = [], [], []
-    for point, around in zip(points, near):
-        tried = triangles[np.any(np.isin(triangles, around), axis=1)]
+    for point, candidates in zip(points, near):
+        tried = triangles[np.any(np.isin(triangles, candidates), axis=1)]
         weight = np.array([_weights(still.points[triangle], point) for triangle in tried])
-        there = np.einsum("tc,tcx->tx", weight, still.points[tried])
-        away = np.linalg.norm(there - point, axis=1)
+        places = np.einsum("tc,tcx->tx", weight, still.points[tried])
+        away = np.linalg.norm(places - point, axis=1)
         best = int(away.argmin())
         corners.append(tried[best])
         weights.append(weight[best])
@@ -242,7 +245,7 @@ def _triangles(still: Surface) -> np.ndarray:
 
 
 def _meridian(still: Surface, piece: float) -> np.ndarray:
-    """(k, 2) places along and off the axis on all edges of a surface of revolution."""
+    """Return (k, 2) places along and off the axis on all edges of a surface of revolution."""
     triangles = _triangles(still)
     flat = np.column_stack([still.points[:, 1], np.hypot(still.points[:, 0], still.points[:, 2])])
     edges = np.concatenate([flat[triangles[:, pair]] for pair in ([0, 1], [1, 2], [2, 0])])
@@ -258,7 +261,7 @@ def _meridian(still: Surface, piece: float) -> np.ndarray:
 
 
 def _weights(corners: np.ndarray, point: np.ndarray) -> np.ndarray:
-    """Shares of a triangle's corners in the point of it that is near another."""
+    """Return shares of a triangle's corners in the point of it that is near another."""
     sides = (corners[1:] - corners[0]).T
     s, t = np.clip(np.linalg.lstsq(sides, point - corners[0], rcond=None)[0], 0.0, 1.0)
     return np.array([max(1 - s - t, 0.0), s, t]) / (max(1 - s - t, 0.0) + s + t)

@@ -43,17 +43,17 @@ class ResponseFit:
 
     @property
     def widths_hz(self) -> np.ndarray:
-        """(n,) standard deviations of frequencies, of noise and of what repeats no better."""
+        """(n,) standard deviations of frequencies, of noise and of repeatability."""
         return np.hypot(self.fit.deviations[0], self.repeats * self.fit.frequencies)
 
     def placed(self, placing: Placing) -> ResponseFit:
-        """The same in the frame of a scene."""
+        """Return the same in the frame of a scene."""
         shapes = self.shapes and self.shapes.placed(placing)
         return replace(self, responses=self.responses.placed(placing), shapes=shapes)
 
     @property
     def remarks(self) -> Iterator[str]:
-        """Sentences on what of the file was read otherwise than it may be meant, and what it lacks."""
+        """Sentences on parts of the file that may be meant otherwise, and on missing ones."""
         yield from self.responses.remarks
         if self.responses.places and not self.responses.scaled:
             yield (
@@ -64,30 +64,34 @@ class ResponseFit:
 
 
 def moving(responses: Responses) -> list[tuple[int, tuple[int, int]]]:
-    """Responses that tell one shape, each with the point and the direction of it: those to one
+    """Return responses of one shape, each with the point and the direction of it: those to one
     reference, or, where the hammer went round, those at one point.
     """
     fixed = [Counter(responses.references), Counter(responses.points)]
-    (one, count), (other, many) = (found.most_common(1)[0] for found in fixed)
+    (reference, count), (point, many) = (ends.most_common(1)[0] for ends in fixed)
     if count >= many:
-        told = [(k, at) for k, at in enumerate(responses.points) if responses.references[k] == one]
-    else:
-        told = [
-            (k, at) for k, at in enumerate(responses.references) if responses.points[k] == other
+        selected = [
+            (k, end)
+            for k, end in enumerate(responses.points)
+            if responses.references[k] == reference
         ]
-    return [(k, at) for k, at in told if 1 <= abs(at[1]) <= 3]
+    else:
+        selected = [
+            (k, end) for k, end in enumerate(responses.references) if responses.points[k] == point
+        ]
+    return [(k, end) for k, end in selected if 1 <= abs(end[1]) <= 3]
 
 
 def _shapes(responses: Responses, fit: ModalFit) -> Shapes | None:
-    told = moving(responses)
-    if not told:
+    selected = moving(responses)
+    if not selected:
         return None
-    numbers = sorted({number for _, (number, _) in told})
+    numbers = sorted({number for _, (number, _) in selected})
     missing = [number for number in numbers if number not in responses.places]
     if missing:
         raise SolidgearError(f"gives no place of point {missing[0]} (dataset 15 or 2411)")
     values = np.zeros((len(fit.poles), len(numbers), 3), complex)
-    for k, (number, direction) in told:
+    for k, (number, direction) in selected:
         along = abs(direction) - 1
         values[:, numbers.index(number), along] = np.sign(direction) * fit.residues[:, k]
     places = np.array([responses.places[number] for number in numbers])

@@ -1,12 +1,13 @@
 """Doubt that measured resonances are those of the part that a scene describes.
 
-A modulus or a density that is wrong moves all frequencies of a part by one factor. What is left
+A modulus or a density that is wrong moves all frequencies of a part by one factor. The scatter
 beside it is small: 0.09 to 0.5 % of the five measured bodies (validation/experiments), and below
-0.9 % of nine in ten random shafts whose Poisson's ratio is anywhere from 0.25 to 0.34 where the scene
-has 0.3, or whose every length and diameter is 0.5 % off. Peaks of another shaft, laid beside the modes
-as well as may be, keep 5 % in the median.
+0.9 % of nine in ten random shafts whose Poisson's ratio is anywhere from 0.25 to 0.34 where the
+scene has 0.3, or whose every length and diameter is 0.5 % off. Peaks of another shaft, laid beside
+the modes as well as may be, keep 5 % in the median.
 
-Where peaks scatter so, a modulus that is far off is tried too, from half to twice the one of the scene.
+Where peaks scatter so, a modulus that is far off is tried too, from half to twice the one of the
+scene.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import chdtri, stdtrit
 
-from solidgear.studies.measured.alignment import SHIFTS, Alignment, Peak, Seen, align
+from solidgear.studies.measured.alignment import SHIFTS, Alignment, Peak, ShapeLikeness, align
 
 #: largest scatter beside a common shift, relative, that is left of one part
 SAME_PART = 0.01
@@ -45,7 +46,7 @@ class Common:
 
     @classmethod
     def of(cls, relative: Sequence[float]) -> Common | None:
-        """Estimates from differences of independent pairs; None from too few."""
+        """Return estimates from differences of independent pairs; None from too few."""
         count, free = len(relative), len(relative) - 1
         if count < FEWEST:
             return None
@@ -57,32 +58,32 @@ class Common:
     @property
     def sentence(self) -> str:
         """Conclusion."""
-        told = f"{100 * self.off:+.2g} ± {100 * self.reach:.1g} %"
-        left = (
+        shift = f"{100 * self.off:+.2g} ± {100 * self.reach:.1g} %"
+        scatter = (
             f"{100 * self.scatter:.2g} % is left beside it ({self.count} sure pairs; with 95 %, "
             f"{100 * self.low:.2g} to {100 * self.high:.2g} %)"
         )
         if abs(self.off) <= self.reach:
-            return f"No shift is common to all ({told}); {left}."
+            return f"No shift is common to all ({shift}); {scatter}."
         return (
-            f"Common to all is {told}, as a modulus, a density or a length that is not right makes it; "
-            f"{left}."
+            f"Common to all is {shift}, as a modulus, a density or a length that is not right makes it; "
+            f"{scatter}."
         )
 
 
 @dataclass(frozen=True)
 class Likeness:
-    """Likeness of measured resonances to those of one part, whatever its modulus."""
+    """Likeness of measured resonances to those of one part, whatever the modulus."""
 
     #: resonances, pairs: measured, and those of them that have a mode
     resonances: int
     pairs: int
     shift: float  #: common to all logarithms, measured less computed
-    scatter: float  #: standard deviation beside it and beside what is known of each
+    scatter: float  #: standard deviation beyond the shift and the stated uncertainties
 
     @classmethod
     def of(cls, alignment: Alignment) -> Likeness:
-        """Likeness by the pairs that are likelier than none."""
+        """Return the likeness by the pairs that are likelier than none."""
         paired = alignment.pairs.max(axis=1, initial=0.0) >= alignment.spurious
         return cls(len(paired), int(paired.sum()), alignment.shift, alignment.scatter)
 
@@ -96,17 +97,17 @@ class Likeness:
 
     @property
     def scattered(self) -> bool:
-        """Tell whether they scatter by more than those of one part."""
+        """Return whether they scatter by more than those of one part."""
         return self.pairs >= FEWEST and self.least > SAME_PART
 
     @property
     def lonely(self) -> bool:
-        """Tell whether most have no mode."""
+        """Return whether most have no mode."""
         return self.resonances >= FEWEST and self.pairs <= MOST_OF_THEM * self.resonances
 
     @property
     def believed(self) -> bool:
-        """Tell whether a shift that is far off explains the resonances."""
+        """Return whether a shift that is far off explains the resonances."""
         many = self.pairs > BELIEVED * self.resonances
         return many and self.pairs >= FEWEST_FAR and self.scatter < SAME_PART
 
@@ -122,14 +123,14 @@ class Likeness:
     @property
     def sentence(self) -> str:
         """Doubt that they are of the part of the scene; empty where there is none."""
-        beside = (
+        scatter_clause = (
             f"{self.pairs} pairs scatter by {100 * self.scatter:.2g} % about what all have in common "
             f"(at least by {100 * self.least:.2g} %, with 95 % confidence), and of one part a wrong "
             f"modulus or density leaves {100 * SAME_PART:.0f} % at most"
         )
         if self.scattered:
             return (
-                f"This may be another part: {beside}. If it is the right one, dimensions, masses or "
+                f"This may be another part: {scatter_clause}. If it is the right one, dimensions, masses or "
                 "bearings of the scene are wrong."
             )
         if self.lonely:
@@ -138,7 +139,7 @@ class Likeness:
                 f"{'has' if self.pairs < 2 else 'have'} a mode."
             )
         if self.scatter > SAME_PART and self.pairs > 1:
-            return f"Too few pairs to show that this is the part of the scene: {beside}."
+            return f"Too few pairs to show that this is the part of the scene: {scatter_clause}."
         return ""
 
     @property
@@ -153,11 +154,13 @@ class Likeness:
 
 
 def alignment_of(
-    measured: Sequence[Peak], computed: Sequence[Peak], seen: Seen | None = None
+    measured: Sequence[Peak], computed: Sequence[Peak], shapes: ShapeLikeness | None = None
 ) -> Alignment:
-    """The likeliest alignment; of a modulus that is far off where no other can be of one part."""
-    near = align(measured, computed, seen)
+    """Return the likeliest alignment; of a modulus that is far off where no other can be of one
+    part.
+    """
+    near = align(measured, computed, shapes)
     if not Likeness.of(near).sentence:
         return near
-    far = align(measured, computed, seen, FAR_SHIFTS)
+    far = align(measured, computed, shapes, FAR_SHIFTS)
     return far if Likeness.of(far).believed else near

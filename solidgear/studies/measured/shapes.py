@@ -14,14 +14,14 @@ import numpy as np
 
 from solidgear.body import Body
 from solidgear.solve.modes import Mode
-from solidgear.studies.measured.alignment import Seen
+from solidgear.studies.measured.alignment import ShapeLikeness
 from solidgear.studies.measured.computed import Computed
 from solidgear.studies.measured.placement import nearest, refuse_off
 from solidgear.studies.measured.universal import Shapes
 
-#: MAC of two computed modes on the measuring points from which on these do not tell them apart
+#: MAC of two computed modes on the measuring points from which on they look alike there
 ALIKE = 0.1
-#: pairs of modes that are named which the measuring points do not tell apart
+#: pairs of modes that are named which look alike on the measuring points
 NAMED = 3
 #: places of the surface that are tried for one more point
 TRIED = 300
@@ -37,41 +37,37 @@ class SurfacePoints:
         self.corners, self.weights, away = nearest(self.still, points)
         refuse_off(self.still, numbers, points, away)
 
-    def of(self, vector: Mapping[int, np.ndarray]) -> np.ndarray:
-        """(p, 3) displacements by unknowns of blocks."""
-        return self.at(self.body.surface(vector).displacement)
+    def motion(self, vector: Mapping[int, np.ndarray]) -> np.ndarray:
+        """Return displacements (p, 3) from the unknowns of blocks."""
+        return self.interpolate(self.body.surface(vector).displacement)
 
-    def at(self, moved: np.ndarray) -> np.ndarray:
-        """(p, 3) displacements by those of all points of the surface."""
+    def interpolate(self, moved: np.ndarray) -> np.ndarray:
+        """Return displacements (p, 3) from those of all points of the surface."""
         return np.einsum("pc,pcx->px", self.weights, moved[self.corners])
 
 
 @dataclass(frozen=True)
 class Confused:
-    """Two modes that the measuring points do not tell apart."""
+    """Two modes that look alike on the measuring points."""
 
     #: first, second: modes
     first: int
     second: int
     mac: float  #: of both on the points
-    place: tuple[float, float, float]  #: x, y, z of the point that would tell them best, m
-    then: float  #: MAC with it
+    place: tuple[
+        float, float, float
+    ]  #: x, y, z of the further point that distinguishes them best, m
+    mac_with_it: float  #: MAC with it
 
 
 class OnPoints:
-    """Shapes of modes on measuring points.
-
-    Attributes
-    ----------
-    seen : Seen
-        How like measured shapes are computed ones.
-    """
+    """Shapes of modes on measuring points, and their likeness to measured ones."""
 
     def __init__(self, measured: Shapes, noise: float, computed: Computed):
         body = computed.body
         places = SurfacePoints(body, measured.numbers.tolist(), measured.points)
         still = places.still
-        seen = np.any(measured.values != 0, axis=0)
+        measured_points = np.any(measured.values != 0, axis=0)
         tried = np.unique(np.linspace(0, len(still.points) - 1, TRIED).astype(int))
         self.tried = still.points[tried]
         #: shapes of every mode on the points, and on those that may be added, by columns
@@ -82,49 +78,55 @@ class OnPoints:
             return body.surface(vector).displacement
 
         for mode in computed.modes:
-            all_ = [moved(vector) for vector in mode.vectors]
-            self.shapes.append(np.column_stack([places.at(u)[seen] for u in all_]))
-            self.more.append(np.stack([u[tried] for u in all_], axis=-1))
-        spans = [_basis(one) for one in self.shapes]
-        rows = measured.values[:, seen]
-        whole = np.sum(np.abs(rows) ** 2, axis=1)
+            motions = [moved(vector) for vector in mode.vectors]
+            self.shapes.append(
+                np.column_stack([places.interpolate(u)[measured_points] for u in motions])
+            )
+            self.more.append(np.stack([u[tried] for u in motions], axis=-1))
+        spans = [_basis(shapes) for shapes in self.shapes]
+        rows = measured.values[:, measured_points]
+        square = np.sum(np.abs(rows) ** 2, axis=1)
         share = [np.sum(np.abs(rows @ span) ** 2, axis=1) for span in spans]
-        mac = np.column_stack(share) / np.where(whole > 0, whole, np.nan)[:, None]
+        mac = np.column_stack(share) / np.where(square > 0, square, np.nan)[:, None]
         parts = 2 if np.any(np.imag(rows)) else 1
         free = parts * np.array([span.shape[1] for span in spans])
-        self.seen = Seen(mac, parts * rows.shape[1], free, noise)
+        self.likeness = ShapeLikeness(mac, parts * rows.shape[1], free, noise)
         self._bases = spans
 
     def confused(self, count: int) -> list[Confused]:
-        """Pairs of the first `count` modes that look alike on the points, nearest ones first."""
+        """Return pairs of the first `count` modes that look alike on the points, nearest ones
+        first.
+        """
         out = []
         for j in range(count):
             for k in range(j):
                 like = _like(self._bases[j], self._bases[k])
                 if like > ALIKE:
                     out.append((j - k, k, j, like))
-        return [Confused(k, j, like, *self._told_by(k, j)) for _, k, j, like in sorted(out)]
+        return [
+            Confused(k, j, like, *self._best_further_point(k, j)) for _, k, j, like in sorted(out)
+        ]
 
     def sentences(self, modes: Sequence[Mode]) -> tuple[str, ...]:
-        """Sentences on the first modes that the measuring points do not tell apart."""
+        """Return sentences on the first modes that look alike on the measuring points."""
         out = []
         names = [str(mode.name) for mode in modes]
         shapes = sum(mode.multiplicity for mode in modes)
-        if shapes > self.seen.components:
+        if shapes > self.likeness.components:
             out.append(
-                f"{self.seen.components} measured components tell at most as many shapes apart, and "
+                f"{self.likeness.components} measured components tell at most as many shapes apart, and "
                 f"{shapes} are computed up to the highest resonance: MAC is high by chance; measure "
-                f"{shapes - self.seen.components} more at least."
+                f"{shapes - self.likeness.components} more at least."
             )
         confused = self.confused(len(modes))
-        for one in confused[:NAMED]:
-            place = ", ".join(f"{x:.4g}" for x in one.place)
+        for pair in confused[:NAMED]:
+            place = ", ".join(f"{x:.4g}" for x in pair.place)
             out.append(
-                f"The measuring points do not tell {names[one.first]} from {names[one.second]} (their "
-                f"MAC on them is {one.mac:.2f})"
+                f"The measuring points do not tell {names[pair.first]} from {names[pair.second]} (their "
+                f"MAC on them is {pair.mac:.2f})"
                 + (
-                    f"; one more at x, y, z = {place} m would (MAC {one.then:.2f})."
-                    if one.then <= ALIKE
+                    f"; one more at x, y, z = {place} m would (MAC {pair.mac_with_it:.2f})."
+                    if pair.mac_with_it <= ALIKE
                     else ", nor do they with any one more."
                 )
             )
@@ -132,8 +134,10 @@ class OnPoints:
             out.append(f"They do not tell {len(confused) - NAMED} further pairs of modes.")
         return tuple(out)
 
-    def _told_by(self, j: int, k: int) -> tuple[tuple[float, float, float], float]:
-        """Place of one more point that tells two modes best, and their MAC with it."""
+    def _best_further_point(self, j: int, k: int) -> tuple[tuple[float, float, float], float]:
+        """Return the place of one more point that distinguishes two modes best, and their MAC with
+        it.
+        """
         likes = [
             _like(
                 _basis(np.vstack([self.shapes[j], self.more[j][p]])),
@@ -147,12 +151,12 @@ class OnPoints:
 
 
 def _basis(columns: np.ndarray) -> np.ndarray:
-    """Orthonormal columns of the same span; a mode that no point sees spans nothing."""
-    left, size, _ = np.linalg.svd(columns, full_matrices=False)
-    return left[:, size > 1e-6 * max(size[0], np.finfo(float).tiny)]
+    """Return orthonormal columns of the same span; a mode that no point sees spans nothing."""
+    vectors, size, _ = np.linalg.svd(columns, full_matrices=False)
+    return vectors[:, size > 1e-6 * max(size[0], np.finfo(float).tiny)]
 
 
-def _like(one: np.ndarray, other: np.ndarray) -> float:
-    """MAC of two spans, of a shape of either with all of the other: the larger of both."""
-    least = min(one.shape[1], other.shape[1])
-    return float(np.sum((one.T @ other) ** 2)) / least if least else 0.0
+def _like(a: np.ndarray, b: np.ndarray) -> float:
+    """Return the MAC of two spans, of a shape of either with all of the other: the larger of both."""
+    least = min(a.shape[1], b.shape[1])
+    return float(np.sum((a.T @ b) ** 2)) / least if least else 0.0

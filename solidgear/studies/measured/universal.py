@@ -1,4 +1,6 @@
-"""Universal files (.unv, .uff) of test equipment: mode shapes and responses on measuring points, SI."""
+"""Universal files (.unv, .uff) of test equipment: mode shapes and responses on measuring points,
+SI.
+"""
 
 from __future__ import annotations
 
@@ -40,12 +42,12 @@ class Shapes:
     #: (n, p, 3) a shape for every resonance, real or complex, to a factor; what no shape moves was
     #: not measured
     values: np.ndarray
-    #: m that a unit of the file was taken for; None where nothing tells it, and places are in units
-    #: of the file
+    #: m that a unit of the file was taken for; None where it is unknown, and places are in units of
+    #: the file
     length: float | None = 1.0
 
     def placed(self, placing: Placing) -> Shapes:
-        """The same in the frame of a scene."""
+        """Return the same shapes in the frame of a scene."""
         points = placing.to_scene(self.points.T / (self.length or 1.0)).T
         return replace(
             self, points=points, values=self.values @ np.array(placing.turn).T, length=1.0
@@ -57,23 +59,23 @@ class Responses:
     """Measured frequency responses over one axis of frequencies."""
 
     frequencies: np.ndarray  #: (k,) Hz
-    values: np.ndarray  #: (n, k) SI, or to a factor where nothing tells their unit
+    values: np.ndarray  #: (n, k) SI, or to a factor where their unit is unknown
     #: points, references: number and direction of the point of each, and of where it was driven: 1,
-    #: 2, 3 for x, y, z, negative backwards; empty where nothing tells them
+    #: 2, 3 for x, y, z, negative backwards; empty where unknown
     points: tuple[tuple[int, int], ...] = ()
     references: tuple[tuple[int, int], ...] = ()
-    #: of points by their numbers, m; empty where nothing tells them
+    #: of points by their numbers, m; empty where unknown
     places: Mapping[int, tuple[float, float, float]] = field(default_factory=dict)
-    #: times that the displacement is differentiated in what is over a force: 2 for an acceleration;
-    #: None where nothing tells it
+    #: times that the displacement is differentiated in the numerator: 2 for an acceleration; None
+    #: where unknown
     derivatives: int | None = None
     length: float | None = 1.0  #: m that a unit of the places was taken for, as of shapes
-    scaled: bool = True  #: false where nothing tells the unit of the values
-    #: sentences on what of the file was read otherwise than it may be meant
+    scaled: bool = True  #: false where the unit of the values is unknown
+    #: sentences on parts of the file that may be meant otherwise than they were read
     remarks: tuple[str, ...] = ()
 
     def placed(self, placing: Placing) -> Responses:
-        """The same in the frame of a scene."""
+        """Return the same responses in the frame of a scene."""
         numbers = list(self.places)
         points = np.reshape([self.places[number] for number in numbers], (-1, 3))
         moved = placing.to_scene(points.T / (self.length or 1.0)).T.tolist()
@@ -99,16 +101,13 @@ class Responses:
 def read_universal(
     path: str | os.PathLike, response_unit: tuple[float, int] | None = None
 ) -> tuple[list[float], Shapes | None] | Responses:
-    """Frequencies in Hz, ascending, and shapes of the modes of a universal file (dataset 55), or its
-    frequency responses (dataset 58) where it has no modes. Where it gives no places of its points,
-    there are no shapes. `response_unit`, SI units in one of the responses and derivatives of the
-    displacement, holds whatever the file says of them.
+    """Return frequencies in Hz, ascending, and shapes of the modes of a universal file (dataset
+    55), or the frequency responses (dataset 58) where it has no modes.
 
-    Raises
-    ------
-    SceneError
-        For a file cut short, with neither, with places of some points alone, and with responses over
-        more than one axis.
+    Where it gives no places of the points, there are no shapes. `response_unit`, SI units in one of
+    the responses and derivatives of the displacement, overrules the file. Refused is a file cut
+    short, with neither, with places of some points alone, and with responses over more than one
+    axis.
     """
     try:
         from pyuff import UFF
@@ -119,12 +118,20 @@ def read_universal(
     with explained(path, {}):
         sets = _datasets(Path(path), UFF)
         kinds = NORMAL, *COMPLEX
-        modes = [one for one in sets if one["type"] == 55 and one["analysis_type"] in kinds]
+        modes = [
+            dataset
+            for dataset in sets
+            if dataset["type"] == 55 and dataset["analysis_type"] in kinds
+        ]
         if modes:
             return _shapes(sets, modes)
-        found = [one for one in sets if one["type"] == 58 and one["func_type"] == RESPONSE]
-        if found:
-            return _responses(sets, found, response_unit)
+        responses = [
+            dataset
+            for dataset in sets
+            if dataset["type"] == 58 and dataset["func_type"] == RESPONSE
+        ]
+        if responses:
+            return _responses(sets, responses, response_unit)
         raise SceneError(
             "holds no mode shapes (dataset 55 of normal or complex modes) and no frequency responses "
             "(dataset 58, function 4)"
@@ -136,16 +143,16 @@ def _shapes(
 ) -> tuple[list[float], Shapes | None]:
     places = _points(sets)
     numbers = modes[0]["node_nums"]
-    for one in modes:
-        count = len(one["node_nums"])
-        if any(len(one[r]) != count for r in ("r1", "r2", "r3")):
-            raise SceneError(f"is cut short in mode {one['mode_n']}")
-        if not np.array_equal(one["node_nums"], numbers):
-            raise SceneError(f"has other points in mode {one['mode_n']} than in the first")
+    for mode in modes:
+        count = len(mode["node_nums"])
+        if any(len(mode[r]) != count for r in ("r1", "r2", "r3")):
+            raise SceneError(f"is cut short in mode {mode['mode_n']}")
+        if not np.array_equal(mode["node_nums"], numbers):
+            raise SceneError(f"has other points in mode {mode['mode_n']} than in the first")
     missing = [int(k) for k in numbers if int(k) not in places]
     if missing and places:
         raise SceneError(f"gives no place of point {missing[0]} (dataset 15 or 2411)")
-    hertz = [_hertz(one) for one in modes]
+    hertz = [_hertz(mode) for mode in modes]
     order = np.argsort(hertz, kind="stable")
     values = np.array(
         [np.column_stack([modes[k]["r1"], modes[k]["r2"], modes[k]["r3"]]) for k in order]
@@ -161,39 +168,43 @@ def _shapes(
 
 def _responses(
     sets: Sequence[Mapping[str, Any]],
-    found: Sequence[Mapping[str, Any]],
+    datasets: Sequence[Mapping[str, Any]],
     stated: tuple[float, int] | None,
 ) -> Responses:
-    axis = found[0]["x"]
-    kinds = found[0]["ordinate_spec_data_type"], found[0]["orddenom_spec_data_type"]
-    for k, one in enumerate(found, start=1):
-        if len(one["data"]) != one["num_pts"]:
+    axis = datasets[0]["x"]
+    kinds = datasets[0]["ordinate_spec_data_type"], datasets[0]["orddenom_spec_data_type"]
+    for k, dataset in enumerate(datasets, start=1):
+        if len(dataset["data"]) != dataset["num_pts"]:
             raise SceneError(
-                f"is cut short in response {k}: {len(one['data'])} of {one['num_pts']} lines"
+                f"is cut short in response {k}: {len(dataset['data'])} of {dataset['num_pts']} lines"
             )
-        if not np.array_equal(one["x"], axis):
+        if not np.array_equal(dataset["x"], axis):
             raise SceneError(f"has other frequencies in response {k} than in the first")
-        if (one["ordinate_spec_data_type"], one["orddenom_spec_data_type"]) != kinds:
+        if (dataset["ordinate_spec_data_type"], dataset["orddenom_spec_data_type"]) != kinds:
             raise SceneError(f"has another kind of data in response {k} than in the first")
-    labels = [_labels(one) for one in found]
+    labels = [_labels(dataset) for dataset in datasets]
     hertz = frequency(labels[0][0]) or 1.0
     derivatives = LENGTHS.index(kinds[0]) if kinds[0] in LENGTHS and kinds[1] in FORCES else None
-    if kinds == (UNKNOWN, UNKNOWN) and (shown := motion(labels[0][1])):
-        derivatives = shown[1]
+    if kinds == (UNKNOWN, UNKNOWN) and (by_label := motion(labels[0][1])):
+        derivatives = by_label[1]
     scales = [_scale(sets, kinds, words) for words in labels]
     remarks = list(_remarks(labels, scales))
     if stated is not None:
-        scales, derivatives, remarks = [stated[0]] * len(found), stated[1], []
+        scales, derivatives, remarks = [stated[0]] * len(datasets), stated[1], []
     scaled = derivatives is not None and None not in scales
     if hertz != 1:
         remarks.append(f"Frequencies are in {labels[0][0]}, as the label of their axis says.")
     return Responses(
         np.asarray(axis) * hertz,
         np.array(
-            [np.multiply(one["data"], scale or 1.0) for one, scale in zip(found, scales)], complex
+            [
+                np.multiply(dataset["data"], scale or 1.0)
+                for dataset, scale in zip(datasets, scales)
+            ],
+            complex,
         ),
-        tuple((one["rsp_node"], one["rsp_dir"]) for one in found),
-        tuple((one["ref_node"], one["ref_dir"]) for one in found),
+        tuple((dataset["rsp_node"], dataset["rsp_dir"]) for dataset in datasets),
+        tuple((dataset["ref_node"], dataset["ref_dir"]) for dataset in datasets),
         _points(sets),
         derivatives,
         _length(sets),
@@ -202,26 +213,28 @@ def _responses(
     )
 
 
-def _labels(one: Mapping[str, Any]) -> tuple[str, str, str]:
-    """Units on the axes of a response: of the frequency, the motion and the force."""
+def _labels(dataset: Mapping[str, Any]) -> tuple[str, str, str]:
+    """Return units on the axes of a response: of the frequency, the motion and the force."""
 
     def word(axis: str) -> str:
-        text = str(one.get(f"{axis}_axis_units_lab") or "").strip()
+        text = str(dataset.get(f"{axis}_axis_units_lab") or "").strip()
         return "" if text.upper() == "NONE" else text
 
     return word("abscissa"), word("ordinate"), word("orddenom")
 
 
 def _labelled(labels: tuple[str, str, str]) -> float | None:
-    """SI units in one of a response, by the labels of its axes."""
-    over, under = motion(labels[1]), force(labels[2])
-    return None if over is None or under is None else over[0] / under
+    """Return SI units in one of a response, by the labels of the axes."""
+    numerator, denominator = motion(labels[1]), force(labels[2])
+    return None if numerator is None or denominator is None else numerator[0] / denominator
 
 
 def _scale(
     sets: Sequence[Mapping[str, Any]], kinds: tuple[int, int], labels: tuple[str, str, str]
 ) -> float | None:
-    """SI units in one of a response: by dataset 164, and by the labels of its axes without one."""
+    """Return SI units in one of a response: by dataset 164, or without it by the labels of the
+    axes.
+    """
     units = _units(sets)
     if units is None:
         return _labelled(labels)
@@ -233,20 +246,20 @@ def _scale(
 def _remarks(
     labels: Sequence[tuple[str, str, str]], scales: Sequence[float | None]
 ) -> Iterator[str]:
-    """Labels of axes that contradict dataset 164."""
+    """Yield labels of axes that contradict dataset 164."""
     for words, scale in zip(labels, scales):
-        shown = _labelled(words)
-        if shown is None or scale is None or math.isclose(scale, shown, rel_tol=1e-3):
+        by_labels = _labelled(words)
+        if by_labels is None or scale is None or math.isclose(scale, by_labels, rel_tol=1e-3):
             continue
         yield (
             f"Responses are scaled by dataset 164, {scale:.4g} in SI; the labels of their axes say "
-            f"{words[1]} over {words[2]}, {shown:.4g}: one of both is wrong."
+            f"{words[1]} over {words[2]}, {by_labels:.4g}: one of both is wrong."
         )
         return
 
 
 def _datasets(path: Path, reader: Callable) -> list[dict[str, Any]]:
-    """All datasets of a file that is whole."""
+    """Return all datasets of a file that is whole."""
     try:
         text = path.read_bytes()
     except OSError as error:
@@ -257,43 +270,45 @@ def _datasets(path: Path, reader: Callable) -> list[dict[str, Any]]:
     if not text.rstrip().endswith(b"    -1"):
         raise SceneError("is cut short: its last dataset has no end")
     try:
-        found = reader(os.fspath(path)).read_sets()
+        datasets = reader(os.fspath(path)).read_sets()
     except Exception as error:  # pyuff raises nothing narrower
         raise SceneError(f"cannot be read ({error})") from None
-    return found if isinstance(found, list) else [found]
+    return datasets if isinstance(datasets, list) else [datasets]
 
 
 def _units(sets: Sequence[Mapping[str, Any]]) -> tuple[float, float] | None:
-    """Units of length and force, m and N; None where dataset 164 is not there."""
-    found = [one for one in sets if one["type"] == 164]
-    if not found:
+    """Return units of length and force, m and N; None where dataset 164 is not there."""
+    datasets = [dataset for dataset in sets if dataset["type"] == 164]
+    if not datasets:
         return None
-    one = found[0]
-    return units_of(one["units_code"], one["length"], one["force"])
+    dataset = datasets[0]
+    return units_of(dataset["units_code"], dataset["length"], dataset["force"])
 
 
 def _length(sets: Sequence[Mapping[str, Any]]) -> float | None:
-    """The unit of length, m."""
+    """Return the unit of length, m."""
     units = _units(sets)
     return None if units is None else units[0]
 
 
 def _points(sets: Sequence[Mapping[str, Any]]) -> dict[int, tuple[float, float, float]]:
-    """Number of a point -> x, y, z, m, or in units of the file where it does not tell them; empty
-    where it gives no places.
+    """Return number of a point -> x, y, z, m, or in units of the file if they are unknown; empty if
+    it gives no places.
     """
-    nodes = [one for one in sets if one["type"] in (15, 2411)]
+    nodes = [dataset for dataset in sets if dataset["type"] in (15, 2411)]
     length = _length(sets) or 1.0
-    systems = {int(s) for one in nodes for s in (*one["def_cs"], *one["disp_cs"])}
+    systems = {int(s) for dataset in nodes for s in (*dataset["def_cs"], *dataset["disp_cs"])}
     if len(systems) > 1:
         raise SceneError("has points in more than one coordinate system; write x, y, z of all")
     return {
         int(k): (length * x, length * y, length * z)
-        for one in nodes
-        for k, x, y, z in zip(one["node_nums"], one["x"], one["y"], one["z"])
+        for dataset in nodes
+        for k, x, y, z in zip(dataset["node_nums"], dataset["x"], dataset["y"], dataset["z"])
     }
 
 
-def _hertz(one: Mapping[str, Any]) -> float:
-    """Frequency of a mode; of a complex one from its eigenvalue."""
-    return float(one["freq"] if one["analysis_type"] == NORMAL else abs(one["eig"]) / (2 * np.pi))
+def _hertz(mode: Mapping[str, Any]) -> float:
+    """Return the frequency of a mode; of a complex one from the eigenvalue."""
+    return float(
+        mode["freq"] if mode["analysis_type"] == NORMAL else abs(mode["eig"]) / (2 * np.pi)
+    )

@@ -1,9 +1,9 @@
 """Stress of the shafts of a scene or of a train at rest, under the loads of their equilibrium.
 
-A shaft of a train is free but for what acts on its ports: teeth, springs, bearings, the weight of a
-wheel on it. A shaft of a scene has its load at the port and the reactions of its bearings. Both are
-settled as plain bodies of revolution: what is cut into them moves reactions by next to nothing. Models
-that are made for what is cut settle with it.
+A shaft of a train is free but for the loads on its ports: teeth, springs, bearings, the weight of a
+wheel on it. A shaft of a scene has a load at the port and the reactions of the bearings. Both
+settle as plain bodies of revolution: cuts change reactions by next to nothing. Models that are made
+for cuts settle with them.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.bearings.solved import AS_TOLD, Choice
+from solidgear.bearings.solved import AS_STATED, Choice
 from solidgear.display import plain
 from solidgear.errors import SolidgearError
 from solidgear.ladder.registry import LADDER
@@ -32,23 +32,23 @@ from solidgear.studies.stress.shaft import ShaftStress, check_tolerance, local_s
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.operation import Operating, OperatingState
 
-#: model on which shafts and bearings settle, unless told otherwise
+#: default model on which shafts and bearings settle
 MODEL = LADDER.judges[0]
-#: what has no error bar, and why
+#: caution on the results without an error bar
 WITHOUT_BAR = "reactions and section forces are those of one mesh; form factors have error bars"
 
 Progress = Callable[[str], None]
 
 
 @dataclass(frozen=True)
-class Acting:
-    """Everything that acts on a shaft."""
+class ShaftLoads:
+    """Loads on a shaft, and gravity."""
 
     loads: dict[str, np.ndarray]  #: by port, N and N m
     gravity: np.ndarray | None = None  #: (3,) m/s^2, in the axes of its scene
 
     def add(self, port: str, load: np.ndarray) -> None:
-        """One more load (6,) on a port."""
+        """Add one more load (6,) on a port."""
         self.loads[port] = self.loads.get(port, np.zeros(6)) + load
 
 
@@ -58,10 +58,10 @@ class StressedShaft:
 
     name: str
     scene: Scene = field(repr=False)
-    acting: Acting
+    acting: ShaftLoads
     found: ShaftStress
-    #: least and largest of the largest bending moment, N m, by what the data of bearings leave
-    #: open; None where that is nothing
+    #: least and largest of the largest bending moment, N m, over the open data of bearings; None if
+    #: none are open
     open_moment: tuple[float, float] | None
     open: Mapping[str, tuple[float, float]]  #: the same of the amplitude on each fillet, Pa
 
@@ -73,16 +73,10 @@ class StressedShaft:
 
 
 @dataclass(frozen=True)
-class Asked:
-    """Question asked of fillets.
+class StressSettings:
+    """Tolerance of form factors, which some mesh must reach, and conditions of the rating."""
 
-    Raises
-    ------
-    SolidgearError
-        For a tolerance beyond all meshes.
-    """
-
-    tolerance: float = ENOUGH  #: relative bar of form factors at which their meshes stop
+    tolerance: float = ENOUGH  #: relative error bar of form factors at which their meshes stop
     conditions: Conditions = Conditions()  #: of the rating by DIN 743
 
     def __post_init__(self) -> None:
@@ -91,25 +85,25 @@ class Asked:
 
 @dataclass(frozen=True)
 class StressAtRest:
-    """Stress of a shaft under its load, or of both shafts of a train at an operating point."""
+    """Stress of a shaft under a load, or of both shafts of a train at an operating point."""
 
     title: str
     model: str  #: on which shafts and bearings settled
     #: load of a scene, or operating point and mesh force of a train, as plain data in SI
     under: Mapping[str, Any]
-    asked: Asked
+    asked: StressSettings
     shafts: tuple[StressedShaft, ...]
-    open_by: str  #: what the data of bearings leave open, in words; empty for nothing
+    open_by: str  #: open data of bearings, in words; empty if none
     cautions: tuple[str, ...] = ()  #: beside the remarks of each shaft
 
     @property
     def reached(self) -> bool:
-        """True where the bars of all form factors are within the tolerance."""
+        """Return whether the error bars of all form factors are within the tolerance."""
         notches = [notch for shaft in self.shafts for notch in shaft.found.notches]
         return all(notch.found.widest <= self.asked.tolerance for notch in notches)
 
     def as_dict(self) -> dict[str, Any]:
-        """Plain data in SI that JSON can hold."""
+        """Return plain data in SI that JSON can hold."""
         data = plain(self) | {"components": list(COMPONENTS), "shafts": {}}
         data["why_without_bar"] = WITHOUT_BAR
         data["asked"]["conditions"] = self.asked.conditions.model_dump(mode="json")
@@ -123,10 +117,10 @@ def stress_of_scene(
     scene: Scene,
     model: str = MODEL,
     drive: Mapping[str, float] | None = None,
-    asked: Asked = Asked(),
+    asked: StressSettings = StressSettings(),
     progress: Progress = lambda text: None,
 ) -> StressAtRest:
-    """Stress of a shaft under the [load] of its scene.
+    """Return the stress of a shaft under the [load] of the scene.
 
     Torques about the axis, N m, enter at bearings, masses or further points (`drive`); the gear at
     the port takes them out. Shaft and bearings settle on a model; those of catalogue data need no
@@ -142,23 +136,25 @@ def stress_of_scene(
     progress(model)
     at_rest = ShaftAtRest(_settling(scene, model), model)
 
-    def acting(choice: Choice) -> dict[str, Acting]:
-        own = Acting({port: load})
+    def acting(choice: Choice) -> dict[str, ShaftLoads]:
+        shaft_loads = ShaftLoads({port: load})
         for bearing in at_rest.settled(choice).bearings:
-            own.add(bearing.name, -bearing.load)
+            shaft_loads.add(bearing.name, -bearing.load)
         for name, torque in drive.items():
-            own.add(name, np.array([0, 0, 0, 0, torque, 0.0]))
-            own.add(port, np.array([0, 0, 0, 0, -torque, 0.0]))
-        return {scene.name: own}
+            shaft_loads.add(name, np.array([0, 0, 0, 0, torque, 0.0]))
+            shaft_loads.add(port, np.array([0, 0, 0, 0, -torque, 0.0]))
+        return {scene.name: shaft_loads}
 
     under = {"port": port, "load": load, "drive": drive}
-    shafts, told = _shafts({scene.name: scene}, acting, asked, progress)
-    cautions = (*_of_a_file(file, scene), *_not_acting(scene, drive))
-    return StressAtRest(scene.title or scene.name, model, under, asked, shafts, told, cautions)
+    shafts, open_by = _shafts({scene.name: scene}, acting, asked, progress)
+    cautions = (*_file_cautions(file, scene), *_load_cautions(scene, drive))
+    return StressAtRest(scene.title or scene.name, model, under, asked, shafts, open_by, cautions)
 
 
-def _of_a_file(file: BodyFile | None, scene: Scene) -> Iterator[str]:
-    """Sentences on what the round part of a file leaves out, whose fillets are those of a scene."""
+def _file_cautions(file: BodyFile | None, scene: Scene) -> Iterator[str]:
+    """Yield sentences on parts of a file that the round part leaves out, whose fillets are those of
+    a scene.
+    """
     if file is None:
         return
     if not file.round:
@@ -174,8 +170,8 @@ def _of_a_file(file: BodyFile | None, scene: Scene) -> Iterator[str]:
         )
 
 
-def _not_acting(scene: Scene, drive: Mapping[str, float]) -> Iterator[str]:
-    """Sentences on what does not act on a shaft, and perhaps should."""
+def _load_cautions(scene: Scene, drive: Mapping[str, float]) -> Iterator[str]:
+    """Yield sentences on loads that do not act on a shaft, and perhaps should."""
     if not drive:
         yield (
             "no torque runs along the shaft: a [load] has forces and tilting moments; --drive says "
@@ -190,41 +186,44 @@ def stress_of_train(
     train: Train,
     point: OperatingPoint,
     model: str = MODEL,
-    asked: Asked = Asked(),
+    asked: StressSettings = StressSettings(),
     progress: Progress = lambda text: None,
 ) -> StressAtRest:
-    """Stress of all shafts of a train at an operating point; shafts and bearings settle on a model,
-    no lumped one, which has no places of its own.
+    """Return the stress of all shafts of a train at an operating point; shafts and bearings settle
+    on a model, no lumped one, which has no places.
     """
     progress(model)
-    files = {side: own.scene.body for side, own in train.shafts.items()}
+    files = {side: shaft.scene.body for side, shaft in train.shafts.items()}
     round_parts = {
-        side: own.with_changes(scene=filleted(own.scene)) for side, own in train.shafts.items()
+        side: shaft.with_changes(scene=filleted(shaft.scene))
+        for side, shaft in train.shafts.items()
     }
     train = train.with_changes(shafts=round_parts)
     shop = Workshop(_settling_train(train, model))
     usual = Operating(shop, model).at(point)
 
-    def acting(choice: Choice) -> dict[str, Acting]:
-        own = choice == AS_TOLD
-        return _on_shafts(shop, usual if own else Operating(shop, model, choice=choice).at(point))
+    def acting(choice: Choice) -> dict[str, ShaftLoads]:
+        as_stated = choice == AS_STATED
+        return _on_shafts(
+            shop, usual if as_stated else Operating(shop, model, choice=choice).at(point)
+        )
 
     under = {"point": point.model_dump(mode="json"), "mesh_force": usual.mesh_force}
-    shafts, told = _shafts(
+    shafts, open_by = _shafts(
         {side: train.shaft(side) for side in train.shafts}, acting, asked, progress
     )
-    left_out = [text for k in files for text in _of_a_file(files[k], train.shafts[k].scene)]
-    cautions = (*left_out, *usual.notes, *shop.odd, *_without_torque(train))
-    return StressAtRest(train.title or train.name, model, under, asked, shafts, told, cautions)
+    left_out = [text for k in files for text in _file_cautions(files[k], train.shafts[k].scene)]
+    cautions = (*left_out, *usual.notes, *shop.odd, *_torque_cautions(train))
+    return StressAtRest(train.title or train.name, model, under, asked, shafts, open_by, cautions)
 
 
-def _on_shafts(shop: Workshop, state: OperatingState) -> dict[str, Acting]:
-    """Everything that acts on the shafts of a train at rest."""
+def _on_shafts(shop: Workshop, state: OperatingState) -> dict[str, ShaftLoads]:
+    """Return all loads that act on the shafts of a train at rest."""
     out = {}
     for side, scene in shop.scenes.items():
         turned = state.system.port(f"{side}.{scene.port.name}").axes.T
         gravity = turned @ np.array(state.point.gravity)
-        out[side] = Acting({}, gravity if state.point.weight else None)
+        out[side] = ShaftLoads({}, gravity if state.point.weight else None)
         for end, head in shop.train.heads(side).values():
             out[side].add(end.partition(".")[2], head.mass * np.r_[gravity, np.zeros(3)])
     for end, six in state.forces().items():
@@ -234,8 +233,8 @@ def _on_shafts(shop: Workshop, state: OperatingState) -> dict[str, Acting]:
     return out
 
 
-def _without_torque(train: Train) -> Iterator[str]:
-    """Sentences on shafts whose torque enters where the teeth take it out."""
+def _torque_cautions(train: Train) -> Iterator[str]:
+    """Yield sentences on shafts whose torque enters where the teeth take it out."""
     for name, rotor in train.rotors.items():
         side, port = rotor.shaft, train.spring_port(name)
         if [*train.shafts[side].gears] == [port]:
@@ -246,15 +245,15 @@ def _without_torque(train: Train) -> Iterator[str]:
 
 
 def _settling(scene: Scene, model: str) -> Scene:
-    """The plain part of a shaft, or all of it on a model that is made for features."""
+    """Return the plain part of a shaft, or all of it on a model that is made for features."""
     return scene if LADDER[model].for_features else scene.plain
 
 
 def _settling_train(train: Train, model: str) -> Train:
-    """A train of such shafts, whose teeth act at their ports."""
+    """Return a train of such shafts, whose teeth act at their ports."""
     shafts = {
-        side: own.with_changes(scene=_settling(own.scene, model))
-        for side, own in train.shafts.items()
+        side: shaft.with_changes(scene=_settling(shaft.scene, model))
+        for side, shaft in train.shafts.items()
     }
     meshes = tuple(mesh.with_changes(local_harmonics=()) for mesh in train.meshes)
     return train.with_changes(meshes=meshes, shafts=shafts)
@@ -262,46 +261,50 @@ def _settling_train(train: Train, model: str) -> Train:
 
 def _shafts(
     scenes: Mapping[str, Scene],
-    acting: Callable[[Choice], dict[str, Acting]],
-    asked: Asked,
+    acting: Callable[[Choice], dict[str, ShaftLoads]],
+    asked: StressSettings,
     progress: Progress,
 ) -> tuple[tuple[StressedShaft, ...], str]:
-    """Stress of every shaft, and what the data of bearings leave open, in words."""
-    usual = acting(AS_TOLD)
-    told, choices = left_open(scenes.values())
+    """Return the stress of every shaft, and in words which data of bearings are open."""
+    usual = acting(AS_STATED)
+    open_by, choices = left_open(scenes.values())
     if choices:
         progress("what the data of bearings leave open")
-    others = [acting(choice) for choice in choices]
+    variants = [acting(choice) for choice in choices]
     shafts = []
     for name, scene in scenes.items():
-        own = usual[name]
-        found = shaft_stress(
+        shaft_loads = usual[name]
+        stress = shaft_stress(
             scene,
-            own.loads,
-            gravity=own.gravity,
+            shaft_loads.loads,
+            gravity=shaft_loads.gravity,
             tolerance=asked.tolerance,
             conditions=asked.conditions,
             progress=progress,
         )
-        along = [forces_of(scene, one[name].loads, one[name].gravity) for one in others]
-        shafts.append(StressedShaft(name, scene, own, found, *_ranges(found, along)))
-    return tuple(shafts), told
+        forces_by_variant = [
+            forces_of(scene, loads[name].loads, loads[name].gravity) for loads in variants
+        ]
+        shafts.append(
+            StressedShaft(name, scene, shaft_loads, stress, *_ranges(stress, forces_by_variant))
+        )
+    return tuple(shafts), open_by
 
 
 def _ranges(
-    found: ShaftStress, others: Sequence[SectionForces]
+    stress: ShaftStress, variants: Sequence[SectionForces]
 ) -> tuple[tuple[float, float] | None, dict[str, tuple[float, float]]]:
-    """Ranges of the largest bending moment, N m, and of the amplitude on each fillet, Pa, over the
-    section forces that were solved and others.
+    """Return ranges of the largest bending moment, N m, and of the amplitude on each fillet, Pa,
+    over the section forces that were solved and the variants.
     """
-    if not others:
+    if not variants:
         return None, {}
-    moments = [forces.largest_moment for forces in (found.forces, *others)]
+    moments = [forces.largest_moment for forces in (stress.forces, *variants)]
     amplitudes = {
         notch.name: [
             notch.local.amplitude,
-            *(local_stress(notch.found, forces.at(notch.y)).amplitude for forces in others),
+            *(local_stress(notch.found, forces.at(notch.y)).amplitude for forces in variants),
         ]
-        for notch in found.notches
+        for notch in stress.notches
     }
     return (min(moments), max(moments)), {k: (min(v), max(v)) for k, v in amplitudes.items()}

@@ -1,9 +1,9 @@
-r"""Formulas of DIN 743:2012 for shoulders of shafts, each a function of its own.
+r"""Formulas of DIN 743:2012 for shoulders of shafts, each a function.
 
-Inputs and results are SI; the norm writes lengths in mm and stress in MPa. Coefficients were checked
-against two public programs that share no text with each other; no worked example of the norm itself
-was at hand. Left out, and so never said: K_1 by the group of a steel, hard surface layers, strength
-for a finite life.
+Inputs and results are SI; the norm writes lengths in mm and stress in MPa. Coefficients were
+checked against two public programs that share no text with each other; no worked example of the
+norm itself was at hand. Left out, and so never stated: K_1 by the group of a steel, hard surface
+layers, strength for a finite life.
 """
 
 from __future__ import annotations
@@ -32,15 +32,8 @@ STATIC_SUPPORT: dict[Load, tuple[float, float]] = {
 
 
 def form_factor(load: Load, large: float, small: float, radius: float) -> float:
-    """Form factor of a shoulder (DIN 743-2, 5.2 and table 2).
-
-    Parameters
-    ----------
-    load : {'tension', 'bending', 'torsion'}
-    large, small : float
-        Diameters D and d, m.
-    radius : float
-        Of the fillet, m.
+    """Return the form factor of a shoulder of diameters D and d, m, and a fillet radius, m (DIN
+    743-2, 5.2 and table 2).
 
     Examples
     --------
@@ -58,7 +51,7 @@ def form_factor(load: Load, large: float, small: float, radius: float) -> float:
 
 
 def gradient(load: Load, large: float, small: float, radius: float) -> float:
-    """Relative stress gradient of a shoulder, 1/m (DIN 743-2, table 3).
+    """Return the relative stress gradient of a shoulder, 1/m (DIN 743-2, table 3).
 
     Examples
     --------
@@ -73,15 +66,8 @@ def gradient(load: Load, large: float, small: float, radius: float) -> float:
 
 
 def support(slope: float, yield_point: float) -> float:
-    """Support number n by the relative stress gradient (DIN 743-2, 4.3), for steels without a hard
-    surface layer.
-
-    Parameters
-    ----------
-    slope : float
-        Relative stress gradient G', 1/m.
-    yield_point : float
-        Of the part at its size, Pa.
+    """Return the support number n by the relative stress gradient, 1/m, and the yield point at
+    the size of the part, Pa (DIN 743-2, 4.3), for steels without a hard surface layer.
 
     Examples
     --------
@@ -92,7 +78,7 @@ def support(slope: float, yield_point: float) -> float:
 
 
 def size_factor(load: Load, diameter: float) -> float:
-    """Geometric factor of size K_2 (DIN 743-2, equations 15 and 16).
+    """Return the geometric factor of size K_2 (DIN 743-2, equations 15 and 16).
 
     Examples
     --------
@@ -101,20 +87,13 @@ def size_factor(load: Load, diameter: float) -> float:
     """
     if load == "tension":
         return 1.0
-    within = min(max(1e3 * diameter, 7.5), 150.0)
-    return 1 - 0.2 * math.log10(within / 7.5) / math.log10(20)
+    clipped = min(max(1e3 * diameter, 7.5), 150.0)
+    return 1 - 0.2 * math.log10(clipped / 7.5) / math.log10(20)
 
 
 def surface_factor(load: Load, roughness: float, ultimate: float) -> float:
-    """Factor of surface roughness K_F (DIN 743-2, equations 18 and 19).
-
-    Parameters
-    ----------
-    load : {'tension', 'bending', 'torsion'}
-    roughness : float
-        Rz, m.
-    ultimate : float
-        Tensile strength of the part at its size, Pa.
+    """Return the factor of surface roughness K_F by Rz, m, and the tensile strength at the size
+    of the part, Pa (DIN 743-2, equations 18 and 19).
 
     Examples
     --------
@@ -127,7 +106,8 @@ def surface_factor(load: Load, roughness: float, ultimate: float) -> float:
 
 
 def yield_rise(load: Load, notch: float) -> float:
-    """Rise of the yield point in a notch, gamma_F, by its fatigue or form factor (DIN 743-1, table 2).
+    """Return the rise of the yield point in a notch, gamma_F, by the fatigue or form factor (DIN
+    743-1, table 2).
 
     Examples
     --------
@@ -140,28 +120,25 @@ def yield_rise(load: Load, notch: float) -> float:
 
 
 def total_factor(notch: float, size: float, surface: float, hardening: float) -> float:
-    """Total influence K_sigma or K_tau (DIN 743-1): ``(beta / K_2 + 1 / K_F - 1) / K_V``."""
+    """Return the total influence K_sigma or K_tau (DIN 743-1): ``(beta / K_2 + 1 / K_F - 1) /
+    K_V``.
+    """
     return (notch / size + 1 / surface - 1) / hardening
 
 
 def mean_sensitivity(limit: float, ultimate: float) -> float:
-    """Influence of mean stress psi by the limit of the part and its tensile strength, Pa."""
+    """Return the influence of mean stress psi by the limit of the part and the tensile strength,
+    Pa.
+    """
     return limit / (2 * ultimate - limit)
 
 
 def amplitude_limit(
     limit: float, psi: float, static: float, mean: float, amplitude: float, constant_mean: bool
 ) -> float:
-    """Amplitude that the part bears beside a mean stress, Pa (DIN 743-1, cases 1 and 2).
-
-    Parameters
-    ----------
-    limit, psi, static : float
-        Fatigue limit of the part, Pa, its sensitivity, and its yield limit, Pa.
-    mean, amplitude : float
-        Equivalent mean stress, and the amplitude beside it, Pa.
-    constant_mean : bool
-        Whether the mean stays where loads grow (case 1), or grows with them (case 2).
+    """Return the amplitude that the part bears beside an equivalent mean stress, Pa: a constant one
+    (DIN 743-1, case 1), or one that grows with the loads like the present amplitude (case 2), from
+    the fatigue limit of the part, Pa, the sensitivity, and the yield limit, Pa.
 
     Examples
     --------

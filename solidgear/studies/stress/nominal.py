@@ -1,11 +1,11 @@
-r"""Nominal stress: what section forces make of a plain cross-section.
+r"""Nominal stress of plain cross-sections under section forces.
 
     sigma_N = N / A,   sigma_b = M a / I,   tau_t = T a / (2 I),   tau_q = q Q / A
 
-with a the radius of the surface looked at, M and Q the sizes of both components together, and q
-from 4/3 (solid) to 2 (thin tube), the largest shear at the neutral axis (Timoshenko and Gere,
-Mechanics of Materials, 5.9). Loads stand still and the shaft turns: every point of its surface sees
-bending as an amplitude and the rest as a mean.
+with a the radius of the surface, M and Q the sizes of both components together, and q from 4/3
+(solid) to 2 (thin tube), the largest shear at the neutral axis (Timoshenko and Gere, Mechanics of
+Materials, 5.9). Loads stand still and the shaft turns: at every point of the surface bending is an
+amplitude and the rest a mean.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ class CrossSection:
 
     @property
     def shear_peak(self) -> float:
-        """Largest shear stress over its mean under a transverse force.
+        """Largest shear stress over the mean under a transverse force.
 
         Examples
         --------
@@ -58,23 +58,22 @@ class CrossSection:
 
 @dataclass(frozen=True)
 class NominalStress:
-    """Nominal stress of a cross-section at one of its radii, in Pa."""
+    """Nominal stress of a cross-section at a radius, in Pa."""
 
     tension: float  #: N / A, with its sign: a mean
     #: not negative: the amplitude where the shaft turns under loads that stand still
     bending: float
-    #: loaded_error, unloaded_error: T a / (2 I), with its sign: a mean
-    torsion: float
+    torsion: float  #: T a / (2 I), with its sign: a mean
     shear: float  #: of the transverse force, at the neutral axis, not negative
 
 
 @dataclass(frozen=True)
 class NominalRow:
-    """A cross-section on one side of a place, with its forces and stress."""
+    """A cross-section on one side of a place, with forces and stress."""
 
     y: float  #: m
     segment: str
-    names: str  #: of what acts there
+    names: str  #: of the loads there
     section: CrossSection
     forces: np.ndarray  #: (6,) Q_x, N, Q_z, M_x, T, M_z, N and N m
     stress: NominalStress
@@ -83,14 +82,8 @@ class NominalRow:
 def nominal_stress(
     section: CrossSection, forces: np.ndarray, radius: float | None = None
 ) -> NominalStress:
-    """Nominal stress of a cross-section.
-
-    Parameters
-    ----------
-    forces : (6,) ndarray
-        Q_x, N, Q_z, M_x, T, M_z, N and N m.
-    radius : float, optional
-        Of the surface looked at, m; by default the outer one.
+    """Return the nominal stress of a cross-section under section forces (6,), N and N m, at a
+    radius of the surface, m, by default the outer one.
 
     Examples
     --------
@@ -111,11 +104,11 @@ def nominal_stress(
 
 
 def nominal_rows(segments: Sequence[Segment], forces: SectionForces) -> tuple[NominalRow, ...]:
-    """Cross-sections on both sides of every place where a load acts, weights left out, or a segment
-    ends, in the order of their places, the side before each first.
+    """Return cross-sections on both sides of every place where a load acts, weights left out, or a
+    segment ends, in the order of their places, the side before each first.
     """
     ends = [segment.y1 for segment in segments[:-1]]
-    names = {y: name for y, name in zip(forces.y.tolist(), forces.told) if name}
+    names = {y: name for y, name in zip(forces.y.tolist(), forces.names_without_weights) if name}
     loaded = np.array([*names, np.inf])
     marks = sorted([*names, *(y for y in ends if np.abs(loaded - y).min() > TOUCH)])
     rows = []
@@ -131,12 +124,14 @@ def nominal_rows(segments: Sequence[Segment], forces: SectionForces) -> tuple[No
 def _sides(
     segments: Sequence[Segment], forces: SectionForces, y: float
 ) -> Iterator[tuple[Segment, np.ndarray]]:
-    """Segment and section forces just before a place and just beyond it; once where both agree."""
+    """Yield the segment and section forces just before a place and just beyond it; once where both
+    agree.
+    """
     before = next((s for s in segments if s.y0 + TOUCH < y <= s.y1 + TOUCH), None)
-    beyond = next((s for s in segments if s.y0 - TOUCH <= y < s.y1 - TOUCH), None)
+    after = next((s for s in segments if s.y0 - TOUCH <= y < s.y1 - TOUCH), None)
     k = int(np.abs(forces.y - y).argmin())
     loaded = abs(forces.y[k] - y) <= TOUCH
     if before is not None:
         yield before, forces.left[k] if loaded else forces.at(y)
-    if beyond is not None and (beyond is not before or loaded):
-        yield beyond, forces.right[k] if loaded else forces.at(y)
+    if after is not None and (after is not before or loaded):
+        yield after, forces.right[k] if loaded else forces.at(y)

@@ -51,13 +51,8 @@ RANGE: Mapping[Load, tuple[float, float]] = {
 
 
 def peterson(load: Load, large: float, small: float, radius: float) -> float | None:
-    """Form factor of a shoulder by Peterson's charts; None where their fit is not given.
-
-    Parameters
-    ----------
-    load : {'tension', 'bending', 'torsion'}
-    large, small, radius : float
-        Diameters D and d, and of the fillet, in one unit.
+    """Return the form factor of a shoulder of diameters D and d and a fillet radius, in one unit,
+    by Peterson's charts; None where their fit is not given.
 
     Examples
     --------

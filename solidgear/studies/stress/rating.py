@@ -1,8 +1,7 @@
-"""Rating of a fillet against fatigue and yielding by DIN 743, every factor with its source.
+"""Rating of a fillet against fatigue and yielding by DIN 743, every factor with a source.
 
-The notch is that of the shaft's own solid: form factors and stress gradients are computed, and the
-norm's formulas stand beside them. What the norm asks and nobody gave is taken as 1, and its source
-says *assumed*.
+The notch is that of the shaft's solid: form factors and stress gradients are computed, beside the
+formulas of the norm. Inputs of the norm that were not given are 1, and their source says *assumed*.
 """
 
 from __future__ import annotations
@@ -77,12 +76,8 @@ FACTORS = {
 
 
 class Conditions(Model):
-    """Data that a rating by DIN 743 needs beyond the shaft, its loads and its strength.
-
-    Raises
-    ------
-    SceneError
-        For a factor that is not positive, or a share below zero.
+    """Data that a rating by DIN 743 needs beyond the shaft, loads and strength; a factor that is
+    not positive, or a share below zero, is refused.
 
     Examples
     --------
@@ -112,8 +107,7 @@ class FatigueFactor:
     gradient: float
     support: float
     notch: float
-    #: norm_form, norm_gradient, norm_notch: alpha and G' by the norm's formulas, and what they make
-    #: of beta
+    #: norm_form, norm_gradient, norm_notch: alpha and G' by the norm's formulas, and beta from them
     norm_form: float
     norm_gradient: float
     norm_notch: float
@@ -138,20 +132,20 @@ class Rating:
     #: fatigue, yielding: safeties S against fatigue and against yielding; infinite without load
     fatigue: float
     yielding: float
-    fatigue_bar: float  #: what S loses if the form factors lie at the upper end of their bars
-    assumed: tuple[str, ...]  #: symbols of what was assumed
+    fatigue_bar: float  #: loss of S if the form factors lie at the upper end of their error bars
+    assumed: tuple[str, ...]  #: symbols of assumed factors
 
 
 def fatigue_factors(
-    found: FilletFactors, yield_point: float, large: float, bars: float = 0.0
+    fillet: FilletFactors, yield_point: float, large: float, bars: float = 0.0
 ) -> dict[Load, FatigueFactor]:
-    """Fatigue notch factors of a fillet, by the yield point of the part at its size, Pa, and the
-    larger diameter of the shoulder, m; form factors are raised by so many bars.
+    """Return fatigue notch factors of a fillet, by the yield point at the size of the part, Pa, and
+    the larger diameter of the shoulder, m; form factors are raised by so many error bars.
     """
-    small, radius = 2 * found.corner.r, found.corner.radial
+    small, radius = 2 * fillet.corner.r, fillet.corner.radial
     out: dict[Load, FatigueFactor] = {}
     for load in LOADS:
-        factor = found.factors[load]
+        factor = fillet.factors[load]
         form = factor.value + bars * factor.bar
         support = din743.support(factor.gradient, yield_point)
         alpha = din743.form_factor(load, large, small, radius)
@@ -163,18 +157,18 @@ def fatigue_factors(
 
 
 def rated(
-    found: FilletFactors,
+    fillet: FilletFactors,
     nominal: NominalStress,
     strength: Strength,
     conditions: Conditions,
     large: float,
 ) -> Rating:
-    """Rate a fillet by the nominal stress where it meets its cylinder and the larger diameter of
+    """Rate a fillet by the nominal stress where it meets the cylinder and the larger diameter of
     the shoulder, m.
     """
     sheet = _Sheet()
-    fatigue, yielding = _safeties(sheet, found, nominal, strength, conditions, large)
-    worst, _ = _safeties(_Sheet(), found, nominal, strength, conditions, large, bars=1.0)
+    fatigue, yielding = _safeties(sheet, fillet, nominal, strength, conditions, large)
+    worst, _ = _safeties(_Sheet(), fillet, nominal, strength, conditions, large, bars=1.0)
     assumed = tuple(entry.symbol for entry in sheet.entries if ASSUMED in entry.source)
     lost = fatigue - worst if math.isfinite(fatigue) else 0.0
     return Rating(tuple(sheet.entries), fatigue, yielding, lost, assumed)
@@ -189,46 +183,46 @@ class _Sheet:
     def write(
         self, symbol: str, values: Mapping[Load, float] | float, source: str = ""
     ) -> Mapping[Load, float]:
-        """A line, with the values of every load that it gives back."""
-        of = values if isinstance(values, Mapping) else dict.fromkeys(LOADS, values)
-        what, usual, unit = LINES[symbol]
-        row = tuple(of.get(load) for load in LOADS)
-        self.entries.append(Entry(symbol, what, row, unit, source or usual))
-        return of
+        """Write a line, and return the values of every load in it."""
+        by_load = values if isinstance(values, Mapping) else dict.fromkeys(LOADS, values)
+        name, usual, unit = LINES[symbol]
+        row = tuple(by_load.get(load) for load in LOADS)
+        self.entries.append(Entry(symbol, name, row, unit, source or usual))
+        return by_load
 
-    def given(self, symbol: str, value: float | None) -> float:
-        """A factor that a user gives, or one."""
+    def user_factor(self, symbol: str, value: float | None) -> float:
+        """Return a factor that a user gives, or one."""
         self.write(symbol, 1.0 if value is None else value, ASSUMED if value is None else "given")
         return 1.0 if value is None else value
 
 
 def _safeties(
     sheet: _Sheet,
-    found: FilletFactors,
+    fillet: FilletFactors,
     nominal: NominalStress,
     strength: Strength,
-    given: Conditions,
+    conditions: Conditions,
     large: float,
     bars: float = 0.0,
 ) -> tuple[float, float]:
-    """Safeties against fatigue and yielding, line by line in the order of the norm."""
-    write, section = sheet.write, found.section
+    """Return safeties against fatigue and yielding, line by line in the order of the norm."""
+    write, section = sheet.write, fillet.section
     write("sigma_B", strength.ultimate)
     write("sigma_S", strength.yield_point)
-    k1 = sheet.given("K_1 (sigma_B)", given.ultimate_at_size)
+    k1 = sheet.user_factor("K_1 (sigma_B)", conditions.ultimate_at_size)
     ultimate = k1 * strength.ultimate
-    yields = sheet.given("K_1 (sigma_S)", given.yield_at_size) * strength.yield_point
-    notch = _notches(sheet, fatigue_factors(found, yields, large, bars))
+    yields = sheet.user_factor("K_1 (sigma_S)", conditions.yield_at_size) * strength.yield_point
+    notch = _notches(sheet, fatigue_factors(fillet, yields, large, bars))
     size = write("K_2", {load: din743.size_factor(load, 2 * section.outer) for load in LOADS})
-    surface = _surface(sheet, given.roughness, ultimate)
-    hard = sheet.given("K_V", given.hardening)
+    surface = _surface(sheet, conditions.roughness, ultimate)
+    hard = sheet.user_factor("K_V", conditions.hardening)
     total = {k: din743.total_factor(notch[k], size[k], surface[k], hard) for k in LOADS}
     write("K_sigma, K_tau", total)
     smooth = {load: din743.ALTERNATING[load] * strength.ultimate for load in LOADS}
     write("sigma_W", smooth)
     limit = write("sigma_WK", {load: k1 * smooth[load] / total[load] for load in LOADS})
     static = _yielding(sheet, notch, yields, hollow=section.inner > 0)
-    amplitude, mean = _stress(sheet, nominal, given)
+    amplitude, mean = _stress(sheet, nominal, conditions)
     together = math.hypot(mean["tension"], math.sqrt(3) * mean["torsion"])
     equivalent = dict.fromkeys(LOADS, together) | {"torsion": together / math.sqrt(3)}
     write("sigma_mv", equivalent)
@@ -236,24 +230,33 @@ def _safeties(
     borne = {}
     for load in LOADS:
         if amplitude[load] > 0:
-            own = limit[load], psi[load], static[load], equivalent[load], amplitude[load]
-            borne[load] = din743.amplitude_limit(*own, given.constant_mean)
-    case = "case 1: mean stays" if given.constant_mean else "case 2: mean grows with loads"
+            borne[load] = din743.amplitude_limit(
+                limit=limit[load],
+                psi=psi[load],
+                static=static[load],
+                mean=equivalent[load],
+                amplitude=amplitude[load],
+                constant_mean=conditions.constant_mean,
+            )
+    case = "case 1: mean stays" if conditions.constant_mean else "case 2: mean grows with loads"
     write("sigma_ADK", borne, f"DIN 743-1, {case}")
-    used = {load: amplitude[load] / at if at > 0 else math.inf for load, at in borne.items()}
+    used = {
+        load: amplitude[load] / limit_amplitude if limit_amplitude > 0 else math.inf
+        for load, limit_amplitude in borne.items()
+    }
     most = {load: (abs(mean[load]) + amplitude[load]) / static[load] for load in LOADS}
     return _safety(used), _safety(most)
 
 
 def _notches(sheet: _Sheet, notches: Mapping[Load, FatigueFactor]) -> Mapping[Load, float]:
-    """Notch factors, with what they are made of."""
+    """Write notch factors with their parts, and return them."""
     for symbol, name in FACTORS.items():
-        sheet.write(symbol, {load: getattr(one, name) for load, one in notches.items()})
-    return {load: one.notch for load, one in notches.items()}
+        sheet.write(symbol, {load: getattr(factor, name) for load, factor in notches.items()})
+    return {load: factor.notch for load, factor in notches.items()}
 
 
 def _surface(sheet: _Sheet, roughness: float | None, ultimate: float) -> Mapping[Load, float]:
-    """Factors of surface roughness."""
+    """Write and return factors of surface roughness."""
     if roughness is None:
         return sheet.write("K_F", 1.0, f"{ASSUMED}: no roughness given")
     factors = {load: din743.surface_factor(load, roughness, ultimate) for load in LOADS}
@@ -263,7 +266,7 @@ def _surface(sheet: _Sheet, roughness: float | None, ultimate: float) -> Mapping
 def _yielding(
     sheet: _Sheet, notch: Mapping[Load, float], yields: float, hollow: bool
 ) -> Mapping[Load, float]:
-    """Yield limits of the part."""
+    """Write and return the yield limits of the part."""
     support = {load: din743.STATIC_SUPPORT[load][hollow] for load in LOADS}
     rise = {load: din743.yield_rise(load, notch[load]) for load in LOADS}
     point = dict.fromkeys(LOADS, yields) | {"torsion": yields / math.sqrt(3)}
@@ -273,17 +276,17 @@ def _yielding(
 
 
 def _stress(
-    sheet: _Sheet, nominal: NominalStress, given: Conditions
+    sheet: _Sheet, nominal: NominalStress, conditions: Conditions
 ) -> tuple[Mapping[Load, float], Mapping[Load, float]]:
-    """Nominal amplitudes and means."""
+    """Write and return nominal amplitudes and means."""
     mean: dict[Load, float]
     mean = {"tension": nominal.tension, "bending": 0.0, "torsion": nominal.torsion}
     amplitude: dict[Load, float] = {
-        "tension": abs(nominal.tension) * (given.force_share or 0.0),
+        "tension": abs(nominal.tension) * (conditions.force_share or 0.0),
         "bending": nominal.bending,
-        "torsion": abs(nominal.torsion) * (given.torque_share or 0.0),
+        "torsion": abs(nominal.torsion) * (conditions.torque_share or 0.0),
     }
-    shares = {"force": given.force_share, "torque": given.torque_share}
+    shares = {"force": conditions.force_share, "torque": conditions.torque_share}
     bare = " and ".join(word for word, share in shares.items() if share is None)
     steady = f"; {ASSUMED} steady: {bare}" if bare else ""
     sheet.write("sigma_a", amplitude, LINES["sigma_a"][1] + steady)
@@ -291,7 +294,9 @@ def _stress(
 
 
 def _safety(shares: Mapping[Load, float]) -> float:
-    """Safety from shares of what is borne (DIN 743-1): normal stresses add, shear stands across."""
+    """Return the safety from shares of the limits (DIN 743-1): normal stresses add, shear is
+    perpendicular.
+    """
     normal = shares.get("tension", 0.0) + shares.get("bending", 0.0)
     used = math.hypot(normal, shares.get("torsion", 0.0))
     return 1 / used if used > 0 else math.inf

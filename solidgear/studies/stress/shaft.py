@@ -1,7 +1,7 @@
-"""Stress of a whole shaft under loads on its ports: section forces, nominal stress, its fillets.
+"""Stress of a whole shaft under loads on ports: section forces, nominal stress, fillets.
 
-Sharp corners have no stress: that of an elastic solid grows there without end as its mesh is refined
-(Williams 1952), so they are told and get no number.
+Sharp corners have no stress: that of an elastic solid grows there without end as the mesh is
+refined (Williams 1952), so they are listed and get no number.
 """
 
 from __future__ import annotations
@@ -41,9 +41,9 @@ if TYPE_CHECKING:
 
 #: in diameters of the shaft: a load that enters nearer to a fillet disturbs its stress, or is at it
 NEAR, TOUCHING = 1.0, 0.01
-#: share of an amplitude by shear that is told
+#: share of an amplitude by shear that is reported
 SHEARED = 0.05
-#: relative bar below which no order leads
+#: relative error bar below which no order leads
 FINEST = 3e-3
 #: rad; a surface that turns by less is straight, but for rounding
 SMOOTH = 1e-9
@@ -67,7 +67,7 @@ class Local:
 
 @dataclass(frozen=True)
 class Notch:
-    """A fillet at the root of a step, with the stress of this shaft under its loads."""
+    """A fillet at the root of a step, with the stress of this shaft under loads."""
 
     name: str
     #: where it meets its cylinder, m: forces and nominal stress are those of the section there
@@ -85,11 +85,11 @@ class Notch:
     published: Mapping[str, Mapping[LoadKind, float | None]]
     fatigue: Mapping[LoadKind, FatigueFactor]  #: by load; empty for a material without strength
     rating: Rating | None  #: none without strength, or where the norm has no formula: in bores
-    remark: str  #: of what disturbs its stress; empty for nothing
+    remark: str  #: on disturbances of its stress; empty for none
 
     @property
     def severity(self) -> tuple[float, float]:
-        """Rank of a fillet, the worst least: its safety, or minus its stress where there is none."""
+        """Rank of a fillet, the worst least: the safety, or minus the stress where there is none."""
         safety = self.rating.fatigue if self.rating else np.inf
         return safety, -(self.local.amplitude + abs(self.local.mean))
 
@@ -118,7 +118,9 @@ class ShaftStress:
 
     @property
     def worst(self) -> tuple[Notch, ...]:
-        """Fillets, that with the least safety first; without strength, that with the largest stress."""
+        """Fillets, that with the least safety first; without strength, that with the largest
+        stress.
+        """
 
         return tuple(sorted(self.notches, key=lambda notch: notch.severity))
 
@@ -132,7 +134,7 @@ def shaft_stress(
     conditions: Conditions | None = None,
     progress: Callable[[str], None] = lambda text: None,
 ) -> ShaftStress:
-    """Stress of a shaft under loads that balance.
+    """Return the stress of a shaft under loads that balance.
 
     Parameters
     ----------
@@ -148,7 +150,7 @@ def shaft_stress(
     conditions : Conditions, optional
         Of the rating by DIN 743.
     progress : callable, optional
-        Told each fillet.
+        Called with each fillet.
 
     Returns
     -------
@@ -200,7 +202,7 @@ def shaft_stress(
 
 
 def check_tolerance(tolerance: float) -> None:
-    """Refuse a relative bar that no mesh leads to."""
+    """Refuse a relative error bar that no mesh reaches."""
     if not FINEST <= tolerance < 1:
         raise SolidgearError(
             f"tolerance = {tolerance}: relative bars of form factors go from {FINEST:g} to 1"
@@ -208,7 +210,7 @@ def check_tolerance(tolerance: float) -> None:
 
 
 def sharp_corners(scene: Scene) -> Iterator[SharpCorner]:
-    """Re-entrant corners of the outline that have no fillet."""
+    """Yield re-entrant corners of the outline that have no fillet."""
     for edge in scene.outline.edges:
         if edge.angle > np.pi + SMOOTH:
             low, high = scene.segments[edge.joint - 1 : edge.joint + 1]
@@ -223,10 +225,10 @@ def _notch(
     tolerance: float,
     conditions: Conditions,
 ) -> Notch:
-    found = fillet_factors(scene, corner.name, tolerance)
-    here = forces.at(found.reference)
-    nominal = nominal_stress(found.section, here, found.radius)
-    local, (small, large) = local_stress(found, here), _diameters(scene, corner)
+    fillet = fillet_factors(scene, corner.name, tolerance)
+    section_load = forces.at(fillet.reference)
+    nominal = nominal_stress(fillet.section, section_load, fillet.radius)
+    local, (small, large) = local_stress(fillet, section_load), _diameters(scene, corner)
     strength = scene.segments[corner.owner].material.strength
     published, rating, fatigue = {}, None, {}
     if corner.surface == "outer":
@@ -236,37 +238,41 @@ def _notch(
         }
         if strength is not None:
             yields = strength.yield_point * (conditions.yield_at_size or 1.0)
-            fatigue = fatigue_factors(found, yields, large)
-            rating = rated(found, nominal, strength, conditions, large)
+            fatigue = fatigue_factors(fillet, yields, large)
+            rating = rated(fillet, nominal, strength, conditions, large)
     return Notch(
-        corner.name,
-        found.reference,
-        corner.radial,
-        small,
-        large,
-        found,
-        here,
-        nominal,
-        local,
-        published,
-        fatigue,
-        rating,
-        _remark(corner, seats, found, tolerance, _by_shear(found, nominal, local)),
+        name=corner.name,
+        y=fillet.reference,
+        radius=corner.radial,
+        small=small,
+        large=large,
+        found=fillet,
+        forces=section_load,
+        nominal=nominal,
+        local=local,
+        published=published,
+        fatigue=fatigue,
+        rating=rating,
+        remark=_remark(corner, seats, fillet, tolerance, _excess_by_shear(fillet, nominal, local)),
     )
 
 
 def _diameters(scene: Scene, corner: Corner) -> tuple[float, float]:
-    """Diameters of the surface on both sides of a step, that of the fillet's cylinder first, m."""
-    beside = scene.segments[corner.owner - corner.side]
-    start, end = radii_of(beside, corner.surface)
+    """Return diameters of the surface on both sides of a step, that of the fillet's cylinder first,
+    m.
+    """
+    neighbour = scene.segments[corner.owner - corner.side]
+    start, end = radii_of(neighbour, corner.surface)
     return 2 * corner.r, 2 * (end if corner.side > 0 else start)
 
 
-def local_stress(found: FilletFactors, forces: np.ndarray) -> Local:
-    """Stress on the arc of a fillet under section forces (6,), where its normal stress is largest."""
-    section, a = found.section, found.radius
+def local_stress(fillet: FilletFactors, forces: np.ndarray) -> Local:
+    """Return the stress on the arc of a fillet under section forces (6,), where the normal stress
+    is largest.
+    """
+    section, a = fillet.section, fillet.radius
     bend, push = a / section.second_moment, 1 / section.area
-    profiles, factors = found.profiles, found.factors
+    profiles, factors = fillet.profiles, fillet.factors
     q_x, n, q_z, m_x, t, m_z = forces
     # in both planes alike: a quarter turn about y makes (Q_x, -M_z) of (Q_z, M_x)
     planes = [
@@ -277,50 +283,52 @@ def local_stress(found: FilletFactors, forces: np.ndarray) -> Local:
     mean = profiles["tension"].along * push * n
     shear = profiles["torsion"].shear * t * a / (2 * section.second_moment)
     largest = amplitude + np.abs(mean)
-    at = int((largest if largest.any() else np.abs(shear)).argmax())
+    place = int((largest if largest.any() else np.abs(shear)).argmax())
     bars = {load: factor.bar for load, factor in factors.items()}
     return Local(
-        float(amplitude[at]),
+        float(amplitude[place]),
         bars["bending"] * bend * np.hypot(m_x, m_z) + bars["shear"] * push * np.hypot(q_x, q_z),
-        float(mean[at]),
+        float(mean[place]),
         bars["tension"] * push * abs(n),
-        float(shear[at]),
+        float(shear[place]),
         bars["torsion"] * abs(t) * a / (2 * section.second_moment),
-        float(profiles["bending"].angle[at]),
+        float(profiles["bending"].angle[place]),
     )
 
 
-def _by_shear(found: FilletFactors, nominal: NominalStress, local: Local) -> float:
-    """By how much the amplitude on a fillet is more than form factor times nominal stress, relative;
-    shear is what makes the difference.
+def _excess_by_shear(fillet: FilletFactors, nominal: NominalStress, local: Local) -> float:
+    """Return the relative excess of the amplitude on a fillet over form factor times nominal
+    stress, which is due to shear.
     """
-    bent = found.factors["bending"].value * nominal.bending
+    bent = fillet.factors["bending"].value * nominal.bending
     return local.amplitude / bent - 1 if bent > 0 else np.inf * local.amplitude
 
 
 def _remark(
     corner: Corner,
     seats: Sequence[tuple[float, float]],
-    found: FilletFactors,
+    fillet: FilletFactors,
     tolerance: float,
     by_shear: float,
 ) -> str:
-    """Remark that a user must know with the numbers of a fillet."""
-    told = []
+    """Return the remark that a user must know with the numbers of a fillet."""
+    remarks = []
     first, last = corner.span
     gaps = [max(first - hi, lo - last, 0.0) for lo, hi in seats]
-    nearest = min(gaps, default=np.inf) / (2 * found.section.outer)
+    nearest = min(gaps, default=np.inf) / (2 * fillet.section.outer)
     if nearest < NEAR:
-        away = f"{nearest:.2g} diameters away" if nearest > TOUCHING else "right beside it"
-        told.append(f"a load enters {away}: its own disturbance is not in the factors")
-    if found.widest > tolerance:
-        told.append(f"bar {100 * found.widest:.2g} %, above the {100 * tolerance:.2g} % asked for")
+        distance = f"{nearest:.2g} diameters away" if nearest > TOUCHING else "right beside it"
+        remarks.append(f"a load enters {distance}: its own disturbance is not in the factors")
+    if fillet.widest > tolerance:
+        remarks.append(
+            f"bar {100 * fillet.widest:.2g} %, above the {100 * tolerance:.2g} % asked for"
+        )
     if by_shear > SHEARED:
         share = f"{100 * by_shear:.0f} % above" if np.isfinite(by_shear) else "not"
-        told.append(
+        remarks.append(
             f"its amplitude is {share} Kt times nominal bending, by the shear force, which a rating "
             "by DIN 743 leaves out"
         )
     if corner.surface == "bore":
-        told.append("DIN 743 has no formula for a step in a bore")
-    return "; ".join(told)
+        remarks.append("DIN 743 has no formula for a step in a bore")
+    return "; ".join(remarks)

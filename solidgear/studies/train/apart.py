@@ -40,7 +40,7 @@ def searched(found: Backlash, count: int, step: float) -> Backlash:
             periods=one.periods,
             end=one.end,
         )
-        for one in looked.found
+        for one in looked.branches
     )
     return replace(found, search=looked, apart=apart)
 

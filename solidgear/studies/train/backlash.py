@@ -97,7 +97,7 @@ class Backlash:
     #: number of the law whose mesh is told: 0 for that whose transmission error drives the train
     law: int = 0
     periods: int = 1  #: of the driven mesh after which motions repeat themselves
-    end: str = ""  #: of a branch apart, as :class:`solidgear.nonlinear.apart.Apart` says
+    end: str = ""  #: of a branch apart, as :class:`solidgear.nonlinear.apart.SeparateBranch` says
     #: for branches apart; None where they were not looked for
     search: Search | None = field(default=None, repr=False)
     apart: tuple[Backlash, ...] = ()  #: those that were found

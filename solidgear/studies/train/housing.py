@@ -15,7 +15,7 @@ from solidgear.scene.planetary import Stage
 from solidgear.scene.train import Train
 from solidgear.scene.train_housing import CENTRE, HOUSING, LOSS, TrainHousing
 from solidgear.studies.train.components import FORCE_UNITS, MOTION_UNITS, six
-from solidgear.system.links import BearingSpring, Link, apart
+from solidgear.system.links import BearingSpring, Link, relative_motion
 from solidgear.system.parts import Part, Placed, RigidBody
 from solidgear.system.system import System
 
@@ -119,7 +119,7 @@ def seat_motion(train: Train, system: System, side: str, station: str) -> np.nda
     """(6, N) motion of a bearing's inner ring, or of a place beside, against what it stands in."""
     below = under(train, side, station)
     around = [system.port(below)] if below is not None else []
-    return apart(system.port(f"{side}.{station}"), *around)
+    return relative_motion(system.port(f"{side}.{station}"), *around)
 
 
 def carried_by(

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from solidgear.bearings.duty import DutyLife, DutyPoint, duty_life
-from solidgear.bearings.solved import AS_TOLD
+from solidgear.bearings.solved import AS_STATED
 from solidgear.errors import SolidgearError
 from solidgear.scene.operation import OperatingPoint
 from solidgear.scene.train import Train
@@ -72,7 +72,7 @@ def train_lives(train: Train) -> list[TrainBearingLife]:
     scenes = {side: own.scene for side, own in train.shafts.items()}
     told, choices = left_open(scenes.values())
     shop = Workshop(train)
-    settled = [_settled(Operating(shop, choice=choice), train) for choice in (AS_TOLD, *choices)]
+    settled = [_settled(Operating(shop, choice=choice), train) for choice in (AS_STATED, *choices)]
     found = []
     for side, scene in scenes.items():
         for bearing in scene.bearings:

@@ -21,7 +21,7 @@ from functools import cached_property
 import numpy as np
 
 from solidgear.bearings.catalogued import Catalogued
-from solidgear.bearings.solved import AS_TOLD, Choice, made_of
+from solidgear.bearings.solved import AS_STATED, Choice, catalogued_bearings
 from solidgear.errors import SceneError, SolidgearError, listed
 from solidgear.scene.operation import OperatingPoint
 from solidgear.scene.train import Train
@@ -114,7 +114,7 @@ class Operating:
     100.0
     """
 
-    def __init__(self, workshop: Workshop, *models: str, choice: Choice = AS_TOLD):
+    def __init__(self, workshop: Workshop, *models: str, choice: Choice = AS_STATED):
         self.workshop, self.models, self.choice = workshop, models or (SHAFT,), choice
         for side in workshop.train.shafts:
             refuse_own_loads(workshop.train, side)
@@ -126,7 +126,7 @@ class Operating:
         train = self.workshop.train
         for side, shaft in train.shafts.items():
             try:
-                own = made_of(shaft.scene, self.choice)
+                own = catalogued_bearings(shaft.scene, self.choice)
             except SceneError as error:
                 raise error.located(None, prefix=(*train.shaft_path(side), "scene")) from None
             out |= {f"{side}.{name}": one for name, one in own.items()}

@@ -24,7 +24,7 @@ class SpeedRun:
     @property
     def every(self) -> tuple[SpeedRun, ...]:
         """The same told of each mesh with a law, that which drives the train first."""
-        meshes = zip((self.run, *self.run.others), self.found.every)
+        meshes = zip((self.run, *self.run.other_links), self.found.every)
         return tuple(SpeedRun(self.ramp, run, found) for run, found in meshes)
 
     @cached_property
@@ -112,6 +112,6 @@ def speed_run(found: Backlash, ramp: float, told: Callable[[str], None] | None =
             told(f"run {way}, {10 * tenth} %")
 
     own = run_up(
-        found.remainder, begin, end, 2 * np.pi * abs(ramp), state=point.state(), told=share
+        found.remainder, begin, end, 2 * np.pi * abs(ramp), state=point.state(), progress=share
     )
     return SpeedRun(ramp, own, found)

@@ -87,7 +87,7 @@ def judged(seed: int, bare: bool = False) -> Found:
     count = len(computed.body.surface({}).points)
     many = _shapes(rng, true, rng.choice(count, MANY, replace=False), 0.0)
     everywhere = OnPoints(many, NOISES[0], computed)
-    partner = [_partner(row) for row in everywhere.seen.mac]
+    partner = [_partner(row) for row in everywhere.likeness.mac]
     widths = computed.widths(correlate.SPRINGS)
     rows = []
     for slip, _ in product(SLIPS, range(SETS)):
@@ -187,7 +187,7 @@ def _told(
     seen = None
     if shapes is not None:
         values = np.array([peak.shape for peak in peaks])
-        seen = OnPoints(Shapes(shapes.numbers, shapes.points, values), noise, computed).seen
+        seen = OnPoints(Shapes(shapes.numbers, shapes.points, values), noise, computed).likeness
     found = alignment_of(*peaks_of(measured, computed, correlate.SPRINGS), seen)
     for peak, row in zip(peaks, found.pairs):
         told = np.flatnonzero(row > POSSIBLE)
