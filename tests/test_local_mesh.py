@@ -261,7 +261,7 @@ def test_two_gears_of_a_shaft_squeeze_it_together():
         for mesh, asked in zip(train.meshes, ((2,), (2, 3)))
     ]
     shop = Workshop(train.with_changes(meshes=tuple(meshes)), settings=LIGHT)
-    body, part = shop.shaft("middle", "harmonic").body, shop.part("middle", "harmonic")
+    body, part = shop.shaft_model("middle", "harmonic").body, shop.shaft_part("middle", "harmonic")
     own = own_waves(part)
     assert list(own) == [2, 3]
     patches, pushes, rows, moved = [], [], [], []

@@ -14,7 +14,7 @@ from solidgear.nonlinear.motion import steady_motion
 from solidgear.nonlinear.stability import stable
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.nonlinear import teeth_of, with_backlash
-from solidgear.studies.train.nonlinear_told import BacklashTold
+from solidgear.studies.train.nonlinear_told import BacklashStudy
 
 OVERHUNG = Path(__file__).parent.parent / "geometry" / "axle_overhung.toml"
 
@@ -30,20 +30,20 @@ def axle():
     train = sg.load_train(OVERHUNG)
     mesh = train.mesh.with_changes(backlash="100 um", transmission_error="10 um")
     shop = Workshop(train.with_changes(mesh=mesh))
-    found = with_backlash(shop, ["lumped"], teeth_of(shop, 5000.0), 2000.0, 150.0, apart=32)
+    found = with_backlash(shop, ["lumped"], teeth_of(shop, 5000.0), 2000.0, 150.0, search_speeds=32)
     return shop, found
 
 
 @pytest.mark.long
 def test_the_largest_force_of_the_axle_is_on_branches_apart_that_time_bears_out(axle):
     _, found = axle
-    one, two = found.apart
+    one, two = found.branches_apart
     assert (one.periods, two.periods) == (1, 2) and one.end == two.end == "closed"
     # known from a smaller mean force, raised until the branch is apart
     assert one.frequency_hz.min() == pytest.approx(518.5, abs=0.1)
     assert one.loudest[1] == pytest.approx(9397, rel=1e-3)
     assert found.worst is two and found.loudest[1] < 0.72 * two.loudest[1]
-    for other in found.apart:
+    for other in found.branches_apart:
         point, force = loudest(other.branch)
         time = steady_motion(
             found.remainder, other.periods * point.omega, point.state(), steady=1e-4
@@ -55,11 +55,11 @@ def test_the_largest_force_of_the_axle_is_on_branches_apart_that_time_bears_out(
 @pytest.mark.long
 def test_what_is_told_of_the_axle_names_both_and_what_was_looked_for(axle):
     shop, found = axle
-    told = " ".join(BacklashTold(shop.train, (found,), 0.044).sentences())
+    told = " ".join(BacklashStudy(shop.train, (found,), 0.044).sentences())
     assert "A branch apart of two mesh periods from 100" in told
     assert "looked for from 1024 starts at 32 speeds" in told and "there may be others" in told
     assert "on a branch apart, 7392 N" in told
-    alone = " ".join(BacklashTold(shop.train, (replace(found, apart=()),), 0.044).sentences())
+    alone = " ".join(BacklashStudy(shop.train, (replace(found, branches_apart=()),), 0.044).sentences())
     assert "of 1 to 3 mesh periods: none was found, and there may be some." in alone
 
 

@@ -10,7 +10,7 @@ from solidgear.studies.guards.probe import Probe
 from solidgear.studies.train import check as checked
 from solidgear.studies.train.check import check_train
 from solidgear.studies.train.models import Workshop
-from solidgear.studies.train.slips import slips, slips_of_meshes
+from solidgear.studies.train.slips import mesh_unit_slips, unit_slips
 from tests.command import command
 
 AXLE = "geometry/axle_overhung.toml"
@@ -117,7 +117,7 @@ def test_commands_tell_a_slip_above_their_table_in_the_words_of_check(tmp_path):
         text = text.replace(f'"{name}.toml"', f'"{Path("geometry", name).absolute()}.toml"')
     file = tmp_path / "slip.toml"
     file.write_text(text)
-    (sentence,) = slips_of_meshes(Workshop(sg.load_train(file))) or ("",)
+    (sentence,) = mesh_unit_slips(Workshop(sg.load_train(file))) or ("",)
     assert sentence.startswith("probably a slip in units: mesh stiffness")
     beams = [file, "--pinion", "euler", "--gear", "euler", "--max-frequency", "600"]
     for words in (["system-modes", *beams], ["response", *beams, "--out", tmp_path / "out"]):
@@ -137,7 +137,7 @@ def test_a_slip_in_the_data_of_a_shaft_is_told_with_its_side():
     ]
     scene = gear.with_changes(bearings=tuple(soft))
     odd = TRAIN.with_changes(gear=TRAIN.gear.with_changes(scene=scene))
-    (sentence,) = slips(Workshop(odd))
+    (sentence,) = unit_slips(Workshop(odd))
     assert sentence.startswith("gear: probably a slip in units: ")
 
 

@@ -15,7 +15,7 @@ from solidgear.studies.train.meshes import mesh_bars
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.modes import train_modes
 from solidgear.studies.train.operation import Operating
-from solidgear.studies.train.pairing import seen_modes
+from solidgear.studies.train.pairing import modes_and_motions
 from solidgear.studies.train.receptance import receptance
 from solidgear.studies.train.respond import Drive
 from tests.command import command
@@ -231,7 +231,7 @@ def test_on_bearings_that_do_not_hold_a_housing_has_the_modes_of_a_mass_on_its_m
     exact = [sqrt(4 * k) / (2 * pi) for k in (kx / mass, ky / mass, kz / mass, *turns)]
     assert [found[np.argmin(abs(found - hz))] for hz in exact] == pytest.approx(exact, rel=1e-9)
     system = shop.with_bearings(dict.fromkeys(names, soft)).system(RIGID)
-    modes, seen = seen_modes(shop, system, max(exact) + 1)
+    modes, seen = modes_and_motions(shop, system, max(exact) + 1)
     near = [np.argmin(abs(modes.frequency_hz[modes.rigid :] - hz)) for hz in exact]
     assert np.linalg.norm(seen[:, near], axis=0).min() > 0.1  # a mode is paired by what it moves
 

@@ -30,16 +30,16 @@ def verdict():
 @pytest.mark.long
 def test_the_ring_gear_decides_and_not_the_pinion(verdict):
     _, found = verdict
-    gear, pinion = found.of(JUDGE, "timoshenko"), found.of("timoshenko", JUDGE)
+    gear, pinion = found.departure(JUDGE, "timoshenko"), found.departure("timoshenko", JUDGE)
     # the flat ring bends like a plate: its first bending mode rises by more than a tenth
     assert gear.mode == "gear bending 1" and 0.1 < gear.error < 0.2
     assert gear.to_hz < 600 and pinion.to_hz > 2000
-    assert found.of("euler", "euler").cause == found.of("timoshenko", "timoshenko").cause == "gear"
+    assert found.departure("euler", "euler").cause == found.departure("timoshenko", "timoshenko").cause == "gear"
 
 
 def test_the_departures_are_where_the_numbers_say(verdict):
     shop, found = verdict
-    mix = found.of(JUDGE, "timoshenko")
+    mix = found.departure(JUDGE, "timoshenko")
     mine, own = Drive(shop, JUDGE, "timoshenko"), Drive(shop, JUDGE, JUDGE)
     hz = np.linspace(5, 3000, 60_001)
     ratio = np.abs(mine.mesh(hz)[1] / own.mesh(hz)[1])
@@ -51,11 +51,11 @@ def test_the_departures_are_where_the_numbers_say(verdict):
 
 def test_total_mass_along_the_shaft_is_the_largest_error_left_in_the_lumped_model(verdict):
     _, found = verdict
-    bending, whole = (found.of(n, n) for n in ("lumped-bending", "lumped"))
+    bending, whole = (found.departure(n, n) for n in ("lumped-bending", "lumped"))
     assert bending.mode == "gear axial 1" and bending.error == pytest.approx(-0.10, abs=0.01)
     assert bending.cause == "axial mass"
     assert whole.to_hz > bending.to_hz
-    assert found.of("lumped-old", "lumped-old").cause == "bending mass"
+    assert found.departure("lumped-old", "lumped-old").cause == "bending mass"
 
 
 def test_what_has_as_many_unknowns_stands_in_the_sequence_of_the_ladder(verdict):

@@ -158,10 +158,10 @@ def test_a_shaft_with_two_gears_is_lumped_at_both(shop):
     """Against one solve of all unknowns under unit loads of both points; and in torsion, where nothing
     holds it, against the rod between them, with what lies outside of it turning along.
     """
-    body = shop.shaft("middle", "euler").body
+    body = shop.shaft_model("middle", "euler").body
     names = [port.name for port in body.ports]
     points = [names.index(port) for port in SHAFTS["middle"][2]]
-    stiffness, mass = lumped_matrices(shop.shaft("middle", "lumped/euler").part, ("b0", "b1"))
+    stiffness, mass = lumped_matrices(shop.shaft_model("middle", "lumped/euler").part, ("b0", "b1"))
     for block in body.blocks:
         components, rows = list(block.components), block.ports.toarray()
         at = [6 * k + c for k in (0, 1) for c in components]

@@ -101,7 +101,7 @@ def test_the_layout_of_the_thesis_has_ninety_two_degrees_of_freedom():
     few = Workshop(train, kept=10_000, settings={"euler": {"elements": 1}})
     system = few.system("euler", "euler")
     assert system.size == 92
-    assert sum(few.shaft(side, "euler").unknowns for side in ("pinion", "gear")) == 15 * 6
+    assert sum(few.shaft_model(side, "euler").unknowns for side in ("pinion", "gear")) == 15 * 6
     fine = Workshop(train).system("euler", "euler").modes(12).frequency_hz[1:]
     coarse = system.modes(12).frequency_hz[1:]
     low = fine < 3000.0
@@ -166,7 +166,7 @@ def test_a_lumped_shaft_has_the_condensed_stiffness():
     shop = Workshop(TRAIN_DATA, settings=COARSE)
     masses, stiffness = {}, {}
     for side, scene in shop.scenes.items():
-        model = shop.shaft(side, "lumped/timoshenko")
+        model = shop.shaft_model(side, "lumped/timoshenko")
         stiffness[side] = np.array(condense(model.body, scene, scene.port.name).stiffness)
         masses[side] = model.part.mass
     exact = lumped_pair(shop, masses, stiffness).solve().frequency_hz
@@ -176,8 +176,8 @@ def test_a_lumped_shaft_has_the_condensed_stiffness():
 
 def test_the_effective_axial_mass_is_less_than_the_total():
     shop = Workshop(TRAIN_DATA, settings=COARSE)
-    part = shop.shaft("gear", "lumped/timoshenko").part
-    total = shop.shaft("gear", "timoshenko").body.mass_matrix()[1, 1]
+    part = shop.shaft_model("gear", "lumped/timoshenko").part
+    total = shop.shaft_model("gear", "timoshenko").body.mass_matrix()[1, 1]
     assert total == pytest.approx(79.82, abs=0.01)
     assert part.mass[1, 1] < total
 
@@ -245,7 +245,7 @@ def test_cells_of_one_order_follow_waves_of_one_length():
         shop = Workshop(
             TRAIN_DATA, kept=4, settings={"solid": {"element": element, "refinement": 0.3}}
         )
-        model = shop.shaft("gear", "solid")
+        model = shop.shaft_model("gear", "solid")
         limit = mesh_limit(shop, "gear", model.part)
         reach.append(limit * model.body.mesh["representative_size"])
     assert reach[0] == pytest.approx(reach[1], rel=1e-12)  # both are of second order

@@ -22,7 +22,7 @@ from solidgear.studies.train.nonlinear import (
     teeth_of,
     with_backlash,
 )
-from solidgear.studies.train.nonlinear_told import BacklashTold
+from solidgear.studies.train.nonlinear_told import BacklashStudy
 from solidgear.studies.train.respond import Drive
 
 OVERHUNG = Path(__file__).parent.parent / "geometry" / "axle_overhung.toml"
@@ -65,7 +65,7 @@ def test_the_linear_peak_hides_where_teeth_part_and_jump(solids):
 @pytest.mark.long
 def test_lumped_shafts_are_enough_for_jumps_and_beams_are_not(shop, teeth, solids):
     others = [with_backlash(shop, [m], teeth, 1100.0, 300.0) for m in ("lumped", "timoshenko")]
-    lumped, beams = BacklashTold(shop.train, (solids, *others), 0.044).sufficiency()
+    lumped, beams = BacklashStudy(shop.train, (solids, *others), 0.044).sufficiency()
     assert lumped.enough and lumped.jumps < 0.01 and abs(lumped.force) < 0.015
     assert not beams.enough and beams.force == pytest.approx(0.30, abs=0.01)
 
@@ -111,7 +111,7 @@ def test_without_backlash_the_answer_is_the_linear_one(shop, teeth, highest):
     system = parting(drive.system, replace(teeth, half_gap=0.0))
     own = remainder(
         system,
-        loss=shop.losses(),
+        loss=shop.loss_factors(),
         kind="viscous",
         matched_hz=800.0,
         errors={"mesh": teeth.errors},

@@ -14,7 +14,7 @@ from solidgear.nonlinear.motion import steady_motion
 from solidgear.studies.train.contact import axes_of
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.nonlinear import backlash_model, parting, teeth_of, with_backlash
-from solidgear.studies.train.nonlinear_told import BacklashTold
+from solidgear.studies.train.nonlinear_told import BacklashStudy
 from solidgear.studies.train.respond import Drive
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
@@ -62,7 +62,7 @@ def test_each_mesh_carries_its_own_mean_force(shop):
     own = backlash_model(toothed(shop, gap, gap), BEAMS, teeth, 3000.0)
     # that the torques of engine and load bring about at rest
     carried = own.mean * np.diag(own.stiffness)
-    np.testing.assert_allclose(carried, [one.mean_force for one in teeth.every], rtol=1e-9)
+    np.testing.assert_allclose(carried, [one.mean_force for one in teeth.meshes], rtol=1e-9)
 
 
 @pytest.mark.parametrize("driver", ["input-middle", "middle-output"])
@@ -72,13 +72,13 @@ def test_without_backlash_every_mesh_answers_as_the_response_does(shop, driver):
     drive = Drive(own, *BEAMS, damping="viscous", matched_hz=800.0, mesh=driver)
     made = remainder(
         parting(drive.system, teeth),
-        loss=own.losses(),
+        loss=own.loss_factors(),
         kind="viscous",
         matched_hz=800.0,
         errors={teeth.mesh: teeth.errors},
     )
     hz = np.array([300.0, 812.0, 1500.0, 2176.0])
-    rows = np.vstack([drive.rows[one.mesh] for one in teeth.every])
+    rows = np.vstack([drive.rows[one.mesh] for one in teeth.meshes])
     expected = drive.motion(hz, rows)
     expected[:, 0] -= drive.amplitude(hz)
     balance = Balance(made, 3)
@@ -117,7 +117,7 @@ def test_balance_of_two_laws_is_motion_in_time(shop, gaps, force, hz, parts):
 def test_what_parts_is_told_of_each_mesh(shop):
     own = toothed(shop, {"transmission_error": "15 um"}, {"backlash": "30 um"})
     found = with_backlash(own, BEAMS, teeth_of(own, 500.0), 1600.0, 1520.0)
-    told = BacklashTold(own.train, (found,), abs(own.contacts[found.teeth.mesh].pinion.lever))
+    told = BacklashStudy(own.train, (found,), abs(own.contacts[found.teeth.mesh].pinion.lever))
     lines = told.sentences()
     (parting_line,) = [line for line in lines if line.startswith("The teeth of")]
     assert parting_line.startswith("The teeth of the mesh middle-output part from 1520 to 15")
@@ -126,7 +126,7 @@ def test_what_parts_is_told_of_each_mesh(shop):
     other = told.as_dict()["mixes"][0]["other_meshes"][0]
     assert other["mesh"] == "mesh middle-output" and other["parts"]
     # the torque above which nothing parts is that at which the linear force is the mean one
-    driven, second = found.every
+    driven, second = found.meshes
     hz, most = second.linear_loudest
     drive = Drive(own, *BEAMS, damping="modal")
     stretch = drive.motion(np.array([hz]), drive.rows[second.teeth.mesh][None])

@@ -6,8 +6,8 @@ import pytest
 import solidgear as sg
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.nonlinear import teeth_of, with_backlash
-from solidgear.studies.train.operation import Operating, settled
-from solidgear.studies.train.parting import parts_from, released, taken_off
+from solidgear.studies.train.operation import Operating, with_settled_bearings
+from solidgear.studies.train.parting import largest_relief, parting_frequency, teeth_relief
 from solidgear.studies.train.respond import Drive, respond
 from tests.command import command, numbers
 
@@ -26,13 +26,13 @@ def axle(torque, orders=("10 um",), phases=()):
 def test_two_orders_take_off_what_their_sum_over_the_cycle_is_at_its_least(phase, most):
     # cos x + cos 2x is least where cos x = -1/4, cos x - cos 2x where x is half a turn
     force = np.array([3.0 + 0.0j])
-    assert released([force, force], (0.0, phase))[0] == pytest.approx(3 * most, rel=1e-3)
+    assert largest_relief([force, force], (0.0, phase))[0] == pytest.approx(3 * most, rel=1e-3)
 
 
 def test_teeth_part_between_the_points_where_the_force_passes_the_mean_one():
     hz, taken = np.array([10.0, 20.0, 30.0]), np.array([1.0, 2.0, 4.0])
-    assert parts_from(hz, taken, 3.0) == pytest.approx(25.0)
-    assert parts_from(hz, taken, 0.5) == 10.0 and parts_from(hz, taken, 4.5) is None
+    assert parting_frequency(hz, taken, 3.0) == pytest.approx(25.0)
+    assert parting_frequency(hz, taken, 0.5) == 10.0 and parting_frequency(hz, taken, 4.5) is None
 
 
 def test_the_linear_motion_of_backlash_takes_off_the_same_by_orders_and_phases():
@@ -40,10 +40,10 @@ def test_the_linear_motion_of_backlash_takes_off_the_same_by_orders_and_phases()
     found = with_backlash(shop, BEAMS, teeth_of(shop), highest_hz=330.0, lowest_hz=300.0)
     hz, least = found.holding
     drive = Drive(shop, *BEAMS)
-    taken = taken_off(drive, drive.over_cycle(hz, 1e4))
+    taken = teeth_relief(drive, drive.over_cycle(hz, 1e4))
     # modes above the range give way like springs there: the second order runs twice as fast
     np.testing.assert_allclose(taken, least, rtol=0.03)
-    other = released(drive.over_cycle(hz, 1e4), drive.error.phases)
+    other = largest_relief(drive.over_cycle(hz, 1e4), drive.error.phases)
     assert np.abs(other / least - 1).min() > 0.04  # the other end of the swing is another number
 
 
@@ -76,7 +76,7 @@ def test_rows_of_a_sweep_tell_where_teeth_part_and_how_many_do(tmp_path):
     light, heavy = numbers(out)
     train = sg.load_train("geometry/gearbox_train.toml")
     point = train.operation[0].with_changes(torque=0.5)
-    there = settled(train, Operating(Workshop(train)).at(point))
+    there = with_settled_bearings(train, Operating(Workshop(train)).at(point))
     hz = np.array([light["parts_from_hz"]])
     force = np.abs(Drive(Workshop(there), *BEAMS).mesh(hz)[1][0])
     # straight between points of a grid whose middles are foretold within 0.25 dB

@@ -11,7 +11,7 @@ from solidgear.report.folder import clear
 from solidgear.report.turning import sections
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.naming import mode_names
-from solidgear.studies.train.pictures import draw_modes, system_surface, turned_beside, turned_modes
+from solidgear.studies.train.pictures import draw_modes, system_surface, turning_modes, turning_pair
 from tests.command import command
 
 TRAIN = sg.load_train(OVERHUNG)
@@ -36,7 +36,7 @@ def rigid_motion(points, moved):
 
 def halves(shop, system, rungs, shape):
     drawn = system_surface(shop, system, rungs, shape)
-    first = len(shop.shaft("pinion", rungs[0]).body.surface({}).points)
+    first = len(shop.shaft_model("pinion", rungs[0]).body.surface({}).points)
     return (
         (drawn.points[:first], drawn.displacement[:first]),
         (drawn.points[first:], drawn.displacement[first:]),
@@ -152,7 +152,7 @@ def test_what_is_turned_stands_and_moves_as_in_the_pictures(shop, rungs):
     """Both shafts put in their places are the surface of the picture, in rest and in motion, with
     one scale for both: the largest displacement of the two is 1.
     """
-    model = turned_modes(shop, *rungs, highest_hz=900.0)
+    model = turning_modes(shop, *rungs, highest_hz=900.0)
     system = shop.system(*rungs)
     found = system.modes(len(model.shapes))
     assert (
@@ -177,7 +177,7 @@ def test_what_is_turned_stands_and_moves_as_in_the_pictures(shop, rungs):
 
 def test_only_a_shaft_that_turns_is_drawn_as_turning(shop):
     """Enlarged along the tangent a turning section would swell; one that bends must not be turned."""
-    model = turned_modes(shop, "timoshenko", "timoshenko", highest_hz=1000.0)
+    model = turning_modes(shop, "timoshenko", "timoshenko", highest_hz=1000.0)
     by = {s.name: (s.twists, model.along[0].shapes[k].twists) for k, s in enumerate(model.shapes)}
     # the shafts wind up against engine and load, nearly rigid themselves
     assert by["load torsion 1"] == (True, True)
@@ -206,7 +206,7 @@ def test_the_page_of_system_modes_has_modes_to_turn_and_units(tmp_path):
 
 def test_two_mixes_side_by_side_show_partners_under_one_name(shop):
     """Paired by what the ports do, with one sign; what has no partner says so."""
-    one, other = turned_beside(shop, ("harmonic", "harmonic"), ("euler", "euler"), 900.0)
+    one, other = turning_pair(shop, ("harmonic", "harmonic"), ("euler", "euler"), 900.0)
     assert [t.title for t in (one, other)] == ["both shafts harmonic", "both shafts euler"]
     shared = {s.name for s in one.shapes} & {s.name for s in other.shapes}
     assert {"load torsion 1", "gear torsion 1", "gear bending 1"} <= shared

@@ -463,4 +463,4 @@ def test_a_carrier_without_gears_is_lumped_at_its_main_point():
     )
     assert (lumped >= whole * (1 - ROUNDING)).all()
     assert lumped == pytest.approx(whole, rel=5e-2)
-    assert shop.shaft("output", "lumped/timoshenko").part.mass.shape == (6, 6)
+    assert shop.shaft_model("output", "lumped/timoshenko").part.mass.shape == (6, 6)

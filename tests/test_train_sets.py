@@ -44,7 +44,9 @@ def afresh(bearings):
 
 def test_other_bearings_on_the_same_shafts_are_those_of_a_new_train(shop):
     other = shop.with_bearings(NEW)
-    assert other.shaft("gear", MIX[1]) is shop.shaft("gear", MIX[1])  # nothing was built again
+    assert other.shaft_model("gear", MIX[1]) is shop.shaft_model(
+        "gear", MIX[1]
+    )  # nothing was built again
     found, whole = Drive(other, *MIX).columns(HZ), Drive(afresh(NEW), *MIX).columns(HZ)
     usual = Drive(shop, *MIX).columns(HZ)
     assert list(found) == list(whole)

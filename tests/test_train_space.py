@@ -8,7 +8,7 @@ import pytest
 
 import solidgear as sg
 from solidgear.studies.train.models import Workshop
-from solidgear.studies.train.space import Piece, across, beside, overlaps
+from solidgear.studies.train.space import Piece, angled_overlap, overlaps, parallel_overlap
 from tests.test_train_many import written
 from tests.test_train_power import looped
 
@@ -98,11 +98,13 @@ def piece(radius, bore=0.0, length=0.2):
 def test_a_shaft_through_a_hollow_one_has_its_place_until_it_touches_the_wall():
     hollow, shaft = piece(0.05, 0.03), piece(0.02)
     for aside, deep in ((0.0, None), (0.009, None), (0.012, 0.002), (0.04, 0.03), (0.071, None)):
-        told = [*beside(("a", "b"), hollow, shaft, -1.0, np.array([aside, 0.25, 0.0]), 0.0)]
+        told = [
+            *parallel_overlap(("a", "b"), hollow, shaft, -1.0, np.array([aside, 0.25, 0.0]), 0.0)
+        ]
         assert [one.depth for one in told] == ([] if deep is None else [pytest.approx(deep)])
         # begins 0.25 along the hollow one and runs back
         assert all(sum(one.places, ()) == pytest.approx((0.05, 0.2) * 2) for one in told)
-    away = [*beside(("a", "b"), hollow, shaft, 1.0, np.array([0.0, 0.2, 0.0]), 0.0)]
+    away = [*parallel_overlap(("a", "b"), hollow, shaft, 1.0, np.array([0.0, 0.2, 0.0]), 0.0)]
     assert away == []  # end to end
 
 
@@ -113,7 +115,7 @@ def test_two_rods_across_each_other_overlap_by_what_their_radii_lack(angle):
     middle = np.array([0.0, 0.1, 0.0]) - turn @ np.array([0.0, 0.1, 0.0])
     for apart, deep in ((0.051, 0.0), (0.045, 0.005), (0.04, 0.01)):
         rods = piece(0.02), piece(0.03)
-        told = [*across(("a", "b"), *rods, turn, middle + [0.0, 0.0, apart])]
+        told = [*angled_overlap(("a", "b"), *rods, turn, middle + [0.0, 0.0, apart])]
         most = max((one.depth for one in told), default=0.0)
         # points between circles lie deeper: a few per cent with circles a sixth of a radius apart
         assert 0.95 * deep <= most <= deep

@@ -15,7 +15,7 @@ from solidgear.report.measured_chart import outline
 from solidgear.scene.catalogue import Catalogue
 from solidgear.studies.spectrum import Spectrum, read_spectrum
 from solidgear.studies.train.at_speed import Line, at_speed, explained, turns_of_pinion
-from solidgear.studies.train.kinematics import SLIP, of_bearing, settled_angles, train_orders
+from solidgear.studies.train.kinematics import SLIP, bearing_orders, settled_angles, train_orders
 from tests.charted import words_of
 from tests.command import command, table
 
@@ -66,14 +66,14 @@ def test_the_bar_of_a_bearing_line_holds_the_true_inside(
     # nothing of the inside is told, and nothing slips
     true = passing(Inside(count, diameter, 0.0, pitch, 0.0, (0.52, 0.52)))
     data = Catalogue(designation=designation, load_rating=rating)
-    for order in (order for order in of_bearing("A", data, 1.0) if order.name.endswith(" 1")):
+    for order in (order for order in bearing_orders("A", data, 1.0) if order.name.endswith(" 1")):
         assert order.low / (1 - SLIP) < getattr(true, order.kind) < order.high / (1 + SLIP)
         assert "estimated elements, element diameter, pitch diameter" in order.source
 
 
 def test_a_known_inside_leaves_the_slip_alone():
     bearing = next(b for b in GEARBOX.bearings if b.name == "B")
-    for order in of_bearing("B", bearing.catalogue, 0.5):
+    for order in bearing_orders("B", bearing.catalogue, 0.5):
         assert order.high / order.per_turn == pytest.approx(1 + SLIP)
         assert order.low / order.per_turn == pytest.approx(1 - SLIP)
         assert "estimated" not in order.source and "nominal" in order.source
@@ -84,7 +84,9 @@ def test_the_angle_at_work_moves_the_lines_as_its_cosine_says():
     angles = settled_angles(GEARBOX)["B"]
     assert len(angles) == 2 and min(angles) < 0.70 < max(angles)  # 40 degrees are 0.698
     inside = inner_geometry(bearing.catalogue).middle
-    (line, *_) = (o for o in of_bearing("B", bearing.catalogue, 1.0, angles) if o.kind == "outer")
+    (line, *_) = (
+        o for o in bearing_orders("B", bearing.catalogue, 1.0, angles) if o.kind == "outer"
+    )
     ends = sorted(passing(inside, angle).outer for angle in angles)
     assert ends[0] < line.per_turn < ends[1]
     assert line.low == pytest.approx(ends[0] * (1 - SLIP)) and "at work" in line.source
@@ -183,7 +185,7 @@ def test_the_speed_is_fitted_to_the_mesh_order():
     found = at_speed(TRAIN, MODES, 44.0, "44 turns a second", spectrum=made, fit=0.03)
     # a resolution of 0.25 Hz, of which the parabola leaves less than a tenth
     assert found.rpm == pytest.approx(60 * 43.21, rel=0.025 / (14 * 43.21))
-    assert "fitted" in found.told and "-1.80 % from 44 turns" in found.told
+    assert "fitted" in found.speed and "-1.80 % from 44 turns" in found.speed
     with pytest.raises(SolidgearError, match="no peak of the spectrum lies within 1 %"):
         at_speed(TRAIN, MODES, 44.0, "", spectrum=made, fit=0.01)
 

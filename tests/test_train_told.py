@@ -11,9 +11,8 @@ from solidgear.report import deflection_tables, speed_tables
 from solidgear.report.units import ENGINEERING
 from solidgear.scene.operation import OperatingPoint
 from solidgear.studies.train.at_speed import Coincidence
-from solidgear.studies.train.deflection import deflect_train
+from solidgear.studies.train.deflection import Measured, deflect_train
 from solidgear.studies.train.layout import senses
-from solidgear.studies.train.measured import Measured
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.operation import Operating
 from solidgear.system.equilibrium import without_rounding
@@ -73,7 +72,7 @@ def test_what_misalignments_mean_is_said_once_for_all_meshes():
 
 def test_ten_near_orders_are_shown_and_a_file_has_all():
     near = [Coincidence(f"mesh {k}", "bending 1", 1.0 * k, 1.0, 0.01, 60.0) for k in range(93)]
-    found = SimpleNamespace(coincidences=near, within=0.05, of="pinion")
+    found = SimpleNamespace(coincidences=near, within=0.05, shaft="pinion")
     shown = speed_tables.coincidences(found, 10)
     assert len(shown.rows) == 10 and "83 more" in shown.note and "near.csv" in shown.note
     assert len(speed_tables.all_coincidences(found).rows) == 93

@@ -14,7 +14,7 @@ from test_train_models import COARSE, OVERHUNG
 import solidgear as sg
 from solidgear.report.viewer import Turning, turn, viewer_page
 from solidgear.studies.train.models import Workshop
-from solidgear.studies.train.pictures import turned_modes
+from solidgear.studies.train.pictures import turning_modes
 
 ROOT = Path(__file__).parents[1]
 BROWSER = next(
@@ -117,7 +117,7 @@ def models():
 def train():
     """A pinion and its ring gear in their places."""
     shop = Workshop(sg.load_train(OVERHUNG), settings=COARSE)
-    return turned_modes(shop, "timoshenko", "euler", highest_hz=900.0)
+    return turning_modes(shop, "timoshenko", "euler", highest_hz=900.0)
 
 
 @pytest.fixture(scope="module")

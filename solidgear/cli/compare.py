@@ -29,7 +29,7 @@ from solidgear.scene.toml_file import is_train
 from solidgear.studies.comparison import check_models
 from solidgear.studies.comparison import compare as compared
 from solidgear.studies.loading import load as read
-from solidgear.studies.train.shaft import checked_rung
+from solidgear.studies.train.shaft import checked_model
 from solidgear.studies.train.two_trains import TwoTrains, two_trains
 from solidgear.studies.two_shafts import TwoShafts, two_shafts
 
@@ -216,7 +216,7 @@ def _two_trains(a: str, b: str, mix: Pair, mesh: str | None) -> Callable[..., Tw
     shops = [Reduced().workshop(Path(path)) for path in (a, b)]
     models = mix.by_shaft(shops[0].train)
     for model in models.values():
-        checked_rung(model)
+        checked_model(model)
     return partial(two_trains, shops, _names(a, b), differences(a, b), *models.values(), mesh=mesh)
 
 

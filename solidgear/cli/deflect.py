@@ -22,7 +22,7 @@ from solidgear.scene.train import Train
 from solidgear.studies import deflection
 from solidgear.studies.loading import explained
 from solidgear.studies.train import deflection as of_train
-from solidgear.studies.train.layout import senses_told
+from solidgear.studies.train.layout import senses_sentence
 from solidgear.studies.train.models import Workshop
 
 
@@ -78,7 +78,7 @@ def _train(
         for name, size in judge.mesh_forces.items()
     )
     lead = f"At {at.label}: {force} along the line of action."
-    sense = senses_told(found.senses)
+    sense = senses_sentence(found.senses)
     lines: list[Any] = [
         f"{found.title} at {at.label}",
         f"Mesh force {force} along the line of action, {'coast' if at.coast else 'drive'} flank.",
@@ -96,7 +96,7 @@ def _train(
     if out:
         files = write_deflection(
             out,
-            {one.model: one.shafts for one in found.found},
+            {one.model: one.shafts for one in found.solutions},
             found.as_dict(),
             f"{found.title}: deflection",
             f"{lead} {found.verdict()}",

@@ -20,11 +20,11 @@ from solidgear.scene.gears import Pair
 from solidgear.scene.planetary import named_pair
 from solidgear.scene.units import quantity
 from solidgear.studies.train import nonlinear as study
-from solidgear.studies.train.comparison import described
+from solidgear.studies.train.comparison import train_data
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.modes import unpublished_lines
-from solidgear.studies.train.nonlinear_told import BacklashTold
-from solidgear.studies.train.slips import slips
+from solidgear.studies.train.nonlinear_told import BacklashStudy
+from solidgear.studies.train.slips import unit_slips
 from solidgear.studies.train.speed_run import ramp_of, speed_run
 
 #: speeds of a sweep in time, and mean forces of a map: each takes seconds
@@ -135,17 +135,17 @@ def nonlinear(
         mapped = study.over_force(found[0], forces, progress) if forces else ()
         runs = tuple(speed_run(found[0], rate, progress) for rate in ramps)
         lever = study.torque_of(shop, driver.name, 1.0).torque
-        told = BacklashTold(shop.train, found, lever, swept, mapped, runs)
+        told = BacklashStudy(shop.train, found, lever, swept, mapped, runs)
         title = f"{shop.train.called}: teeth with backlash"
         if teeth.others:
             title += f", driven by the {driver.name}"
-        cautions = [*slips(shop), *shop.cautions]
+        cautions = [*unit_slips(shop), *shop.cautions]
         if shop.train.planetary:
             cautions.append("teeth of planets are springs that never part")
         cautions += _beside_torque(shop, mean_force)
         files = []
         if out:
-            files = write_nonlinear(out, told, title, described(shop), run.units, cautions)
+            files = write_nonlinear(out, told, title, train_data(shop), run.units, cautions)
     if run.as_json:
         print(json.dumps(told.as_dict() | {"cautions": cautions}, allow_nan=False))
         return
@@ -172,7 +172,7 @@ def _beside_torque(shop: Workshop, mean_force: str | None) -> list[str]:
 
 def _mix(shop: Workshop, text: str) -> tuple[str, ...]:
     """Models of all shafts, from a text such as ``euler+euler``."""
-    return tuple(shop.mix(mix(text)).values())
+    return tuple(shop.models_by_shaft(mix(text)).values())
 
 
 def _usual(shop: Workshop) -> list[tuple[str, ...]]:

@@ -13,10 +13,10 @@ from solidgear.cli.train import end_of, print_peaks
 from solidgear.cli.train_options import Driven, Reduced, TrainFile
 from solidgear.report.folder import held
 from solidgear.report.train_files import write_receptance
-from solidgear.studies.train.comparison import described
+from solidgear.studies.train.comparison import train_data
 from solidgear.studies.train.modes import unpublished_lines
 from solidgear.studies.train.receptance import receptance as between
-from solidgear.studies.train.slips import slips
+from solidgear.studies.train.slips import unit_slips
 
 END = "as PORT:COMPONENT, such as gear.gear:z, in the axes of the port's own shaft."
 
@@ -36,7 +36,7 @@ def receptance(
 ) -> None:
     shop = driven.workshop(reduced, train)
     ends = end_of("--from", from_), end_of("--to", to)
-    unpublished, said = shop.train.unpublished(), slips(shop)
+    unpublished, said = shop.train.unpublished(), unit_slips(shop)
     cautions = [*said, *shop.cautions]
     title = f"{shop.train.called}: {to} for a unit force on {from_}"
     with held(out):
@@ -45,7 +45,7 @@ def receptance(
         found = [between(shop, *mix, from_=ends[0], to=ends[1], **how) for mix in mixes]
         notes = {"from": from_, "to": to, "unpublished": unpublished, "cautions": cautions}
         teeth = shop.train.per_turn(shop.train.named_mesh(driven.mesh))
-        files = write_receptance(out, found, title, teeth, notes, described(shop), run.units)
+        files = write_receptance(out, found, title, teeth, notes, train_data(shop), run.units)
     if run.as_json:
         print((out / "receptance.json").read_text(encoding="utf-8"))
         return

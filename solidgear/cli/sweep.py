@@ -42,7 +42,7 @@ from solidgear.studies.sweep.file_task import Swept
 from solidgear.studies.sweep.scene_task import scene_task
 from solidgear.studies.sweep.train_task import ASKED, MODES, MOST_MODES, PARTS, train_task
 from solidgear.studies.sweep.train_variants import shafts_in
-from solidgear.studies.train.shaft import JUDGE, told_mix
+from solidgear.studies.train.shaft import JUDGE, mix_label
 
 #: relative, of frequencies of a shaft
 TOLERANCE = 1e-6
@@ -258,7 +258,7 @@ def _sweep_train(
         print(record_of(found, bodies=made, cut=cut, title=title, cautions=cautions))
         ended_rows(found)
         return
-    say(f"{title}: {told_mix(mix)}")
+    say(f"{title}: {mix_label(mix)}")
     if curves is not None and len(curves.x) <= FEW and (curves.mesh_force or curves.peak_hz):
         say(sweep_table(curves))
     work = []
@@ -298,5 +298,5 @@ def _limits(cut: int, told: Told, mix: Mapping[str, str]) -> list[str]:
 
 
 def _lead(found: Swept, mix: Mapping[str, str]) -> str:
-    models = told_mix(mix)
+    models = mix_label(mix)
     return f"{models[0].upper()}{models[1:]}; rows in {found.path.name}."

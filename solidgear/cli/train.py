@@ -21,14 +21,14 @@ from solidgear.report.train_sheet import write_sheet
 from solidgear.report.train_tables import modes, peaks
 from solidgear.report.units import units_named
 from solidgear.report.viewer import viewer_fragment
-from solidgear.studies.train.comparison import described
+from solidgear.studies.train.comparison import train_data
 from solidgear.studies.train.loudest import loudest
 from solidgear.studies.train.modes import train_modes, unpublished_lines
 from solidgear.studies.train.orders import order_map
-from solidgear.studies.train.pictures import draw_modes, still_of, turned_modes
+from solidgear.studies.train.pictures import draw_modes, still_picture, turning_modes
 from solidgear.studies.train.respond import respond
-from solidgear.studies.train.shaft import told_mix
-from solidgear.studies.train.slips import slips
+from solidgear.studies.train.shaft import mix_label
+from solidgear.studies.train.slips import unit_slips
 
 
 @command
@@ -54,7 +54,7 @@ def system_modes(
     shop = models.workshop(reduced, train)
     if mode and pictures is None:
         raise SolidgearError("--mode says which mode to draw; add --pictures and a folder")
-    said = slips(shop)
+    said = unit_slips(shop)
     mix = tuple(models.by_shaft(shop.train).values())
     count = shop.train.ask.modes
     found = train_modes(shop, *mix, max_frequency=reduced.max_frequency, at_most=count)
@@ -89,18 +89,18 @@ def _turned(
 ) -> list[str]:
     """Write the page in which modes can be turned; what is to be said of it."""
     mix = found.models.values()
-    models = turned_modes(shop, *mix, highest_hz=max_frequency)
+    models = turning_modes(shop, *mix, highest_hz=max_frequency)
     names = [mode.name for mode in found.modes]
     elastic = [shape.name for shape in models.shapes]
     first = next((name for name in elastic if "bending" in name), elastic[0])
-    still, said = still_of(shop, *mix, number=names.index(first) + 1)
+    still, said = still_picture(shop, *mix, number=names.index(first) + 1)
     write_sheet(
         path,
         found.train,
-        f"Natural frequencies and mode shapes: {told_mix(found.models)}.",
+        f"Natural frequencies and mode shapes: {mix_label(found.models)}.",
         [
             train_tables.modes(found.as_dict(), "Natural frequencies"),
-            train_tables.facts(described(shop), units_named(units)),
+            train_tables.facts(train_data(shop), units_named(units)),
         ],
         viewer=viewer_fragment([models], still=still, first=first),
         notes=found.notes(),
@@ -141,7 +141,7 @@ def response(
         turns = asked.turns or None
         found = [respond(shop, *mix, forces=forces, turns=turns, **how) for mix in mixes]
         unpublished = shop.train.unpublished()
-        said = slips(shop)
+        said = unit_slips(shop)
         cautions = [*said, *found[0].cautions]
         notes: dict = {"damping": driven.damping, "unpublished": unpublished, "cautions": cautions}
         title, band = shop.train.called, shop.train.ask.decibels
@@ -152,7 +152,7 @@ def response(
         lines = None if forces else order_map(shop, *mixes[0], mesh_orders=orders, **how)
         limit = reduced.max_frequency
         modes = lines.modes if lines else train_modes(shop, *mixes[0], max_frequency=limit).modes
-        there, told = asked.found(modes), described(shop)
+        there, told = asked.found(modes), train_data(shop)
         top = loudest(found[0], modes, shop.train, shop.scenes, not forces, driver.name)
         notes |= {"loudest": top.as_dict()}
         files = write_response(out, found, title, teeth, band, notes, lines, told, run.units, there)
@@ -160,7 +160,7 @@ def response(
         print((out / "response.json").read_text(encoding="utf-8"))
         return
     say(
-        f"{title}: {told_mix(found[0].models)}, {driven.damping} losses",
+        f"{title}: {mix_label(found[0].models)}, {driven.damping} losses",
         soft_wrap=False,
     )
     say(*top.sentences(), *map(caution, said))

@@ -20,7 +20,7 @@ from solidgear.scene.train_tables import FIRST_HARMONIC, LAST_HARMONIC
 from solidgear.studies.loading import load_train
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.operation import at_point
-from solidgear.studies.train.shaft import checked_rung
+from solidgear.studies.train.shaft import checked_model
 
 TrainFile = Annotated[
     Path, typer.Argument(help="Train file (TOML), such as geometry/axle_overhung.toml.")
@@ -205,7 +205,7 @@ def of_shafts(
     out: dict[str | tuple[str, str], dict[str, Any]] = {}
     given = options_by_name(pairs, models, "side", "pinion.order=3")
     for side, options in given.items():
-        kind, base = checked_rung(models[side])
+        kind, base = checked_model(models[side])
         out[side, base or kind] = LADDER[base or kind].checked(options)
     return out
 

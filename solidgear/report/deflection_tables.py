@@ -24,7 +24,7 @@ def misalignment(found: Any, units: Units = ENGINEERING) -> Table:
     """Misalignment by every model, with its bar and what bearings leave open."""
     judge = found.judge
     columns = [word("of the axes", lambda m: f"{m.name}, {units.unit(m.unit)}")]
-    columns += [Column(one.model, partial(_of, one, units)) for one in found.found]
+    columns += [Column(one.model, partial(_of, one, units)) for one in found.solutions]
     columns.append(Column("error bar", _bar))
     if any(m.open is not None for m in judge.misalignment):
         columns.append(Column("left open", lambda m: _range(m, units)))

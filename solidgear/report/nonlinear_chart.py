@@ -49,7 +49,7 @@ def backlash_chart(
     rpm = 60 * judge.frequency_hz / teeth
     ends = float(rpm.min()), float(rpm.max())
     panels = [_force(found, rpm, ends, units, width)]
-    panels += [_contact(one, rpm, ends, width, teeth.of) for one in judge.every if _may_part(one)]
+    panels += [_contact(one, rpm, ends, width, teeth.of) for one in judge.meshes if _may_part(one)]
     if found.over_force:
         panels.append(_map(found, ends, units))
     return Chart(in_columns([*panels, _orders(judge, units)], 1), width, title)
@@ -89,25 +89,25 @@ def _force(found: Any, rpm: np.ndarray, ends, units: Units, width: float) -> Pan
     unit = units.unit("N")
     hz, size = judge.linear
     linear = units.values(size, "N")
-    curves = {one.label: units.values(one.force, "N") for one in found.found}
+    curves = {one.label: units.values(one.force, "N") for one in found.mixes}
     ran = {_run_name(one, teeth): one for one in found.runs}
-    further = [units.values(one.force, "N") for one in (*judge.apart, *ran.values())]
+    further = [units.values(one.force, "N") for one in (*judge.branches_apart, *ran.values())]
     sizes = [linear, *curves.values(), *further]
     top = 1.08 * max(float(size.max()) for size in sizes)
-    named = [*(one.label for one in found.found[1:]), *ran]
+    named = [*(one.label for one in found.mixes[1:]), *ran]
     others = {name: Series(OTHERS[k % len(OTHERS)]) for k, name in enumerate(named)}
     panel = Panel(
         Axis(f"speed of the {teeth.of} in rpm", ends),
         Axis(f"dynamic mesh force in {unit}", (0.0, top)),
         360.0,
         "Half of the swing of the mesh force; triangles: jumps as the speed rises (up) and falls (down)",
-        series={name: look for name, look in LOOKS.items() if name != APART or judge.apart}
+        series={name: look for name, look in LOOKS.items() if name != APART or judge.branches_apart}
         | others,
         legend=lines_legend(3 if width > NARROW else 1),
     )
     rows = curve(60 * hz / teeth, linear, name=LINEAR)
     panel.draw({"type": "line", "strokeWidth": 1.2, "strokeDash": [5, 3]}, rows)
-    for one in found.found[1:]:
+    for one in found.mixes[1:]:
         places, own = 60 * one.frequency_hz / teeth, curves[one.label]
         inside = one.stable & (places >= ends[0]) & (places <= ends[1])
         for part, (a, b) in enumerate(_runs(inside)):
@@ -116,7 +116,7 @@ def _force(found: Any, rpm: np.ndarray, ends, units: Units, width: float) -> Pan
     for name, one in ran.items():
         places, own = _envelope(60 * one.frequency_hz / teeth, units.values(one.force, "N"))
         panel.draw({"type": "line", "strokeWidth": 1.4}, curve(places, own, name=name))
-    for one in (*judge.apart, judge):
+    for one in (*judge.branches_apart, judge):
         calm = STABLE if one is judge else APART
         _branch(panel, one, 60 * one.frequency_hz / teeth, units, calm)
     for jump in judge.jumps:
@@ -200,7 +200,7 @@ def _contact(judge: Any, rpm: np.ndarray, ends, width: float, shaft: str) -> Pan
     edges = np.linspace(ends[0], ends[1], BINS + 1)
     middle = (edges[1:] + edges[:-1]) / 2 * judge.frequency_hz[0] / rpm[0]
     drives, backs = np.full(BINS, np.inf), np.zeros(BINS)
-    pairs = zip(judge.over(middle, judge.driving), judge.over(middle, judge.backside))
+    pairs = zip(judge.interpolate(middle, judge.driving), judge.interpolate(middle, judge.backside))
     for (at, drive), (_, back) in pairs:
         longer = drive < drives[at]
         drives[at[longer]], backs[at[longer]] = drive[longer], back[longer]

@@ -75,7 +75,7 @@ def write_nonlinear(
 
 def apart(found: Any) -> dict[str, Table]:
     """Each branch apart of the first mix, by the names of their files."""
-    some = enumerate(found.judge.apart, start=1)
+    some = enumerate(found.judge.branches_apart, start=1)
     return {f"apart_{k}_of_{one.periods}_periods": branch(found, one) for k, one in some}
 
 
@@ -90,7 +90,7 @@ def branch(found: Any, one: Any) -> Table:
         "stable": one.stable.astype(float),
         "largest multiplier": np.abs(one.multiplier),
     }
-    for other in one.every[1:]:
+    for other in one.meshes[1:]:
         there |= {
             f"{other.teeth.mesh} dynamic force [N]": other.force,
             f"{other.teeth.mesh} largest force [N]": other.highest,
@@ -109,10 +109,10 @@ def runs(found: Any) -> dict[str, Table]:
             "largest mesh force [N]": one.run.highest,
             "steady dynamic mesh force [N]": one.steady_force,
         }
-        for other in one.every[1:]:
+        for other in one.meshes[1:]:
             there |= {
-                f"{other.found.teeth.mesh} dynamic force [N]": other.force,
-                f"{other.found.teeth.mesh} largest force [N]": other.run.highest,
+                f"{other.backlash.teeth.mesh} dynamic force [N]": other.force,
+                f"{other.backlash.teeth.mesh} largest force [N]": other.run.highest,
             }
         out[stem] = numbers(there)
     return out
@@ -146,11 +146,11 @@ def mixes(found: Any, units: Units = ENGINEERING) -> Table:
     for k, other in enumerate(found.teeth.others, start=1):
         head = f"{other.mesh.removeprefix('mesh ')}, {units.unit('N')}"
         columns.append(Column(head, partial(_largest, k, units)))
-    return Table("Jumps and largest dynamic mesh force", columns, found.found, style="bare")
+    return Table("Jumps and largest dynamic mesh force", columns, found.mixes, style="bare")
 
 
 def _largest(mesh: int, units: Units, one: Any) -> str:
-    return _force(one.every[mesh].worst.loudest[1], units)
+    return _force(one.meshes[mesh].worst.loudest[1], units)
 
 
 def over_force(found: Any, units: Units = ENGINEERING) -> Table:

@@ -48,7 +48,7 @@ def coincidences(found: Any, most: int | None = None) -> Table:
         text("mode", lambda one: one.mode),
         Column("Hz of it", lambda one: one.mode_hz, hertz),
         Column("off, %", lambda one: f"{100 * one.off:+.1f}"),
-        Column(f"meet at {found.of} rpm", lambda one: one.rpm, whole),
+        Column(f"meet at {found.shaft} rpm", lambda one: one.rpm, whole),
     ]
     title = f"Orders within {100 * found.within:g} % of a natural frequency"
     shown = found.coincidences[:most]
@@ -65,7 +65,7 @@ def all_coincidences(found: Any) -> Table:
         text("mode", lambda one: one.mode),
         Column("frequency of the mode [Hz]", lambda one: one.mode_hz, exact),
         Column("off [1]", lambda one: one.off, exact),
-        Column(f"{found.of} speed where they meet [rpm]", lambda one: one.rpm, exact),
+        Column(f"{found.shaft} speed where they meet [rpm]", lambda one: one.rpm, exact),
     ]
     return Table("", columns, found.coincidences)
 

@@ -14,7 +14,7 @@ from solidgear.nonlinear.motion import steady_motion
 from solidgear.studies.train.backlash import Backlash
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.nonlinear import FADED, teeth_of, with_backlash
-from solidgear.studies.train.nonlinear_told import BacklashTold
+from solidgear.studies.train.nonlinear_told import BacklashStudy
 from validation.common import ROOT
 
 AXLES = ("axle_overhung", "axle_thesis")
@@ -55,8 +55,8 @@ def models(name: str, told: Callable[[str], None]) -> list[dict[str, Any]]:
     found = []
     for mix in MIXES:
         told(f"{name}: {' + '.join(mix)}")
-        found.append(with_backlash(shop, mix, teeth, HIGHEST, LOWEST, apart=SPEEDS))
-    beside = BacklashTold(shop.train, tuple(found), lever(shop)).sufficiency()
+        found.append(with_backlash(shop, mix, teeth, HIGHEST, LOWEST, search_speeds=SPEEDS))
+    beside = BacklashStudy(shop.train, tuple(found), lever(shop)).sufficiency()
     out = []
     for one, judged in zip(found, (None, *beside)):
         row = of(one) | {"unknowns": shop.system(*one.models.values()).size, "by": one.label}
@@ -82,7 +82,7 @@ def of(one: Backlash) -> dict[str, Any]:
         "largest": [at, size],
         "highest": float(one.highest[one.stable].max()),
         "linear": [there, linear],
-        "apart": [[other.periods, *other.loudest] for other in one.apart if other.calm],
+        "apart": [[other.periods, *other.loudest] for other in one.branches_apart if other.calm],
         "wanders": [[r.low, r.high] for _, r in one.wandering],
         "seconds": one.seconds,
     }
@@ -128,9 +128,9 @@ def apart(name: str, model: str, force: float) -> list[dict[str, Any]]:
     """
     shop = workshop(name)
     teeth = replace(teeth_of(shop, FORCE), mean_force=force)
-    found = with_backlash(shop, [model], teeth, HIGHEST, LOWEST, apart=SPEEDS)
+    found = with_backlash(shop, [model], teeth, HIGHEST, LOWEST, search_speeds=SPEEDS)
     out = []
-    for one in found.apart:
+    for one in found.branches_apart:
         hz, size = one.loudest
         row = {
             "axle": name,

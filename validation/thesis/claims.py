@@ -28,7 +28,7 @@ from solidgear.report.words import capital
 from solidgear.scene import Scene
 from solidgear.scene.train import Train
 from solidgear.studies.train.models import Workshop
-from solidgear.studies.train.pairing import mac, seen_modes
+from solidgear.studies.train.pairing import mac, modes_and_motions
 from solidgear.studies.train.respond import Drive, respond
 from solidgear.system.steady import peaks
 from validation.common import ROOT, markdown, results_folder, show, write_rows
@@ -98,8 +98,8 @@ def fourteen(mounting: str, way: str) -> Drive:
         "gear": diagonal_mass(**inertia["gear"]),
     }
     for side, matrix in lumped.items():
-        part = shop.shaft(side, "lumped/euler").part
-        shop.put(side, "thesis", part.with_mass(matrix), like="euler")
+        part = shop.shaft_model(side, "lumped/euler").part
+        shop.add_part(side, "thesis", part.with_mass(matrix), like="euler")
     return Drive(shop, "thesis", "thesis")
 
 
@@ -133,8 +133,8 @@ def bending(scene: Scene) -> tuple[float, dict]:
 def deviations(case: Train, rung: str, highest: float) -> list[tuple[float, float]]:
     """(Hz, relative error) of the elastic modes of the whole rotor, Euler beams as reference."""
     shop = Workshop(case)
-    found, seen = seen_modes(shop, shop.system("euler", "euler"), highest)
-    other, motions = seen_modes(shop, shop.system(rung, rung), 3 * highest)
+    found, seen = modes_and_motions(shop, shop.system("euler", "euler"), highest)
+    other, motions = modes_and_motions(shop, shop.system(rung, rung), 3 * highest)
     alike = mac(seen, motions)
     mine, its = linear_sum_assignment(-alike)
     hz = found.frequency_hz[found.rigid :]
@@ -329,7 +329,7 @@ def softer() -> Workshop:
     mesh = whole.mesh.with_changes(stiffness=0.5 * drive.stiffness)
     shop = Workshop(whole.with_changes(mesh=mesh))
     for side in ("pinion", "gear"):
-        shop.put(side, "thesis", drive.workshop.shaft(side, "thesis").part, like="euler")
+        shop.add_part(side, "thesis", drive.workshop.shaft_model(side, "thesis").part, like="euler")
     return shop
 
 

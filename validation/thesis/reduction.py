@@ -64,10 +64,10 @@ def measured(train: Train, kinds=KINDS, reference: int = REFERENCE, mesh=MESH) -
         for kept in numbers:
             shop = Workshop(train, kind if kind != "no residuals" else "rubin", kept, mesh)
             for side in SIDES:
-                shop.take(side, JUDGE, finest.shaft(side, JUDGE).body)
+                shop.set_body(side, JUDGE, finest.shaft_model(side, JUDGE).body)
                 if kind == "no residuals":
-                    own = shop.shaft(side, JUDGE)
-                    shop.put(side, kind, without_residuals(own.part, own.body, kept), JUDGE)
+                    own = shop.shaft_model(side, JUDGE)
+                    shop.add_part(side, kind, without_residuals(own.part, own.body, kept), JUDGE)
             rung = kind if kind == "no residuals" else JUDGE
             small = shop.system(rung, rung)
             found = small.modes(count)

@@ -213,7 +213,7 @@ def stress_of_train(
         {side: train.shaft(side) for side in train.shafts}, acting, asked, progress
     )
     left_out = [text for k in files for text in _file_cautions(files[k], train.shafts[k].scene)]
-    cautions = (*left_out, *usual.notes, *shop.odd, *_torque_cautions(train))
+    cautions = (*left_out, *usual.notes, *shop.data_cautions, *_torque_cautions(train))
     return StressAtRest(train.title or train.name, model, under, asked, shafts, open_by, cautions)
 
 

@@ -10,7 +10,7 @@ from solidgear.scene import Scene
 from solidgear.scene.train import Train
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.operation import Operating
-from solidgear.studies.train.shaft import ShaftModel, checked_rung
+from solidgear.studies.train.shaft import ShaftModel, checked_model
 
 #: unknowns of the bodies that are kept, about 1 kB each
 UNKNOWNS = 300_000
@@ -41,9 +41,9 @@ class Bench:
     def workshop(self, train: Train, *models: str) -> Workshop:
         """Workshop of a train that has the bodies of its shafts by these models."""
         shop = Workshop(train, *self._how)
-        for side, model in shop.mix(models).items():
-            kind, base = checked_rung(model)
-            shop.keep(self._shaft(shop, side, base or kind))
+        for side, model in shop.models_by_shaft(models).items():
+            kind, base = checked_model(model)
+            shop.add_model(self._shaft(shop, side, base or kind))
         return shop
 
     def operating(self, key: Hashable, train: Train, *models: str) -> Operating:
@@ -64,7 +64,7 @@ class Bench:
         if key not in self._models:
             self._make_room(side, model)
             self.made += 1
-            found = shop.shaft(side, model)
+            found = shop.shaft_model(side, model)
             found.body.cache.clear()  # its factors, which nothing asks for again
             self._models[key] = found
         self._models.move_to_end(key)
@@ -72,7 +72,7 @@ class Bench:
 
     def _make_room(self, side: str, model: str) -> None:
         """Let go of what was asked for longest ago, for another like the last of its kind."""
-        like = [m.unknowns for m in self._models.values() if (m.side, m.rung) == (side, model)]
+        like = [m.unknowns for m in self._models.values() if (m.side, m.model) == (side, model)]
         sizes = [one.unknowns for one in self._models.values()]
         while sizes and sum(sizes) + sum(like[-1:]) > UNKNOWNS:
             self._models.popitem(last=False)

@@ -26,11 +26,11 @@ from solidgear.studies.train.layout import contacts
 from solidgear.studies.train.misalignment import measured_names, misalignment
 from solidgear.studies.train.models import KEPT
 from solidgear.studies.train.modes import refuse_unresolved
-from solidgear.studies.train.operation import SHAFT, OperatingState, settled
-from solidgear.studies.train.parting import joint_of, parts_from, taken_off
+from solidgear.studies.train.operation import SHAFT, OperatingState, with_settled_bearings
+from solidgear.studies.train.parting import joint_name, parting_frequency, teeth_relief
 from solidgear.studies.train.respond import Drive
-from solidgear.studies.train.shaft import JUDGE, LUMPED, checked_rung
-from solidgear.studies.train.turn import over_a_turn, told_over_a_turn
+from solidgear.studies.train.shaft import JUDGE, LUMPED, checked_model
+from solidgear.studies.train.turn import over_a_turn, stages_over_a_turn
 
 #: what a row may tell, by the commands that tell the same of one train
 MODES, RESPONSE, DEFLECTION = "system-modes", "response", "deflect"
@@ -92,7 +92,7 @@ class TrainTask(FileTask):
             out |= {"torque": float} | {force_of(one.name): float for one in train.joints}
         if train.operation and DEFLECTION in self.ask:
             out |= dict.fromkeys(map(misaligned, self.measured), float)
-            out |= {once(stage.called): float for stage in told_over_a_turn(train)}
+            out |= {once(stage.called): float for stage in stages_over_a_turn(train)}
             out |= dict.fromkeys(_loads(train), float)
         if train.operation:
             out["unloaded"] = str
@@ -152,7 +152,7 @@ class TrainTask(FileTask):
         """A train whose bearings have settled at an operating point, and what is told of it there."""
         key, on_shafts = self.variants.beside_operation(index), (SHAFT,) * len(self.models)
         state = self.bench.operating(key, train, *on_shafts).at(point)
-        at = settled(train, state)
+        at = with_settled_bearings(train, state)
         out: dict[str, Any] = {
             "torque": point.torque,
             **{force_of(name): force for name, force in state.mesh_forces.items()},
@@ -199,9 +199,9 @@ class TrainTask(FileTask):
             for k, top in enumerate(largest, start=1):
                 out |= {f"peak{k}_hz": top.frequency_hz, f"peak{k}_force": top.force}
                 out[f"peak{k}_mode"] = top.mode
-            mean = at_rest.get(force_of(joint_of(drive.pair)))
+            mean = at_rest.get(force_of(joint_name(drive.pair)))
             if mean is not None:
-                low = parts_from(hz, taken_off(drive, drive.over_cycle(hz, limit)), mean)
+                low = parting_frequency(hz, teeth_relief(drive, drive.over_cycle(hz, limit)), mean)
                 out |= {} if low is None else {PARTS: low}
         return out
 
@@ -273,7 +273,7 @@ def train_task(
     given = {side: one for side, one in (("pinion", pinion), ("gear", gear)) if one is not None}
     given |= models or {}
     for model in given.values():
-        checked_rung(model)
+        checked_model(model)
     if n is not None:
         number("sweep", "n", n, least=1, below=MOST_SHAPES + 1, whole=True)
     variants = train_variants(
@@ -306,7 +306,7 @@ def statics_of(model: str) -> str:
     """Model that a shaft is put at rest by: a lumped one has no bearings of its own, and the body it
     comes from takes its place.
     """
-    kind, base = checked_rung(model)
+    kind, base = checked_model(model)
     return base if kind in LUMPED else model
 
 

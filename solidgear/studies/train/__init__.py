@@ -1,1 +1,1 @@
-"""A geared rotor system from its file: every model of its shafts, modes, response, and which to trust."""
+"""A geared rotor system from a file: every model of the shafts, modes, response, and the models to trust."""

@@ -1,4 +1,6 @@
-"""Branches apart from that which begins at low speed: where they are looked for, and how they are told."""
+"""Branches apart from that which begins at low speed: where they are searched, and sentences and
+data on them.
+"""
 
 from __future__ import annotations
 
@@ -29,93 +31,107 @@ QUIET = (
 )
 
 
-def searched(found: Backlash, count: int, step: float) -> Backlash:
-    """The same with the branches apart that are found from starts at so many speeds."""
-    looked = search(found.branch, (2 * np.pi * _lively(found, count)).tolist(), step)
-    apart = tuple(
-        replace(
-            found,
-            branch=one.branch,
-            multiplier=largest(one.branch),
-            periods=one.periods,
-            end=one.end,
-        )
-        for one in looked.branches
+def search_branches(backlash: Backlash, count: int, step: float) -> Backlash:
+    """Return the same with the branches apart that are found from starts at so many speeds."""
+    results = search(
+        backlash.branch, (2 * np.pi * _start_frequencies(backlash, count)).tolist(), step
     )
-    return replace(found, search=looked, apart=apart)
+    branches = tuple(
+        replace(
+            backlash,
+            branch=branch.branch,
+            multiplier=largest_multipliers(branch.branch),
+            periods=branch.periods,
+            end=branch.end,
+        )
+        for branch in results.branches
+    )
+    return replace(backlash, search=results, branches_apart=branches)
 
 
-def largest(branch: Branch) -> np.ndarray:
-    """(p,) largest multiplier of each motion."""
+def largest_multipliers(branch: Branch) -> np.ndarray:
+    """Return the (p,) largest multiplier of each motion."""
     return np.array([multipliers(point)[0] for point in branch.points])
 
 
-def _lively(found: Backlash, count: int) -> np.ndarray:
-    """Frequencies in even ratios over those at which the linear force of some mesh exceeds a share of
-    its mean, or over all where the mesh varies, Hz.
+def _start_frequencies(backlash: Backlash, count: int) -> np.ndarray:
+    """Return frequencies in even ratios over those at which the linear force of some mesh exceeds a
+    share of the mean, or over all where the mesh varies, Hz.
     """
-    hz = found.frequency_hz
-    if not found.teeth.varies:
-        hz = found.linear[0]
-        over = [one.linear[1] > LIVELY * one.teeth.mean_force for one in found.every]
-        hz = hz[np.any(over, axis=0)]
+    hz = backlash.frequency_hz
+    if not backlash.teeth.varies:
+        hz = backlash.linear[0]
+        lively = [mesh.linear[1] > LIVELY * mesh.teeth.mean_force for mesh in backlash.meshes]
+        hz = hz[np.any(lively, axis=0)]
     return np.geomspace(hz.min(), hz.max(), count) if len(hz) else hz
 
 
-def sentences(
-    found: Backlash, at: Callable[[float], str], span: Callable[[Range], str]
+def branch_sentences(
+    backlash: Backlash, frequency_text: Callable[[float], str], range_text: Callable[[Range], str]
 ) -> list[str]:
-    """Sentences of starts and motions found, with words for a frequency and for a range of them."""
-    looked = found.search
-    if looked is None:
+    """Return sentences on starts and motions found; two functions put a frequency and a range of
+    them into words.
+    """
+    results = backlash.search
+    if results is None:
         return [UNSEARCHED]
-    if not len(looked.omega):
+    if not len(results.omega):
         return [QUIET.format(100 * LIVELY)]
     lines = []
-    for one in found.apart:
-        what = "nowhere stable"
-        if one.calm:
-            hz, size = one.loudest
-            what = (
-                f"stable from {span(one.calm)}, up to {size:.0f} N at {at(hz)}; in time a period is "
-                f"off by {100 * one.departs:.1g} %"
+    for branch in backlash.branches_apart:
+        motion = "nowhere stable"
+        if branch.calm:
+            hz, size = branch.loudest
+            motion = (
+                f"stable from {range_text(branch.calm)}, up to {size:.0f} N at {frequency_text(hz)}; in time a period is "
+                f"off by {100 * branch.departs:.1g} %"
             )
-        told = MERGED if one.end == "merged" else APART
-        lines.append(told.format(PERIODS[one.periods], span(_ends(one.frequency_hz)), what))
-    ends = span(_ends(looked.omega / (2 * np.pi)))
+        sentence = MERGED if branch.end == "merged" else APART
+        lines.append(
+            sentence.format(
+                PERIODS[branch.periods], range_text(_range(branch.frequency_hz)), motion
+            )
+        )
+    ends = range_text(_range(results.omega / (2 * np.pi)))
     lines.append(
         SEARCHED.format(
-            looked.starts, len(looked.omega), ends, max(STARTS), OTHERS if found.apart else NONE
+            results.starts,
+            len(results.omega),
+            ends,
+            max(STARTS),
+            OTHERS if backlash.branches_apart else NONE,
         )
     )
-    if looked.lost:
-        told = ", ".join(at(omega / (2 * np.pi)) for omega in sorted({*looked.lost}))
-        lines.append(f"Further motions at {told} could not be followed.")
+    if results.lost:
+        sentence = ", ".join(
+            frequency_text(omega / (2 * np.pi)) for omega in sorted({*results.lost})
+        )
+        lines.append(f"Further motions at {sentence} could not be followed.")
     return lines
 
 
-def _ends(hz: np.ndarray) -> Range:
+def _range(hz: np.ndarray) -> Range:
     return Range(float(hz.min()), float(hz.max()))
 
 
-def plain(found: Backlash) -> dict[str, Any]:
-    """Search and branches apart as plain data, SI."""
-    looked = found.search
-    search = looked and {
-        "frequency_hz": (looked.omega / (2 * np.pi)).tolist(),
-        "starts": looked.starts,
-        "not_followed_hz": [omega / (2 * np.pi) for omega in looked.lost],
+def branch_data(backlash: Backlash) -> dict[str, Any]:
+    """Return search and branches apart as plain data, SI."""
+    results = backlash.search
+    search = results and {
+        "frequency_hz": (results.omega / (2 * np.pi)).tolist(),
+        "starts": results.starts,
+        "not_followed_hz": [omega / (2 * np.pi) for omega in results.lost],
     }
-    return {"search": search, "apart": [_plain(one) for one in found.apart]}
+    return {"search": search, "apart": [_branch(branch) for branch in backlash.branches_apart]}
 
 
-def _plain(one: Backlash) -> dict[str, Any]:
-    hz, size = one.loudest
+def _branch(branch: Backlash) -> dict[str, Any]:
+    hz, size = branch.loudest
     return {
-        "mesh_periods": one.periods,
-        "end": one.end,
-        **asdict(_ends(one.frequency_hz)),
-        "stable": asdict(one.calm) if one.calm else None,
-        "largest": {"frequency_hz": hz, "force": size} if one.calm else None,
-        "off_in_time": one.departs,
+        "mesh_periods": branch.periods,
+        "end": branch.end,
+        **asdict(_range(branch.frequency_hz)),
+        "stable": asdict(branch.calm) if branch.calm else None,
+        "largest": {"frequency_hz": hz, "force": size} if branch.calm else None,
+        "off_in_time": branch.departs,
     }

@@ -1,5 +1,5 @@
-"""A train at one speed: its orders in Hz, those near natural frequencies, and whose the peaks of a
-measured spectrum are.
+"""A train at a speed: orders in Hz, those near natural frequencies, and the orders that peaks
+of a measured spectrum belong to.
 """
 
 from __future__ import annotations
@@ -13,15 +13,15 @@ import numpy as np
 from solidgear.errors import SolidgearError
 from solidgear.scene.train import PerTurn, Train
 from solidgear.studies.spectrum import Spectrum
-from solidgear.studies.train.kinematics import SLIP, Order, angles_of, settled_angles, train_orders
+from solidgear.studies.train.kinematics import SLIP, angles_of, settled_angles, train_orders
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.modes import TrainMode
 from solidgear.studies.train.operation import Operating
 
 NOT_OURS = "not ours"
-#: share of a natural frequency within which an order is told
+#: share of a natural frequency within which an order is listed
 NEAR = 0.05
-#: kinds of orders in the sequence in which they are told: those that excite most come first
+#: kinds of orders in the sequence of the tables: those that excite most come first
 TOLD = ("mesh", "shaft", "sideband")
 ROLLING = (
     "Orders without a bar come from the teeth alone. Those of bearings are of pure rolling; their bars "
@@ -43,7 +43,7 @@ class Line:
 
     @property
     def exact(self) -> bool:
-        """True where teeth alone give it."""
+        """Whether teeth alone give it."""
         return self.low_hz == self.high_hz
 
 
@@ -74,7 +74,7 @@ class MeasuredPeak:
 
     @property
     def name(self) -> str:
-        """Name of its order, or ``not ours``."""
+        """Name of the order, or ``not ours``."""
         return NOT_OURS if self.line is None else self.line.name
 
 
@@ -83,8 +83,8 @@ class AtSpeed:
     """Findings at one speed."""
 
     rpm: float  #: of the shaft `of`
-    told: str  #: origin of the speed
-    within: float  #: share of a natural frequency within which orders are told
+    speed: str  #: origin of the speed
+    within: float  #: share of a natural frequency within which orders are listed
     lines: tuple[Line, ...]
     modes: tuple[tuple[str, float], ...]
     #: of the mesh, of shafts, of sidebands, of bearings; of each the nearest first
@@ -94,16 +94,16 @@ class AtSpeed:
     #: share of the spectrum's range that lines cover with their bars and the resolution: of peaks
     #: that are none of ours, so many are called so by chance
     covered: float | None = None
-    of: str = "pinion"
+    shaft: str = "pinion"
 
     def as_dict(self) -> dict[str, Any]:
-        """Plain data that JSON can hold."""
+        """Return plain data for JSON."""
         out: dict[str, Any] = {
-            f"{self.of}_rpm": self.rpm,
-            "speed": self.told,
+            f"{self.shaft}_rpm": self.rpm,
+            "speed": self.speed,
             "within": self.within,
             "lines": [asdict(line) for line in self.lines],
-            "coincidences": [asdict(one) for one in self.coincidences],
+            "coincidences": [asdict(coincidence) for coincidence in self.coincidences],
         }
         if self.spectrum is not None:
             out["measured"] = {
@@ -116,8 +116,8 @@ class AtSpeed:
         return out
 
     def notes(self) -> list[str]:
-        """Sentences on where the numbers come from and how sure they are."""
-        out = [f"Speed: {self.told}."]
+        """Return sentences on where the numbers come from and how sure they are."""
+        out = [f"Speed: {self.speed}."]
         if not all(line.exact for line in self.lines):
             out.append(ROLLING)
         if self.spectrum is not None and self.covered is not None:
@@ -134,26 +134,22 @@ class AtSpeed:
         return out
 
 
-def turns_of_pinion(train: Train, speed: float, of: str) -> float:
-    """Turns of the engine's shaft in a second, from the speed of one shaft in rad/s.
-
-    Raises
-    ------
-    SolidgearError
-        For a speed that is not above zero, or a shaft that there is not.
+def turns_of_pinion(train: Train, speed: float, shaft: str) -> float:
+    """Return the turns of the engine's shaft in a second, from the speed of a shaft in rad/s;
+    refused unless above zero.
     """
-    if of not in train.turns:
-        raise SolidgearError(f"speed of {of!r}: a train has a {' and a '.join(train.turns)}")
+    if shaft not in train.turns:
+        raise SolidgearError(f"speed of {shaft!r}: a train has a {' and a '.join(train.turns)}")
     if not speed > 0:
         raise SolidgearError(
             "the speed must be greater than zero: at rest there are no orders, and which way a shaft "
             "turns does not change them"
         )
-    return speed / (2 * np.pi) / train.turns[of]
+    return speed / (2 * np.pi) / train.turns[shaft]
 
 
 def refuse_share(name: str, share: float | None) -> None:
-    """Refuse a share that is none."""
+    """Refuse a number that is not between 0 and 1."""
     if share is not None and not 0 < share < 1:
         raise SolidgearError(f"{name} {share:g}: give a share between 0 and 1, such as 0.05")
 
@@ -162,29 +158,15 @@ def at_speed(
     train: Train,
     modes: Iterable[TrainMode],
     turns: float,
-    told: str,
+    speed: str,
     within: float = NEAR,
     spectrum: Spectrum | None = None,
     fit: float | None = None,
 ) -> AtSpeed:
-    """Orders of a train at a speed, against its natural frequencies and a measured spectrum.
-
-    Parameters
-    ----------
-    modes : iterable of TrainMode
-    turns : float
-        Of the pinion in a second.
-    told : str
-        Origin of the speed, in words.
-    within : float
-        Share of a natural frequency.
-    fit : float, optional
-        Share of the speed within which it is fitted to the first order of the mesh in the spectrum.
-
-    Raises
-    ------
-    SolidgearError
-        For a share that is none, or a spectrum without a peak near the mesh order.
+    """Compare the orders of a train at a speed, turns of the pinion in a second, with natural
+    frequencies to a relative distance, and with a measured spectrum; `speed` is the origin of
+    the speed in words, and `fit` the share of it within which it is fitted to the first order of
+    the mesh in the spectrum.
 
     Examples
     --------
@@ -202,50 +184,61 @@ def at_speed(
     refuse_share("fit", fit)
     tops = spectrum.peaks() if spectrum is not None else []
     if fit is not None:
-        turns, told = _fitted(tops, train.per_turn(train.drivers[0]), turns, fit, told)
-    lines = lines_at(train_orders(train, _angles(train)), turns)
-    known = tuple((m.name, m.frequency_hz) for m in modes if m.frequency_hz > 0 and m.driven)
-    met = _coincidences(lines, known, turns, within)
-    if spectrum is None:
-        return AtSpeed(60 * turns, told, within, lines, known, met, of=train.reference)
-    peaks = tuple(explained(lines, *top) for top in tops)
-    covered = _covered(lines, spectrum)
-    found = lines, known, met, spectrum, peaks, covered
-    return AtSpeed(60 * turns, told, within, *found, of=train.reference)
-
-
-def lines_at(orders: Sequence[Order], turns: float) -> tuple[Line, ...]:
-    """Orders in Hz at a speed of the pinion in turns a second."""
-    return tuple(Line(o.kind, o.name, o.source, *o.at(turns)) for o in orders)
+        turns, speed = _fitted(tops, train.per_turn(train.drivers[0]), turns, fit, speed)
+    lines = []
+    for order in train_orders(train, _angles(train)):
+        hz, low, high = order.at(turns)
+        lines.append(Line(order.kind, order.name, order.source, hz, low, high))
+    mode_list = tuple((m.name, m.frequency_hz) for m in modes if m.frequency_hz > 0 and m.driven)
+    coincidences = _coincidences(lines, mode_list, turns, within)
+    return AtSpeed(
+        rpm=60 * turns,
+        speed=speed,
+        within=within,
+        lines=tuple(lines),
+        modes=mode_list,
+        coincidences=coincidences,
+        spectrum=spectrum,
+        peaks=tuple(explained(lines, hz, amplitude, width) for hz, amplitude, width in tops),
+        covered=None if spectrum is None else _covered(lines, spectrum),
+        shaft=train.reference,
+    )
 
 
 def _angles(train: Train) -> dict[str, tuple[float, ...]]:
-    """Contact angles of all bearings where their stiffness is taken, by ``side.bearing``: at the
-    operating point of the train, or without one at the loads of the scenes.
+    """Return contact angles of all bearings where their stiffness is taken, by ``side.bearing``: at
+    the operating point of the train, or without one at the loads of the scenes.
     """
     if train.point is not None:
         state = Operating(Workshop(train)).at(train.point)
-        return angles_of(state.made, state.equilibrium.relative)
+        return angles_of(state.bearings, state.equilibrium.relative)
     return {
         f"{side}.{name}": angles
-        for side, own in train.shafts.items()
-        for name, angles in settled_angles(own.scene).items()
+        for side, shaft in train.shafts.items()
+        for name, angles in settled_angles(shaft.scene).items()
     }
 
 
 def _coincidences(
     lines: Sequence[Line], modes: Sequence[tuple[str, float]], turns: float, within: float
 ) -> tuple[Coincidence, ...]:
-    out = []
+    ranked = []
     for line in lines:
         rank = TOLD.index(line.kind) if line.kind in TOLD else len(TOLD)
         for name, hz in modes:
-            off = line.frequency_hz / hz - 1
-            if abs(off) <= within:
+            difference = line.frequency_hz / hz - 1
+            if abs(difference) <= within:
                 rpm = 60 * turns * hz / line.frequency_hz
-                met = Coincidence(line.name, name, line.frequency_hz, hz, off, rpm)
-                out.append((rank, abs(off), met))
-    return tuple(met for *_, met in sorted(out, key=lambda one: one[:2]))
+                coincidence = Coincidence(
+                    line=line.name,
+                    mode=name,
+                    line_hz=line.frequency_hz,
+                    mode_hz=hz,
+                    off=difference,
+                    rpm=rpm,
+                )
+                ranked.append((rank, abs(difference), coincidence))
+    return tuple(coincidence for *_, coincidence in sorted(ranked, key=lambda row: row[:2]))
 
 
 def _fitted(
@@ -253,42 +246,46 @@ def _fitted(
     teeth: PerTurn,
     turns: float,
     share: float,
-    told: str,
+    speed: str,
 ) -> tuple[float, str]:
-    """Speed at which the largest peak near the first order of the mesh is that order."""
+    """Return the speed at which the largest peak near the first order of the mesh is that order,
+    and the origin in words.
+    """
     wanted = teeth * turns
-    near = [top for top in tops if abs(top[0] / wanted - 1) <= share]
-    if not near:
+    near_peaks = [top for top in tops if abs(top[0] / wanted - 1) <= share]
+    if not near_peaks:
         raise SolidgearError(
             f"no peak of the spectrum lies within {100 * share:g} % of the first mesh order at "
             f"{wanted:.6g} Hz; check the speed and whose it is, or fit within a larger share"
         )
-    hz, _, resolution = max(near, key=lambda top: top[1])
-    off = 100 * (hz / wanted - 1)
+    hz, _, resolution = max(near_peaks, key=lambda top: top[1])
+    difference = 100 * (hz / wanted - 1)
     return hz / teeth, (
         f"{60 * hz / teeth:.6g} rpm of the {teeth.of}, fitted: the largest peak within "
-        f"{100 * share:g} % of the mesh order, {hz:.6g} Hz, is taken for it; {off:+.2f} % from "
-        f"{told}, and good to {100 * resolution / hz:.2g} %"
+        f"{100 * share:g} % of the mesh order, {hz:.6g} Hz, is taken for it; {difference:+.2f} % from "
+        f"{speed}, and good to {100 * resolution / hz:.2g} %"
     )
 
 
 def explained(
     lines: Sequence[Line], hz: float, amplitude: float, resolution: float
 ) -> MeasuredPeak:
-    """A peak and the orders that it may be."""
-    ours = [line for line in lines if line.low_hz - resolution <= hz <= line.high_hz + resolution]
-    # what teeth alone give lies within the resolution, where a wide bar holds almost anything
-    ours.sort(key=lambda line: (not line.exact, abs(line.frequency_hz - hz)))
-    if not ours:
+    """Return a peak and the orders that it may be."""
+    candidates = [
+        line for line in lines if line.low_hz - resolution <= hz <= line.high_hz + resolution
+    ]
+    # orders of teeth alone lie within the resolution, where a wide bar holds almost anything
+    candidates.sort(key=lambda line: (not line.exact, abs(line.frequency_hz - hz)))
+    if not candidates:
         return MeasuredPeak(hz, amplitude, resolution, None, ())
-    names = tuple(line.name for line in ours[1:])
-    return MeasuredPeak(hz, amplitude, resolution, ours[0], names)
+    names = tuple(line.name for line in candidates[1:])
+    return MeasuredPeak(hz, amplitude, resolution, candidates[0], names)
 
 
 def _covered(lines: Sequence[Line], spectrum: Spectrum) -> float:
-    """Share of the lines of a spectrum on which a peak would be called ours."""
+    """Return the share of the lines of a spectrum on which a peak would be assigned to an order."""
     hz, resolution = spectrum.frequency_hz, spectrum.resolution_hz
-    ours = np.zeros(len(hz), bool)
+    explained_lines = np.zeros(len(hz), bool)
     for line in lines:
-        ours |= (hz >= line.low_hz - resolution) & (hz <= line.high_hz + resolution)
-    return float(resolution[ours].sum() / resolution.sum())
+        explained_lines |= (hz >= line.low_hz - resolution) & (hz <= line.high_hz + resolution)
+    return float(resolution[explained_lines].sum() / resolution.sum())

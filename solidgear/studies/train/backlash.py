@@ -1,4 +1,4 @@
-"""Teeth with backlash over speed: what a branch of periodic motions says of them."""
+"""Teeth with backlash over speed, as a branch of periodic motions shows them."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from solidgear.nonlinear.continuation import Branch, Point
 from solidgear.nonlinear.model import Remainder
 from solidgear.nonlinear.motion import departure
 from solidgear.nonlinear.stability import ON
-from solidgear.studies.train.shaft import told_mix
+from solidgear.studies.train.shaft import mix_label
 
-#: points at which the linear answer is told
+#: points at which the linear answer is solved
 LINEAR = 1500
 #: imaginary part of a multiplier that is rounding
 REAL = 1e-6
@@ -24,7 +24,7 @@ REAL = 1e-6
 
 @dataclass(frozen=True)
 class Teeth:
-    """Teeth of a train, beside their stiffness."""
+    """Teeth of a train, but for their stiffness."""
 
     half_gap: float
     mean_force: float  #: N, along the line of action
@@ -42,7 +42,7 @@ class Teeth:
     others: tuple[Teeth, ...] = ()
 
     @property
-    def every(self) -> tuple[Teeth, ...]:
+    def meshes(self) -> tuple[Teeth, ...]:
         """These, and those of the other meshes."""
         return (self, *self.others)
 
@@ -54,13 +54,15 @@ class Teeth:
 
     @property
     def varies(self) -> bool:
-        """True if the mesh varies over its cycle, and the linear answer with constant teeth with it."""
+        """True if the mesh varies over the cycle, and the linear answer with constant teeth with
+        it.
+        """
         return self.turns or bool(self.cycle)
 
 
 @dataclass(frozen=True)
 class Range:
-    """Frequencies from one to another, Hz."""
+    """Frequencies from low to high, Hz."""
 
     low: float
     high: float
@@ -86,7 +88,7 @@ class AtForce:
 
 @dataclass(frozen=True, eq=False)
 class Backlash:
-    """Periodic motion of a train by models of its shafts, over frequency, told of one mesh."""
+    """Periodic motion of a train by models of the shafts, over frequency, described for one mesh."""
 
     models: dict[str, str]  #: by shaft
     teeth: Teeth
@@ -94,46 +96,46 @@ class Backlash:
     branch: Branch = field(repr=False)  #: in order; more than one point may lie at one frequency
     multiplier: np.ndarray = field(repr=False)
     seconds: float  #: processor time, of the branch and its stability
-    #: number of the law whose mesh is told: 0 for that whose transmission error drives the train
+    #: number of the law whose mesh is described: 0 for the mesh whose transmission error drives the train
     law: int = 0
     periods: int = 1  #: of the driven mesh after which motions repeat themselves
     end: str = ""  #: of a branch apart, as :class:`solidgear.nonlinear.apart.SeparateBranch` says
     #: for branches apart; None where they were not looked for
     search: Search | None = field(default=None, repr=False)
-    apart: tuple[Backlash, ...] = ()  #: those that were found
+    branches_apart: tuple[Backlash, ...] = ()  #: those that were found
 
     @property
     def label(self) -> str:
-        """Of all models."""
-        first, *others = self.models.values()
-        if any(one != first for one in others):
-            return told_mix(self.models)
+        """Models in words."""
+        first, *further = self.models.values()
+        if any(model != first for model in further):
+            return mix_label(self.models)
         count = len(self.models)
         return f"{'both' if count == 2 else f'all {count}'} {first}"
 
     @cached_property
-    def every(self) -> tuple[Backlash, ...]:
-        """The same told of each mesh with a law, that which drives the train first."""
-        others = enumerate(self.teeth.others, start=1)
-        return (self, *(self._told_of(teeth, k) for k, teeth in others))
+    def meshes(self) -> tuple[Backlash, ...]:
+        """The same described for each mesh with a law, that which drives the train first."""
+        numbered = enumerate(self.teeth.others, start=1)
+        return (self, *(self._of_mesh(teeth, k) for k, teeth in numbered))
 
-    def _told_of(self, teeth: Teeth, law: int) -> Backlash:
-        apart = tuple(one._told_of(teeth, law) for one in self.apart)
-        return replace(self, teeth=teeth, law=law, apart=apart)
+    def _of_mesh(self, teeth: Teeth, law: int) -> Backlash:
+        branches_apart = tuple(branch._of_mesh(teeth, law) for branch in self.branches_apart)
+        return replace(self, teeth=teeth, law=law, branches_apart=branches_apart)
 
     @property
     def row(self) -> int:
-        """Of the stretch of this mesh."""
+        """Row of the stretch of this mesh."""
         return self.remainder.laws[self.law][1].start
 
     @property
     def points(self) -> tuple[Point, ...]:
-        """Of the branch."""
+        """Points of the branch."""
         return self.branch.points
 
     @cached_property
     def frequency_hz(self) -> np.ndarray:
-        """(p,) mesh frequency."""
+        """Mesh frequency (p,)."""
         return self.periods * self.branch.omega / (2 * np.pi)
 
     @cached_property
@@ -142,52 +144,54 @@ class Backlash:
 
     @cached_property
     def stretch(self) -> list[np.ndarray]:
-        """Of the teeth over a cycle, at every point, m."""
+        """Stretch of the teeth over a cycle, at every point, m."""
         return [point.along(self.law) for point in self.points]
 
     @cached_property
     def force(self) -> np.ndarray:
-        """(p,) dynamic mesh force: half of its swing over a cycle, N."""
+        """Dynamic mesh force (p,): half of the swing over a cycle, N."""
         return np.array([np.ptp(wave) / 2 for wave in self._waves])
 
     @cached_property
     def highest(self) -> np.ndarray:
-        """(p,) largest mesh force, mean included, N."""
+        """Largest mesh force (p,), mean included, N."""
         return np.array([wave.max() for wave in self._waves])
 
     @cached_property
     def driving(self) -> np.ndarray:
-        """(p,) share of the cycle in which the flank that carries the mean touches."""
+        """Share (p,) of the cycle in which the flank that carries the mean touches."""
         return np.array([np.mean(s > self.teeth.half_gap) for s in self.stretch])
 
     @cached_property
     def backside(self) -> np.ndarray:
-        """(p,) share of the cycle in which the other flank touches."""
+        """Share (p,) of the cycle in which the other flank touches."""
         return np.array([np.mean(s < -self.teeth.half_gap) for s in self.stretch])
 
     @cached_property
     def stable(self) -> np.ndarray:
-        """(p,) bool."""
+        """Whether each motion (p,) is stable."""
         return np.abs(self.multiplier) <= 1 + ON
 
-    def over(self, hz: np.ndarray, values: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-        """Mask of the frequencies (n,) that lie between two stable neighbours of the branch, and what
-        values of its points (p,) are there; once for every such pair.
+    def interpolate(
+        self, hz: np.ndarray, values: np.ndarray
+    ) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+        """Yield for every two stable neighbours of the branch the numbers of the frequencies (n,)
+        that lie between them, and values of the points (p,) interpolated there.
         """
-        own, good = self.frequency_hz, self.stable
-        for a, b in zip(range(len(own) - 1), range(1, len(own))):
-            low, high = sorted((own[a], own[b]))
-            at = np.flatnonzero((hz >= low) & (hz <= high))
-            if good[a] and good[b] and low < high and len(at):
-                share = (hz[at] - own[a]) / (own[b] - own[a])
-                yield at, values[a] + share * (values[b] - values[a])
+        frequency, stable = self.frequency_hz, self.stable
+        for a, b in zip(range(len(frequency) - 1), range(1, len(frequency))):
+            low, high = sorted((frequency[a], frequency[b]))
+            inside = np.flatnonzero((hz >= low) & (hz <= high))
+            if stable[a] and stable[b] and low < high and len(inside):
+                share = (hz[inside] - frequency[a]) / (frequency[b] - frequency[a])
+                yield inside, values[a] + share * (values[b] - values[a])
 
     @cached_property
     def _unbounded(self) -> tuple[np.ndarray, list[tuple[np.ndarray, np.ndarray]]]:
         """Frequencies, and stretches and rates there of the same train without backlash."""
-        ends = self.frequency_hz.min(), self.frequency_hz.max()
-        hz = np.concatenate([np.geomspace(*ends, LINEAR), self.remainder.omega / (2 * np.pi)])
-        hz = np.unique(hz[(hz >= ends[0]) & (hz <= ends[1])])
+        low, high = self.frequency_hz.min(), self.frequency_hz.max()
+        hz = np.concatenate([np.geomspace(low, high, LINEAR), self.remainder.omega / (2 * np.pi)])
+        hz = np.unique(hz[(hz >= low) & (hz <= high)])
         return hz, [self._linear(f) for f in hz]
 
     def _linear(self, hz: float) -> tuple[np.ndarray, np.ndarray]:
@@ -200,13 +204,15 @@ class Backlash:
         return float(np.ptp(stiffness[self.row, self.row] * s + damper[self.row, self.row] * v) / 2)
 
     def _released(self, s: np.ndarray) -> float:
-        """Largest force that a linear motion takes off the teeth, N; a damper has no part in it."""
+        """Return the largest force that a linear motion takes off the teeth, N; a damper has no
+        part in it.
+        """
         return float(self.remainder.stiffness[self.row, self.row] * (s.mean() - s.min()))
 
     @cached_property
     def linear(self) -> tuple[np.ndarray, np.ndarray]:
         """Frequencies and dynamic mesh force of the same train without backlash."""
-        return self._unbounded[0], np.array([self._swing(*one) for one in self._unbounded[1]])
+        return self._unbounded[0], np.array([self._swing(s, v) for s, v in self._unbounded[1]])
 
     @property
     def returns(self) -> float | None:
@@ -216,46 +222,50 @@ class Backlash:
 
     @cached_property
     def loudest(self) -> tuple[float, float]:
-        """Frequency and size of the largest dynamic mesh force of its stable motions."""
+        """Frequency and size of the largest dynamic mesh force of stable motions."""
         size = np.where(self.stable, self.force, 0.0)
         return float(self.frequency_hz[size.argmax()]), float(size.max())
 
     @property
     def worst(self) -> Backlash:
-        """That of this branch and those apart which has the largest force."""
-        return max((self, *self.apart), key=lambda one: one.loudest[1])
+        """The branch, this one or those apart, with the largest force."""
+        return max((self, *self.branches_apart), key=lambda branch: branch.loudest[1])
 
     @property
     def calm(self) -> Range | None:
-        """From the lowest to the highest frequency of stable motions; None where there are none."""
+        """Range from the lowest to the highest frequency of stable motions; None where there are
+        none.
+        """
         hz = self.frequency_hz[self.stable]
         return Range(float(hz.min()), float(hz.max())) if len(hz) else None
 
     @cached_property
     def departs(self) -> float:
-        """Distance of a period in time where its force is largest, of the swing of the teeth."""
+        """Distance of a period in time where the force is largest, relative to the swing of the
+        teeth.
+        """
         return departure(self.points[int(np.where(self.stable, self.force, 0.0).argmax())])
 
-    def along(self, omega: float) -> list[Point]:
-        """Motions of this branch and those apart at a frequency of the driven mesh, rad/s."""
-        every = (self, *self.apart)
-        return [point for one in every for point in one.branch.at(omega / one.periods)]
+    def motions_at(self, omega: float) -> list[Point]:
+        """Return motions of this branch and those apart at a frequency of the driven mesh, rad/s."""
+        branches = (self, *self.branches_apart)
+        return [point for branch in branches for point in branch.branch.at(omega / branch.periods)]
 
     @cached_property
     def linear_loudest(self) -> tuple[float, float]:
-        """The same of the linear answer."""
+        """Frequency and size of the largest force of the linear answer."""
         hz, size = self.linear
         return float(hz[size.argmax()]), float(size.max())
 
     @cached_property
     def holding(self) -> tuple[np.ndarray, np.ndarray]:
-        """Frequencies, and the mean force of the mesh that drives the train below which teeth of some
-        mesh part, all mean forces in the ratio of the torques.
+        """Frequencies, and the mean force of the mesh that drives the train below which teeth of
+        some mesh part, all mean forces in the ratio of the torques.
         """
-        apart = [one for one in self.every if one.teeth.half_gap > 0] or [self]
+        gapped = [mesh for mesh in self.meshes if mesh.teeth.half_gap > 0] or [self]
         sizes = [
-            [one._released(wave) / one.teeth.mean_force for wave, _ in one._unbounded[1]]
-            for one in apart
+            [mesh._released(wave) / mesh.teeth.mean_force for wave, _ in mesh._unbounded[1]]
+            for mesh in gapped
         ]
         return self.linear[0], self.teeth.mean_force * np.max(sizes, axis=0)
 
@@ -274,9 +284,9 @@ class Backlash:
         half = self.teeth.half_gap
         if half == 0:
             return ()
-        gone = self.driving < 1
+        parted = self.driving < 1
         ends = self.branch.crossings(lambda p: float(p.along(self.law).min()) - half)
-        return _ranges(self.frequency_hz, gone, [p.omega / (2 * np.pi) for p in ends])
+        return _ranges(self.frequency_hz, parted, [p.omega / (2 * np.pi) for p in ends])
 
     @cached_property
     def both_flanks(self) -> tuple[Range, ...]:
@@ -285,58 +295,63 @@ class Backlash:
 
     @cached_property
     def wandering(self) -> tuple[tuple[str, Range], ...]:
-        """Frequencies of unstable periodic motions not between turning points, and how."""
+        """Frequencies of unstable periodic motions not between turning points, each with the kind
+        of instability.
+        """
         kinds = np.full(len(self.points), "", dtype=object)
         loose = ~self.stable
         kinds[loose & (np.abs(self.multiplier.imag) > REAL)] = "a second frequency"
         real = loose & (np.abs(self.multiplier.imag) <= REAL)
         kinds[real & (self.multiplier.real < 0)] = "a motion of two mesh periods"
-        found = {
+        masks = {
             kind: kinds == kind for kind in ("a second frequency", "a motion of two mesh periods")
         }
         return tuple(
-            (kind, one)
-            for kind, where in found.items()
-            for one in _ranges(self.frequency_hz, where, [])
+            (kind, span)
+            for kind, mask in masks.items()
+            for span in _ranges(self.frequency_hz, mask, [])
         )
 
-    def off(self, decibels: float) -> tuple[tuple[Range, float], ...]:
-        """Frequencies at which the linear answer is off by some decibels, and how much at most;
-        above is positive.
+    def linear_errors(self, decibels: float) -> tuple[tuple[Range, float], ...]:
+        """Return the ranges in which the linear answer is wrong by more than some decibels, and the
+        largest error in each; too high is positive.
         """
-        size = np.array([self._swing(*self._linear(f)) for f in self.frequency_hz])
+        waves = [self._linear(hz) for hz in self.frequency_hz]
+        size = np.array([self._swing(s, v) for s, v in waves])
         error = 20 * np.log10(size / self.force)
         far = self.stable & (np.abs(error) > decibels)
         out = []
-        for one in _ranges(self.frequency_hz, far, []):
-            inside = far & (self.frequency_hz >= one.low) & (self.frequency_hz <= one.high)
-            out.append((one, float(error[inside][np.abs(error[inside]).argmax()])))
+        for span in _ranges(self.frequency_hz, far, []):
+            inside = far & (self.frequency_hz >= span.low) & (self.frequency_hz <= span.high)
+            out.append((span, float(error[inside][np.abs(error[inside]).argmax()])))
         return tuple(out)
 
     def spectrum(self) -> np.ndarray:
-        """(o,) amplitudes of the mesh force by orders of the mesh from 1, where it is largest, N."""
+        """Return the (o,) amplitudes of the mesh force by orders of the mesh from 1, where it is
+        largest, N.
+        """
         k = int(np.where(self.stable, self.force, 0.0).argmax())
         wave = self._waves[k]
         return 2 * np.abs(np.fft.rfft(wave))[1 : self.points[k].balance.count + 1] / len(wave)
 
 
 def _ranges(hz: np.ndarray, inside: np.ndarray, ends: Sequence[float]) -> tuple[Range, ...]:
-    """Ranges of neighbours that are inside, widened to the ends found between points, those that
-    overlap as one.
+    """Return ranges of neighbours that are inside, widened to the ends found between points,
+    overlapping ones merged.
     """
-    found = []
+    ranges = []
     edges = np.flatnonzero(np.diff(np.r_[False, inside, False].astype(int)))
-    for first, after in edges.reshape(-1, 2):
-        own = hz[first:after].tolist()
-        for k in (first, after):
+    for first, last in edges.reshape(-1, 2):
+        values = hz[first:last].tolist()
+        for k in (first, last):
             if 0 < k < len(hz):
-                beside = sorted((hz[k - 1], hz[k]))
-                own += [end for end in ends if beside[0] <= end <= beside[1]]
-        found.append(Range(float(min(own)), float(max(own))))
+                neighbours = sorted((hz[k - 1], hz[k]))
+                values += [end for end in ends if neighbours[0] <= end <= neighbours[1]]
+        ranges.append(Range(float(min(values)), float(max(values))))
     out: list[Range] = []
-    for one in sorted(found, key=lambda r: r.low):
-        if out and one.low <= out[-1].high:
-            out[-1] = Range(out[-1].low, max(one.high, out[-1].high))
+    for span in sorted(ranges, key=lambda r: r.low):
+        if out and span.low <= out[-1].high:
+            out[-1] = Range(out[-1].low, max(span.high, out[-1].high))
         else:
-            out.append(one)
+            out.append(span)
     return tuple(out)

@@ -1,4 +1,6 @@
-"""A train compared: the verdict on its mixes of models, the judge's modes, and what was given."""
+"""A train compared: the verdict on mixes of models, the judge's modes, and the data of the
+file.
+"""
 
 from __future__ import annotations
 
@@ -14,14 +16,14 @@ from solidgear.scene.bearing_stiffness import stiffness_entries
 from solidgear.scene.gears import Pair
 from solidgear.scene.planetary import Stage
 from solidgear.scene.train import Train
-from solidgear.studies.train.housing import alone_hz
-from solidgear.studies.train.judge import JUDGE, MIXED, Verdict, drawn, judge_train
+from solidgear.studies.train.housing import housing_hz
+from solidgear.studies.train.judge import JUDGE, MIXED, Verdict, charted_mixes, judge_train
 from solidgear.studies.train.layout import senses
 from solidgear.studies.train.loudest import Loudest, loudest
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.modes import TrainModes, train_modes
 from solidgear.studies.train.orders import OrderMap, order_map
-from solidgear.studies.train.pictures import draw_modes, turned_beside
+from solidgear.studies.train.pictures import draw_modes, turning_pair
 from solidgear.studies.train.response import TrainResponse
 
 #: modes that are drawn
@@ -40,19 +42,19 @@ class TrainComparison:
 
     @property
     def top(self) -> Loudest:
-        """The largest dynamic mesh force by the judge."""
+        """Largest dynamic mesh force by the judge."""
         shop = self.workshop
         return loudest(self.verdict.responses[0], self.modes.modes, shop.train, shop.scenes)
 
     @property
     def drawn(self) -> list[TrainResponse]:
         """Responses that the chart shows, the judge's first."""
-        shown = drawn(len(self.modes.models))
-        return [r for r in self.verdict.responses if tuple(r.models.values()) in shown]
+        charted = charted_mixes(len(self.modes.models))
+        return [r for r in self.verdict.responses if tuple(r.models.values()) in charted]
 
     @property
     def marks(self) -> dict[str, float]:
-        """Frequencies at which the mesh force of a mix leaves its band, Hz, by its label."""
+        """Frequencies at which the mesh force of a mix leaves the decibels, Hz, by label."""
         mixes = self.verdict.mixes
         return {m.label: m.force_to_hz for m in mixes if m.force_to_hz is not None}
 
@@ -65,31 +67,34 @@ class TrainComparison:
 
     @property
     def loudest(self) -> list[int]:
-        """Numbers, from 1, of the modes that are drawn, which make the largest peaks."""
+        """Numbers, from 1, of the modes to draw, which make the largest peaks."""
         names = [mode.name for mode in self.modes.modes]
         return sorted(names.index(name) + 1 for name in self.loud[:PICTURES])
 
     def pictures(self, folder: Path) -> dict[str, Any]:
-        """Draw the loudest modes into a folder: files by what they show, and what was left out."""
-        done = (
+        """Draw the loudest modes into a folder; return files by their captions, and reasons for
+        pictures left out.
+        """
+        renders = (
             draw_modes(self.workshop, JUDGE, folder=folder, numbers=self.loudest)
             if self.loudest
             else {}
         )
-        drawn = {told: one.path.name for told, one in done.items() if one.ok}
-        reasons = sorted({one.reason for one in done.values() if not one.ok})
-        return {"pictures": drawn, "left_out": reasons}
+        files = {label: render.path.name for label, render in renders.items() if render.ok}
+        reasons = sorted({render.reason for render in renders.values() if not render.ok})
+        return {"pictures": files, "left_out": reasons}
 
     def turned(self) -> list[Turned]:
-        """The judge's modes and those of all shafts as the best beams, to be turned side by side."""
-        both = (JUDGE,), (MIXED[-2],)
-        return turned_beside(self.workshop, *both, self.verdict.highest_hz)
+        """Return the judge's modes and those of all shafts as the best beams, to be turned side by
+        side.
+        """
+        return turning_pair(self.workshop, (JUDGE,), (MIXED[-2],), self.verdict.highest_hz)
 
     def results(self) -> dict[str, Any]:
-        """Plain data that JSON can hold: all numbers of the page."""
+        """Return plain data for JSON: all numbers of the page."""
         return {
             "kind": "train",
-            "train": described(self.workshop),
+            "train": train_data(self.workshop),
             "verdict": self.verdict.as_dict() | {"sentences": self.verdict.sentences()},
             "loudest": self.top.as_dict(),
             "modes": self.modes.as_dict() | {"notes": self.modes.notes()},
@@ -106,7 +111,7 @@ def compare_train(
     more: Sequence[tuple[str, ...]] = (),
     progress: Callable[[str], None] = lambda text: None,
 ) -> TrainComparison:
-    """Judge every mix of models of a train, and tell the judge's modes; as of
+    """Judge every mix of models of a train, and solve the judge's modes and orders; arguments as of
     :func:`solidgear.studies.train.judge.judge_train`.
     """
     start = perf_counter()
@@ -117,8 +122,8 @@ def compare_train(
     return TrainComparison(workshop, verdict, modes, orders, perf_counter() - start)
 
 
-def described(workshop: Workshop) -> dict[str, Any]:
-    """A train as plain data: what the file gives, and what its meshes come to."""
+def train_data(workshop: Workshop) -> dict[str, Any]:
+    """Return a train as plain data: the file, and the meshes as they come out of it."""
     train = workshop.train
     out: dict[str, Any] = {
         "title": train.called,
@@ -148,31 +153,31 @@ def described(workshop: Workshop) -> dict[str, Any]:
 
 
 def _housing(train: Train) -> dict[str, Any]:
-    """The housing as plain data, in SI."""
-    own = train.housing
-    assert own is not None
+    """Return the housing as plain data, in SI."""
+    housing = train.housing
+    assert housing is not None
     mounts = {
         name: {
-            "position": own.foot(name),
-            "stiffness": stiffness_entries(one.stiffness),
-            "loss": one.loss,
+            "position": housing.foot(name),
+            "stiffness": stiffness_entries(mount.stiffness),
+            "loss": mount.loss,
         }
-        for name, one in own.mounted.items()
+        for name, mount in housing.mounted.items()
     }
     return {
-        "mass": own.mass,
-        "inertia": own.inertia,
-        "centre": own.centre,
+        "mass": housing.mass,
+        "inertia": housing.inertia,
+        "centre": housing.centre,
         "carries": train.housed,
         "mounts": mounts,
-        "points": {name: own.point_places[name] for name in own.free_points[1:]},
-        "elastic": own.matrices is not None,
-        "alone_hz": alone_hz(own).tolist(),
+        "points": {name: housing.point_places[name] for name in housing.free_points[1:]},
+        "elastic": housing.matrices is not None,
+        "alone_hz": housing_hz(housing).tolist(),
     }
 
 
 def _stage(stage: Stage) -> dict[str, Any]:
-    """A planetary stage as plain data."""
+    """Return a planetary stage as plain data."""
     teeth, ends = stage.teeth, zip(stage.shafts, stage.ports)
     sun, carrier = (f"{side}.{port}" for side, port in ends)
     return {
@@ -188,18 +193,18 @@ def _stage(stage: Stage) -> dict[str, Any]:
 
 
 def _mesh(workshop: Workshop, pair: Pair) -> dict[str, Any]:
-    """A mesh as plain data, the pinion first where there are two of a thing."""
-    met = workshop.contacts[pair.name]
-    vectors, error = (met.pinion, met.gear), pair.mesh.transmission_error
+    """Return a mesh as plain data, the pinion first in pairs of values."""
+    contact = workshop.contacts[pair.name]
+    vectors, error = (contact.pinion, contact.gear), pair.mesh.transmission_error
     return {
         "name": pair.name,
         "between": [f"{side}.{port}" for side, port in zip(pair.shafts, pair.ports)],
         "per_turn": workshop.train.per_turn(pair),
-        "teeth": [own.teeth for own in pair.members.values()],
+        "teeth": [member.teeth for member in pair.members.values()],
         "shaft_angle": pair.mesh.shaft_angle,
-        "stiffness": met.stiffness,
+        "stiffness": contact.stiffness,
         "transmission_error": None if error is None else error.model_dump(mode="json"),
-        "line_of_action": [[float(v) for v in one.normal] for one in vectors],
-        "point": [[float(v) for v in one.point] for one in vectors],
-        "lever": [one.lever for one in vectors],
+        "line_of_action": [[float(v) for v in vector.normal] for vector in vectors],
+        "point": [[float(v) for v in vector.point] for vector in vectors],
+        "lever": [vector.lever for vector in vectors],
     }

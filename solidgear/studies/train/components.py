@@ -12,8 +12,8 @@ FORCE_UNITS = ("N",) * 3 + ("N m",) * 3
 MOTION_UNITS = ("m",) * 3 + ("rad",) * 3
 
 
-def six(name: str, units: Sequence[str], values: np.ndarray) -> dict[str, np.ndarray]:
-    """Columns (f,) of values (f, 6), such as ``gear thx [rad]``."""
+def six_columns(name: str, units: Sequence[str], values: np.ndarray) -> dict[str, np.ndarray]:
+    """Return columns (f,) of values (f, 6), such as ``gear thx [rad]``."""
     return {
         f"{name} {dof} [{unit}]": values[:, c]
         for c, (dof, unit) in enumerate(zip(DOF_NAMES, units))

@@ -1,7 +1,11 @@
-"""Contact of the teeth of a train, on both shafts: where they touch, and their line of push."""
+"""Contact of the teeth of a train, on both shafts: the mesh point, and the line of action. The mesh
+is made from the pinion's numbers; those of a gear that is described as well can only agree or
+contradict.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from math import cos, sin
 
@@ -10,7 +14,6 @@ import numpy as np
 from solidgear.errors import SceneError, SolidgearError
 from solidgear.frames import rotation
 from solidgear.scene.gears import Pair
-from solidgear.studies.train.own_numbers import compared
 from solidgear.system.contact_cells import ContactWrench, contact_wrench
 from solidgear.system.gear_mesh import (
     MeshVector,
@@ -22,22 +25,22 @@ from solidgear.system.gear_mesh import (
 
 #: a typed line of action with six digits
 UNIT = 1e-6
-#: lever arms off the ratio of the teeth by this are told, by that refused
+#: lever arms off the ratio of the teeth by this give a caution, by that they are refused
 LEVER_TOLD, LEVER_REFUSED = 5e-3, 5e-2
-#: pitch angles whose tangents are off the ratio of the teeth by this are told
+#: pitch angles whose tangents are off the ratio of the teeth by this give a caution
 CONE_TOLD = 2e-2
 #: and of pitch angles below this, rad, of this: those of parallel shafts are zero
 LEAST_CONE = 0.05
 #: a head whose radius changes by less than this of its length is no pitch cone
 CONE_SEEN = 0.02
-#: what needs gear geometry although the line of action is given
+#: needs gear geometry although the line of action is given
 WITHOUT_POSITION = "the place of the gear, without gear_position under [mesh],"
 #: a line that is this much nearer (cosine) to the one of the teeth when it is turned back was
 #: given in the gear's frame
 TURNED = 0.2
 #: the mesh point may lie outside the head by this share of its radius and of its length
 OUTSIDE_RADIUS, OUTSIDE_LENGTH = 0.02, 0.5
-#: a [load] of a scene that is this far off the line of action is told, rad: beyond what friction and
+#: a [load] of a scene that is this far off the line of action gives a caution, rad: more than friction and
 #: another pressure angle make
 LOAD_ASIDE = np.radians(20.0)
 #: which of the pinion's data geometry needs
@@ -48,6 +51,11 @@ CYLINDRICAL = {"spiral_angle": "helix_angle", "pitch_radius": "module"}
 CURVED = ("concave", "convex")
 #: pressure angle to judge a given line with, where the file has none
 USUAL_PRESSURE_ANGLE = np.radians(20.0)
+#: relative, of pitch radii, and rad, of angles: a caution from the first on, refused from the second on;
+#: the first is left by rounding to three digits
+RADII, ANGLES = (5e-3, 5e-2), (1e-2, 5e-2)
+#: of face widths: a pinion is made wider by a possible shift in assembly, some tenth
+FACES = 0.25
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,23 +68,14 @@ class Contact:
     stiffness: float  #: N/m
     origin: np.ndarray  #: (3,) the gear's lumped point from the pinion's, in the pinion's frame, m
     wrench: ContactWrench | None  #: of contact cells
-    cautions: tuple[str, ...]  #: what does not fit together but can be solved
+    cautions: tuple[str, ...]  #: on data that do not fit together but can be solved
 
 
 def contact(pair: Pair, coast: bool | None = None) -> Contact:
-    """Mesh vectors of two gears.
-
-    Parameters
-    ----------
-    coast : bool, optional
-        True for the flank that the file does not name; by default that of its operating point.
-
-    Raises
-    ------
-    SceneError
-        For missing gear data, numbers of the gear that contradict those of the pinion, a line of
-        action that is no unit vector or lies in the wrong frame, a mesh point off the gears, or
-        lever arms that are not in the ratio of the teeth.
+    """Return the mesh vectors of two gears; `coast` is True for the flank that the file does not
+    name, by default that of its operating point. Refused for missing or contradicting gear data,
+    a line of action that is no unit vector or lies in the wrong frame, a mesh point off the
+    gears, and lever arms that are not in the ratio of the teeth.
 
     Examples
     --------
@@ -92,8 +91,9 @@ def contact(pair: Pair, coast: bool | None = None) -> Contact:
 
 
 def axes_of(pair: Pair, side: str) -> np.ndarray:
-    """(3, 3) turn from the frame of ``pinion`` or ``gear`` to the axes of its scene, whose y may run
-    towards the apex (half a turn about z), and whose -x need not point to the mesh.
+    """Return the (3, 3) turn from the frame of ``pinion`` or ``gear`` to the axes of its scene,
+    whose y may run towards the apex (half a turn about z), and whose -x need not point to the
+    mesh.
     """
     parallel = abs(sin(pair.mesh.shaft_angle)) < 1e-6
     turned = pair.mesh.azimuth if parallel or side == "pinion" else 0.0
@@ -102,7 +102,7 @@ def axes_of(pair: Pair, side: str) -> np.ndarray:
 
 
 def _contact(pair: Pair, coast: bool | None) -> Contact:
-    mesh, cautions = pair.mesh, compared(pair)
+    mesh, cautions = pair.mesh, _contradictions(pair)
     wrench = None
     if mesh.contact_cells:
         wrench = contact_wrench(
@@ -122,23 +122,112 @@ def _contact(pair: Pair, coast: bool | None) -> Contact:
     origin = _gear_position(pair, point)
     n_gear = to_gear_frame(normal, mesh.shaft_angle)
     r_gear = to_gear_frame(point - origin, mesh.shaft_angle)
-    found = MeshVector(normal, point), MeshVector(n_gear, r_gear)
+    pinion, gear = MeshVector(normal, point), MeshVector(n_gear, r_gear)
     cautions += _cones(pair) + _apexes(pair)
-    for side, vector in zip(("pinion", "gear"), found):
-        _on_the_head(pair, side, vector.point)
-    cautions += _levers(pair, *found)
-    cautions += [line for side in pair.members for line in _scene_load(pair, side, found)]
+    vectors = {"pinion": pinion, "gear": gear}
+    for side, vector in vectors.items():
+        _refuse_point_off_head(pair, side, vector.point)
+    cautions += _levers(pair, pinion, gear)
+    cautions += [line for side in pair.members for line in _scene_load(pair, side, vectors[side])]
     stiffness = mesh.stiffness
     if stiffness is None:
         assert wrench and mesh.loaded_error is not None and mesh.unloaded_error is not None
         stiffness = wrench.mesh_stiffness(mesh.loaded_error, mesh.unloaded_error)
-    own = [_in_scene(pair, s, v) for s, v in zip(("pinion", "gear"), found)]
-    return Contact(own[0], own[1], stiffness, origin, wrench, tuple(cautions))
+    return Contact(
+        pinion=_in_scene(pair, "pinion", pinion),
+        gear=_in_scene(pair, "gear", gear),
+        stiffness=stiffness,
+        origin=origin,
+        wrench=wrench,
+        cautions=tuple(cautions),
+    )
+
+
+def _contradictions(pair: Pair) -> list[str]:
+    """Return sentences on contradictions between the numbers of both wheels that are small enough
+    to go on with; large ones are refused where the line of action comes from these numbers.
+    """
+    sentences, refused = [], []
+    for key, words, severe in _gear_against_pinion(pair):
+        if severe:
+            refused.append(SceneError(words, path=("gear", key)))
+        else:
+            sentences.append(f"{key} of the gear: {words}")
+    if refused:
+        raise SceneError.of(refused)
+    return sentences
+
+
+def _gear_against_pinion(pair: Pair) -> Iterator[tuple[str, str, bool]]:
+    """Yield a key of the gear, the contradiction in words, and whether it is too large to go on
+    with.
+    """
+    pinion, gear, mesh = pair.pinion, pair.gear, pair.mesh
+    of_teeth = mesh.line_of_action is None and not mesh.contact_cells
+    if pinion.pitch_radius and gear.pitch_radius:
+        radius_ratio = gear.pitch_radius / pinion.pitch_radius
+        difference = abs(radius_ratio / pair.ratio - 1)
+        words = (
+            f"is {radius_ratio:.4g} times the {1e3 * pinion.pitch_radius:.5g} mm of the {pair.shafts[0]}, and "
+            f"{gear.teeth} over {pinion.teeth} teeth ask for {pair.ratio:.4g} times"
+        )
+        if difference > RADII[0]:
+            yield (
+                "pitch_radius",
+                f"{words}; correct one of the two",
+                of_teeth and difference > RADII[1],
+            )
+    if pinion.pitch_angle is not None and gear.pitch_angle is not None:
+        angle_sum = pinion.pitch_angle + gear.pitch_angle
+        difference = abs(angle_sum - mesh.shaft_angle)
+        words = (
+            f"and that of the {pair.shafts[0]} add up to {angle_sum:.4g} rad, and the shafts are at "
+            f"{mesh.shaft_angle:.4g} rad; correct one of the three"
+        )
+        if difference > ANGLES[0]:
+            yield "pitch_angle", words, of_teeth and difference > ANGLES[1]
+    if pinion.spiral_angle is not None and gear.spiral_angle is not None:
+        difference = abs(pinion.spiral_angle - gear.spiral_angle)
+        words = (
+            f"is {gear.spiral_angle:.4g} rad, and that of the pinion {pinion.spiral_angle:.4g} rad; "
+            "teeth that mesh lean alike, to opposite hands"
+        )
+        if difference > ANGLES[0]:
+            yield (
+                "spiral_angle",
+                words,
+                of_teeth and not mesh.shaft_angle and difference > ANGLES[1],
+            )
+    if pinion.face_width and gear.face_width:
+        if abs(gear.face_width / pinion.face_width - 1) > FACES:
+            words = (
+                f"is {1e3 * gear.face_width:.4g} mm, and that of the pinion "
+                f"{1e3 * pinion.face_width:.4g} mm; only the face that both share carries, and the "
+                "mesh point is taken at the middle of the pinion's"
+            )
+            yield "face_width", words, False
+    if pinion.loaded_side and pinion.loaded_side == gear.loaded_side and pinion.spiral_angle:
+        if pinion.loaded_side in ("concave", "convex"):
+            flank, driving_flank = (
+                gear.loaded_side,
+                "concave" if gear.loaded_side == "convex" else "convex",
+            )
+            words = (
+                f"{flank} like that of the pinion, where a concave flank touches a convex one; that of "
+                "the pinion is taken"
+            )
+            if pair.idle:
+                words = (
+                    f"is {driving_flank}, the flank that it drives with, so that it is driven on its {flank} one "
+                    f"by a {flank} one, where a concave flank touches a convex one; that of the pinion "
+                    f"is taken: write {flank}, or leave it out"
+                )
+            yield "loaded_side", words, False
 
 
 def _other_flank(pair: Pair, normal: np.ndarray, point: np.ndarray) -> np.ndarray:
-    """Line of action of the other flank of the same tooth, in the pinion's frame: mirrored at the
-    normal of the pitch cone where they touch.
+    """Return the line of action of the other flank of the same tooth, in the pinion's frame:
+    mirrored at the normal of the pitch cone where they touch.
     """
     if pair.mesh.contact_cells:
         raise SceneError(
@@ -148,7 +237,7 @@ def _other_flank(pair: Pair, normal: np.ndarray, point: np.ndarray) -> np.ndarra
         )
     angle = pair.pinion.pitch_angle
     if angle is None and abs(sin(pair.mesh.shaft_angle)) > 1e-6:
-        _needs(pair, "pitch_angle", what="the line of action of the other flank (coast)")
+        _needs(pair, "pitch_angle", reason="the line of action of the other flank (coast)")
     gamma = angle or 0.0
     outward = np.array([point[0], 0.0, point[2]]) / np.hypot(point[0], point[2])
     across = -cos(gamma) * outward + sin(gamma) * np.array([0.0, 1.0, 0.0])
@@ -156,12 +245,12 @@ def _other_flank(pair: Pair, normal: np.ndarray, point: np.ndarray) -> np.ndarra
 
 
 def _in_scene(pair: Pair, side: str, vector: MeshVector) -> MeshVector:
-    """In the axes of the scene."""
-    turn = axes_of(pair, side)
-    return MeshVector(turn @ vector.normal, turn @ vector.point)
+    """Return a vector in the axes of the scene."""
+    axes = axes_of(pair, side)
+    return MeshVector(axes @ vector.normal, axes @ vector.point)
 
 
-def _needs(pair: Pair, *keys: str, what: str) -> None:
+def _needs(pair: Pair, *keys: str, reason: str) -> None:
     missing = [key for key in keys if getattr(pair.pinion, key) is None]
     straight, parallel = not pair.pinion.spiral_angle, not pair.mesh.shaft_angle
     words = dict.fromkeys(GEOMETRY, "")
@@ -170,32 +259,32 @@ def _needs(pair: Pair, *keys: str, what: str) -> None:
     if parallel and straight and pair.pinion.loaded_side not in CURVED:
         missing = [key for key in missing if key != "hand"]  # straight teeth have none
     elif straight and {"hand", "loaded_side"} & set(missing):
-        both = ": of straight teeth both together say which flank is loaded"
-        words |= {"hand": both, "loaded_side": both}
+        note = ": of straight teeth both together say which flank is loaded"
+        words |= {"hand": note, "loaded_side": note}
     if pair.pinion.pitch_angle == 0:
         missing = [key for key in missing if key != "face_width"]  # the radius is one all along
-    called = CYLINDRICAL if parallel else {}
+    names = CYLINDRICAL if parallel else {}
     if missing:
         raise SceneError.of(
             SceneError(
-                f"is missing; {what} needs it{words[key]}", path=("pinion", called.get(key, key))
+                f"is missing; {reason} needs it{words[key]}", path=("pinion", names.get(key, key))
             )
             for key in missing
         )
 
 
 def _of_teeth(pair: Pair, pressure_angle: float | None) -> np.ndarray:
-    _needs(pair, *GEOMETRY, what="a line of action from gear geometry")
+    _needs(pair, *GEOMETRY, reason="a line of action from gear geometry")
     p = pair.pinion
     assert p.pitch_angle is not None and p.spiral_angle is not None
     assert p.loaded_side is not None and pressure_angle is not None
-    hand = p.hand or "right"  # of straight teeth, whose flank is told by itself
+    hand = p.hand or "right"  # of straight teeth, whose flank is given directly
     return line_of_action(p.pitch_angle, p.spiral_angle, pressure_angle, hand, p.loaded_side)
 
 
 def _mean_radius(pair: Pair) -> float:
     what = "a mesh point from gear geometry"
-    _needs(pair, "pitch_radius", "pitch_angle", "face_width", what=what)
+    _needs(pair, "pitch_radius", "pitch_angle", "face_width", reason=what)
     p = pair.pinion
     assert p.pitch_radius is not None and p.pitch_angle is not None
     if p.pitch_angle == 0:
@@ -208,13 +297,13 @@ def _mean_radius(pair: Pair) -> float:
 
 
 def _gear_position(pair: Pair, point: np.ndarray) -> np.ndarray:
-    """The gear's lumped point from the pinion's; with both at the middle of the face, where the
-    middles of the faces touch and radii are in the ratio of the teeth.
+    """Return the gear's lumped point from the pinion's: with both at the middle of the face, where
+    the middles of the faces touch and radii are in the ratio of the teeth.
     """
     if pair.mesh.gear_position is not None:
         return np.array(pair.mesh.gear_position)
     if pair.mesh.line_of_action is not None or pair.mesh.contact_cells:
-        _needs(pair, "pitch_radius", "pitch_angle", "face_width", what=WITHOUT_POSITION)
+        _needs(pair, "pitch_radius", "pitch_angle", "face_width", reason=WITHOUT_POSITION)
     radius = _mean_radius(pair)
     at_gear = mesh_point(pair.ratio * radius, member="gear")
     # from the gear's frame back to the pinion's: the opposite turn
@@ -232,18 +321,18 @@ def _given_line(pair: Pair) -> np.ndarray:
         )
     if all(getattr(pair.pinion, key) is not None for key in GEOMETRY):
         teeth = _of_teeth(pair, pair.mesh.pressure_angle or USUAL_PRESSURE_ANGLE)
-        turned = to_gear_frame(normal, -pair.mesh.shaft_angle)
-        if turned @ teeth > normal @ teeth + TURNED:
+        in_pinion_frame = to_gear_frame(normal, -pair.mesh.shaft_angle)
+        if in_pinion_frame @ teeth > normal @ teeth + TURNED:
             raise SceneError(
                 "is given in the gear's frame: it fits the teeth only when turned back by the "
-                f"shaft angle; in the pinion's frame it is {np.round(turned, 7).tolist()}",
+                f"shaft angle; in the pinion's frame it is {np.round(in_pinion_frame, 7).tolist()}",
                 path=path,
             )
     return normal
 
 
 def _cones(pair: Pair) -> list[str]:
-    """Tell whether the pitch angle is that of the teeth."""
+    """Return a caution where the pitch angle does not fit the numbers of teeth."""
     angle, shaft = pair.pinion.pitch_angle, pair.mesh.shaft_angle
     if angle is None:
         return []
@@ -258,7 +347,7 @@ def _cones(pair: Pair) -> list[str]:
 
 
 def _apexes(pair: Pair) -> list[str]:
-    """Tell whether the pitch apex lies where the head of the scene is narrowest."""
+    """Return cautions where the pitch apex does not lie where the head of the scene is narrowest."""
     if abs(sin(pair.mesh.shaft_angle)) < 1e-6:
         return []  # parallel shafts have none
     out = []
@@ -278,7 +367,7 @@ def _apexes(pair: Pair) -> list[str]:
     return out
 
 
-def _on_the_head(pair: Pair, side: str, point: np.ndarray) -> None:
+def _refuse_point_off_head(pair: Pair, side: str, point: np.ndarray) -> None:
     scene, apex = pair.members[side].scene, pair.members[side].apex
     port = scene.port
     most = scene.outline.largest_radius
@@ -310,9 +399,9 @@ def _on_the_head(pair: Pair, side: str, point: np.ndarray) -> None:
         )
 
 
-def _scene_load(pair: Pair, side: str, found: tuple[MeshVector, MeshVector]) -> list[str]:
-    """Tell of bearings that settled under a [load] which is no force of the teeth; a load that pulls
-    the teeth apart is refused.
+def _scene_load(pair: Pair, side: str, vector: MeshVector) -> list[str]:
+    """Return a caution on bearings that settled under a [load] which is no force of the teeth; a
+    load that pulls the teeth apart is refused.
     """
     member = pair.members[side]
     scene = member.scene
@@ -322,28 +411,28 @@ def _scene_load(pair: Pair, side: str, found: tuple[MeshVector, MeshVector]) -> 
     force = np.array(scene.load.six[:3])
     if not force.any():
         return []
-    vector = _in_scene(pair, side, found[side == "gear"])
-    teeth = vector.normal if side == "pinion" else -vector.normal
+    normal = _in_scene(pair, side, vector).normal
+    teeth = normal if side == "pinion" else -normal
     along = float(force @ teeth / np.linalg.norm(force))
-    told = (
+    start = (
         f"the [load] of the {side}'s scene, ({', '.join(f'{v:.0f}' for v in force)}) N, under which "
         f"its bearings settle"
     )
-    way = (
+    advice = (
         f'give the train an [operation] with its torque and write scene_load = "replaced" under '
         f"[{side}], so that the mesh force follows"
     )
     if along < 0:
         raise SceneError(
-            f"{told}, pulls the teeth apart: they push the {side} along "
-            f'({", ".join(f"{v:.3f}" for v in teeth)}); {way}, or write scene_load = "added" '
+            f"{start}, pulls the teeth apart: they push the {side} along "
+            f'({", ".join(f"{v:.3f}" for v in teeth)}); {advice}, or write scene_load = "added" '
             f"under [{side}] if it does not come from the teeth",
             path=(side, "scene"),
         )
     if along > cos(LOAD_ASIDE):
         return []
     return [
-        f"{told}, lies {np.degrees(np.arccos(along)):.0f} degrees off their line of action; {way}"
+        f"{start}, lies {np.degrees(np.arccos(along)):.0f} degrees off their line of action; {advice}"
     ]
 
 
@@ -357,17 +446,17 @@ def _levers(pair: Pair, pinion: MeshVector, gear: MeshVector) -> list[str]:
                 path=path,
             )
     levers = abs(gear.lever / pinion.lever)
-    off = levers / pair.ratio - 1
-    if abs(off) > LEVER_REFUSED:
+    error = levers / pair.ratio - 1
+    if abs(error) > LEVER_REFUSED:
         raise SceneError(
             f"the lever arms are {1e3 * abs(pinion.lever):.2f} mm on the {pair.shafts[0]} and "
             f"{1e3 * abs(gear.lever):.2f} mm on the {pair.shafts[1]}, a ratio of {levers:.4f}; "
             f"the teeth ask for {pair.ratio:.4f}",
             path=path,
         )
-    if abs(off) > LEVER_TOLD:
+    if abs(error) > LEVER_TOLD:
         return [
             f"the lever arms have a ratio of {levers:.4f}, the teeth of {pair.ratio:.4f}: "
-            f"{100 * off:+.1f} %"
+            f"{100 * error:+.1f} %"
         ]
     return []

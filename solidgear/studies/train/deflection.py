@@ -1,35 +1,71 @@
-"""Deflection and misalignment of a train at an operating point, by any model, with error bars."""
+r"""Deflection and misalignment of a train at an operating point, by any model, with error bars.
+
+A quantity a'q of the state at rest has an error bar where a shaft is a harmonic solid: the flexibility at
+the ports lies between F and F + M (:mod:`solidgear.bounds.harmonic`), so that with the forces f on
+the ports at rest, and those, g, which a unit load on the quantity would bring about on the bearings'
+tangents,
+
+    |error| <= sqrt(f'M f) sqrt(g'M g),      summed over the shafts
+
+(Cauchy and Schwarz in the energy of the local problems; second order in M is left out).  Beams are
+exact in their theory and have no error bar; the harmonic solid shows what their theory leaves out.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from time import perf_counter
+from typing import Any
 
 import numpy as np
 
+from solidgear.bounds.harmonic import HarmonicBounds, harmonic_bounds, with_tail
+from solidgear.bounds.safety import LOCAL
 from solidgear.errors import SolidgearError, listed
 from solidgear.frames import DOF_NAMES
 from solidgear.judge.deviations import WITHIN, gap_verdict
 from solidgear.machine.threads import pinned
+from solidgear.scene.coned import coned
 from solidgear.scene.operation import OperatingPoint
 from solidgear.scene.train_housing import HOUSING
 from solidgear.studies.bearing_life import left_open
 from solidgear.studies.deflection import ShaftDeflection, shaft_deflection
 from solidgear.studies.train.components import FORCE_UNITS
-from solidgear.studies.train.housing import BOX, carried_by, mount_rows
+from solidgear.studies.train.housing import BOX, housing_motion, mount_rows
 from solidgear.studies.train.layout import senses
-from solidgear.studies.train.measured import Measured
 from solidgear.studies.train.misalignment import misalignment
 from solidgear.studies.train.models import Workshop
-from solidgear.studies.train.operation import Operating, OperatingState
-from solidgear.studies.train.shaft import JUDGE, LUMPED, RIGID, told_mix
-from solidgear.studies.train.static_bars import StaticBars
+from solidgear.studies.train.operation import Operating, OperatingState, with_settled_bearings
+from solidgear.studies.train.shaft import JUDGE, LUMPED, RIGID, mix_label
 from solidgear.studies.train.turn import StageTurn, over_a_turn
+from solidgear.system.port_forces import port_forces
+from solidgear.system.system import System
 
 #: models that a deflection is solved with, the cheapest first
 MODELS = (RIGID, "euler", "timoshenko", JUDGE)
 MOVED = ("m moved",) * 3 + ("rad moved",) * 3
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A number of a deflected train, with error bar and range over open data."""
+
+    name: str
+    unit: str
+    meaning: str
+    value: float  #: SI
+    bar: float | None  #: largest error by the meshes, SI; None without a harmonic solid
+    #: least and largest value over open data of bearings; None where none are open
+    open: tuple[float, float] | None = None
+    #: of a misalignment where there are several meshes: its name at the end of `name`
+    mesh: str = ""
+    face: float | None = None  #: width that a meaning over the face is of, m
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain data in SI for JSON."""
+        unit = self.unit.split()[0]
+        return {"value": self.value, "bar": self.bar, "open": self.open, "unit": unit}
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,39 +89,41 @@ class TrainDeflection:
 
     @property
     def mesh_force(self) -> float:
-        """That of the first mesh, N."""
+        """Force of the first mesh, N."""
         return next(iter(self.mesh_forces.values()))
 
     @property
     def model(self) -> str:
         """The model of all shafts, or of each."""
-        alike = len({*self.models.values()}) == 1
-        return next(iter(self.models.values())) if alike else told_mix(self.models)
+        equal = len({*self.models.values()}) == 1
+        return next(iter(self.models.values())) if equal else mix_label(self.models)
 
     def as_dict(self) -> dict:
-        """Plain data in SI that JSON can hold."""
-        told = {
+        """Return plain data in SI for JSON."""
+        data = {
             "point": self.point.model_dump(mode="json"),
             **self.models,
             "mesh_force": self.mesh_force,
             "mesh_forces": self.mesh_forces,
             "misalignment": {m.name: m.as_dict() for m in self.misalignment},
-            "displacement": _each(self.displacement),
+            "displacement": _components_as_dict(self.displacement),
             "shafts": {shaft.name: shaft.as_dict() for shaft in self.shafts},
-            "turns": {one.stage: one.as_dict() for one in self.turns},
+            "turns": {turn.stage: turn.as_dict() for turn in self.turns},
             "notes": list(self.notes),
             "seconds": self.seconds,
         }
-        return told | ({"mounts": _each(self.mounts)} if self.mounts else {})
+        return data | ({"mounts": _components_as_dict(self.mounts)} if self.mounts else {})
 
 
-def _each(places: dict[str, tuple[Measured, ...]]) -> dict:
-    return {place: {m.name: m.as_dict() for m in six} for place, six in places.items()}
+def _components_as_dict(places: dict[str, tuple[Measured, ...]]) -> dict:
+    return {
+        place: {m.name: m.as_dict() for m in components} for place, components in places.items()
+    }
 
 
 @dataclass(frozen=True)
 class Standing:
-    """A model of both shafts against the judge, for the misalignment."""
+    """A model of all shafts against the judge, for the misalignment."""
 
     model: str
     verdict: str  #: ``within``, ``open`` or ``beyond`` the tolerance
@@ -99,7 +137,7 @@ class Deflections:
 
     title: str
     tolerance: float  #: of the misalignment, relative
-    found: tuple[TrainDeflection, ...]  #: the judge last
+    solutions: tuple[TrainDeflection, ...]  #: the judge last
     standings: tuple[Standing, ...]
     cautions: tuple[str, ...]
     senses: dict[str, str]  #: in which each shaft turns, ``+y`` or ``-y`` of its scene
@@ -108,43 +146,43 @@ class Deflections:
     @property
     def judge(self) -> TrainDeflection:
         """The finest model that was solved."""
-        return self.found[-1]
+        return self.solutions[-1]
 
     @property
     def cheapest(self) -> Standing | None:
-        """The cheapest model within the tolerance; None where none but the judge is."""
-        return next((one for one in self.standings if one.verdict == WITHIN), None)
+        """The cheapest model within the tolerance; None where only the judge is."""
+        return next((standing for standing in self.standings if standing.verdict == WITHIN), None)
 
     def verdict(self) -> str:
-        """Sentence on the cheapest model for the misalignment."""
+        """Return a sentence on the cheapest model for the misalignment."""
         if not self.judge.misalignment:
             return "No gears of two shafts mesh, by whose misalignment models are judged."
         if not self.standings:
             return "One model was solved: which is enough is not judged."
-        asked = f"{100 * self.tolerance:g} % of the misalignment at {self.judge.point.label}"
+        demand = f"{100 * self.tolerance:g} % of the misalignment at {self.judge.point.label}"
         if self.cheapest is None:
-            near = min(self.standings, key=lambda one: abs(one.gap))
+            near = min(self.standings, key=lambda standing: abs(standing.gap))
             return (
-                f"No cheaper model is known to hold {asked}: use {self.judge.model}. The nearest, "
+                f"No cheaper model is known to hold {demand}: use {self.judge.model}. The nearest, "
                 f"{near.model}, is {100 * abs(near.gap):.2g} % off in {near.worst}."
             )
-        one = self.cheapest
+        standing = self.cheapest
         return (
-            f"Cheapest model that holds {asked}: {one.model} "
-            f"({100 * one.gap:.2g} % off in {one.worst})."
+            f"Cheapest model that holds {demand}: {standing.model} "
+            f"({100 * standing.gap:.2g} % off in {standing.worst})."
         )
 
     def as_dict(self) -> dict:
-        """Plain data in SI that JSON can hold."""
+        """Return plain data in SI for JSON."""
         return {
             "train": self.title,
             "tolerance": self.tolerance,
             "verdict": self.verdict(),
-            "models": {one.model: one.as_dict() for one in self.found},
-            "standings": [vars(one) for one in self.standings],
+            "models": {solution.model: solution.as_dict() for solution in self.solutions},
+            "standings": [vars(standing) for standing in self.standings],
             "cautions": list(self.cautions),
             "senses": self.senses,
-            "points": [one.as_dict() for one in self.points],
+            "points": [solution.as_dict() for solution in self.points],
         }
 
 
@@ -155,21 +193,9 @@ def deflect_train(
     progress: Callable[[str], None] = lambda text: None,
     every: bool = False,
 ) -> Deflections:
-    """Deflection and misalignment of a train at an operating point by several models.
-
-    Parameters
-    ----------
-    models : sequence of str
-        Of both shafts, the finest last.
-    progress : callable, optional
-        Told each model.
-    every : bool
-        Also at every operating point of the train, by the last model.
-
-    Raises
-    ------
-    SolidgearError
-        For a lumped model, which has no bearings of its own, or a shaft that nothing holds.
+    """Compute deflection and misalignment of a train at an operating point by several models of all
+    shafts, the finest last, and by that at every operating point if `every`; lumped models have
+    no bearings of their own and are refused.
 
     Examples
     --------
@@ -179,31 +205,34 @@ def deflect_train(
     >>> [m.name for m in found.judge.misalignment], len(found.judge.shafts[0].bearings)
     (['E', 'P', 'G', 'shaft angle'], 3)
     """
-    found = []
+    solutions = []
     for model in models:
         progress(model)
-        found.append(deflection(workshop, point, model))
+        solutions.append(deflection(workshop, point, model))
     progress("what the data of bearings leave open")
-    found[-1] = with_ranges(workshop, found[-1])
-    standings = tuple(_standing(one, found[-1], workshop.train.ask.tolerance) for one in found[:-1])
+    solutions[-1] = with_ranges(workshop, solutions[-1])
+    standings = tuple(
+        _against_judge(solution, solutions[-1], workshop.train.ask.tolerance)
+        for solution in solutions[:-1]
+    )
     points: list[TrainDeflection] = []
     if every:
         progress(f"{len(workshop.train.operation)} operating points")
         points = deflections(workshop, workshop.train.operation, models[-1])
     title = workshop.train.title or workshop.train.name
     return Deflections(
-        title,
-        workshop.train.ask.tolerance,
-        tuple(found),
-        standings,
-        workshop.odd,
-        senses(workshop.train, workshop.on_flank(point.coast).contacts, point.coast),
-        tuple(points),
+        title=title,
+        tolerance=workshop.train.ask.tolerance,
+        solutions=tuple(solutions),
+        standings=standings,
+        cautions=workshop.data_cautions,
+        senses=senses(workshop.train, workshop.on_flank(point.coast).contacts, point.coast),
+        points=tuple(points),
     )
 
 
 def deflection(workshop: Workshop, point: OperatingPoint, *models: str) -> TrainDeflection:
-    """Deflection of a train at an operating point by one model of each shaft, as
+    """Compute the deflection of a train at an operating point by one model of each shaft, as
     :func:`deflections`.
     """
     return deflections(workshop, [point], *models)[0]
@@ -213,137 +242,207 @@ def deflection(workshop: Workshop, point: OperatingPoint, *models: str) -> Train
 def deflections(
     workshop: Workshop, points: Sequence[OperatingPoint], *models: str
 ) -> list[TrainDeflection]:
-    """Deflection of a train at several operating points by one model of each shaft.
-
-    Parameters
-    ----------
-    points : sequence of OperatingPoint
-        Each is begun at the one before.
-
-    Raises
-    ------
-    SolidgearError
-        As :func:`deflect_train`.
+    """Compute the deflection of a train at several operating points, each begun at the one before,
+    by one model of each shaft.
     """
-    rungs = workshop.mix(models)
-    for rung in rungs.values():
-        if rung.partition("/")[0] in LUMPED:
+    by_shaft = workshop.models_by_shaft(models)
+    for model in by_shaft.values():
+        if model.partition("/")[0] in LUMPED:
             raise SolidgearError(
-                f"a {rung} shaft has its bearings condensed into it, and no places of their own; "
+                f"a {model} shaft has its bearings condensed into it, and no places of their own; "
                 f"use one of {', '.join(MODELS)}"
             )
-    for side, rung in rungs.items():
-        workshop.shaft(side, rung)  # no settling to be timed
+    for side, model in by_shaft.items():
+        workshop.shaft_model(side, model)  # no settling to be timed
     operating = Operating(workshop, *models)
     state: OperatingState | None = None
     out = []
     for point in points:
         start = perf_counter()
         state = operating.at(point, state)
-        out.append(_told(workshop, state, rungs, perf_counter() - start))
+        out.append(_solution(workshop, state, by_shaft, perf_counter() - start))
     return out
 
 
-def _told(
-    workshop: Workshop, state: OperatingState, rungs: dict[str, str], seconds: float
+def _solution(
+    workshop: Workshop, state: OperatingState, by_shaft: dict[str, str], seconds: float
 ) -> TrainDeflection:
-    """Deflection of a train at rest."""
+    """Return the deflection of a train at rest."""
     point, system = state.point, state.system
-    bars = StaticBars(workshop, state, rungs)
+    bars = StaticBars(workshop, state, by_shaft)
     measures = misalignment(workshop.on_flank(point.coast), system)
-    told = tuple(
+    measured = tuple(
         Measured(
             m.name,
             m.unit,
             m.meaning,
             float(m.row @ state.coordinates),
-            bars.of(m.row),
+            bars.error_bar(m.row),
             mesh=m.mesh,
             face=m.face,
         )
         for m in measures
     )
     housed = {
-        side: carried_by(system, workshop.places[side], state.coordinates)
+        side: housing_motion(system, workshop.places[side], state.coordinates)
         for side in workshop.train.housed
     }
     shafts = tuple(
         shaft_deflection(
             side,
-            rung,
+            model,
             workshop.scenes[side],
             system,
             state.equilibrium,
-            None if rung.partition("/")[0] == RIGID else workshop.shaft(side, rung).body,
-            state.made,
+            None if model.partition("/")[0] == RIGID else workshop.shaft_model(side, model).body,
+            state.bearings,
             housed.get(side),
         )
-        for side, rung in rungs.items()
+        for side, model in by_shaft.items()
     )
     notes = [*state.notes, *(note for shaft in shafts for note in shaft.notes)]
     if housed:
         notes.append(f"deflection lines of {listed(housed)} are told against the housing")
-    moved = {}
+    displacement = {}
     for side, shaft in workshop.train.shafts.items():
         for port in shaft.gears:
             end = f"{side}.{port}"
-            told_as = side if len(shaft.gears) == 1 else end
-            moved[told_as] = _six(f"of {end}", MOVED, system.motion(end), state, bars)
+            name = side if len(shaft.gears) == 1 else end
+            displacement[name] = _six_measures(f"of {end}", MOVED, system.motion(end), state, bars)
     if workshop.train.housing is not None:
-        moved[HOUSING] = _six("of its centre", MOVED, system.motion(BOX), state, bars)
+        displacement[HOUSING] = _six_measures(
+            "of its centre", MOVED, system.motion(BOX), state, bars
+        )
         if workshop.train.stages:
             notes.append("forces over a turn of a carrier are not told beside a housing")
     mounts = {
-        name: _six("on it", FORCE_UNITS, rows, state, bars)
+        name: _six_measures("on it", FORCE_UNITS, rows, state, bars)
         for name, rows in mount_rows(workshop.train, system).items()
     }
     return TrainDeflection(
-        point,
-        state.models,
-        state.mesh_forces,
-        told,
-        moved,
-        shafts,
-        tuple(notes),
-        seconds,
-        mounts,
-        over_a_turn(workshop, state, rungs),
+        point=point,
+        models=state.models,
+        mesh_forces=state.mesh_forces,
+        misalignment=measured,
+        displacement=displacement,
+        shafts=shafts,
+        notes=tuple(notes),
+        seconds=seconds,
+        mounts=mounts,
+        turns=over_a_turn(workshop, state, by_shaft),
     )
 
 
-def with_ranges(workshop: Workshop, found: TrainDeflection) -> TrainDeflection:
-    """The same with the ranges of its misalignment over estimated insides and clearance classes."""
-    values = [[m.value for m in found.misalignment]]
-    _, choices = left_open(own.scene for own in workshop.train.shafts.values())
+def with_ranges(workshop: Workshop, solution: TrainDeflection) -> TrainDeflection:
+    """Return the same with the ranges of the misalignment over estimated insides and clearance
+    classes.
+    """
+    values = [[m.value for m in solution.misalignment]]
+    _, choices = left_open(shaft.scene for shaft in workshop.train.shafts.values())
     for choice in choices:
-        state = Operating(workshop, *found.models.values(), choice=choice).at(found.point)
-        measures = misalignment(workshop.on_flank(found.point.coast), state.system)
+        operating = Operating(workshop, *solution.models.values(), choice=choice)
+        state = operating.at(solution.point)
+        measures = misalignment(workshop.on_flank(solution.point.coast), state.system)
         values.append([float(m.row @ state.coordinates) for m in measures])
     if len(values) == 1:
-        return found
+        return solution
     low, high = np.min(values, axis=0), np.max(values, axis=0)
-    told = [replace(m, open=(float(a), float(b))) for m, a, b in zip(found.misalignment, low, high)]
-    return replace(found, misalignment=tuple(told))
+    measured = [
+        replace(m, open=(float(a), float(b))) for m, a, b in zip(solution.misalignment, low, high)
+    ]
+    return replace(solution, misalignment=tuple(measured))
 
 
-def _six(
+def _six_measures(
     meaning: str, units: Sequence[str], rows: np.ndarray, state: OperatingState, bars: StaticBars
 ) -> tuple[Measured, ...]:
-    """Motion of a place or load on one, six components."""
+    """Return the motion of a place, or the load on it, as six components."""
     return tuple(
-        Measured(name, unit, meaning, float(row @ state.coordinates), bars.of(row))
+        Measured(name, unit, meaning, float(row @ state.coordinates), bars.error_bar(row))
         for name, unit, row in zip(DOF_NAMES, units, rows)
     )
 
 
-def _standing(one: TrainDeflection, judge: TrainDeflection, tolerance: float) -> Standing:
-    """A model against the judge: lengths against the largest length, angles against the largest."""
+def _against_judge(solution: TrainDeflection, judge: TrainDeflection, tolerance: float) -> Standing:
+    """Compare a model with the judge: lengths against the largest length, angles against the
+    largest angle.
+    """
     worst, gap, bar = "", 0.0, 0.0
     for unit in dict.fromkeys(m.unit for m in judge.misalignment):
-        pairs = [(m, j) for m, j in zip(one.misalignment, judge.misalignment) if j.unit == unit]
+        pairs = [
+            (m, j) for m, j in zip(solution.misalignment, judge.misalignment) if j.unit == unit
+        ]
         scale = float(np.linalg.norm([j.value for _, j in pairs]))
-        for mine, theirs in pairs:
-            off = (mine.value - theirs.value) / scale if scale else 0.0
-            if abs(off) >= abs(gap):
-                worst, gap, bar = mine.name, off, (theirs.bar or 0.0) / (scale or 1.0)
-    return Standing(one.model, gap_verdict(gap, bar, tolerance), worst, gap)
+        for measure, reference in pairs:
+            error = (measure.value - reference.value) / scale if scale else 0.0
+            if abs(error) >= abs(gap):
+                worst, gap, bar = measure.name, error, (reference.bar or 0.0) / (scale or 1.0)
+    return Standing(solution.model, gap_verdict(gap, bar, tolerance), worst, gap)
+
+
+class StaticBars:
+    """Error bars that meshes of harmonic shafts leave in linear numbers of a state at rest."""
+
+    def __init__(self, workshop: Workshop, state: OperatingState, models: dict[str, str]):
+        self.workshop, self.state = workshop, state
+        self.sides = [side for side, model in models.items() if model == JUDGE]
+        self.bounds: dict[str, HarmonicBounds] = {}
+        if not self.sides or any(mesh.local_harmonics for mesh in workshop.train.meshes):
+            return
+        shop = workshop.with_train(with_settled_bearings(workshop.train, state))
+        self.tangent: System = shop.system(*models.values())
+        for side in self.sides:
+            body = workshop.shaft_model(side, JUDGE).body
+            self.bounds[side] = harmonic_bounds(coned(workshop.scenes[side]), body, statics=True)
+        self.rest = self._ports(state.forces())
+
+    def _ports(self, forces: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+        """Return (6 p,) forces on the ports of every harmonic shaft."""
+        out = {}
+        for side, bounds in self.bounds.items():
+            out[side] = np.zeros(6 * len(bounds.body.ports))
+            for end, force in forces.items():
+                part, _, port = end.partition(".")
+                if part == side:
+                    start = 6 * bounds.body.port_index(port)
+                    out[side][start : start + 6] += force
+        return out
+
+    def error_bar(self, row: np.ndarray) -> float | None:
+        """Return the error bar of ``row @ coordinates``; None without a harmonic shaft, and where
+        the number grows as the train turns.
+        """
+        if not self.bounds:
+            return None
+        turns = np.abs(row @ self.tangent.free).max(initial=0.0)
+        if turns > 1e-9 * np.linalg.norm(row):
+            return None
+        adjoint = port_forces(self.tangent, self.tangent.static(row))
+        parts = [*self.workshop.scenes]
+        if self.workshop.train.housing is not None:
+            parts.append(HOUSING)
+        unit_forces = self._ports(_add_unit_load(adjoint, self.tangent, row, parts))
+        total = 0.0
+        for side, bounds in self.bounds.items():
+            f, g = self.rest[side], unit_forces[side]
+            double, single = (
+                float(np.sqrt(max(f @ m @ f, 0.0) * max(g @ m @ g, 0.0)))
+                for m in (bounds.more, bounds.less)
+            )
+            total += LOCAL * with_tail(double, single)
+        return total
+
+
+def _add_unit_load(
+    forces: dict[str, np.ndarray], system: System, row: np.ndarray, parts: list[str]
+) -> dict[str, np.ndarray]:
+    """Add to forces of links the unit load that a row of coordinates stands for, on the ports that
+    it is made of.
+    """
+    total = dict(forces)
+    ends = [f"{side}.{port}" for side in parts for port in system.parts[side].ports]
+    rows = np.vstack([system.motion(end) for end in ends])
+    loads, *_ = np.linalg.lstsq(rows.T, row, rcond=1e-12)
+    for end, force in zip(ends, loads.reshape(-1, 6)):
+        total[end] = total.get(end, np.zeros(6)) + force
+    return total

@@ -1,5 +1,5 @@
-"""Gears of a train as bodies: do teeth fit each other, stand on a body, weigh what their size asks
-for, and bear what a torque brings.
+"""Checks of the gears of a train as bodies: whether teeth fit each other, stand on a body, weigh as
+their size demands, and bear the torque.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ STRONG = 500e6
 
 @dataclass(frozen=True)
 class Wheel:
-    """A gear by the numbers of its teeth, at the middle of its face."""
+    """A gear by the numbers of its teeth, at the middle of the face."""
 
     #: radius, root, tip: of the pitch circle, the root circle and the tip circle, m
     radius: float
@@ -55,16 +55,16 @@ class Wheel:
 
 
 def wheel_of(pair: Pair, k: int) -> Wheel | None:
-    """The first or the second wheel of a pair; None where the file does not tell its size."""
-    own = pair.rolling
-    wheels = own.pinion, own.gear
+    """Return the first or the second wheel of a pair; None where the file does not give the size."""
+    rolling = pair.rolling
+    wheels = rolling.pinion, rolling.gear
     wheel, mate = wheels[k], wheels[1 - k]
     radius = wheel.pitch_radius or (mate.pitch_radius or 0.0) * wheel.teeth / mate.teeth
     if not radius:
         return None
     cone = wheel.pitch_angle
     if cone is None:
-        cone = 0.0 if mate.pitch_angle is None else own.mesh.shaft_angle - mate.pitch_angle
+        cone = 0.0 if mate.pitch_angle is None else rolling.mesh.shaft_angle - mate.pitch_angle
     face = wheel.face_width or mate.face_width or 0.0
     radius -= face * sin(cone) / 2
     lean = wheel.spiral_angle or mate.spiral_angle or 0.0
@@ -76,34 +76,36 @@ def wheel_of(pair: Pair, k: int) -> Wheel | None:
 
 
 def gear_cautions(train: Train, contacts: Mapping[str, Contact]) -> Iterator[str]:
-    """Sentences on gears that cannot be what the file says, or hardly."""
-    known: set[tuple[str, str]] = set()
+    """Yield sentences on gears that cannot be as the file describes them, or hardly."""
+    checked: set[tuple[str, str]] = set()
     for k, pair in enumerate(train.pairs):
-        of = f"{pair.name}: " if pair.label else ""
-        if not _told(train, k):
+        prefix = f"{pair.name}: " if pair.label else ""
+        if not _flank_is_given(train, k):
             yield (
-                f"{of}loaded_side is not given: the {pair.pinion.flank} flank of the "
+                f"{prefix}loaded_side is not given: the {pair.pinion.flank} flank of the "
                 f"{pair.shafts[0]} is taken to carry; the other one moves numbers where bearings "
                 "differ across the shaft"
             )
         if (fit := fit_of(pair)) is not None:
-            yield from (of + text for text in backlash_cautions(fit, pair.mesh.backlash))
-            yield from (of + text for text in fit_cautions(fit, pair.shafts))
-        for which, end in enumerate(zip(pair.shafts, pair.ports)):
-            wheel = wheel_of(pair, which)
-            if wheel is None or end in known:
+            yield from (prefix + text for text in backlash_cautions(fit, pair.mesh.backlash))
+            yield from (prefix + text for text in fit_cautions(fit, pair.shafts))
+        for member, (side, port) in enumerate(zip(pair.shafts, pair.ports)):
+            wheel = wheel_of(pair, member)
+            if wheel is None or (side, port) in checked:
                 continue
-            known.add(end)
+            checked.add((side, port))
             if fit is not None:
-                yield from wheel_cautions(fit, which, _called(train, *end))
-            yield from _of_gear(train, *end, wheel)
+                yield from wheel_cautions(fit, member, _gear_label(train, side, port))
+            yield from _gear_on_shaft(train, side, port, wheel)
     for stage in train.stages:
-        yield from _of_stage(train, stage, known)
-    yield from _loads(train, contacts)
+        yield from _stage_cautions(train, stage, checked)
+    yield from _load_cautions(train, contacts)
 
 
-def _told(train: Train, k: int) -> bool:
-    """Tell whether a file says which flanks of a mesh carry, where the line of action needs them."""
+def _flank_is_given(train: Train, k: int) -> bool:
+    """Check whether a file names the flanks of a mesh that carry, where the line of action needs
+    them.
+    """
     mesh, ends = train.meshes[k], ends_of(train, k)
     if mesh.shaft_angle or mesh.line_of_action or mesh.contact_cells:
         return True
@@ -111,84 +113,91 @@ def _told(train: Train, k: int) -> bool:
     return flanks_from_file(train, ends, pinion, gear)[0].flank is not None
 
 
-def _called(train: Train, side: str, port: str) -> str:
-    """A gear in words: its shaft, of several gears with the lumped point."""
+def _gear_label(train: Train, side: str, port: str) -> str:
+    """Return a gear in words: the shaft, of several gears with the lumped point."""
     return side if len(train.shafts[side].gears) == 1 else f"{side}.{port}"
 
 
-def _of_gear(train: Train, side: str, port: str, wheel: Wheel) -> Iterator[str]:
-    """Sentences on the body and the head of a gear on a shaft."""
+def _gear_on_shaft(train: Train, side: str, port: str, wheel: Wheel) -> Iterator[str]:
+    """Yield sentences on the body and the head of a gear on a shaft."""
     shaft = train.shafts[side]
     head = shaft.gears[port].head
-    called = _called(train, side, port)
-    yield from _below(shaft.scene, port, called, wheel, head is not None)
+    label = _gear_label(train, side, port)
+    yield from _body_below_teeth(shaft.scene, port, label, wheel, head is not None)
     if head is not None:
-        most = wheel.tip / wheel.radius
-        yield from _gyration(f"head of the {called}", head, wheel, (LEAST_GYRATION, most))
+        tip_ratio = wheel.tip / wheel.radius
+        yield from _gyration(f"head of the {label}", head, wheel, (LEAST_GYRATION, tip_ratio))
 
 
-def _below(scene: Scene, port: str, called: str, wheel: Wheel, head: bool) -> Iterator[str]:
-    """Sentence on a body that does not reach up to its teeth, or beyond them."""
+def _body_below_teeth(
+    scene: Scene, port: str, label: str, wheel: Wheel, head: bool
+) -> Iterator[str]:
+    """Yield a sentence on a body that ends below the roots of the teeth, or beyond their tips."""
     seat = next(s for s in scene.stations if s.name == port)
-    here = [s for s in scene.segments if s.y0 <= seat.y <= s.y1]
-    body = max(s.radius_at(seat.y)[1] for s in here)
+    segments = [s for s in scene.segments if s.y0 <= seat.y <= s.y1]
+    body = max(s.radius_at(seat.y)[1] for s in segments)
     discs = any(
         m.on == port or (m.on is None and m.lo < seat.hi and m.hi > seat.lo) for m in scene.masses
     )
     if not head and not discs and body < wheel.root - BELOW * wheel.module:
-        told = ""
+        ring = ""
         if wheel.face_width:
-            mass = here[0].material.density * pi * (wheel.radius**2 - body**2) * wheel.face_width
+            mass = (
+                segments[0].material.density * pi * (wheel.radius**2 - body**2) * wheel.face_width
+            )
             inertia = mass * (wheel.radius**2 + body**2) / 2
-            told = f", a ring of {mass:.3g} kg and {inertia:.3g} kg m^2,"
+            ring = f", a ring of {mass:.3g} kg and {inertia:.3g} kg m^2,"
         yield (
-            f"the teeth of the {called} roll at {_mm(wheel.radius)} from the axis, and the shaft "
-            f"below them ends at {_mm(body)}: what lies between{told} is in no model; correct "
+            f"the teeth of the {label} roll at {_mm(wheel.radius)} from the axis, and the shaft "
+            f"below them ends at {_mm(body)}: what lies between{ring} is in no model; correct "
             "teeth or module, make the segment as large, or give the gear a head"
         )
     if body > wheel.tip + ABOVE * wheel.module:
         yield (
-            f"the teeth of the {called} end at {_mm(wheel.tip)} from the axis, within the shaft "
+            f"the teeth of the {label} end at {_mm(wheel.tip)} from the axis, within the shaft "
             f"there, whose radius is {_mm(body)}; correct teeth, module or the segment"
         )
 
 
 def _gyration(
-    what: str, inertia: HeadInertia, wheel: Wheel, sound: tuple[float, float]
+    name: str, inertia: HeadInertia, wheel: Wheel, sound: tuple[float, float]
 ) -> Iterator[str]:
-    """Sentence on a body whose inertia or mass is not that of its size."""
+    """Yield a sentence on a body whose inertia or mass does not fit the size."""
     about, across = sqrt(inertia.torsional / inertia.mass), sqrt(inertia.bending / inertia.mass)
-    given = f"{inertia.mass:.4g} kg and {inertia.torsional:.4g} kg m^2 of the {what} are"
+    start = f"{inertia.mass:.4g} kg and {inertia.torsional:.4g} kg m^2 of the {name} are"
     check = "check both numbers and their units, and the size of the teeth"
     size = f"its pitch radius is {_mm(wheel.radius)}"
     if not sound[0] <= about / wheel.radius <= sound[1]:
-        yield f"{given} a radius of gyration of {_mm(about)}, and {size}; {check}"
+        yield f"{start} a radius of gyration of {_mm(about)}, and {size}; {check}"
     elif not ACROSS[0] <= across / wheel.radius <= ACROSS[1]:
         yield (
-            f"{inertia.mass:.4g} kg and {inertia.bending:.4g} kg m^2 across of the {what} are a "
+            f"{inertia.mass:.4g} kg and {inertia.bending:.4g} kg m^2 across of the {name} are a "
             f"radius of gyration of {_mm(across)}, and {size}; {check}"
         )
     elif wheel.face_width:
         disc = STEEL * pi * wheel.radius**2 * wheel.face_width
         if not MASSES[0] <= inertia.mass / disc <= MASSES[1]:
             yield (
-                f"{inertia.mass:.4g} kg of the {what} are {inertia.mass / disc:.2g} times a steel "
+                f"{inertia.mass:.4g} kg of the {name} are {inertia.mass / disc:.2g} times a steel "
                 f"disc of its pitch radius and face width, {disc:.3g} kg; {check}"
             )
 
 
-def _of_stage(train: Train, stage: Stage, known: set[tuple[str, str]]) -> Iterator[str]:
-    """Sentences on sun, planets and ring of a planetary stage."""
+def _stage_cautions(train: Train, stage: Stage, checked: set[tuple[str, str]]) -> Iterator[str]:
+    """Yield sentences on sun, planets and ring of a planetary stage."""
     teeth, table = stage.teeth, stage.table
-    outside = _fit(stage, (teeth.sun, teeth.planet))
-    inside = _fit(stage, (teeth.planet, -teeth.ring))
-    told = [*fit_cautions(outside, ("sun", "planets")), *fit_cautions(inside, ("planets", "ring"))]
+    outside = _stage_fit(stage, (teeth.sun, teeth.planet))
+    inside = _stage_fit(stage, (teeth.planet, -teeth.ring))
+    sentences = [
+        *fit_cautions(outside, ("sun", "planets")),
+        *fit_cautions(inside, ("planets", "ring")),
+    ]
     for fit, k, name in ((outside, 0, "sun"), (outside, 1, "planets"), (inside, 1, "ring")):
-        told += wheel_cautions(fit, k, name)
-    yield from (f"{stage.called}: {text}" for text in told)
-    end = stage.shafts[0], stage.ports[0]
-    if end not in known:
-        yield from _of_gear(train, *end, _wheel(outside, 0))
+        sentences += wheel_cautions(fit, k, name)
+    yield from (f"{stage.called}: {text}" for text in sentences)
+    sun, port = stage.shafts[0], stage.ports[0]
+    if (sun, port) not in checked:
+        yield from _gear_on_shaft(train, sun, port, _wheel(outside, 0))
     planet = _wheel(outside, 1)
     sound = LEAST_GYRATION, planet.tip / planet.radius
     yield from _gyration(f"planet of {stage.called}", table.planet, planet, sound)
@@ -197,30 +206,30 @@ def _of_stage(train: Train, stage: Stage, known: set[tuple[str, str]]) -> Iterat
         yield from _gyration(f"ring of {stage.called}", table.ring, ring, RING_GYRATION)
 
 
-def _fit(stage: Stage, teeth: tuple[int, int]) -> ToothFit:
-    """Teeth of two members of a stage, which have no profile shift."""
+def _stage_fit(stage: Stage, teeth: tuple[int, int]) -> ToothFit:
+    """Return the teeth of two members of a stage, which have no profile shift."""
     sun = stage.sun
     assert sun.module is not None  # a stage is refused without
     helix, pressure = sun.helix_angle or 0.0, stage.table.mesh.pressure_angle
-    apart = sun.module * sum(teeth) / (2 * cos(helix))
-    return ToothFit(teeth, sun.module, helix, pressure, (0.0, 0.0), apart, sun.face_width or 0.0)
+    distance = sun.module * sum(teeth) / (2 * cos(helix))
+    return ToothFit(teeth, sun.module, helix, pressure, (0.0, 0.0), distance, sun.face_width or 0.0)
 
 
 def _wheel(fit: ToothFit, k: int) -> Wheel:
-    """The first or the second wheel, which rolls on its reference circle."""
+    """Return the first or the second wheel, which rolls on its reference circle."""
     radius, root, tip = (abs(pair[k]) for pair in (fit.radii, fit.roots, fit.tips))
     return Wheel(radius, root, tip, fit.module, fit.face_width)
 
 
-def _loads(train: Train, contacts: Mapping[str, Contact]) -> Iterator[str]:
-    """Sentences on torques that no teeth bear, of the worst point of each mesh."""
+def _load_cautions(train: Train, contacts: Mapping[str, Contact]) -> Iterator[str]:
+    """Yield sentences on torques that no teeth bear, at the worst operating point of each mesh."""
     worst: dict[str, tuple[float, str]] = {}
     for point in train.operation:
         for name, force in mesh_forces(train, contacts, point).items():
             worst[name] = max(worst.get(name, (0.0, "")), (force, point.label))
     wheels = {pair.name: wheel_of(pair, 0) for pair in train.pairs}
     for stage in train.stages:
-        wheels[stage.name] = _wheel(_fit(stage, (stage.teeth.sun, stage.teeth.planet)), 0)
+        wheels[stage.name] = _wheel(_stage_fit(stage, (stage.teeth.sun, stage.teeth.planet)), 0)
     for name, (force, label) in worst.items():
         wheel = wheels[name]
         if wheel is None:
@@ -228,10 +237,10 @@ def _loads(train: Train, contacts: Mapping[str, Contact]) -> Iterator[str]:
         face = wheel.face_width or 2 * wheel.radius
         stress = force / (face * wheel.module)
         if stress > STRONG:
-            wide = "" if wheel.face_width else ", were it as wide as its pitch circle"
+            width_note = "" if wheel.face_width else ", were it as wide as its pitch circle"
             yield (
                 f"{name}: {label} brings {force / 1e3:.4g} kN to its teeth, {1e-6 * stress:.0f} MPa "
-                f"of face width times module{wide}, and hardened steel breaks at some "
+                f"of face width times module{width_note}, and hardened steel breaks at some "
                 f"{1e-6 * STRONG:.0f} MPa; check the torque and its unit, face width and module"
             )
 

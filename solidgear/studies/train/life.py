@@ -1,4 +1,4 @@
-"""Lives of the bearings of a train over its operating points."""
+"""Lives of the bearings of a train over the operating points."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from solidgear.studies.train.operation import Operating, OperatingState
 
 @dataclass(frozen=True)
 class TrainBearingLife:
-    """Lives of one bearing of a train."""
+    """Lives of a bearing of a train."""
 
     end: str  #: shaft and bearing, such as ``pinion.A``
     points: tuple[OperatingPoint, ...]
@@ -26,54 +26,48 @@ class TrainBearingLife:
 
     @cached_property
     def kind(self) -> str:
-        """The life that duty adds up: the modified one where every loaded point has it."""
-        known = [one.life for one in self.lives if math.isfinite(one.life.reference)]
-        modified = known and all(one.modified is not None for one in known)
+        """Kind of life that duty adds up: the modified one where every loaded point has it."""
+        finite = [life.life for life in self.lives if math.isfinite(life.life.reference)]
+        modified = finite and all(life.modified is not None for life in finite)
         return "modified" if modified else "reference"
 
     @property
     def duty(self) -> DutyLife | None:
         """Life over the duty table; None where the points give neither speed nor shares."""
-        told = [p.share if p.share is not None else p.hours for p in self.points]
-        alone = len(told) == 1
-        if (None in told and not alone) or not all(one.speed for one in self.lives):
+        weights = [p.share if p.share is not None else p.hours for p in self.points]
+        single = len(weights) == 1
+        if (None in weights and not single) or not all(life.speed for life in self.lives):
             return None
         return duty_life(
             [
                 DutyPoint(
-                    self._of(one), one.speed, 1.0 if alone else p.share, None if alone else p.hours
+                    self._life_at_point(life),
+                    life.speed,
+                    1.0 if single else p.share,
+                    None if single else p.hours,
                 )
-                for p, one in zip(self.points, self.lives)
+                for p, life in zip(self.points, self.lives)
             ]
         )
 
-    def _of(self, one: BearingLife) -> float:
-        own = one.life
-        return own.modified.life if self.kind == "modified" and own.modified else own.reference
+    def _life_at_point(self, bearing_life: BearingLife) -> float:
+        life = bearing_life.life
+        return life.modified.life if self.kind == "modified" and life.modified else life.reference
 
 
 def train_lives(train: Train) -> list[TrainBearingLife]:
-    """Life of every catalogue bearing of a train at all its operating points.
-
-    Parameters
-    ----------
-    train : Train
-        With operating points.
-
-    Raises
-    ------
-    SolidgearError
-        A train without operating points or catalogue bearings, or one that finds no equilibrium.
+    """Return the life of every catalogue bearing of a train at all operating points; refused
+    without points or catalogue bearings.
     """
     if not train.operation:
         raise SolidgearError(
             f"{train.name} has no operating point; write [operation] with a torque in its file"
         )
-    scenes = {side: own.scene for side, own in train.shafts.items()}
-    told, choices = left_open(scenes.values())
+    scenes = {side: shaft.scene for side, shaft in train.shafts.items()}
+    open_data, choices = left_open(scenes.values())
     shop = Workshop(train)
-    settled = [_settled(Operating(shop, choice=choice), train) for choice in (AS_STATED, *choices)]
-    found = []
+    settled = [_states(Operating(shop, choice=choice), train) for choice in (AS_STATED, *choices)]
+    lives_by_bearing = []
     for side, scene in scenes.items():
         for bearing in scene.bearings:
             if bearing.catalogue is None:
@@ -81,17 +75,17 @@ def train_lives(train: Train) -> list[TrainBearingLife]:
             end = f"{side}.{bearing.name}"
             lives = []
             for k, point in enumerate(train.operation):
-                places = [(s[k].made[end], s[k].equilibrium.relative[end]) for s in settled]
+                places = [(s[k].bearings[end], s[k].equilibrium.relative[end]) for s in settled]
                 speed = point.speed_of(side, train.turns)
-                lives.append(life_of(bearing, scene.lubrication, told, speed, places))
-            found.append(TrainBearingLife(end, train.operation, tuple(lives)))
-    if not found:
+                lives.append(life_of(bearing, scene.lubrication, open_data, speed, places))
+            lives_by_bearing.append(TrainBearingLife(end, train.operation, tuple(lives)))
+    if not lives_by_bearing:
         raise SolidgearError(f"{train.name}: no bearing is described by catalogue data")
-    return found
+    return lives_by_bearing
 
 
-def _settled(operating: Operating, train: Train) -> list[OperatingState]:
-    """The train at all its points, each begun at the one before."""
+def _states(operating: Operating, train: Train) -> list[OperatingState]:
+    """Return the train at all points, each begun at the one before."""
     states: list[OperatingState] = []
     for point in train.operation:
         states.append(operating.at(point, states[-1] if states else None))

@@ -1,4 +1,4 @@
-r"""Harmonics n >= 2 at a local mesh point: what averaged ports cannot drive.
+r"""Harmonics n >= 2 at a local mesh point: modes that averaged ports cannot drive.
 
 The teeth push on a patch, one tooth pitch of the circumference over the seat of the lumped point,
 and not on the mean of a ring.  The part of that push which has n = 0 and 1 waves around is what the
@@ -7,11 +7,11 @@ stretches by
 
     dte = h_p q_p + n u_p - h_g q_g - n u_g,
 
-u the mean motion of each patch by its harmonics.  With none of them, and on a rigid shaft, that is
+u the mean motion of each patch by the harmonics.  With none of them, and on a rigid shaft, that is
 the present model.
 
 A mesh stiffness that was found on whole elastic gears holds the static give of these harmonics
-already; what they add to the compliance is told, so that it can be taken out.
+already; the compliance that they add is printed, so that it can be taken out.
 """
 
 from __future__ import annotations
@@ -46,18 +46,13 @@ FEW = 8
 
 
 def mesh_port(pair: Pair) -> str:
-    """Port of a part at the mesh point of one of its gears."""
+    """Return the name of a part's port at the mesh point of a gear."""
     return TEETH + pair.label
 
 
 def patch_of(pair: Pair, side: str, scene: Scene, point: np.ndarray) -> Patch:
-    """Patch of a shaft that teeth push on: one tooth pitch around the mesh point, over the seat of
-    the gear's lumped point.
-
-    Parameters
-    ----------
-    point : (3,) ndarray
-        Mesh point from the lumped point, in the axes of the scene, m.
+    """Return the patch of a shaft that teeth push on: one tooth pitch around the mesh point (3,),
+    m, from the lumped point in the axes of the scene, over the seat of the gear.
     """
     first = side == pair.shafts[0]
     seat = next(s for s in scene.stations if s.name == pair.ports[not first])
@@ -72,19 +67,8 @@ def local_teeth(
     body: Body,
     meshes: Sequence[tuple[Pair, np.ndarray]],
 ) -> Superelement:
-    """A shaft with the harmonics that its teeth drive, and the port of each mesh.
-
-    Parameters
-    ----------
-    scene : Scene
-        Of the shaft.
-    meshes : sequence of (Pair, (3,) ndarray)
-        Its meshes that ask for harmonics, and their points as of :func:`patch_of`.
-
-    Raises
-    ------
-    SolidgearError
-        For a seat that is tied rigidly, which has no waves.
+    """Add to a shaft the harmonics that the teeth drive, and the port of each mesh; a seat that is
+    tied rigidly has no waves and is refused.
     """
     assert isinstance(part, Superelement)
     rigid = [s.name for s in scene.stations if s.attachment == "rigid"]
@@ -94,65 +78,67 @@ def local_teeth(
             "and holds all waves around it; use attachment average or section"
         )
     seats: dict[tuple[str, int], np.ndarray] = {}
-    made = []
+    mesh_ports = []
     for pair, point in meshes:
         patch, port = patch_of(pair, side, scene, point), pair.ports[side != pair.shafts[0]]
         motion = PatchMotion(scene, body, patch)
         rows = {n: motion.rows(n) for n in sorted(pair.mesh.local_harmonics)}
-        seats |= {(port, n): own for n, own in rows.items()}
-        made.append((port, point, patch.axes, rows, mesh_port(pair)))
+        seats |= {(port, n): seat_rows for n, seat_rows in rows.items()}
+        mesh_ports.append((port, point, patch.axes, rows, mesh_port(pair)))
     # gears of one shaft squeeze it together: fields of all seats that drive a harmonic
-    every = {n for _, n in seats}
-    fields = {n: np.vstack([own for (_, m), own in seats.items() if m == n]) for n in every}
-    for port, point, axes, rows, name in made:
+    waves = {n for _, n in seats}
+    fields = {
+        n: np.vstack([seat_rows for (_, m), seat_rows in seats.items() if m == n]) for n in waves
+    }
+    for port, point, axes, rows, name in mesh_ports:
         part = with_waves(part, body, port, point, axes, rows, name, fields=fields)
     return part
 
 
-def reduced(part: Part) -> Superelement | None:
-    """The superelement that a part is or has been placed from; None for another kind."""
+def superelement_of(part: Part) -> Superelement | None:
+    """Return the superelement that a part is, or is placed from; None for another kind."""
     inner = part.part if isinstance(part, Placed) else part
     return inner if isinstance(inner, Superelement) else None
 
 
 def waves_of(part: Part) -> dict[int, np.ndarray]:
-    """Coordinates of the harmonics n >= 2 of a part, by n."""
-    inner = reduced(part)
+    """Return the coordinates of the harmonics n >= 2 of a part, by n."""
+    inner = superelement_of(part)
     return {} if inner is None else own_waves(inner)
 
 
 def local_give(workshop: Workshop, system: System, pair: Pair) -> dict[str, float]:
-    """Compliance of the harmonics at the point of a mesh under a constant force of its teeth, m/N, by
-    shaft that has any.
+    """Return the compliance of the harmonics at the point of a mesh under a constant force of its
+    teeth, m/N, by shaft that has any.
     """
-    give = {}
-    ends = workshop.teeth(pair, system.parts)
+    compliance = {}
+    ends = workshop.mesh_ends(pair, system.parts)
     for side, (_, vector) in zip(pair.shafts, ends):
-        part = reduced(system.parts[side])
+        part = superelement_of(system.parts[side])
         if part is not None and mesh_port(pair) in part.ports:
-            give[side] = local_compliance(part, mesh_port(pair), vector.normal)
-    return give
+            compliance[side] = local_compliance(part, mesh_port(pair), vector.normal)
+    return compliance
 
 
 def local_lines(workshop: Workshop, system: System) -> tuple[str, ...]:
-    """Share of the harmonics at every mesh point, in words; empty without any."""
+    """Return the share of the harmonics at every mesh point in words; empty without any."""
     pairs = [pair for pair in workshop.train.pairs if pair.mesh.local_harmonics]
-    return tuple(_told(workshop, system, pair) for pair in pairs)
+    return tuple(_local_line(workshop, system, pair) for pair in pairs)
 
 
-def _told(workshop: Workshop, system: System, pair: Pair) -> str:
-    give, of = local_give(workshop, system, pair), pair.label
+def _local_line(workshop: Workshop, system: System, pair: Pair) -> str:
+    compliance, suffix = local_give(workshop, system, pair), pair.label
     listed = ", ".join(map(str, sorted(pair.mesh.local_harmonics)))
-    if not give:
+    if not compliance:
         return (
-            f"Local harmonics {listed} are asked for{' of' if of else ''}{of}, and neither shaft is a "
+            f"Local harmonics {listed} are asked for{' of' if suffix else ''}{suffix}, and neither shaft is a "
             "harmonic solid: they are left out."
         )
-    share = 100 * sum(give.values()) * workshop.contacts[pair.name].stiffness
-    told = ", ".join(f"{side} {value:.2e} m/N" for side, value in give.items())
+    share = 100 * sum(compliance.values()) * workshop.contacts[pair.name].stiffness
+    values = ", ".join(f"{side} {value:.2e} m/N" for side, value in compliance.items())
     return (
-        f"Local mesh point{of}: harmonics n = {listed} on one tooth pitch of the seat; they give way "
-        f"by {told}, {share:.2g} % of the compliance of the mesh, which a stiffness found on whole "
+        f"Local mesh point{suffix}: harmonics n = {listed} on one tooth pitch of the seat; they give way "
+        f"by {values}, {share:.2g} % of the compliance of the mesh, which a stiffness found on whole "
         "elastic gears holds already."
     )
 
@@ -160,13 +146,8 @@ def _told(workshop: Workshop, system: System, pair: Pair) -> str:
 def undriven(
     body: Body, highest_hz: float, driven: tuple[int, ...] = ()
 ) -> dict[int, tuple[float, ...]]:
-    """Free modes with two and more nodal diameters that no port of a harmonic solid drives, Hz, by
-    their number of waves.
-
-    Parameters
-    ----------
-    driven : tuple of int
-        Harmonics that are driven, and left out here.
+    """Return the free modes with two and more nodal diameters that no port of a harmonic solid
+    drives, Hz, by their number of waves; driven harmonics are left out.
     """
     if body.further is None:
         return {}
@@ -174,15 +155,15 @@ def undriven(
     for n in _reaching(body.further, highest_hz):
         if n in driven:
             continue
-        found = modes(body.family(n), (), n=2 * FEW).frequency_hz
-        low = tuple(float(hz) for hz in found if hz <= highest_hz)
+        frequencies = modes(body.family(n), (), n=2 * FEW).frequency_hz
+        low = tuple(float(hz) for hz in frequencies if hz <= highest_hz)
         if low:
             out[n] = low
     return out
 
 
 def _reaching(further, highest_hz: float):
-    """Numbers of waves whose first mode may lie below a frequency."""
+    """Yield numbers of waves whose first mode may lie below a frequency."""
     light: Callable[[int], float] = further.light
     for n in range(2, MOST_WAVES + 1):
         if further.bound(n) > highest_hz:

@@ -1,4 +1,4 @@
-"""The largest dynamic mesh force of a train in a sentence, and the speeds at which it is met."""
+"""The largest dynamic mesh force of a train in a sentence, and the speeds at which it occurs."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from solidgear.scene import Scene
 from solidgear.scene.train import PerTurn, Train
 from solidgear.studies.train.modes import TrainMode
 from solidgear.studies.train.response import OrderCurve, TrainResponse, figures
-from solidgear.studies.train.speeds import fastest
+from solidgear.studies.train.speeds import highest_speed
 
 #: relative, of frequencies that are the same
 SAME = 1e-9
@@ -34,7 +34,7 @@ class Top:
 
 @dataclass(frozen=True)
 class Loudest:
-    """The largest dynamic mesh force of all orders, beside the speeds that the files give."""
+    """The largest dynamic mesh force of all orders, compared with the speeds that the files give."""
 
     top: Top  #: the largest that teeth meet at the speeds given, or of the range where none is
     peak: Top | None  #: the largest peak there, where the curve ends higher
@@ -54,29 +54,31 @@ class Loudest:
     what: str = "mesh force"  #: in words, which of several meshes has it
 
     def as_dict(self) -> dict[str, Any]:
-        """Plain data that JSON can hold."""
+        """Return plain data for JSON."""
         return asdict(self) | {"sentences": self.sentences()}
 
     @property
     def limit_hz(self) -> float:
-        """At which the teeth pass at the highest speed given; none where nothing turns there."""
+        """Frequency at which the teeth pass at the highest speed of the files, Hz; zero where
+        nothing turns there.
+        """
         return self.rpm * self.teeth / 60 if self.rpm else 0.0
 
     def sentences(self) -> list[str]:
-        """The largest first, then what speeds say of the range."""
+        """Return the largest force first, then the reach of the speeds over the range."""
         limit = self.limit_hz
         upto = f" up to {self.asked_hz:g} Hz"
         if limit:
             upto = f" up to {self.rpm:.0f} rpm of the {self.teeth.of} ({self.said_by})"
-        sure = HEIGHT
+        sureness = HEIGHT
         if self.top.mode:
             bar = "its model has no bar"
             if self.bar is not None:
                 bar = f"within {f'{100 * self.bar:.1g}' if self.bar >= 1e-4 else '0.01'} %"
-            sure = f"{bar} in frequency; {HEIGHT}"
-        lines = [f"Largest dynamic {self.what}{upto}: {self._told(self.top)} ({sure})."]
+            sureness = f"{bar} in frequency; {HEIGHT}"
+        lines = [f"Largest dynamic {self.what}{upto}: {self._top_text(self.top)} ({sureness})."]
         if self.peak is not None:
-            lines.append(f"The largest peak up to there: {self._told(self.peak)}.")
+            lines.append(f"The largest peak up to there: {self._top_text(self.peak)}.")
         lines += self.parting
         if self.rpm == 0:
             lines.append(
@@ -88,7 +90,7 @@ class Loudest:
         if self.beyond is not None:
             lines.append(
                 f"A larger one cannot be reached, for at {self.rpm:.0f} rpm teeth pass at "
-                f"{limit:.0f} Hz: {self._told(self.beyond)}."
+                f"{limit:.0f} Hz: {self._top_text(self.beyond)}."
             )
         if self.asked_hz < 0.999 * self.orders * limit:
             further = f", their order {self.orders} at {self.orders * limit:.0f} Hz"
@@ -99,16 +101,16 @@ class Loudest:
             )
         return lines
 
-    def _told(self, top: Top) -> str:
+    def _top_text(self, top: Top) -> str:
         speed = f", order {top.order} of the teeth" if top.order > 1 else ""
         if self.teeth:
             rpm = 60 * top.frequency_hz / (top.order * self.teeth)
             speed += f", {self.teeth.of} at {rpm:.0f} rpm"
-        where = top.mode or self._end(top)
-        return f"{figures(top.force)} N at {figures(top.frequency_hz)} Hz{speed}, {where}"
+        place = top.mode or self._end(top)
+        return f"{figures(top.force)} N at {figures(top.frequency_hz)} Hz{speed}, {place}"
 
     def _end(self, top: Top) -> str:
-        """Words on the place where a part of a curve ends, or rises without a peak."""
+        """Return words on the place where a part of a curve ends, or rises without a peak."""
         ends = {
             "the highest speed": top.order * self.limit_hz,
             "the end of the range": self.asked_hz,
@@ -129,29 +131,24 @@ def loudest(
     meshes: bool = True,
     mesh: str | None = None,
 ) -> Loudest:
-    """The largest dynamic mesh force of a response.
-
-    Parameters
-    ----------
-    modes : sequence of TrainMode
-        Of the same models.
-    scenes : mapping of str to Scene
-        Of all shafts.
-    meshes : bool, optional
-        False where a force on a port drives the train instead of the teeth.
-    mesh : str, optional
-        Whose error drives it; the first by default.
+    """Return the largest dynamic mesh force of a response, with modes of the same models; `meshes`
+    is False where a force on a port drives the train instead of the error of a mesh, by default
+    the first.
     """
-    speed = fastest(train, scenes) if meshes else None
+    speed = highest_speed(train, scenes) if meshes else None
     pair = train.named_mesh(mesh)
     teeth = train.per_turn(pair)
     limit = speed.rpm * teeth / 60 * (1 + SAME) if speed is not None and speed.rpm else inf
     hz = response.frequency_hz
     reached = [top for c in response.orders for top in _top(c, hz, hz <= c.order * limit)]
-    further = [top for c in response.orders for top in _top(c, hz, hz > c.order * limit)]
+    unreached = [top for c in response.orders for top in _top(c, hz, hz > c.order * limit)]
     # a range that begins beyond the speeds has its first point alone
-    top = max(reached or further, key=_force)
-    beyond = max((one for one in further if one.force > top.force), key=_force, default=None)
+    top = max(reached or unreached, key=_force)
+    larger = max(
+        (candidate for candidate in unreached if candidate.force > top.force),
+        key=_force,
+        default=None,
+    )
     peaks = (
         Top(p.frequency_hz, p.force, c.order, p.mode)
         for c in response.orders
@@ -160,18 +157,18 @@ def loudest(
     )
     mode = next((m for m in modes if m.name == top.mode), None)
     return Loudest(
-        top,
-        None if top.mode else max(peaks, key=_force, default=None),
-        beyond if reached else None,
-        teeth if meshes else PerTurn(0.0),
-        None if mode is None or mode.mesh is None else mode.mesh + mode.bound,
-        None if speed is None else speed.rpm,
-        "" if speed is None else speed.said_by,
-        float(hz[0]),
-        float(hz[-1]),
-        len(response.orders),
-        response.parting,
-        f"force of the {pair.name}" if pair.label else "mesh force",
+        top=top,
+        peak=None if top.mode else max(peaks, key=_force, default=None),
+        beyond=larger if reached else None,
+        teeth=teeth if meshes else PerTurn(0.0),
+        bar=None if mode is None or mode.mesh is None else mode.mesh + mode.bound,
+        rpm=None if speed is None else speed.rpm,
+        said_by="" if speed is None else speed.source,
+        begin_hz=float(hz[0]),
+        asked_hz=float(hz[-1]),
+        orders=len(response.orders),
+        parting=response.parting,
+        what=f"force of the {pair.name}" if pair.label else "mesh force",
     )
 
 
@@ -179,9 +176,9 @@ def _force(top: Top) -> float:
     return top.force
 
 
-def _top(curve: OrderCurve, frequency_hz: np.ndarray, within: np.ndarray) -> Iterator[Top]:
-    """The largest force of a part of a curve; none where it has no point."""
-    places = np.flatnonzero(within)
+def _top(curve: OrderCurve, frequency_hz: np.ndarray, mask: np.ndarray) -> Iterator[Top]:
+    """Yield the largest force of a part of a curve; none where it has no point."""
+    places = np.flatnonzero(mask)
     if not len(places):
         return
     k = int(places[curve.force[places].argmax()])

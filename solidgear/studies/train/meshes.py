@@ -1,7 +1,7 @@
 """Error bars that the meshes of harmonic shafts leave in the frequencies of a train.
 
 The bound is that of one shaft (:mod:`solidgear.bounds.harmonic`): a mode of the train moves
-every shaft, what the other parts do to it are forces on its ports, and the local problems of all
+every shaft, the other parts act as forces on the ports, and the local problems of all
 shafts add up.
 """
 
@@ -31,24 +31,11 @@ RESOLVED = 1e-3
 
 @pinned
 def mesh_bars(
-    workshop: Workshop, system: System, rungs: Mapping[str, str], n: int
+    workshop: Workshop, system: System, models: Mapping[str, str], n: int
 ) -> np.ndarray | None:
-    """Largest relative error that meshes of harmonic shafts leave in frequencies of a train.
-
-    Parameters
-    ----------
-    system : System
-        Of its shafts.
-    rungs : mapping of str to str
-        Model of each shaft, in the sequence of the file.
-    n : int
-        Elastic modes.
-
-    Returns
-    -------
-    (n,) ndarray or None
-        The exact frequency lies below by no more than this, where beams are what they are. None
-        where no shaft is a harmonic solid, and where teeth drive families of two waves and more.
+    """Return the (n,) largest relative errors that meshes of harmonic shafts leave in the first
+    elastic frequencies of a train, which lie below by no more than that where beams are exact;
+    None without a harmonic solid, and where teeth drive families of two waves and more.
 
     Examples
     --------
@@ -59,42 +46,42 @@ def mesh_bars(
     >>> bool(mesh_bars(shop, shop.system(*both.values()), both, 4).max() < 1e-2)
     True
     """
-    sides = [side for side, rung in rungs.items() if rung == JUDGE]
+    sides = [side for side, model in models.items() if model == JUDGE]
     if not sides:
         return None
-    known = workshop.bars.get(tuple(rungs.values()))
-    if known is not None and len(known) >= n:
-        return known[:n]
-    found = system.modes(n + ABOVE)
-    resolved = int((found.error_bound[found.rigid :] < RESOLVED).sum())
-    elastic = slice(found.rigid, found.rigid + max(n + 1, resolved))
-    shapes = found.shapes[:, elastic]
-    value = (2 * np.pi * found.frequency_hz[elastic]) ** 2
-    two, one = np.zeros(len(value)), np.zeros(len(value))
+    stored = workshop.bars.get(tuple(models.values()))
+    if stored is not None and len(stored) >= n:
+        return stored[:n]
+    modes = system.modes(n + ABOVE)
+    resolved = int((modes.error_bound[modes.rigid :] < RESOLVED).sum())
+    elastic = slice(modes.rigid, modes.rigid + max(n + 1, resolved))
+    shapes = modes.shapes[:, elastic]
+    value = (2 * np.pi * modes.frequency_hz[elastic]) ** 2
+    double_energy, single_energy = np.zeros(len(value)), np.zeros(len(value))
     for side in sides:
         fields = system.expand(side, shapes)
         if max(fields) >= FURTHER:
             return None
-        body = workshop.shaft(side, JUDGE).body
-        own = vibration_energies(coned(workshop.scenes[side]), body, fields, value)
-        two, one = two + own[0], one + own[1]
-    energy = LOCAL * np.array([with_tail(a, b) for a, b in zip(two, one)])
+        body = workshop.shaft_model(side, JUDGE).body
+        energies = vibration_energies(coned(workshop.scenes[side]), body, fields, value)
+        double_energy, single_energy = double_energy + energies[0], single_energy + energies[1]
+    energy = LOCAL * np.array([with_tail(a, b) for a, b in zip(double_energy, single_energy)])
     least = np.maximum(lower_ends(value, energy, value[-1]), 0.0)
     bars = (1 - np.sqrt(least / value))[:n]
-    workshop.bars[tuple(rungs.values())] = bars
+    workshop.bars[tuple(models.values())] = bars
     return bars
 
 
 def mesh_limit(workshop: Workshop, side: str, part: Part) -> float:
-    """Frequency up to which the mesh under a part follows shear waves, Hz; infinite for what has
-    no cells.
+    """Return the frequency up to which the mesh under a part follows shear waves, Hz; infinite
+    without cells.
 
     A quarter of the order in radians a cell: at 0.6 of it frequencies of the pinion, the ring
     gear and a stepped shaft were off by 0.3 % at most at order 4, at all of it by some 2 % at
     order 2.
     """
-    inner = part.part if isinstance(part, Placed) else part
-    model = workshop._made.get((side, getattr(inner, "fidelity", "")))
+    reduced = part.part if isinstance(part, Placed) else part
+    model = workshop._models.get((side, getattr(reduced, "fidelity", "")))
     cell = model.body.mesh.get("representative_size") if model is not None else None
     if model is None or not cell:
         return np.inf

@@ -1,8 +1,8 @@
 r"""Misalignment of a gear pair: how both gears lie to each other once shafts and bearings give.
 
-Both gears are taken as rigid where they are attached to their shafts; what one moves against the
-other, apart from turning about its own axis, is four numbers.  They are linear in the motions of
-the two lumped points, and told as rows on the coordinates of a system, so that the same rows serve
+Both gears are taken as rigid where they are attached to their shafts; the motion of one against the
+other, without rotation about the axis, is four numbers.  They are linear in the motions of
+the two lumped points, and given as rows on the coordinates of a system, so that the same rows serve
 every model, every load and every error bar.
 
 Bevel pairs, with unit vectors ``e_p``, ``e_g`` along the axes from the pitch apex to the back of
@@ -39,13 +39,13 @@ from solidgear.system.system import System
 
 #: axes whose angle has a sine below this are parallel
 PARALLEL = 1e-6
-#: names of what is told of each kind of pair
+#: names of the numbers of each kind of pair
 BEVEL, PARALLELS = ("E", "P", "G", "shaft angle"), ("in plane", "across", "f_sh")
 
 
 @dataclass(frozen=True, eq=False)
 class Measure:
-    """One number that tells how two gears lie to each other."""
+    """A number that describes how two gears lie to each other."""
 
     name: str
     unit: str  #: ``m moved`` or ``rad moved``
@@ -56,7 +56,7 @@ class Measure:
 
 
 def measured_names(train: Train) -> tuple[str, ...]:
-    """Names of the numbers that :func:`misalignment` tells of a train.
+    """Return the names of the numbers of :func:`misalignment` for a train.
 
     Examples
     --------
@@ -74,18 +74,9 @@ def _names(pair: Pair) -> tuple[str, ...]:
 
 
 def misalignment(workshop: Workshop, system: System) -> list[Measure]:
-    """Misalignment of the gears of a train, mesh by mesh.
-
-    Parameters
-    ----------
-    system : System
-        Of its shafts.
-
-    Returns
-    -------
-    list of Measure
-        Of bevel pairs E, P, G and the shaft angle, of parallel ones the slopes in and across the
-        plane of action and, where the face width is known, f_sh.
+    """Return the misalignment of the gears of a train, mesh by mesh: of bevel pairs E, P, G and the
+    shaft angle, of parallel ones the slopes in and across the plane of action and, with a known
+    face width, f_sh.
 
     Examples
     --------
@@ -97,28 +88,31 @@ def misalignment(workshop: Workshop, system: System) -> list[Measure]:
     out = []
     for pair in workshop.train.pairs:
         ports = [system.port(f"{side}.{port}") for side, port in zip(pair.shafts, pair.ports)]
-        along = [_from_apex(own, port) for own, port in zip(pair.members.values(), ports)]
+        along = [_from_apex(member, port) for member, port in zip(pair.members.values(), ports)]
         if np.linalg.norm(np.cross(along[0], along[1])) < PARALLEL:
-            found = _parallel(workshop, pair, ports)
+            measures = _parallel(workshop, pair, ports)
         else:
-            found = _bevel(ports, along)
-        out += [replace(one, name=f"{one.name}{pair.label}", mesh=pair.label) for one in found]
+            measures = _bevel(ports, along)
+        out += [
+            replace(measure, name=f"{measure.name}{pair.label}", mesh=pair.label)
+            for measure in measures
+        ]
     return out
 
 
 def _from_apex(member: Member, port: PortMotion) -> np.ndarray:
-    """Direction of a gear's axis away from its pitch apex, in the axes of the system."""
+    """Return the direction of a gear's axis away from its pitch apex, in the axes of the system."""
     sign = 1.0 if member.apex == "start" else -1.0
     return sign * port.axes[:, 1]
 
 
-def _seen(port: PortMotion, point: np.ndarray) -> np.ndarray:
-    """(6, N) motion of a port carried rigidly to a point, in the axes of the system."""
+def _carried_motion(port: PortMotion, point: np.ndarray) -> np.ndarray:
+    """Return the (6, N) motion of a port carried rigidly to a point, in the axes of the system."""
     return port.seen_from(PortMotion(port.rows, point, np.eye(3)))
 
 
 def _nearest(ports: list[PortMotion], along: list[np.ndarray]) -> list[np.ndarray]:
-    """Points of both axes that are nearest to each other: one where they cross."""
+    """Return the points of both axes that are nearest to each other: one point where they cross."""
     pinion, gear = ports
     steps = np.column_stack([along[0], -along[1]])
     t, *_ = np.linalg.lstsq(steps, gear.point - pinion.point, rcond=None)
@@ -126,8 +120,10 @@ def _nearest(ports: list[PortMotion], along: list[np.ndarray]) -> list[np.ndarra
 
 
 def _bevel(ports: list[PortMotion], along: list[np.ndarray]) -> list[Measure]:
-    here, there = (_seen(port, at) for port, at in zip(ports, _nearest(ports, along)))
-    moved, turned = here[:3] - there[:3], here[3:] - there[3:]
+    pinion, gear = (
+        _carried_motion(port, point) for port, point in zip(ports, _nearest(ports, along))
+    )
+    moved, turned = pinion[:3] - gear[:3], pinion[3:] - gear[3:]
     across = np.cross(along[0], along[1])
     across = across / np.linalg.norm(across)
     axial = np.linalg.pinv(np.column_stack([along[0], -along[1]])) @ moved
@@ -144,20 +140,20 @@ def _parallel(workshop: Workshop, pair: Pair, ports: list[PortMotion]) -> list[M
     axis = ports[0].axes[:, 1]
     normal = ports[0].axes @ (workshop.contacts[pair.name].pinion.normal * [1.0, 0.0, 1.0])
     normal = normal / np.linalg.norm(normal)
-    here, there = (_seen(port, ports[0].point) for port in ports)
-    slope = -cross_matrix(axis) @ (here[3:] - there[3:])
+    pinion, gear = (_carried_motion(port, ports[0].point) for port in ports)
+    slope = -cross_matrix(axis) @ (pinion[3:] - gear[3:])
     in_plane, across, shear = PARALLELS
     out = [
         Measure(in_plane, "rad moved", "slope of the axes in the plane of action", normal @ slope),
         Measure(across, "rad moved", "slope across it", np.cross(axis, normal) @ slope),
     ]
-    known = [width for width in _widths(pair) if width is not None]
-    if known:
+    widths = [width for width in _widths(pair) if width is not None]
+    if widths:
         meaning = "equivalent misalignment over the face, in the plane of action"
-        row = min(known) * out[0].row
-        out.append(Measure(shear, "m moved", meaning, row, face=min(known)))
+        row = min(widths) * out[0].row
+        out.append(Measure(shear, "m moved", meaning, row, face=min(widths)))
     return out
 
 
 def _widths(pair: Pair) -> list[float | None]:
-    return [own.face_width for own in pair.members.values()]
+    return [member.face_width for member in pair.members.values()]

@@ -1,4 +1,4 @@
-"""Each shaft of a train by any model, and the system that they make."""
+"""Models of the shafts of a train, and the system that they make."""
 
 from __future__ import annotations
 
@@ -22,10 +22,16 @@ from solidgear.scene.train import Train
 from solidgear.scene.train_housing import HOUSING
 from solidgear.studies.train.contact import Contact
 from solidgear.studies.train.gear_bodies import gear_cautions
-from solidgear.studies.train.housing import cautions_of, losses_of, mounts_of, part_of, standing_in
+from solidgear.studies.train.housing import (
+    housing_cautions,
+    housing_losses,
+    housing_part,
+    links_on_housing,
+    mount_links,
+)
 from solidgear.studies.train.layout import contacts, places
 from solidgear.studies.train.local import local_teeth, mesh_port
-from solidgear.studies.train.shaft import JUDGE, LUMPED, RIGID, ShaftModel, checked_rung, lumped
+from solidgear.studies.train.shaft import JUDGE, LUMPED, RIGID, ShaftModel, checked_model, lumped
 from solidgear.studies.train.space import overlaps
 from solidgear.studies.train.stages import StageAtWork, stages_at_work
 from solidgear.system.gear_mesh import MeshVector
@@ -34,7 +40,7 @@ from solidgear.system.parts import Inertia, Part, Placed, RigidBody
 from solidgear.system.system import System
 
 REDUCTIONS = {"rubin": rubin, "craig_bampton": craig_bampton}
-#: free modes of a shaft that are kept: with residuals, enough for 1e-5 to 4 kHz; the bound tells
+#: free modes of a shaft that are kept: with residuals, enough for 1e-5 to 4 kHz, as the bound shows
 KEPT = 24
 #: a mesh for systems: frequencies move by some 1e-5 against order 5
 MESH: dict[str, dict] = {JUDGE: {"order": 4}}
@@ -42,7 +48,8 @@ MESH: dict[str, dict] = {JUDGE: {"order": 4}}
 
 @dataclass(eq=False)
 class Workshop:
-    """Models of the shafts of a train, each made once.
+    """Models of the shafts of a train, each built once, and all that studies read of the train
+    with them: scenes, mesh contacts, places, planetary stages, on the flanks that carry.
 
     Examples
     --------
@@ -64,13 +71,13 @@ class Workshop:
             raise SolidgearError(
                 f"reduction {show(self.reduction, 30)} is unknown; use {' or '.join(REDUCTIONS)}"
             )
-        self._made: dict[tuple[str, str], ShaftModel] = {}
+        self._models: dict[tuple[str, str], ShaftModel] = {}
         self._local_seconds = 0.0
-        #: what meshes leave in the first frequencies, by the models of all shafts
+        #: error bars of the first frequencies by the shafts' meshes, by the models of all shafts
         self.bars: dict[tuple[str, ...], np.ndarray] = {}
-        self._take_in(self.train)
+        self._read_train(self.train)
 
-    def _take_in(self, train: Train) -> None:
+    def _read_train(self, train: Train) -> None:
         self.train = train
         self.scenes: dict[str, Scene] = {side: train.shaft(side) for side in train.shafts}
         self.contacts: dict[str, Contact] = contacts(train)
@@ -83,22 +90,12 @@ class Workshop:
 
     @property
     def contact(self) -> Contact:
-        """Contact of the only mesh.
-
-        Raises
-        ------
-        SolidgearError
-            For a train of several.
-        """
+        """Contact of the only mesh; refused for a train with several."""
         return self.contacts[self.train.only().name]
 
-    def mix(self, models: Sequence[str]) -> dict[str, str]:
-        """Models by shaft, from one each in the sequence of the file, or one for all.
-
-        Raises
-        ------
-        SolidgearError
-            For another number of them.
+    def models_by_shaft(self, models: Sequence[str]) -> dict[str, str]:
+        """Return the model of every shaft, from a model for each in the sequence of the file, or
+        one for all.
         """
         sides = [*self.train.shafts]
         if len(models) not in (1, len(sides)):
@@ -106,72 +103,59 @@ class Workshop:
                 f"{len(models)} models ({listed(models)}) for the {len(sides)} shafts "
                 f"{listed(sides)}; give one for each, or one for all"
             )
-        each = models if len(models) == len(sides) else [*models] * len(sides)
-        return dict(zip(sides, each))
+        shaft_models = models if len(models) == len(sides) else [*models] * len(sides)
+        return dict(zip(sides, shaft_models))
 
-    def shaft(self, side: str, rung: str) -> ShaftModel:
-        """Model of a shaft, made when it is first asked for."""
-        if (side, rung) not in self._made:
-            kind, base = checked_rung(rung)
+    def shaft_model(self, side: str, model: str) -> ShaftModel:
+        """Return a shaft by a model, built when it is first requested."""
+        if (side, model) not in self._models:
+            kind, base = checked_model(model)
             if base:
-                self._made[side, rung] = self._from_body(side, rung, kind, base)
+                self._models[side, model] = self._derived_model(side, model, kind, base)
             else:
                 start = perf_counter()
-                options = self.settings.get(rung, MESH.get(rung, {}))
-                own = self.settings.get((side, rung), {})
-                body = build(self.scenes[side], rung, **{**options, **own})
-                part = REDUCTIONS[self.reduction](body, n=self.kept)
-                seconds = perf_counter() - start
-                self._made[side, rung] = ShaftModel(side, rung, part, body, body.size, seconds)
-        return self._made[side, rung]
+                options = self.settings.get(model, MESH.get(model, {}))
+                side_options = self.settings.get((side, model), {})
+                body = build(self.scenes[side], model, **{**options, **side_options})
+                self._models[side, model] = self._reduce(side, model, body, start)
+        return self._models[side, model]
 
-    def take(self, side: str, rung: str, body: Body) -> None:
-        """Take in a body that is there already as the model of a shaft.
-
-        Parameters
-        ----------
-        body : Body
-            Of that model, on any mesh.
+    def set_body(self, side: str, model: str, body: Body) -> None:
+        """Set the body, on any mesh, that a model of a shaft is reduced from, in place of building
+        it.
         """
         self.bars.clear()
-        start = perf_counter()
+        self._models[side, model] = self._reduce(side, model, body, perf_counter())
+
+    def _reduce(self, side: str, model: str, body: Body, start: float) -> ShaftModel:
+        """Reduce the body of a shaft, whose time counts from `start`."""
         part = REDUCTIONS[self.reduction](body, n=self.kept)
         seconds = perf_counter() - start
-        self._made[side, rung] = ShaftModel(side, rung, part, body, body.size, seconds)
+        return ShaftModel(
+            side=side, model=model, part=part, body=body, unknowns=body.size, seconds=seconds
+        )
 
-    def keep(self, model: ShaftModel) -> None:
-        """Take in the model of a shaft of another workshop that differs in its bearings alone."""
-        self._made[model.side, model.rung] = model
+    def add_model(self, model: ShaftModel) -> None:
+        """Add a shaft's model of another workshop, whose shafts differ in their bearings alone."""
+        self._models[model.side, model.model] = model
 
-    def put(self, side: str, name: str, part: Part, like: str) -> None:
-        """Take in a part of one's own as a further model of a shaft.
-
-        Parameters
-        ----------
-        name : str
-            What it is asked for by.
-        part : Part
-            With the ports of the shaft.
-        like : str
-            Model of the body it stands for.
+    def add_part(self, side: str, name: str, part: Part, like: str) -> None:
+        """Register a part, with the ports of the shaft, as model `name` of a shaft; body and
+        unknowns are those of model `like`.
         """
-        under = self.shaft(side, like)
-        self._made[side, name] = ShaftModel(
-            side, name, part, under.body, under.unknowns, under.seconds
+        source = self.shaft_model(side, like)
+        self._models[side, name] = ShaftModel(
+            side=side,
+            model=name,
+            part=part,
+            body=source.body,
+            unknowns=source.unknowns,
+            seconds=source.seconds,
         )
 
     def with_bearings(self, stiffness: Mapping[str, ArrayLike]) -> Workshop:
-        """The same train on other bearings; bodies and their reductions are kept.
-
-        Parameters
-        ----------
-        stiffness : mapping of str to (6, 6) array_like
-            By bearing, such as ``pinion.1``, series springs included, SI.
-
-        Raises
-        ------
-        SolidgearError
-            For a bearing that there is not, or a matrix that is no stiffness.
+        """Return the same train on other bearings, from stiffness matrices (6, 6) by names such as
+        ``pinion.1``, series springs included, SI; bodies and reductions are kept.
 
         Examples
         --------
@@ -184,87 +168,86 @@ class Workshop:
         True
         """
         shafts = self.train.shafts.items()
-        known = [f"{side}.{b.name}" for side, own in shafts for b in own.scene.bearings]
+        names = [f"{side}.{b.name}" for side, shaft in shafts for b in shaft.scene.bearings]
         for name in stiffness:
-            if name not in known:
+            if name not in names:
                 raise SolidgearError(
-                    f"no bearing {show(name, 40)}{nearest(name, known)}; there are {listed(known)}"
+                    f"no bearing {show(name, 40)}{nearest(name, names)}; there are {listed(names)}"
                 )
-        out = self._on_other_bearings()
+        workshop = self._with_free_bodies()
         for side, scene in self.scenes.items():
-            bearings = [
-                bearing.with_changes(
-                    matrix=np.asarray(stiffness[f"{side}.{bearing.name}"]).tolist(),
-                    axial_series=(),
-                    scale=1.0,
-                    catalogue=None,
-                    support=None,
-                )
-                if f"{side}.{bearing.name}" in stiffness
-                else bearing
-                for bearing in scene.bearings
-            ]
-            out.scenes[side] = scene.with_changes(bearings=tuple(bearings))
-        return out
+            bearings = []
+            for bearing in scene.bearings:
+                matrix = stiffness.get(f"{side}.{bearing.name}")
+                if matrix is not None:
+                    bearing = bearing.with_changes(
+                        matrix=np.asarray(matrix).tolist(),
+                        axial_series=(),
+                        scale=1.0,
+                        catalogue=None,
+                        support=None,
+                    )
+                bearings.append(bearing)
+            workshop.scenes[side] = scene.with_changes(bearings=tuple(bearings))
+        return workshop
 
     def with_train(self, train: Train) -> Workshop:
-        """The same shafts in a train that differs in bearings, housing, mesh or operating point; bodies
-        and their reductions are kept.
+        """Return the same shafts in a train that differs in bearings, housing, mesh or operating
+        point; bodies and reductions are kept.
         """
-        out = self._on_other_bearings()
-        out._take_in(train)
-        return out
+        workshop = self._with_free_bodies()
+        workshop._read_train(train)
+        return workshop
 
-    def _on_other_bearings(self) -> Workshop:
-        out = copy(self)
-        # bodies are free of their bearings; what is condensed on them is not
-        kept = {k: m for k, m in self._made.items() if k[1].partition("/")[0] not in LUMPED}
-        out._made, out.scenes, out.bars, out._flanks = kept, {}, {}, {}
-        return out
+    def _with_free_bodies(self) -> Workshop:
+        workshop = copy(self)
+        # bodies hold no bearings; lumped models, condensed on them, do
+        bodies = {k: m for k, m in self._models.items() if k[1].partition("/")[0] not in LUMPED}
+        workshop._models, workshop.scenes, workshop.bars, workshop._flanks = bodies, {}, {}, {}
+        return workshop
 
     @property
     def cautions(self) -> tuple[str, ...]:
-        """Warnings of data that do not fit together but can be solved, and of bearings without load."""
-        lost = [
+        """Sentences on data that do not fit together but can be solved, and on bearings without
+        load.
+        """
+        unloaded = [
             f"bearing {end} carries nothing at {self.train.point.label}: it has no stiffness there"
             for end in self.train.unloaded
             if self.train.point is not None
         ]
-        return (*self.odd, *lost)
+        return (*self.data_cautions, *unloaded)
 
     @property
-    def odd(self) -> tuple[str, ...]:
-        """Cautions on meshes, gears, shafts that take the same space, and the housing, in words."""
-        several = len(self.contacts) > 1
-        met = [(f"{name}: " * several, own.cautions) for name, own in self.contacts.items()]
-        told = [head + text for head, cautions in met for text in cautions]
-        told += gear_cautions(self.train, self.contacts)
-        told += map(str, overlaps(self.train, self.scenes, self.places))
-        return (*told, *cautions_of(self.train, self.places))
+    def data_cautions(self) -> tuple[str, ...]:
+        """Sentences on meshes, gears, shafts that take the same space, and the housing."""
+        sentences = []
+        for name, contact in self.contacts.items():
+            head = f"{name}: " if len(self.contacts) > 1 else ""
+            sentences += [head + text for text in contact.cautions]
+        sentences += gear_cautions(self.train, self.contacts)
+        sentences += map(str, overlaps(self.train, self.scenes, self.places))
+        return (*sentences, *housing_cautions(self.train, self.places))
 
     def on_flank(self, coast: bool) -> Workshop:
-        """The same train with one of the two flanks of its teeth in contact.
-
-        Parameters
-        ----------
-        coast : bool
-            True for the flank that the file does not name.
+        """Return the same train with the teeth in contact on one flank: `coast` is True for that
+        which the file does not name.
         """
         if coast not in self._flanks:
-            other = copy(self)
-            other.contacts, other.bars = contacts(self.train, coast), {}
-            other.stages = stages_at_work(
-                self.train, other.contacts, self.scenes, self.places, coast
+            workshop = copy(self)
+            workshop.contacts, workshop.bars = contacts(self.train, coast), {}
+            workshop.stages = stages_at_work(
+                self.train, workshop.contacts, self.scenes, self.places, coast
             )
-            self._flanks[coast] = other
+            self._flanks[coast] = workshop
         return self._flanks[coast]
 
-    def _from_body(self, side: str, rung: str, kind: str, base: str) -> ShaftModel:
-        under = self.shaft(side, base)
+    def _derived_model(self, side: str, model: str, kind: str, base: str) -> ShaftModel:
+        source = self.shaft_model(side, base)
         start = perf_counter()
         part: Part
         if kind == RIGID:
-            part = RigidBody.of(under.body)
+            part = RigidBody.of(source.body)
         else:
             if side in self.train.housed:
                 raise SolidgearError(
@@ -274,117 +257,118 @@ class Workshop:
             # a shaft that is a carrier may have no gear: it is held at its main lumped point
             scene = self.scenes[side]
             points = [*self.train.shafts[side].gears] or [scene.port.name]
-            part = lumped(under, kind, scene, points)
-        seconds = under.seconds + perf_counter() - start
-        return ShaftModel(side, rung, part, under.body, under.unknowns, seconds)
+            part = lumped(source, kind, scene, points)
+        seconds = source.seconds + perf_counter() - start
+        return ShaftModel(
+            side=side,
+            model=model,
+            part=part,
+            body=source.body,
+            unknowns=source.unknowns,
+            seconds=seconds,
+        )
 
     def system(self, *models: str, bearings: bool = True) -> System:
-        """The train with its shafts by models.
-
-        Parameters
-        ----------
-        *models : str
-            One for each shaft, or one for all.
-        bearings : bool
-            False leaves them out: what rests on them is then free.
-
-        Returns
-        -------
-        System
-            Parts ``engine``, the shafts, ``load`` and other rotors; links ``engine spring``, ``load
-            spring``, ``mesh`` (of several meshes such as ``mesh input-middle``), and the bearings; with a
-            housing the part ``housing`` and links such as ``mount 1``.
+        """Couple the shafts by models, one for each or one for all; without bearings, all that
+        rests on them is free. Parts are ``engine``, the shafts, ``load`` and other rotors, and
+        ``housing``; links are ``engine spring``, ``load spring``, ``mesh`` (with several ``mesh
+        input-middle``), the bearings, and mounts such as ``mount 1``.
         """
         train = self.train
         rotors = {name: Inertia(rotor.inertia) for name, rotor in train.rotors.items()}
         parts: dict[str, Part] = {name: rotors[name] for name in train.engines}
-        for side, rung in self.mix(models).items():
-            parts[side] = self.placed(side, self.part(side, rung))
+        for side, model in self.models_by_shaft(models).items():
+            parts[side] = self.place_part(side, self.shaft_part(side, model))
         parts |= rotors
         links: dict[str, Link] = {}
         if train.housing is not None:
-            parts[HOUSING], links = part_of(train.housing), mounts_of(train.housing)
+            parts[HOUSING], links = housing_part(train.housing), mount_links(train.housing)
         for side in train.shafts:
-            links |= self._ground(side, bearings)
+            links |= self._support_links(side, bearings)
             for name, rotor in train.rotors_of(side).items():
-                at = f"{side}.{train.spring_port(name)}"
-                links[f"{name} spring"] = torsion_spring(at, rotor.spring.stiffness, name)
+                port_name = f"{side}.{train.spring_port(name)}"
+                links[f"{name} spring"] = torsion_spring(port_name, rotor.spring.stiffness, name)
             for name, (port, head) in train.heads(side).items():
                 diagonal = [head.mass] * 3 + [head.bending, head.torsional, head.bending]
                 links[name.replace(".", " ")] = PortInertia(port, np.diag(diagonal))
         for pair in train.pairs:
-            ends = self.teeth(pair, parts)
-            links[pair.name] = mesh_spring(*ends[0], *ends[1], self.contacts[pair.name].stiffness)
+            (port, vector), (to, to_vector) = self.mesh_ends(pair, parts)
+            stiffness = self.contacts[pair.name].stiffness
+            links[pair.name] = mesh_spring(port, vector, to, to_vector, stiffness)
         for stage in self.stages.values():
             parts |= stage.parts(*self.places[stage.stage.shafts[0]])
             links |= stage.links
         return System(parts, links)
 
-    def _ground(self, side: str, bearings: bool) -> dict[str, Link]:
-        """Links of a shaft to ground or to the housing, and masses on its ports."""
+    def _support_links(self, side: str, bearings: bool) -> dict[str, Link]:
+        """Return the links of a shaft to ground or to the housing, and masses on the ports."""
         scene = self.scenes[side]
         if not bearings:
             free = [b.with_changes(matrix=np.zeros((6, 6)), hold=None) for b in scene.bearings]
             scene = scene.with_changes(bearings=tuple(free), housing=None, housing_axial=None)
-        return standing_in(self.train, side, grounded(side, scene))
+        return links_on_housing(self.train, side, grounded(side, scene))
 
-    def part(self, side: str, rung: str) -> Part:
-        """Model of a shaft with the harmonics that its teeth drive, if the train asks for any."""
-        own = self.shaft(side, rung)
+    def shaft_part(self, side: str, model: str) -> Part:
+        """Return a shaft as a part, with the harmonics that the teeth drive where the train asks
+        for them.
+        """
+        shaft = self.shaft_model(side, model)
         meshes = [
-            (pair, self._vector(pair, side).point)
+            (pair, self._mesh_vector(pair, side).point)
             for pair in self.train.pairs
-            if rung == JUDGE and side in pair.shafts and pair.mesh.local_harmonics
+            if model == JUDGE and side in pair.shafts and pair.mesh.local_harmonics
         ]
         if not meshes:
-            return own.part
+            return shaft.part
         key = tuple(
             (pair.name, pair.mesh.local_harmonics, pair.pinion.teeth, pair.ratio, *point.tolist())
             for pair, point in meshes
         )
-        if key not in own.local:
+        if key not in shaft.local:
             start = perf_counter()
-            made = local_teeth(side, self.scenes[side], own.part, own.body, meshes)
-            own.local.clear()  # of mesh points elsewhere
-            own.local[key] = made
+            part = local_teeth(side, self.scenes[side], shaft.part, shaft.body, meshes)
+            shaft.local.clear()  # of mesh points elsewhere
+            shaft.local[key] = part
             self._local_seconds += perf_counter() - start
-        return own.local[key]
+        return shaft.local[key]
 
-    def teeth(self, pair: Pair, parts: Mapping[str, Part]) -> list[tuple[str, MeshVector]]:
-        """Ports of both parts that the teeth of a mesh act on, and along which line from there."""
+    def mesh_ends(self, pair: Pair, parts: Mapping[str, Part]) -> list[tuple[str, MeshVector]]:
+        """Return the port of each shaft that the teeth of a mesh act on, and the line of action
+        from there.
+        """
         out = []
         for side, port in zip(pair.shafts, pair.ports):
-            vector = self._vector(pair, side)
+            vector = self._mesh_vector(pair, side)
             if (name := mesh_port(pair)) in parts[side].ports:
                 out.append((f"{side}.{name}", MeshVector(vector.normal, np.zeros(3))))
             else:
                 out.append((f"{side}.{port}", vector))
         return out
 
-    def _vector(self, pair: Pair, side: str) -> MeshVector:
-        met = self.contacts[pair.name]
-        return met.pinion if side == pair.shafts[0] else met.gear
+    def _mesh_vector(self, pair: Pair, side: str) -> MeshVector:
+        contact = self.contacts[pair.name]
+        return contact.pinion if side == pair.shafts[0] else contact.gear
 
-    def placed(self, side: str, part: Part) -> Part:
-        """A shaft where its teeth meet others, in the axes of the first shaft's scene."""
+    def place_part(self, side: str, part: Part) -> Part:
+        """Return a shaft in the axes of the first shaft's scene, at the place where the teeth meet."""
         first = side == next(iter(self.places))
         return part if first else Placed(part, *self.places[side])
 
-    def losses(self) -> dict[str, float]:
-        """Loss factors of all parts and links."""
+    def loss_factors(self) -> dict[str, float]:
+        """Return the loss factors of all parts and links, by name."""
         train, loss = self.train, self.train.losses
-        out = {side: loss.shafts for side in train.shafts}
+        factors = {side: loss.shafts for side in train.shafts}
         for side in train.shafts:
-            out |= dict.fromkeys(grounded(side, self.scenes[side]), loss.bearings)
-            out |= {f"{name} spring": loss.springs for name in train.rotors_of(side)}
+            factors |= dict.fromkeys(grounded(side, self.scenes[side]), loss.bearings)
+            factors |= {f"{name} spring": loss.springs for name in train.rotors_of(side)}
         if train.housing is not None:
-            out |= losses_of(train.housing)
+            factors |= housing_losses(train.housing)
         for stage in self.stages.values():
-            out |= dict.fromkeys(stage.links, loss.bearings)
-        return out | {mesh.name: loss.mesh for mesh in train.teeth}
+            factors |= dict.fromkeys(stage.links, loss.bearings)
+        return factors | {mesh.name: loss.mesh for mesh in train.teeth}
 
-    def seconds(self, *models: str) -> float:
-        """To build and reduce all shafts."""
-        mix = self.mix(models)
-        local = self._local_seconds if JUDGE in mix.values() else 0.0
-        return sum(self.shaft(*one).seconds for one in mix.items()) + local
+    def build_seconds(self, *models: str) -> float:
+        """Return the time to build and reduce all shafts, s."""
+        models_by_side = self.models_by_shaft(models)
+        local = self._local_seconds if JUDGE in models_by_side.values() else 0.0
+        return sum(self.shaft_model(*shaft).seconds for shaft in models_by_side.items()) + local

@@ -1,4 +1,4 @@
-"""Natural frequencies of a train: names, proven bounds, and what turns freely."""
+"""Natural frequencies of a train: names, proven bounds, and free motions."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from solidgear.errors import SolidgearError
 from solidgear.frames import DOF_NAMES
 from solidgear.scene.train_housing import HOUSING
 from solidgear.studies.train.contact import Contact
-from solidgear.studies.train.housing import loose_ways, seat_motion
+from solidgear.studies.train.housing import free_directions, seat_motion
 from solidgear.studies.train.local import local_lines, undriven, waves_of
 from solidgear.studies.train.meshes import mesh_bars, mesh_limit
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.naming import OVALISING, driven, mode_names
-from solidgear.studies.train.shaft import JUDGE, told_mix
+from solidgear.studies.train.shaft import JUDGE, mix_label
 from solidgear.studies.train.spin import spin_cautions
 from solidgear.studies.train.strain import mounts_together
 from solidgear.studies.train.turn import frequencies_over_a_turn
@@ -44,7 +44,7 @@ class TrainMode:
 
 @dataclass(frozen=True, eq=False)
 class TrainModes:
-    """Modes of a train by models of its shafts."""
+    """Modes of a train by models of the shafts."""
 
     train: str
     models: dict[str, str]  #: by shaft
@@ -55,88 +55,93 @@ class TrainModes:
     seconds: float  #: to build and reduce both shafts
     modes: tuple[TrainMode, ...]
     rigid: int  #: motions at exactly 0 Hz
-    free: tuple[str, ...]  #: what moves freely beside the train, in words
-    contact: tuple[str, ...]  #: what contact cells leave over, in words; empty without any
+    free: tuple[str, ...]  #: free motions but for that of the whole train, in words
+    contact: tuple[str, ...]  #: moment that contact cells leave over, in words; empty without any
     unpublished: dict[str, str]
     cautions: tuple[str, ...]
     #: free modes (Hz) of harmonic solids that no port drives, by shaft and number of nodal
     #: diameters; they take no part in the train
     undriven: dict[str, dict[int, tuple[float, ...]]] = field(default_factory=dict)
-    local: tuple[str, ...] = ()  #: what harmonics at a local mesh point add, in words
-    speeds: str = "pinion"  #: shaft that the speeds of modes are told of
-    turn: str = ""  #: what a turn of a carrier changes, in words
+    local: tuple[str, ...] = ()  #: compliance that harmonics at a local mesh point add, in words
+    speeds: str = "pinion"  #: shaft that the speeds of modes belong to
+    turn: str = ""  #: change over a turn of a carrier, in words
     hidden: str = ""
 
     def as_dict(self) -> dict:
-        """Plain data that JSON can hold."""
+        """Return plain data for JSON."""
         out = asdict(self)
         return {"train": out.pop("train")} | out.pop("models") | out
 
     def heading(self) -> list[str]:
-        """Name of what was solved."""
+        """Return the title of the train, and the reduction in words."""
         kept = ", ".join(f"{side} {n} of {self.unknowns[side]}" for side, n in self.kept.items())
         return [
-            f"{self.train}: {told_mix(self.models)}",
+            f"{self.train}: {mix_label(self.models)}",
             f"Reduction {self.reduction}: {kept} unknowns; {self.coordinates} coordinates in all.",
         ]
 
     def remarks(self) -> list[str]:
-        """Remarks on the numbers, cautions included."""
+        """Return remarks on the numbers, cautions included."""
         return self.notes() + [f"caution: {text}" for text in self.cautions]
 
     def notes(self) -> list[str]:
-        """Notes on the numbers."""
+        """Return notes on the numbers."""
         lines, meshed = [], any(mode.mesh is not None for mode in self.modes)
         if self.rigid == 1 and not self.free:
             lines.append("The whole train turns freely: one motion at exactly 0 Hz.")
         lines += list(self.free)
         lines += [*self._still(), *self.local, *filter(None, [self.turn, self.hidden])]
-        lines.append(
-            "Bound: largest relative error that the reduction leaves, proven"
-            + ("; it says nothing of the meshes of the shafts." if not meshed else "")
-            + "; mesh: that the meshes of harmonic shafts leave, by local problems." * meshed
-        )
+        bound = "Bound: largest relative error that the reduction leaves, proven"
+        if meshed:
+            bound += "; mesh: that the meshes of harmonic shafts leave, by local problems."
+        else:
+            bound += "; it says nothing of the meshes of the shafts."
+        lines.append(bound)
         return lines + list(self.contact) + unpublished_lines(self.unpublished)
 
     def _still(self) -> list[str]:
-        """Modes that the teeth do not drive, shaft by shaft, each n with its frequencies."""
-        at: dict[tuple[str, int], list[float]] = {}
+        """Return a sentence on modes that the teeth do not drive, shaft by shaft, each n with the
+        frequencies.
+        """
+        frequencies: dict[tuple[str, int], list[float]] = {}
         for side, families in self.undriven.items():
             for n, free in families.items():
-                at.setdefault((side, n), []).extend(free)
+                frequencies.setdefault((side, n), []).extend(free)
         for mode in self.modes:
             if not mode.driven and OVALISING in mode.name:
                 side, _, wave, *_ = mode.name.split()
-                at.setdefault((side, int(wave.removeprefix("n="))), []).append(mode.frequency_hz)
-        if not at:
+                frequencies.setdefault((side, int(wave.removeprefix("n="))), []).append(
+                    mode.frequency_hz
+                )
+        if not frequencies:
             return []
         places = [
-            f"{side} n={n} {', '.join(dict.fromkeys(f'{hz:.0f}' for hz in sorted(found)))} Hz"
-            for (side, n), found in sorted(at.items())
+            f"{side} n={n} {', '.join(dict.fromkeys(f'{hz:.0f}' for hz in sorted(values)))} Hz"
+            for (side, n), values in sorted(frequencies.items())
         ]
-        told = f"Ovalising, not driven by this mesh model: {'; '.join(places)} (n nodal diameters)."
+        text = f"Ovalising, not driven by this mesh model: {'; '.join(places)} (n nodal diameters)."
         if self.local:
-            one = "of a pair that is driven, one stands still along the line of action"
-            return [told.removesuffix(").") + f"; {one})."]
+            pair_note = "of a pair that is driven, one stands still along the line of action"
+            return [text.removesuffix(").") + f"; {pair_note})."]
         return [
-            f"{told} Seats and teeth act on mean motions, which these modes have none of; "
+            f"{text} Seats and teeth act on mean motions, which these modes have none of; "
             "--local-harmonics n lets the teeth of a harmonic solid push where they touch."
         ]
 
 
 def unpublished_lines(unpublished: dict[str, str]) -> list[str]:
-    """One sentence for each of identified and assumed values."""
+    """Return a sentence for each of identified and assumed values."""
     lines = []
     for status in ("identified", "assumed"):
-        names = [key for key, own in unpublished.items() if own == status]
+        names = [key for key, value_status in unpublished.items() if value_status == status]
         if names:
             lines.append(f"{status.capitalize()}, not published: {', '.join(names)}.")
     return lines
 
 
-def wrench_lines(met: Contact) -> tuple[str, ...]:
-    """Resultant of contact cells, and the moment that no mesh point carries."""
-    wrench = met.wrench
+def wrench_lines(contact: Contact) -> tuple[str, ...]:
+    """Return the resultant of contact cells in words, and the moment that no mesh point carries."""
+    wrench = contact.wrench
     if wrench is None:
         return ()
 
@@ -165,19 +170,9 @@ def wrench_lines(met: Contact) -> tuple[str, ...]:
 def train_modes(
     workshop: Workshop, *models: str, max_frequency: float | None = None, at_most: int | None = None
 ) -> TrainModes:
-    """Modes of a train with its shafts by models.
-
-    Parameters
-    ----------
-    max_frequency : float, optional
-        Hz; that of the file by default.
-    at_most : int, optional
-        Elastic modes; up to any frequency where neither file nor caller names one.
-
-    Raises
-    ------
-    SolidgearError
-        For a frequency beyond what the reduction resolves.
+    """Return the modes of a train with the shafts by models, up to a frequency, Hz, by default that
+    of the file, or so many elastic ones; refused beyond the frequencies that the reduction
+    resolves.
 
     Examples
     --------
@@ -187,7 +182,7 @@ def train_modes(
     >>> [mode.name for mode in found.modes][:2], found.modes[0].frequency_hz
     (['train rotation', 'load torsion 1'], 0.0)
     """
-    train, rungs = workshop.train, workshop.mix(models)
+    train, by_shaft = workshop.train, workshop.models_by_shaft(models)
     limit = max_frequency or train.ask.max_frequency
     system = workshop.system(*models)
     omega, _ = system.elastic
@@ -196,58 +191,78 @@ def train_modes(
         open_ended = max_frequency is None and "max_frequency" not in train.ask.model_fields_set
         count = min(at_most, len(omega) if open_ended else count)
         limit = float(omega[count - 1]) / (2 * np.pi) if open_ended else limit
-    found = system.modes(max(1, count))
+    solved = system.modes(max(1, count))
     refuse_unresolved(workshop, system, limit)
-    names, moved = mode_names(workshop, system, found), driven(system, found)
-    found = replace(found, energy=mounts_together(found.energy))
+    names, is_driven = mode_names(workshop, system, solved), driven(system, solved)
+    solved = replace(solved, energy=mounts_together(solved.energy))
     for stage in workshop.stages.values():
-        found = replace(found, energy=stage.strained(found.energy))
-    most = found.dominant()
-    elastic = len(found.frequency_hz) - found.rigid
-    bars = mesh_bars(workshop, system, rungs, elastic + 1)
-    sure = [None] * len(names) if bars is None else [None] * found.rigid + bars[:elastic].tolist()
+        solved = replace(solved, energy=stage.strained(solved.energy))
+    most = solved.dominant()
+    elastic = len(solved.frequency_hz) - solved.rigid
+    bars = mesh_bars(workshop, system, by_shaft, elastic + 1)
+    mesh_errors: list[float | None] = [None] * len(names)
+    if bars is not None:
+        mesh_errors[solved.rigid :] = bars[:elastic].tolist()
     modes = []
-    for k, (name, hz) in enumerate(zip(names, found.frequency_hz)):
-        strained = "" if hz == 0 else f"{most[k]} {100 * found.energy[most[k]][k]:.0f} %"
+    for k, (name, hz) in enumerate(zip(names, solved.frequency_hz)):
+        strained = "" if hz == 0 else f"{most[k]} {100 * solved.energy[most[k]][k]:.0f} %"
         rpm = 60 * float(hz) / train.per_turn(train.drivers[0])
-        bound = float(found.error_bound[k])
-        modes.append(TrainMode(name, float(hz), rpm, strained, bound, bool(moved[k]), sure[k]))
-    still = {}
-    for side, rung in rungs.items():
-        if rung == JUDGE:
-            have = tuple(waves_of(system.parts[side]))
-            still[side] = undriven(workshop.shaft(side, rung).body, limit, have)
+        bound = float(solved.error_bound[k])
+        modes.append(
+            TrainMode(
+                name=name,
+                frequency_hz=float(hz),
+                rpm=rpm,
+                strained=strained,
+                bound=bound,
+                driven=bool(is_driven[k]),
+                mesh=mesh_errors[k],
+            )
+        )
+    undriven_modes = {}
+    for side, model in by_shaft.items():
+        if model == JUDGE:
+            driven_waves = tuple(waves_of(system.parts[side]))
+            undriven_modes[side] = undriven(
+                workshop.shaft_model(side, model).body, limit, driven_waves
+            )
     return TrainModes(
-        train.called,
-        rungs,
-        workshop.reduction,
-        system.size,
-        {side: system.parts[side].mass.shape[0] for side in rungs},
-        {side: workshop.shaft(side, rung).unknowns for side, rung in rungs.items()},
-        workshop.seconds(*models),
-        tuple(modes),
-        found.rigid,
-        free_motions(workshop, system),
-        tuple(line for met in workshop.contacts.values() for line in wrench_lines(met)),
-        train.unpublished(),
-        (*workshop.cautions, *spin_cautions(workshop, system, rungs, limit)),
-        {side: families for side, families in still.items() if families},
-        local_lines(workshop, system),
-        train.reference,
-        frequencies_over_a_turn(workshop, rungs, names),
-        "" if bars is None else _hidden(omega[elastic : elastic + 1], bars[elastic:], limit),
+        train=train.called,
+        models=by_shaft,
+        reduction=workshop.reduction,
+        coordinates=system.size,
+        kept={side: system.parts[side].mass.shape[0] for side in by_shaft},
+        unknowns={
+            side: workshop.shaft_model(side, model).unknowns for side, model in by_shaft.items()
+        },
+        seconds=workshop.build_seconds(*models),
+        modes=tuple(modes),
+        rigid=solved.rigid,
+        free=free_motions(workshop, system),
+        contact=tuple(
+            line for contact in workshop.contacts.values() for line in wrench_lines(contact)
+        ),
+        unpublished=train.unpublished(),
+        cautions=(*workshop.cautions, *spin_cautions(workshop, system, by_shaft, limit)),
+        undriven={side: families for side, families in undriven_modes.items() if families},
+        local=local_lines(workshop, system),
+        speeds=train.reference,
+        turn=frequencies_over_a_turn(workshop, by_shaft, names),
+        hidden=""
+        if bars is None
+        else _mode_below_limit(omega[elastic : elastic + 1], bars[elastic:], limit),
     )
 
 
-def _hidden(omega: np.ndarray, bars: np.ndarray, limit: float) -> str:
-    """Sentence on the first mode above a list, rad/s, whose error bar reaches into it, if it does:
+def _mode_below_limit(omega: np.ndarray, bars: np.ndarray, limit: float) -> str:
+    """Return a sentence on the first mode above a list, rad/s, if the error bar reaches into it;
     those that follow lie no lower.
     """
-    for hz, bar in zip(omega / (2 * np.pi), bars):
-        if hz * (1 - bar) < limit:
+    for hz, error_bar in zip(omega / (2 * np.pi), bars):
+        if hz * (1 - error_bar) < limit:
             return (
                 f"One more mode may lie below {limit:g} Hz: the meshes have it at {hz:.2f} Hz with an "
-                f"error bar of {bar:.0e}."
+                f"error bar of {error_bar:.0e}."
             )
     return ""
 
@@ -262,38 +277,44 @@ def refuse_unresolved(workshop: Workshop, system: System, limit: float) -> None:
             f"{0.9 * cut:.0f} Hz"
         )
     for side in workshop.scenes:
-        at = mesh_limit(workshop, side, system.parts[side])
-        if limit > at:
+        highest = mesh_limit(workshop, side, system.parts[side])
+        if limit > highest:
             raise SolidgearError(
-                f"{limit:g} Hz is beyond what the mesh of the {side} resolves, about {at:.0f} Hz: "
+                f"{limit:g} Hz is beyond what the mesh of the {side} resolves, about {highest:.0f} Hz: "
                 "shear waves are then shorter than its cells can follow; ask for less"
             )
 
 
 def free_motions(workshop: Workshop, system: System) -> tuple[str, ...]:
-    """Free motions in words, unless it is the one rotation of the whole train."""
+    """Return free motions in words, unless there is but the rotation of the whole train."""
     count = system.free.shape[1]
     if count == 0:
         return ("Nothing turns freely: a bearing resists the rotation of a shaft.",)
     turning = [part for part in system.parts if np.abs(system.free[system.place(part)]).max() > 0]
-    held = {*turning, HOUSING, *(stage.ring for stage in workshop.stages.values())}
-    still = [part for part in system.parts if part not in held]
+    moving = {*turning, HOUSING, *(stage.ring for stage in workshop.stages.values())}
+    still = [part for part in system.parts if part not in moving]
     if count == 1 and not still:
         return ()
     if count == 1:
         return (f"Only {', '.join(turning)} turn freely; {', '.join(still)} do not turn along.",)
-    loose = [words for side in workshop.scenes for words in _loose(workshop, system, side)]
+    loose = [
+        words for side in workshop.scenes for words in _unheld_directions(workshop, system, side)
+    ]
     if HOUSING in turning:
-        ways = " ".join(loose_ways(system))
+        ways = " ".join(free_directions(system))
         loose.insert(0, f"no mount holds the housing in {ways}, and what stands in it moves along")
-    where = "; ".join(loose) or f"free to turn by themselves: {', '.join(turning)}"
-    return (f"{count} motions are free, where a train has one: {where}.",)
+    places = "; ".join(loose) or f"free to turn by themselves: {', '.join(turning)}"
+    return (f"{count} motions are free, where a train has one: {places}.",)
 
 
-def _loose(workshop: Workshop, system: System, side: str) -> list[str]:
-    """Directions in which the bearings do not hold a shaft, its rotation apart."""
+def _unheld_directions(workshop: Workshop, system: System, side: str) -> list[str]:
+    """Return the directions in which the bearings do not hold a shaft, in words, without the
+    rotation.
+    """
     port = workshop.scenes[side].port.name
-    own = seat_motion(workshop.train, system, side, port)
-    size = np.abs(own @ system.free).max(axis=1)
+    rows = seat_motion(workshop.train, system, side, port)
+    size = np.abs(rows @ system.free).max(axis=1)
     names = [d for d, s in zip(DOF_NAMES, size) if d != "thy" and s > 1e-6 * size.max()]
-    return [f"the bearings of the {side}'s shaft do not hold it in {' '.join(names)}"] * bool(names)
+    if not names:
+        return []
+    return [f"the bearings of the {side}'s shaft do not hold it in {' '.join(names)}"]

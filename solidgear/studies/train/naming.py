@@ -1,7 +1,7 @@
-"""Names for the modes of a train: what moves, and how.
+"""Names for the modes of a train: the part that moves, and the motion.
 
-Kinetic energy is shared among the parts; what a shaft has goes to bending, axial motion and
-torsion as the energies its rigid mass would have in the motions of its lumped point.  A mode is
+Kinetic energy is shared among the parts; that of a shaft goes to bending, axial motion and
+torsion as the energies of the rigid mass in the motions of the lumped point.  A mode is
 called after the largest share, and counted: ``gear bending 2``.  Where no share has 40 % of the
 whole, after the two largest: ``pinion axial + gear bending 1``.  All that a housing has goes to the
 way in which most of it moves: ``housing along z 1``.
@@ -20,7 +20,7 @@ from solidgear.frames import shift
 from solidgear.scene.train_housing import HOUSING
 from solidgear.solve.circumference import circumference_of
 from solidgear.solve.families import FAMILIES
-from solidgear.studies.train.housing import shares_of
+from solidgear.studies.train.housing import housing_energy
 from solidgear.studies.train.local import waves_of
 from solidgear.studies.train.models import Workshop
 from solidgear.system.modes import SystemModes
@@ -38,53 +38,66 @@ OVALISING = "ovalising"
 
 
 def shares(workshop: Workshop, system: System, shapes: np.ndarray) -> dict[str, np.ndarray]:
-    """Fractions of the kinetic energy of every mode, by part and kind of motion."""
-    out: dict[str, np.ndarray] = {}
+    """Return fractions (k,) of the kinetic energy of every mode, by part and kind of motion."""
+    by_motion: dict[str, np.ndarray] = {}
     momentum = system.mass @ shapes
     for stage in workshop.stages.values():
-        out |= stage.kinetic(system, shapes)
+        by_motion |= stage.kinetic(system, shapes)
     for part in system.parts:
         place = system.place(part)
-        each = shapes[place] * momentum[place]
-        own = np.maximum(each.sum(axis=0), 0.0)
+        products = shapes[place] * momentum[place]
+        energy_of_part = np.maximum(products.sum(axis=0), 0.0)
         if part == HOUSING:
-            out |= shares_of(system, own, shapes)
+            by_motion |= housing_energy(system, energy_of_part, shapes)
             continue
-        if part not in workshop.scenes:  # bodies of planetary stages are told together
-            out |= {f"{part} torsion": own} if part in workshop.train.rotors else {}
+        if part not in workshop.scenes:  # bodies of planetary stages are named together
+            by_motion |= (
+                {f"{part} torsion": energy_of_part} if part in workshop.train.rotors else {}
+            )
             continue
         for n, places in waves_of(system.parts[part]).items():
-            out[f"{part} {OVALISING} n={n}"] = waving = np.maximum(each[places].sum(axis=0), 0.0)
-            own = np.maximum(own - waving, 0.0)
+            by_motion[f"{part} {OVALISING} n={n}"] = wave_energy = np.maximum(
+                products[places].sum(axis=0), 0.0
+            )
+            energy_of_part = np.maximum(energy_of_part - wave_energy, 0.0)
         port = workshop.scenes[part].port
-        model = workshop.shaft(part, workshop_rung(workshop, part))
-        back = shift([0.0, -port.y, 0.0])
-        mass = np.diag(back.T @ model.rigid_mass @ back)
+        # rigid masses of all models are equal
+        built = next(model for side, model in workshop._models if side == part)
+        model = workshop.shaft_model(part, built)
+        to_port = shift([0.0, -port.y, 0.0])
+        mass = np.diag(to_port.T @ model.rigid_mass @ to_port)
         energy = mass[:, None] * (system.motion(f"{part}.{port.name}") @ shapes) ** 2
-        whole = energy.sum(axis=0)
-        still = _still(workshop, system, part, mass, own, shapes)
-        around = _diameters(model.body, system, part, shapes, still)
-        for n in sorted({*around[still]}):
-            out[f"{part} {OVALISING} n={n}"] = np.where(still & (around == n), own, 0.0)
+        total_energy = energy.sum(axis=0)
+        still = _still(workshop, system, part, mass, energy_of_part, shapes)
+        diameters = _diameters(model.body, system, part, shapes, still)
+        for n in sorted({*diameters[still]}):
+            by_motion[f"{part} {OVALISING} n={n}"] = np.where(
+                still & (diameters == n), energy_of_part, 0.0
+            )
         for family, rows in FAMILIES.items():
-            share = energy[list(rows)].sum(axis=0) / (whole + 1e-300)
-            out[f"{part} {family}"] = np.where(still, 0.0, own * share)
-    total = sum(out.values())
-    return {name: value / total for name, value in out.items()}
+            share = energy[list(rows)].sum(axis=0) / (total_energy + 1e-300)
+            by_motion[f"{part} {family}"] = np.where(still, 0.0, energy_of_part * share)
+    total = sum(by_motion.values())
+    return {name: value / total for name, value in by_motion.items()}
 
 
-def _still(workshop: Workshop, system: System, part: str, mass, own, shapes) -> np.ndarray:
-    """Mask of the modes that move no port of a shaft by anything beside their own energy."""
-    moved = np.zeros(shapes.shape[1])
+def _still(
+    workshop: Workshop, system: System, part: str, mass, energy_of_part, shapes
+) -> np.ndarray:
+    """Return a mask of the modes that move no port of a shaft by any notable part of the shaft's
+    energy.
+    """
+    port_energy = np.zeros(shapes.shape[1])
     for station in workshop.scenes[part].stations:
         motion = system.motion(f"{part}.{station.name}") @ shapes
-        moved = np.maximum(moved, mass @ motion**2)
-    return (own > ALONE * _total(system, shapes)) & (moved < UNDRIVEN * own)
+        port_energy = np.maximum(port_energy, mass @ motion**2)
+    total = (shapes * (system.mass @ shapes)).sum(axis=0)
+    return (energy_of_part > ALONE * total) & (port_energy < UNDRIVEN * energy_of_part)
 
 
 def _diameters(body: Body, system: System, part: str, shapes, still: np.ndarray) -> np.ndarray:
-    """Nodal diameters of the modes of a 3D solid that move none of its ports; 2 where the mesh
-    does not tell.
+    """Return the nodal diameters of the modes of a 3D solid that move no port; 2 where
+    the mesh shows none.
     """
     out = np.full(shapes.shape[1], 2)
     fitted = circumference_of(body)
@@ -92,33 +105,24 @@ def _diameters(body: Body, system: System, part: str, shapes, still: np.ndarray)
         return out
     fit, displacements = fitted
     for k in np.flatnonzero(still):
-        _, share = fit(displacements(system.expand(part, shapes[:, k])))
-        out[k] = max(2, int(share.sum(axis=1).argmax()))
+        _, wave_shares = fit(displacements(system.expand(part, shapes[:, k])))
+        out[k] = max(2, int(wave_shares.sum(axis=1).argmax()))
     return out
 
 
-def driven(system: System, found: SystemModes) -> np.ndarray:
-    """(k,) whether each mode strains a link, the mesh or a bearing, by more than a trifle."""
-    links = [found.energy[name] for name in system.links if name in found.energy]
-    return (found.frequency_hz == 0) | (np.sum(links, axis=0) > UNDRIVEN)
+def driven(system: System, modes: SystemModes) -> np.ndarray:
+    """Return (k,) whether each mode strains a link, a mesh or a bearing, by more than a trifle."""
+    links = [modes.energy[name] for name in system.links if name in modes.energy]
+    return (modes.frequency_hz == 0) | (np.sum(links, axis=0) > UNDRIVEN)
 
 
-def _total(system: System, shapes: np.ndarray) -> np.ndarray:
-    return (shapes * (system.mass @ shapes)).sum(axis=0)
-
-
-def workshop_rung(workshop: Workshop, side: str) -> str:
-    """Any model that the shop has made of a shaft: rigid masses are all alike."""
-    return next(rung for (own, rung) in workshop._made if own == side)
-
-
-def mode_names(workshop: Workshop, system: System, found: SystemModes) -> list[str]:
-    """One name a mode, none twice."""
-    parts = shares(workshop, system, found.shapes)
+def mode_names(workshop: Workshop, system: System, modes: SystemModes) -> list[str]:
+    """Return a name for each mode, each once."""
+    parts = shares(workshop, system, modes.shapes)
     labels, table = list(parts), np.array(list(parts.values()))
     count: dict[str, int] = {}
     out = []
-    for k, frequency in enumerate(found.frequency_hz):
+    for k, frequency in enumerate(modes.frequency_hz):
         order = np.argsort(-table[:, k], kind="stable")
         if frequency == 0:
             turns = all(labels[i].endswith(TURNING) for i in order if table[i, k] > 1e-6)

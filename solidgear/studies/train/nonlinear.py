@@ -7,7 +7,12 @@ With the half gap b along the line of action and the unloaded transmission error
     k (s - b)  for s > b,   none between,   k (s + b)  for s < -b,      s = dte - e,
 
 around the mean force of an operating point.  Everything else is linear: the modes of the train with
-its teeth in contact, each with the damping ratio that its loss factors make.
+the teeth in contact, each with the damping ratio that the loss factors make.
+
+The line of action may vary over the mesh cycle, as rows between the ports of both shafts.  Each
+place of the table is a mesh vector on both shafts (Hua 2010, equation 21).  That the gear turns about
+its shaft enters through the ratio of the mean line (3.2.2): a pair that turns evenly does not stretch
+its teeth, wherever they touch.
 """
 
 from __future__ import annotations
@@ -18,20 +23,21 @@ from time import process_time
 
 import numpy as np
 
-from solidgear.errors import SolidgearError
+from solidgear.errors import SceneError, SolidgearError
 from solidgear.nonlinear.continuation import follow
 from solidgear.nonlinear.model import Remainder, remainder
 from solidgear.nonlinear.motion import Steady, sweep
 from solidgear.scene.gears import Pair
 from solidgear.scene.operation import OperatingPoint
 from solidgear.scene.planetary import error_of, named_pair
-from solidgear.studies.train.apart import largest, searched
+from solidgear.studies.train.apart import largest_multipliers, search_branches
 from solidgear.studies.train.backlash import AtForce, Backlash, Teeth
+from solidgear.studies.train.contact import LEVER_REFUSED, axes_of
 from solidgear.studies.train.layout import mesh_forces
-from solidgear.studies.train.mesh_line import AXIAL, orders_of, turning_line
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.modes import refuse_unresolved
-from solidgear.studies.train.operation import SHAFT, divided, torques
+from solidgear.studies.train.operation import SHAFT, loop_forces, rotor_loads
+from solidgear.system.gear_mesh import MeshVector, to_gear_frame
 from solidgear.system.law import Gap
 from solidgear.system.links import RowSpring
 from solidgear.system.system import System
@@ -40,9 +46,15 @@ from solidgear.system.system import System
 BEGIN = 0.01
 #: longest step of a branch, of the range of speeds
 STEP = 0.02
-#: what may be left of a transient in time: torsion against engine and load fades over thousands of
+#: share of a transient in time that may be left: torsion against engine and load fades over thousands of
 #: mesh periods
 FADED = 1e-4
+#: orders of the mesh that are kept of a table over the cycle, and places at which it is read
+CYCLE_ORDERS, CYCLE_PLACES = 8, 4096
+#: a row that turns by less than this of the mean one is rounding
+STILL = 1e-12
+#: rotation about the shaft, of six components
+AXIAL = 4
 
 
 def teeth_of(
@@ -51,27 +63,16 @@ def teeth_of(
     contact_loss_hz: float | None = None,
     mesh: str | None = None,
 ) -> Teeth:
-    """Teeth of a train, from its file.
-
-    Parameters
-    ----------
-    mean_force : float, optional
-        Instead of that of the operating point, N; those of other meshes are in the ratio of the torques.
-    contact_loss_hz : float, optional
-        Frequency at which a damper in contact alone has the loss factor of the mesh; without it the
-        mesh takes part in the damping ratios of the modes.
-    mesh : str, optional
-        By whose transmission error the train is driven; the first by default.
-
-    Raises
-    ------
-    SolidgearError
-        If there is no backlash or no mean force, the transmission error is a table over frequency,
-        teeth of a loop would have to pull, or another mesh varies over its own cycle.
+    """Return the teeth of a train by its file, with a mean force, N, in place of that of the
+    operating point, those of other meshes in the ratio of the torques. Without
+    `contact_loss_hz`, at which a damper in contact alone has the loss factor of the mesh, the
+    mesh takes part in the damping ratios of the modes. Refused without backlash or mean force,
+    with an error table over frequency, with teeth of a loop that would have to pull, and with
+    another mesh that varies over another cycle.
     """
     train = workshop.train
     pair, point = named_pair(train, mesh), train.point
-    if not any(one.mesh.backlash is not None for one in train.pairs):
+    if not any(driven.mesh.backlash is not None for driven in train.pairs):
         raise SolidgearError(
             'no backlash is given; write backlash = "100 um" under [mesh], or give --backlash'
         )
@@ -86,13 +87,13 @@ def teeth_of(
         forces, source = _by_torque(workshop, point), point.label
     else:
         unit = _by_torque(workshop, torque_of(workshop, pair.name, 1.0))
-        forces = {name: mean_force * one for name, one in unit.items()}
-    gaps = {one.name: one.mesh.backlash for one in train.pairs if one.mesh.backlash}
+        forces = {name: mean_force * force for name, force in unit.items()}
+    gaps = {driven.name: driven.mesh.backlash for driven in train.pairs if driven.mesh.backlash}
     for name in (pair.name, *gaps):
         if not forces[name] > 0:
-            of = f" of the {name}" if len(forces) > 1 else ""
+            suffix = f" of the {name}" if len(forces) > 1 else ""
             raise SolidgearError(
-                f"a mean force of {forces[name]:g} N holds no teeth{of}; give more than 0"
+                f"a mean force of {forces[name]:g} N holds no teeth{suffix}; give more than 0"
             )
     error, table = error_of(pair), pair.mesh.stiffness_cycle
     if error.frequency:
@@ -110,16 +111,16 @@ def teeth_of(
         if name != pair.name and name in workshop.contacts
     ]
     return Teeth(
-        (pair.mesh.backlash or 0.0) / 2,
-        float(forces[pair.name]),
-        error.orders,
-        source,
-        cycle,
-        error.phases,
-        pair.mesh.line_cycle is not None,
-        contact_loss_hz,
-        pair.name,
-        tuple(others),
+        half_gap=(pair.mesh.backlash or 0.0) / 2,
+        mean_force=float(forces[pair.name]),
+        errors=error.orders,
+        source=source,
+        cycle=cycle,
+        phases=error.phases,
+        turns=pair.mesh.line_cycle is not None,
+        contact_loss_hz=contact_loss_hz,
+        mesh=pair.name,
+        others=tuple(others),
     )
 
 
@@ -135,46 +136,38 @@ def _refuse_several(workshop: Workshop, driver: Pair) -> None:
 
 
 def parting(system: System, teeth: Teeth, loss: float = 0.0) -> System:
-    """The system with a law on each mesh that has teeth, whose stiffness is what it was, and the mean
-    force positive; that of the driven mesh comes first.
-
-    Parameters
-    ----------
-    loss : float
-        Loss factor of a damper in contact alone, where the teeth say at which frequency.
+    """Return the system with a law on each mesh that has teeth, whose stiffness stays, and the mean
+    force positive; that of the driven mesh comes first, and `loss` is the loss factor of a
+    damper in contact alone.
     """
     links = dict(system.links)
-    for k, one in enumerate(teeth.every):
-        mesh = mesh_of(system, one.mesh)
-        at = 2 * np.pi * (teeth.contact_loss_hz or np.inf)
-        law = Gap(mesh.stiffness, one.half_gap, damper=loss * mesh.stiffness / at)
-        row, other = -np.asarray(mesh.row), -np.asarray(mesh.to_row)
+    for k, teeth_of_mesh in enumerate(teeth.meshes):
+        mesh = mesh_of(system, teeth_of_mesh.mesh)
+        omega = 2 * np.pi * (teeth.contact_loss_hz or np.inf)
+        law = Gap(mesh.stiffness, teeth_of_mesh.half_gap, damper=loss * mesh.stiffness / omega)
+        row, to_row = -np.asarray(mesh.row), -np.asarray(mesh.to_row)
         if k:
-            del links[one.mesh]
-        links[one.mesh] = replace(mesh, row=row, to_row=other, law=law)
+            del links[teeth_of_mesh.mesh]
+        links[teeth_of_mesh.mesh] = replace(mesh, row=row, to_row=to_row, law=law)
     return System(system.parts, links)
 
 
 def backlash_model(
     workshop: Workshop, models: Sequence[str], teeth: Teeth, highest_hz: float
 ) -> Remainder:
-    """The remainder of a train with backlash, by models of its shafts.
-
-    Parameters
-    ----------
-    highest_hz : float
-        Modes above it give way like springs.
+    """Return the remainder of a train with backlash, by models of the shafts; modes above the
+    highest frequency give way like springs.
     """
-    pair, loss, damped = named_pair(workshop.train, teeth.mesh), workshop.losses(), 0.0
+    pair, loss, damped = named_pair(workshop.train, teeth.mesh), workshop.loss_factors(), 0.0
     if teeth.contact_loss_hz:
-        damped = [loss.pop(one.mesh) for one in teeth.every][0]
+        damped = [loss.pop(meshed.mesh) for meshed in teeth.meshes][0]
     system, turning, name = workshop.system(*models), turning_line(workshop, pair), pair.name
     force = teeth.mean_force
     if turning is not None:
         links = {**system.links, name: turning.mean_of(mesh_of(system, name))}
         system = System(system.parts, links)
         force *= float(turning.mean[AXIAL] / workshop.contacts[name].pinion.vector[AXIAL])
-    load = torques(workshop, torque_of(workshop, name, force))
+    load = rotor_loads(workshop, torque_of(workshop, name, force))
     system = parting(system, teeth, damped)
     refuse_unresolved(workshop, system, highest_hz)
     sways = {}
@@ -193,26 +186,28 @@ def backlash_model(
 
 
 def _by_torque(workshop: Workshop, point: OperatingPoint) -> dict[str, float]:
-    """Forces of all meshes by a torque alone, N; those of a loop as Timoshenko shafts divide them."""
-    known = mesh_forces(workshop.train, workshop.contacts, point)
+    """Return the forces of all meshes by a torque alone, N; those of a loop as Timoshenko shafts
+    divide them.
+    """
+    forces = mesh_forces(workshop.train, workshop.contacts, point)
     if None in workshop.train.flows.values():
         system = workshop.system(SHAFT)
-        held = system.static(system.load(torques(workshop, point)))
-        known |= divided(workshop, system, held, point.label)
-    return {pair.name: known[pair.name] for pair in workshop.train.pairs}
+        motion = system.static(system.load(rotor_loads(workshop, point)))
+        forces |= loop_forces(workshop, system, motion, point.label)
+    return {pair.name: forces[pair.name] for pair in workshop.train.pairs}
 
 
 def torque_of(workshop: Workshop, mesh: str, force: float) -> OperatingPoint:
-    """The torque of the engine's shaft that brings a force to a mesh, N."""
+    """Return the torque of the engine's shaft that brings a force to a mesh, N."""
     unit = OperatingPoint(torque=1.0, of=workshop.train.reference)
-    own = _by_torque(workshop, unit)[mesh]
-    if not own:
+    unit_force = _by_torque(workshop, unit)[mesh]
+    if not unit_force:
         raise SolidgearError(f"no torque passes the {mesh} between engine and load")
-    return unit.with_changes(torque=force / own)
+    return unit.with_changes(torque=force / unit_force)
 
 
 def mesh_of(system: System, name: str) -> RowSpring:
-    """The link of a mesh."""
+    """Return the link of a mesh."""
     mesh = system.links[name]
     assert isinstance(mesh, RowSpring)
     return mesh
@@ -221,12 +216,8 @@ def mesh_of(system: System, name: str) -> RowSpring:
 def ends(
     workshop: Workshop, highest_hz: float | None, lowest_hz: float | None
 ) -> tuple[float, float]:
-    """Lowest and highest frequency of the mesh, those of the file where they are not given.
-
-    Raises
-    ------
-    SolidgearError
-        For a range that holds zero.
+    """Return the lowest and the highest frequency of the mesh, those of the file where they are not
+    given; a range that holds zero is refused.
     """
     highest = highest_hz or workshop.train.ask.max_frequency
     lowest = BEGIN * highest if lowest_hz is None else lowest_hz
@@ -243,25 +234,12 @@ def with_backlash(
     teeth: Teeth,
     highest_hz: float | None = None,
     lowest_hz: float | None = None,
-    told: Callable[[str], None] | None = None,
-    apart: int = 0,
+    progress: Callable[[str], None] | None = None,
+    search_speeds: int = 0,
 ) -> Backlash:
-    """Periodic motion of a train whose teeth have backlash, by models of its shafts.
-
-    Parameters
-    ----------
-    highest_hz, lowest_hz : float, optional
-        Of the driven mesh; the highest is that of the file by default, the lowest a hundredth of it.
-    told : callable, optional
-        Called with words as it goes on.
-    apart : int
-        Speeds at which branches apart are looked for.
-
-    Raises
-    ------
-    SolidgearError
-        For a range that holds zero, a frequency that the reduction does not resolve, or a branch
-        that cannot be followed.
+    """Compute the periodic motion of a train whose teeth have backlash, by models of the shafts,
+    between frequencies of the driven mesh (the highest is by default that of the file, the
+    lowest a hundredth of it), and search branches apart at so many speeds.
 
     Examples
     --------
@@ -277,48 +255,51 @@ def with_backlash(
     lowest, highest = ends(workshop, highest_hz, lowest_hz)
     begin = process_time()
     most = max(workshop.train.ask.max_frequency, highest)
-    mix = workshop.mix(models)
-    own = backlash_model(workshop, models, teeth, most)
-    if told:
-        told(f"branch of {' + '.join(mix.values())}")
-    branch = follow(own, 2 * np.pi * lowest, 2 * np.pi * highest, step=STEP)
-    found = Backlash(mix, teeth, own, branch, largest(branch), process_time() - begin)
-    if not apart:
-        return found
-    if told:
-        told(f"branches apart of {' + '.join(mix.values())}")
-    looked = searched(found, apart, STEP)
-    return replace(looked, seconds=process_time() - begin)
+    mix = workshop.models_by_shaft(models)
+    model = backlash_model(workshop, models, teeth, most)
+    if progress:
+        progress(f"branch of {' + '.join(mix.values())}")
+    branch = follow(model, 2 * np.pi * lowest, 2 * np.pi * highest, step=STEP)
+    backlash = Backlash(
+        models=mix,
+        teeth=teeth,
+        remainder=model,
+        branch=branch,
+        multiplier=largest_multipliers(branch),
+        seconds=process_time() - begin,
+    )
+    if not search_speeds:
+        return backlash
+    if progress:
+        progress(f"branches apart of {' + '.join(mix.values())}")
+    with_branches = search_branches(backlash, search_speeds, STEP)
+    return replace(with_branches, seconds=process_time() - begin)
 
 
 def over_force(
-    found: Backlash, count: int, told: Callable[[str], None] | None = None
+    backlash: Backlash, count: int, progress: Callable[[str], None] | None = None
 ) -> tuple[AtForce, ...]:
-    """Jumps over the mean force of the driven teeth, up to that above which none part.
-
-    Parameters
-    ----------
-    count : int
-        Mean forces, equally apart.
+    """Return the jumps at so many mean forces of the driven teeth, equally apart, up to that above
+    which none part.
     """
-    most = found.holding[1].max()
+    most = backlash.holding[1].max()
     out = []
     for share in np.arange(1, count + 1) / count:
         force = float(share * most)
-        if told:
-            told(f"mean force {force:.0f} N")
-        mean = found.remainder.mean * (force / found.teeth.mean_force)
-        ends = found.branch.omega[0], found.branch.omega[-1]
-        branch = follow(replace(found.remainder, mean=mean), *map(float, ends), step=STEP)
-        own = replace(found, branch=branch)
-        jumps = tuple((jump.frequency_hz, jump.rising) for jump in own.jumps)
-        out.append(AtForce(force, jumps, float(own.force.max())))
+        if progress:
+            progress(f"mean force {force:.0f} N")
+        mean = backlash.remainder.mean * (force / backlash.teeth.mean_force)
+        ends = backlash.branch.omega[0], backlash.branch.omega[-1]
+        branch = follow(replace(backlash.remainder, mean=mean), *map(float, ends), step=STEP)
+        solved = replace(backlash, branch=branch)
+        jumps = tuple((jump.frequency_hz, jump.rising) for jump in solved.jumps)
+        out.append(AtForce(force, jumps, float(solved.force.max())))
     return tuple(out)
 
 
 @dataclass(frozen=True)
 class InTime:
-    """A motion found in time, beside the nearest of the branch."""
+    """A motion found in time, compared with the nearest of the branch."""
 
     frequency_hz: float
     rising: bool  #: whether the speed rose to it
@@ -327,40 +308,129 @@ class InTime:
     branch_force: float  #: N, of the stable motion nearest to it
 
     @property
-    def off(self) -> float:
-        """Relative."""
+    def error(self) -> float:
+        """Difference of the forces, relative."""
         return self.force / self.branch_force - 1
 
 
 def in_time(
-    found: Backlash, count: int, told: Callable[[str], None] | None = None
+    backlash: Backlash, count: int, progress: Callable[[str], None] | None = None
 ) -> tuple[InTime, ...]:
-    """Sweeps up and down by integration in time, over the speeds at which the teeth part, from the
-    motions of the branch at both ends.
-
-    Parameters
-    ----------
-    count : int
-        Speeds of each sweep.
+    """Sweep up and down by integration in time, over so many speeds at which the teeth part, from
+    the motions of the branch at both ends.
     """
-    lost = [one for mesh in found.every for one in mesh.lost]
-    if not lost:
+    spans = [span for mesh in backlash.meshes for span in mesh.lost]
+    if not spans:
         return ()
-    low = max(min(one.low for one in lost) * 0.97, found.frequency_hz.min())
-    high = min(max(one.high for one in lost) * 1.03, found.frequency_hz.max())
-    up = np.linspace(low, high, count)
+    low = max(min(span.low for span in spans) * 0.97, backlash.frequency_hz.min())
+    high = min(max(span.high for span in spans) * 1.03, backlash.frequency_hz.max())
+    rising_hz = np.linspace(low, high, count)
     out: list[InTime] = []
-    for rising, hz in ((True, up), (False, up[::-1])):
-        if told:
-            told(f"in time, speed {'rising' if rising else 'falling'}")
-        begin = found.branch.at(2 * np.pi * float(hz[0]))[0 if rising else -1].state()
-        steady = sweep(found.remainder, (2 * np.pi * hz).tolist(), state=begin, steady=FADED)
-        out += [_beside(found, one, rising) for one in steady]
+    for rising, hz in ((True, rising_hz), (False, rising_hz[::-1])):
+        if progress:
+            progress(f"in time, speed {'rising' if rising else 'falling'}")
+        begin = backlash.branch.at(2 * np.pi * float(hz[0]))[0 if rising else -1].state()
+        steady = sweep(backlash.remainder, (2 * np.pi * hz).tolist(), state=begin, steady=FADED)
+        out += [_nearest_motion(backlash, motion, rising) for motion in steady]
     return tuple(out)
 
 
-def _beside(found: Backlash, one: Steady, rising: bool) -> InTime:
-    force = float(np.ptp(one.force[:, 0]) / 2)
-    there = [float(np.ptp(p.forces()[:, 0]) / 2) for p in found.along(one.omega)]
-    nearest = min(there, key=lambda size: abs(size - force))
-    return InTime(one.omega / (2 * np.pi), rising, one.cycle, force, nearest)
+def _nearest_motion(backlash: Backlash, steady: Steady, rising: bool) -> InTime:
+    force = float(np.ptp(steady.force[:, 0]) / 2)
+    sizes = [float(np.ptp(p.forces()[:, 0]) / 2) for p in backlash.motions_at(steady.omega)]
+    nearest = min(sizes, key=lambda size: abs(size - force))
+    return InTime(steady.omega / (2 * np.pi), rising, steady.cycle, force, nearest)
+
+
+@dataclass(frozen=True, eq=False)
+class TurningLine:
+    """A line of action over the mesh cycle."""
+
+    mean: np.ndarray  #: (12,) row of the mean line on the pinion, and on the gear
+    further: np.ndarray  #: (r, 12) rows by which it turns
+    orders: np.ndarray  #: (o, r) how much of each, by orders of the mesh
+
+    def mean_of(self, mesh: RowSpring) -> RowSpring:
+        """Return the teeth along the mean line."""
+        return replace(mesh, row=self.mean[:6], to_row=self.mean[6:])
+
+    def further_of(self, mesh: RowSpring) -> RowSpring:
+        """Return rows by which it turns, between the same ports."""
+        return replace(mesh, row=self.further[:, :6], to_row=self.further[:, 6:], law=None)
+
+
+def orders_of(angle: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the mean (c,) of a table (n, c) over a mesh cycle, linear between the angles, and
+    complex orders (o, c) from 1.
+    """
+    angles = np.linspace(angle[0], angle[-1], CYCLE_PLACES, endpoint=False)
+    values_at = np.column_stack(
+        [np.interp(angles, angle, column) for column in np.transpose(values)]
+    )
+    parts = np.fft.rfft(values_at, axis=0) / CYCLE_PLACES
+    return parts[0].real, 2 * parts[1 : CYCLE_ORDERS + 1]
+
+
+def turning_line(workshop: Workshop, pair: Pair) -> TurningLine | None:
+    """Return the mean row of the teeth of a mesh, and how it turns; None where the line stays.
+    Refused for teeth that hold their mesh point or act on the other flank, and for lever arms
+    that are not in the ratio of the teeth.
+    """
+    table, path = pair.mesh.line_cycle, (*pair.paths["mesh"], "line_cycle")
+    if table is None:
+        return None
+    if pair.mesh.local_harmonics:
+        raise SceneError(
+            "moves the mesh point, and local_harmonics hold it where it is on the rim; leave one out",
+            path=path,
+        )
+    if pair.point is not None and pair.point.coast:
+        raise SceneError(
+            "is that of one flank; a torque on the other one (coast, below zero) needs a file with "
+            "its own",
+            path=path,
+        )
+    rows = [
+        _row(workshop, pair, np.array(normal), np.array(point), path)
+        for normal, point in zip(table.normal, table.point)
+    ]
+    mean, orders = orders_of(np.array(table.angle), np.array(rows))
+    left_vectors, size, right = np.linalg.svd(
+        np.vstack([orders.real, orders.imag]), full_matrices=False
+    )
+    notable = size > STILL * np.abs(mean).max()
+    shares = (left_vectors * size)[:, notable]
+    shares = shares[: len(orders)] + 1j * shares[len(orders) :]
+    scale = np.abs(shares).sum(axis=0)  # so that shares are one at most
+    return TurningLine(mean, scale[:, None] * right[notable], shares / scale)
+
+
+def _row(
+    workshop: Workshop, pair: Pair, normal: np.ndarray, point: np.ndarray, path: tuple
+) -> np.ndarray:
+    """Return the (12,) row of the teeth on both shafts while they touch at a point."""
+    contact = workshop.contacts[pair.name]
+    normal = normal / np.linalg.norm(normal)
+    angle = pair.mesh.shaft_angle
+    vectors = (
+        MeshVector(normal, point),
+        MeshVector(to_gear_frame(normal, angle), to_gear_frame(point - contact.origin, angle)),
+    )
+    turns = [axes_of(pair, side) for side in pair.members]
+    in_scenes = [
+        MeshVector(turn @ vector.normal, turn @ vector.point)
+        for turn, vector in zip(turns, vectors)
+    ]
+    ratio = contact.gear.lever / contact.pinion.lever
+    levers = in_scenes[1].lever / in_scenes[0].lever if in_scenes[0].lever else np.inf
+    if not abs(levers / ratio - 1) < LEVER_REFUSED or in_scenes[0].lever * contact.pinion.lever < 0:
+        place = ", ".join(f"{1e3 * v:.2f}" for v in point)
+        raise SceneError(
+            f"has lever arms of {1e3 * in_scenes[0].lever:.2f} mm on the pinion and "
+            f"{1e3 * in_scenes[1].lever:.2f} mm on the gear where the mesh point is ({place}) mm; those of "
+            f"the mesh are {1e3 * contact.pinion.lever:.2f} and {1e3 * contact.gear.lever:.2f} mm",
+            path=path,
+        )
+    gear = in_scenes[1].vector.copy()
+    gear[AXIAL] = ratio * in_scenes[0].vector[AXIAL]
+    return np.concatenate([in_scenes[0].vector, gear])

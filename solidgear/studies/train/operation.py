@@ -13,7 +13,7 @@ tangential and the spiral part of a tooth force round and leaves the part of the
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Mapping
 from copy import copy
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -26,11 +26,10 @@ from solidgear.errors import SceneError, SolidgearError, listed
 from solidgear.scene.operation import OperatingPoint
 from solidgear.scene.train import Train
 from solidgear.studies.deflection import seats_of
-from solidgear.studies.train.housing import under
-from solidgear.studies.train.layout import mesh_forces, rotor_torques
+from solidgear.studies.train.housing import housing_port
+from solidgear.studies.train.layout import force_on, mesh_forces, rotor_torques
 from solidgear.studies.train.models import Workshop
-from solidgear.studies.train.own_loads import refuse_own_loads, scene_load
-from solidgear.studies.train.planet_loads import flung, held_against_weight
+from solidgear.studies.train.planet_loads import carrier_torques, centrifugal_load
 from solidgear.studies.train.stages import mesh_row
 from solidgear.system.equilibrium import OnBearings, Seats, SystemEquilibrium, weight
 from solidgear.system.port_forces import port_forces
@@ -38,6 +37,8 @@ from solidgear.system.system import System
 
 #: model of all shafts on which bearings settle: loads hang little on how shoulders are modelled
 SHAFT = "timoshenko"
+#: a [load] of a scene that is off the mesh force by less, of it, is that force written down
+SAME_LOAD = 0.05
 LOOP = (
     "meshes of a loop divide the torque by their stiffness, as if all of their teeth touched without "
     "load: errors of teeth and places shift it"
@@ -50,58 +51,50 @@ class OperatingState:
 
     point: OperatingPoint
     models: dict[str, str]  #: by shaft
-    #: along the line of action, N, by mesh; zero of one that the torque does not pass
+    #: along the line of action, N, by mesh; zero where no torque passes
     mesh_forces: dict[str, float]
     equilibrium: SystemEquilibrium  #: of all parts; the spring port of the engine does not turn
-    #: without the bearings, in whose coordinates the equilibrium is told
+    #: without the bearings; the equilibrium is in its coordinates
     system: System = field(repr=False)
-    made: dict[str, Catalogued] = field(repr=False)  #: bearings of catalogue data, by ``side.name``
+    bearings: dict[str, Catalogued] = field(
+        repr=False
+    )  #: bearings of catalogue data, by ``side.name``
     #: loads from outside on ports of parts: torques of both rotors and other forces
     outside: dict[str, np.ndarray] = field(repr=False)
-    notes: tuple[str, ...] = ()  #: what is to be said of it, one sentence each
+    notes: tuple[str, ...] = ()  #: sentences
 
     @property
     def mesh_force(self) -> float:
-        """That of the first mesh, N."""
+        """Force of the first mesh, N."""
         return next(iter(self.mesh_forces.values()))
 
     @property
     def coordinates(self) -> np.ndarray:
-        """(N,) coordinates of the system."""
+        """Coordinates (N,) of the system."""
         return self.equilibrium.coordinates
 
     def motion(self, end: str) -> np.ndarray:
-        """Motion (6,) of a port such as ``pinion.A``, m and rad, in the axes of its scene."""
+        """Return the motion (6,) of a port such as ``pinion.A``, m and rad, in the axes of its
+        scene.
+        """
         return self.system.motion(end) @ self.coordinates
 
     def forces(self) -> dict[str, np.ndarray]:
-        """Force (6,) of everything but weight on each port of a shaft: teeth, springs, bearings, and loads from
-        outside, N and N m, in the axes of its scene.
+        """Return the force (6,) of everything but weight on each port of a shaft: teeth, springs,
+        bearings, and loads from outside, N and N m, in the axes of the scene.
         """
         out = port_forces(self.system, self.coordinates)
-        for end, six in self.outside.items():
-            out[end] = out.get(end, np.zeros(6)) + six
-        for end, six in self.equilibrium.load.items():
-            out[end] = out.get(end, np.zeros(6)) - six
+        for end, force in self.outside.items():
+            out[end] = out.get(end, np.zeros(6)) + force
+        for end, force in self.equilibrium.load.items():
+            out[end] = out.get(end, np.zeros(6)) - force
         return out
 
 
 class Operating:
-    """A train with its shafts at two models, to be settled at any operating point.
-
-    Parameters
-    ----------
-    workshop : Workshop
-        Its bearings of catalogue data may have no stiffness yet.
-    *models : str
-        One for each shaft, or one for all: bodies or ``rigid``.
-    choice : Choice
-        Place in the ranges of catalogue data.
-
-    Raises
-    ------
-    SceneError
-        For bearings with a load of their own, or data that describe none.
+    """A train with the shafts at models (bodies or ``rigid``, one for each shaft or one for all),
+    to be settled at any operating point; `choice` is the place in the ranges of catalogue data,
+    and bearings with a load of their own are refused.
 
     Examples
     --------
@@ -120,16 +113,16 @@ class Operating:
             refuse_own_loads(workshop.train, side)
 
     @cached_property
-    def made(self) -> dict[str, Catalogued]:
+    def bearings(self) -> dict[str, Catalogued]:
         """Bearings of catalogue data, by ``side.name``."""
         out: dict[str, Catalogued] = {}
         train = self.workshop.train
         for side, shaft in train.shafts.items():
             try:
-                own = catalogued_bearings(shaft.scene, self.choice)
+                shaft_bearings = catalogued_bearings(shaft.scene, self.choice)
             except SceneError as error:
                 raise error.located(None, prefix=(*train.shaft_path(side), "scene")) from None
-            out |= {f"{side}.{name}": one for name, one in own.items()}
+            out |= {f"{side}.{name}": catalogued for name, catalogued in shaft_bearings.items()}
         return out
 
     @cached_property
@@ -137,17 +130,19 @@ class Operating:
         scenes = self.workshop.scenes.items()
         train, out = self.workshop.train, []
         for side, scene in scenes:
-            own = seats_of(side, scene, self.made)
-            below = (under(train, side, one.port) for one in own.bearings)
-            out.append(replace(own, stands_in=tuple(port for port in below if port is not None)))
+            seats = seats_of(side, scene, self.bearings)
+            ports = (housing_port(train, side, seat.port) for seat in seats.bearings)
+            out.append(replace(seats, stands_in=tuple(port for port in ports if port is not None)))
         return tuple(out)
 
     @cached_property
     def _flanks(self) -> dict[bool, OnBearings]:
         return {}
 
-    def _on(self, coast: bool) -> tuple[Workshop, OnBearings]:
-        """The train with the flank that carries, without its bearings, and what it rests on."""
+    def _on_flank(self, coast: bool) -> tuple[Workshop, OnBearings]:
+        """Return the train with the flank that carries, without the bearings, and the seats that it
+        rests on.
+        """
         shop = self.workshop.on_flank(coast)
         if coast not in self._flanks:
             system = shop.system(*self.models, bearings=False)
@@ -155,94 +150,163 @@ class Operating:
         return shop, self._flanks[coast]
 
     def with_points(self, train: Train) -> Operating:
-        """The same bearings on the same shafts, in a train that differs in operating points alone."""
+        """Return the same bearings on the same shafts, in a train that differs in operating points
+        alone.
+        """
         _ = self._seats, self._flanks  # found once for all of them
         out = copy(self)
         out.workshop = self.workshop.with_train(train)
         return out
 
     def at(self, point: OperatingPoint, start: OperatingState | None = None) -> OperatingState:
-        """The train at an operating point.
-
-        Parameters
-        ----------
-        start : OperatingState, optional
-            One of the same train to begin at.
-
-        Raises
-        ------
-        SolidgearError
-            If nothing holds a shaft under its loads.
+        """Settle the train at an operating point, from the state `start` of the same train if it is
+        on the same flank; refused where nothing holds a shaft under the loads.
         """
         point = self.workshop.train.told(point)
-        shop, held = self._on(point.coast)
+        shop, seated = self._on_flank(point.coast)
         forces = mesh_forces(shop.train, shop.contacts, point)
         loads, notes = self._loads(shop, point, forces)
-        total = held.system.load(loads) + flung(shop, held.system, point)
+        total = seated.system.load(loads) + centrifugal_load(shop, seated.system, point)
         if point.weight is not None:
-            total = total + weight(held.system, point.gravity)
-        same = start is not None and start.point.coast == point.coast
-        begin = start.equilibrium if same and start is not None else None
+            total = total + weight(seated.system, point.gravity)
+        begin = None
+        if start is not None and start.point.coast == point.coast:
+            begin = start.equilibrium
         try:
-            found = held.equilibrium(total, begin)
+            solved = seated.equilibrium(total, begin)
         except SolidgearError as error:
             raise SolidgearError(f"at {point.label}: {error}") from None
-        found = _engine_still(found, held.system, shop.train)
-        if looped := divided(shop, held.system, found.coordinates, point.label):
-            forces = {name: {**forces, **looped}[name] for name in shop.contacts}
+        solved = _engine_still(solved, seated.system, shop.train)
+        if loop_shares := loop_forces(shop, seated.system, solved.coordinates, point.label):
+            forces = {name: {**forces, **loop_shares}[name] for name in shop.contacts}
             notes.append(LOOP)
-        notes += list(_told(found, held.system, point))
-        models = shop.mix(self.models)
-        own = models, forces, found, held.system, self.made, loads
-        return OperatingState(point, *own, tuple(notes))
+        notes += [
+            f"at {point.label} bearing {end} carries nothing: its clearance is not taken up, and it "
+            "has no stiffness"
+            for end in solved.lost
+        ]
+        return OperatingState(
+            point=point,
+            models=shop.models_by_shaft(self.models),
+            mesh_forces=forces,
+            equilibrium=solved,
+            system=seated.system,
+            bearings=self.bearings,
+            outside=loads,
+            notes=tuple(notes),
+        )
 
     def _loads(
         self, shop: Workshop, point: OperatingPoint, forces: dict[str, float]
     ) -> tuple[dict[str, np.ndarray], list[str]]:
-        """Loads at ports beside the mesh forces, which the torques of engine and load bring about."""
-        loads, notes = torques(shop, point), []
-        for outside in point.force:
-            loads[outside.at] = loads.get(outside.at, np.zeros(6)) + outside.six
-        for end, torque in held_against_weight(shop, point).items():
+        """Return loads at ports in addition to the mesh forces, which the torques of engine and load bring
+        about, and notes on them.
+        """
+        loads, notes = rotor_loads(shop, point), []
+        for force in point.force:
+            loads[force.at] = loads.get(force.at, np.zeros(6)) + force.six
+        for end, torque in carrier_torques(shop, point).items():
             loads[end] = loads.get(end, np.zeros(6)) + torque * np.eye(6)[4]
             notes.append(
                 f"at {point.label} the weight of planets turns {end} by {abs(torque):.4g} N m: it is "
                 "balanced there, and no shaft carries it"
             )
         for side, scene in shop.scenes.items():
-            added, said = scene_load(shop, side, forces)
-            notes += said
+            added, sentences = scene_load(shop, side, forces)
+            notes += sentences
             if added is not None:
                 end = f"{side}.{scene.port.name}"
                 loads[end] = loads.get(end, np.zeros(6)) + added
         return loads, notes
 
 
-def torques(workshop: Workshop, point: OperatingPoint) -> dict[str, np.ndarray]:
-    """(6,) torques of engines and loads."""
-    found = rotor_torques(workshop.train, workshop.contacts, point)
-    return {name: torque * np.eye(6)[4] for name, torque in found.items()}
+def refuse_own_loads(train: Train, side: str) -> None:
+    """Refuse bearings with a load of their own where a torque brings it."""
+    for bearing in train.shafts[side].scene.bearings:
+        data = bearing.catalogue
+        if data is None:
+            continue
+        for key in ("load", "displacement"):
+            if getattr(data, key) is not None:
+                reason = (
+                    f"bearing {bearing.name} has a {key} of its own, and in a train with an "
+                    "[operation] the torque brings its load: leave it out"
+                )
+                raise SceneError(reason, path=(*train.shaft_path(side), "scene"))
+
+
+def scene_load(
+    workshop: Workshop, side: str, forces: Mapping[str, float]
+) -> tuple[np.ndarray | None, list[str]]:
+    """Return the load (6,) that the [load] of a shaft's scene adds to the mesh force, and notes;
+    refused if it is neither the mesh force nor declared as added or replaced.
+    """
+    train, scene = workshop.train, workshop.scenes[side]
+    if scene.load is None:
+        return None, []
+    load, word = np.array(scene.load.six), train.shafts[side].scene_load
+    if word == "added":
+        return load, [f"the [load] of the {side}'s scene is added to the mesh force"]
+    if word == "replaced":
+        return None, []
+    if any(train.flows[pair.name] is None for pair in train.pairs if side in pair.shafts):
+        raise SceneError(
+            f"the [load] of the {side}'s scene stands beside teeth of a loop of meshes, whose force the "
+            'bearings have a say in: write "replaced", or "added" where it acts beside the teeth',
+            path=(*train.shaft_path(side), "scene_load"),
+        )
+    flanks = [(workshop.on_flank(p.coast), p) for p in train.operation]
+    mesh_loads = [_force_on(s, side, mesh_forces(train, s.contacts, p)) for s, p in flanks]
+    mesh_loads.append(_force_on(workshop, side, forces))
+    if any(np.linalg.norm(load[:3] - f) <= SAME_LOAD * np.linalg.norm(f) for f in mesh_loads):
+        return None, [f"the [load] of the {side}'s scene is its mesh force, and is not added"]
+    raise SceneError(
+        f"the [load] of the {side}'s scene is ({_newtons(load[:3])}) N at its lumped point, and the "
+        f"mesh force is ({_newtons(mesh_loads[0])}) N: leave [load] out of the scene, or write "
+        f'scene_load = "replaced" under [{".".join(train.shaft_path(side))}], or "added" where it '
+        "acts beside the teeth",
+        path=(*train.shaft_path(side), "scene_load"),
+    )
+
+
+def _force_on(workshop: Workshop, side: str, forces: Mapping[str, float]) -> np.ndarray:
+    """Return the (3,) force of all teeth on a shaft, in the axes of the scene, N; equal planets
+    have none.
+    """
+    forces_on = [
+        forces[pair.name] * force_on(pair, side, workshop.contacts[pair.name])[:3]
+        for pair in workshop.train.pairs
+        if side in pair.shafts
+    ]
+    return np.sum([np.zeros(3), *forces_on], axis=0)
+
+
+def _newtons(force: np.ndarray) -> str:
+    return ", ".join(f"{v:.0f}" for v in force)
+
+
+def rotor_loads(workshop: Workshop, point: OperatingPoint) -> dict[str, np.ndarray]:
+    """Return (6,) torques of engines and loads, by rotor."""
+    by_rotor = rotor_torques(workshop.train, workshop.contacts, point)
+    return {name: torque * np.eye(6)[4] for name, torque in by_rotor.items()}
 
 
 def mean_forces(workshop: Workshop, point: OperatingPoint) -> dict[str, float]:
-    """Forces of all meshes at an operating point, N, of a planetary stage those of each planet; those
-    of a loop as Timoshenko shafts divide them under all that loads the train there.
+    """Return the forces of all meshes at an operating point, N, of a planetary stage those of each
+    planet; those of a loop as Timoshenko shafts divide them under all that loads the train
+    there.
     """
     if None in workshop.train.flows.values():
         return Operating(workshop).at(point).mesh_forces
     return mesh_forces(workshop.train, workshop.contacts, point)
 
 
-def divided(
-    workshop: Workshop, system: System, coordinates: np.ndarray, where: str
+def loop_forces(
+    workshop: Workshop, system: System, coordinates: np.ndarray, place: str
 ) -> dict[str, float]:
-    """Forces of meshes that a loop makes share the torque by their stiffness, N, by mesh; their teeth
-    all touch where nothing is loaded.
-
-    Raises
-    ------
-    SolidgearError
-        For teeth that would have to pull.
+    """Return the forces of meshes that a loop makes share the torque by their stiffness, N, by
+    mesh; their teeth all touch where nothing is loaded, and teeth that would have to pull are
+    refused.
     """
     out = {}
     for name in (name for name, flow in workshop.train.flows.items() if flow is None):
@@ -250,26 +314,26 @@ def divided(
         out[name] = -stiffness * float(row @ coordinates)
         if not out[name] > 0:
             raise SolidgearError(
-                f"at {where}: the teeth of the {name} would have to pull with {-out[name]:.4g} N, so "
+                f"at {place}: the teeth of the {name} would have to pull with {-out[name]:.4g} N, so "
                 "that the loop of meshes carries its torque: name the other flank of its gears, or "
                 "another torque"
             )
     return out
 
 
-def _engine_still(found: SystemEquilibrium, system: System, train: Train) -> SystemEquilibrium:
-    """The same with the train turned until the port of the engine's spring has no rotation."""
+def _engine_still(solved: SystemEquilibrium, system: System, train: Train) -> SystemEquilibrium:
+    """Return the same with the train turned until the port of the engine's spring has no rotation."""
     turning = _rotation(system, [*train.shafts])
     row = system.motion(f"{train.reference}.{train.spring_port(train.engines[0])}")[4]
-    moved = float(row @ turning)
-    if moved == 0.0:
-        return found
-    share = float(row @ found.coordinates) / moved
-    return replace(found, coordinates=found.coordinates - share * turning)
+    turned = float(row @ turning)
+    if turned == 0.0:
+        return solved
+    factor = float(row @ solved.coordinates) / turned
+    return replace(solved, coordinates=solved.coordinates - factor * turning)
 
 
 def _rotation(system: System, shafts: list[str]) -> np.ndarray:
-    """(N,) free motion of the train that moves no seat of a bearing but about its axis."""
+    """Return the (N,) free motion of the train that moves no seat of a bearing but about the axis."""
     free = system.free
     ends = [f"{side}.{p}" for side in shafts for p in system.parts[side].ports]
     still = np.vstack([system.motion(end)[[0, 1, 2, 3, 5]] for end in ends]) @ free
@@ -277,27 +341,17 @@ def _rotation(system: System, shafts: list[str]) -> np.ndarray:
     return free @ vectors[-1]
 
 
-def _told(found: SystemEquilibrium, system: System, point: OperatingPoint) -> Iterator[str]:
-    for end in found.lost:
-        yield (
-            f"at {point.label} bearing {end} carries nothing: its clearance is not taken up, and it "
-            "has no stiffness"
-        )
-
-
-def settled(train: Train, state: OperatingState) -> Train:
-    """A train at one operating point, its bearings with the stiffness that they have there.
-
-    Returns
-    -------
-    Train
-        With that point alone.
+def with_settled_bearings(train: Train, state: OperatingState) -> Train:
+    """Return a train with one operating point, the bearings with the stiffness that they have
+    there.
     """
     shafts = {}
     for side, shaft in train.shafts.items():
         bearings = [
-            b if b.catalogue is None else b.with_changes(matrix=_symmetric(state, side, b.name))
-            for b in shaft.scene.bearings
+            bearing
+            if bearing.catalogue is None
+            else bearing.with_changes(matrix=_symmetric(state, side, bearing.name))
+            for bearing in shaft.scene.bearings
         ]
         scene = shaft.scene.with_changes(bearings=tuple(bearings))
         shafts[side] = shaft.with_changes(scene=scene)
@@ -306,24 +360,14 @@ def settled(train: Train, state: OperatingState) -> Train:
 
 
 def _symmetric(state: OperatingState, side: str, name: str) -> np.ndarray:
-    """Tangent of a bearing; friction at speed leaves a part that is no spring."""
+    """Return the tangent (6, 6) of a bearing; friction at speed leaves a part that is no spring."""
     tangent = state.equilibrium.tangent[f"{side}.{name}"]
     return (tangent + tangent.T) / 2
 
 
 def at_point(train: Train, word: str | int | None = None) -> Train:
-    """A train with its bearings settled at one of its operating points.
-
-    Parameters
-    ----------
-    word : str or int, optional
-        Name of the point, or its number counted from one; by default the first, and the train keeps
-        the others.
-
-    Raises
-    ------
-    SolidgearError
-        If it has no such point, or nothing holds a shaft there.
+    """Return a train with bearings settled at an operating point, by name or number
+    from one; by default the first, and the train keeps the others.
 
     Examples
     --------
@@ -334,18 +378,14 @@ def at_point(train: Train, word: str | int | None = None) -> Train:
     -30.0
     """
     point = train.operation[0] if word is None and train.operation else named_point(train, word)
-    found = settled(train, Operating(Workshop(train)).at(point))
-    return found if word is not None else found.with_changes(operation=train.operation)
+    settled_train = with_settled_bearings(train, Operating(Workshop(train)).at(point))
+    return (
+        settled_train if word is not None else settled_train.with_changes(operation=train.operation)
+    )
 
 
 def named_point(train: Train, word: str | int | None) -> OperatingPoint:
-    """Operating point of a train by its name or its number, counted from one.
-
-    Raises
-    ------
-    SolidgearError
-        If it has no such point.
-    """
+    """Return the operating point of a train by name or number, counted from one."""
     if not train.operation:
         raise SolidgearError(
             f"{train.name} has no operating point; write [operation] with a torque in its file"
@@ -353,7 +393,7 @@ def named_point(train: Train, word: str | int | None) -> OperatingPoint:
     for k, point in enumerate(train.operation, start=1):
         if word in (point.name, k, str(k)) and word != "":
             return point
-    known = [
+    names = [
         f"{k}" + (f" {p.name!r}" if p.name else "") for k, p in enumerate(train.operation, start=1)
     ]
-    raise SolidgearError(f"no operating point {word!r}; there are {listed(known)}")
+    raise SolidgearError(f"no operating point {word!r}; there are {listed(names)}")

@@ -1,8 +1,8 @@
-"""Order lines of a train over the speed of its pinion, or of the shaft that the engine turns with,
+"""Order lines of a train over the speed of the pinion, or of the shaft that the engine turns with,
 and the natural frequencies they cross.
 
-Order n of a mesh runs at ``n z_p`` times the speed of its pinion, the first order of a shaft at
-its own speed.  Speeds go up to where the first order of the mesh meets the highest frequency.
+Order n of a mesh runs at ``n z_p`` times the speed of the pinion, the first order of a shaft at
+the speed of the shaft.  Speeds go up to where the first order of the mesh meets the highest frequency.
 Bearings and teeth do not change with speed here, so natural frequencies are level lines.
 """
 
@@ -16,7 +16,7 @@ import numpy as np
 from solidgear.errors import SolidgearError
 from solidgear.scene.planetary import PlanetMesh
 from solidgear.scene.train import PerTurn
-from solidgear.studies.train.kinematics import MESH_ORDERS, of_mesh, of_shaft
+from solidgear.studies.train.kinematics import MESH_ORDERS, mesh_harmonics, shaft_harmonics
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.modes import TrainMode, train_modes
 from solidgear.studies.train.respond import Drive
@@ -27,7 +27,7 @@ MOST_ORDERS, SHAFT_ORDERS = 20, (1, 2)
 
 @dataclass(frozen=True, eq=False)
 class OrderLine:
-    """One order over the speed of the pinion."""
+    """An order over the speed of the pinion."""
 
     name: str  #: ``mesh 1``, ``pinion 1``, ``gear 2``
     per_turn: float  #: periods in one turn of the pinion
@@ -71,23 +71,10 @@ def order_map(
     shaft_orders: Sequence[int] = SHAFT_ORDERS,
     mesh: str | None = None,
 ) -> OrderMap:
-    """Order lines of a train with its shafts by models.
-
-    Parameters
-    ----------
-    highest_hz : float, optional
-        That of the file by default.
-    damping, matched_hz, mesh
-        As :class:`solidgear.studies.train.respond.Drive`; orders of other meshes have no force.
-    mesh_orders : int, optional
-        Three by default, or as many as the transmission error has.
-    shaft_orders : sequence of int
-        Of all shafts.
-
-    Raises
-    ------
-    SolidgearError
-        For a frequency beyond what the reduction resolves, or a number of orders that is none.
+    """Return the order lines of a train with the shafts by models, up to a frequency that is by
+    default that of the file; damping and mesh are those of
+    :class:`solidgear.studies.train.respond.Drive`, and orders of other meshes have no force. By
+    default there are three orders of the mesh, or as many as the transmission error has.
 
     Examples
     --------
@@ -101,36 +88,51 @@ def order_map(
     drive = Drive(workshop, *models, damping=damping, matched_hz=matched_hz, mesh=mesh)
     train, driven = workshop.train, drive.pair
     highest = highest_hz or train.ask.max_frequency
-    given = len(drive.error.orders) or 1
-    count = max(*MESH_ORDERS, given) if mesh_orders is None else mesh_orders
+    error_orders = len(drive.error.orders) or 1
+    count = max(*MESH_ORDERS, error_orders) if mesh_orders is None else mesh_orders
     if not 1 <= count <= MOST_ORDERS:
         raise SolidgearError(f"{count} orders of the mesh; ask for 1 to {MOST_ORDERS}")
     teeth = train.per_turn(driven)
-    top = 60 * highest / teeth
+    highest_rpm = 60 * highest / teeth
     hz = drive.grid(highest)
     lines = []
     stage = driven.stage if isinstance(driven, PlanetMesh) else None
     name = driven.name if stage is None else stage.name
-    for n, order in enumerate(of_mesh(name, teeth, range(1, count + 1)), start=1):
-        force = np.abs(drive.mesh(hz, n)[1]) if n <= given else None
+    for n, order in enumerate(mesh_harmonics(name, teeth, range(1, count + 1)), start=1):
+        force = np.abs(drive.mesh(hz, n)[1]) if n <= error_orders else None
         rpm = None if force is None else 60 * hz / order.per_turn
         lines.append(OrderLine(order.name, order.per_turn, rpm, force))
-    others = {pair.name: train.per_turn(pair) for pair in train.pairs if pair.name != driven.name}
-    others |= {s.name: train.per_turn(s.meshes[0]) for s in train.stages if s is not stage}
-    for name, passing in others.items():
-        orders = of_mesh(name, passing, range(1, count + 1))
+    other_meshes = {
+        pair.name: train.per_turn(pair) for pair in train.pairs if pair.name != driven.name
+    }
+    other_meshes |= {s.name: train.per_turn(s.meshes[0]) for s in train.stages if s is not stage}
+    for name, passing in other_meshes.items():
+        orders = mesh_harmonics(name, passing, range(1, count + 1))
         lines += [OrderLine(o.name, o.per_turn) for o in orders]
     for side, turns in train.turns.items():
-        lines += [OrderLine(o.name, o.per_turn) for o in of_shaft(side, turns, shaft_orders)]
+        lines += [OrderLine(o.name, o.per_turn) for o in shaft_harmonics(side, turns, shaft_orders)]
     modes = train_modes(workshop, *models, max_frequency=highest).modes
     elastic = tuple(m for m in modes if 0 < m.frequency_hz <= highest)
     crossings = []
     for k, line in enumerate(lines):
-        met = [mode for mode in elastic if 60 * mode.frequency_hz / line.per_turn <= top]
-        at = np.array([mode.frequency_hz for mode in met])
-        force = np.abs(drive.mesh(at, k + 1)[1]) if line.force is not None else [None] * len(met)
-        for mode, size in zip(met, force):
-            own = None if size is None else float(size)
+        crossed = [
+            mode for mode in elastic if 60 * mode.frequency_hz / line.per_turn <= highest_rpm
+        ]
+        hz_crossed = np.array([mode.frequency_hz for mode in crossed])
+        force = (
+            np.abs(drive.mesh(hz_crossed, k + 1)[1])
+            if line.force is not None
+            else [None] * len(crossed)
+        )
+        for mode, size in zip(crossed, force):
+            force_there = None if size is None else float(size)
             at_rpm = 60 * mode.frequency_hz / line.per_turn
-            crossings.append(Crossing(line.name, mode.name, mode.frequency_hz, at_rpm, own))
-    return OrderMap(highest, top, teeth, tuple(lines), elastic, tuple(crossings))
+            crossings.append(Crossing(line.name, mode.name, mode.frequency_hz, at_rpm, force_there))
+    return OrderMap(
+        highest_hz=highest,
+        highest_rpm=highest_rpm,
+        teeth=teeth,
+        lines=tuple(lines),
+        modes=elastic,
+        crossings=tuple(crossings),
+    )

@@ -1,4 +1,4 @@
-"""Modes of a train drawn with both shafts in place: several phases a picture, or to be turned."""
+"""Modes of a train drawn with all shafts in place: several phases a picture, or to be turned."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ from solidgear.report.render import RenderJob, RenderResult, render_modes
 from solidgear.report.turning import Member, Turned, together
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.naming import mode_names
-from solidgear.studies.train.pairing import BEYOND, partners, seen_modes
-from solidgear.studies.train.shaft import told_mix
+from solidgear.studies.train.pairing import BEYOND, modes_and_motions, partners
+from solidgear.studies.train.shaft import mix_label
 from solidgear.system.modes import SystemModes
 from solidgear.system.system import System
 
@@ -31,21 +31,9 @@ PHASES = (0, 60, 120, 180)
 PATIENCE = 60.0
 
 
-def system_surface(workshop: Workshop, system: System, rungs: Sequence[str], shape) -> Surface:
-    """Surface of all shafts in the axes of the first one's scene, moved by coordinates of the system.
-
-    Parameters
-    ----------
-    system : System
-        Of these models.
-    rungs : (str, str)
-        One for each shaft, or one for all.
-    shape : (N,) ndarray
-
-    Raises
-    ------
-    SolidgearError
-        For a model without a shape, such as a lumped one.
+def system_surface(workshop: Workshop, system: System, models: Sequence[str], shape) -> Surface:
+    """Return the surface of all shafts by models with a shape, in the axes of the first one's
+    scene, moved by coordinates (N,) of the system.
 
     Examples
     --------
@@ -56,46 +44,49 @@ def system_surface(workshop: Workshop, system: System, rungs: Sequence[str], sha
     >>> drawn.points.shape == drawn.displacement.shape
     True
     """
-    pieces = []
-    for side, (body, turn, origin) in _bodies(workshop, system, rungs).items():
+    points: list[np.ndarray] = []
+    displacement: list[np.ndarray] = []
+    faces: list[np.ndarray] = []
+    triangles: list[np.ndarray] = []
+    lines: list[np.ndarray] = []
+    start = 0
+    for side, (body, turn, origin) in _bodies(workshop, system, models).items():
         drawn = body.surface(system.expand(side, shape))
-        points, moved = drawn.points @ turn.T + origin, drawn.displacement @ turn.T
-        pieces.append((points, moved, drawn.faces, drawn.triangles, drawn.lines))
-    starts = np.cumsum([0, *(len(points) for points, *_ in pieces[:-1])])
-    points, moved, *cells = zip(*pieces)
-    whole = [np.vstack([own + begin for own, begin in zip(one, starts)]) for one in cells]
-    return Surface(np.vstack(points), np.vstack(moved), *whole)
+        points.append(drawn.points @ turn.T + origin)
+        displacement.append(drawn.displacement @ turn.T)
+        faces.append(drawn.faces + start)
+        triangles.append(drawn.triangles + start)
+        lines.append(drawn.lines + start)
+        start += len(drawn.points)
+    return Surface(
+        points=np.vstack(points),
+        displacement=np.vstack(displacement),
+        faces=np.vstack(faces),
+        triangles=np.vstack(triangles),
+        lines=np.vstack(lines),
+    )
 
 
 def _bodies(
-    workshop: Workshop, system: System, rungs: Sequence[str]
+    workshop: Workshop, system: System, models: Sequence[str]
 ) -> dict[str, tuple[Body, np.ndarray, np.ndarray]]:
-    """Body, rotation and origin of all shafts, in the axes of the first one's scene."""
+    """Return body, rotation and origin of all shafts, in the axes of the first one's scene."""
     out = {}
-    for side, rung in workshop.mix(rungs).items():
-        if rung not in LADDER.bodies:
+    for side, model in workshop.models_by_shaft(models).items():
+        if model not in LADDER.bodies:
             raise SolidgearError(
-                f"the model {rung} of the {side} has no shape to draw; "
+                f"the model {model} of the {side} has no shape to draw; "
                 f"use one of {', '.join(LADDER.bodies)}"
             )
         part = system.parts[side]
         turn, origin = getattr(part, "rotation", np.eye(3)), getattr(part, "origin", np.zeros(3))
-        out[side] = workshop.shaft(side, rung).body, turn, origin
+        out[side] = workshop.shaft_model(side, model).body, turn, origin
     return out
 
 
-def turned_modes(workshop: Workshop, *models: str, highest_hz: float | None = None) -> Turned:
-    """All shafts in their places with the modes of the train, to be turned in a page.
-
-    Parameters
-    ----------
-    highest_hz : float, optional
-        Of the modes; that of the file by default. The first elastic mode is always there.
-
-    Raises
-    ------
-    SolidgearError
-        For a model without a shape.
+def turning_modes(workshop: Workshop, *models: str, highest_hz: float | None = None) -> Turned:
+    """Return all shafts in their places with the modes of the train up to a frequency, Hz, by
+    default that of the file, to be turned in a page; the first elastic mode is always there.
 
     Examples
     --------
@@ -106,74 +97,76 @@ def turned_modes(workshop: Workshop, *models: str, highest_hz: float | None = No
     ('both shafts euler', 1, ['load torsion 1', 'gear torsion 1'])
     """
     system = workshop.system(*models)
-    found, _ = seen_modes(workshop, system, highest_hz or workshop.train.ask.max_frequency)
-    names = mode_names(workshop, system, found)
-    elastic = range(found.rigid, len(found.frequency_hz))
-    return _turned(workshop, models, system, found, [(k, names[k]) for k in elastic])
+    modes, _ = modes_and_motions(workshop, system, highest_hz or workshop.train.ask.max_frequency)
+    names = mode_names(workshop, system, modes)
+    elastic = range(modes.rigid, len(modes.frequency_hz))
+    return _turning(workshop, models, system, modes, [(k, names[k]) for k in elastic])
 
 
-def turned_beside(
+def turning_pair(
     workshop: Workshop,
     first: tuple[str, ...],
     second: tuple[str, ...],
     highest_hz: float | None = None,
 ) -> list[Turned]:
-    """Two mixes of models of a train, to be turned side by side.
-
-    Modes of the second are called like their partners of the first, paired by the motions of all
-    ports, and drawn with their sign. One without a partner says so in its name.
-
-    Parameters
-    ----------
-    first, second : tuple of str
-        Models of the shafts.
-    highest_hz : float, optional
-        Of the modes of both; a partner may lie beyond it.
-
-    Raises
-    ------
-    SolidgearError
-        For a model without a shape.
+    """Return two mixes of models of a train, to be turned side by side: modes of the second, up to
+    a frequency, Hz, and partners beyond it, are named like their partners of the first, paired
+    by the motions of all ports, and drawn with their sign; one without a partner says so in its
+    name.
     """
     limit = highest_hz or workshop.train.ask.max_frequency
-    one, other = workshop.system(*first), workshop.system(*second)
-    found, seen = seen_modes(workshop, one, limit)
-    names = mode_names(workshop, one, found)
-    elastic = range(found.rigid, len(found.frequency_hz))
-    base = _turned(workshop, first, one, found, [(k, names[k]) for k in elastic])
-    its, its_seen = seen_modes(workshop, other, BEYOND * limit)
-    hz, its_hz = found.frequency_hz[found.rigid :], its.frequency_hz[its.rigid :]
-    partner = {j: k for k, j in partners(hz, seen, its_hz, its_seen).items()}
-    own = mode_names(workshop, other, its)
-    kept = []
-    for j, frequency in enumerate(its_hz):
+    system_a, system_b = workshop.system(*first), workshop.system(*second)
+    modes_a, motions_a = modes_and_motions(workshop, system_a, limit)
+    names_a = mode_names(workshop, system_a, modes_a)
+    elastic = range(modes_a.rigid, len(modes_a.frequency_hz))
+    base = _turning(workshop, first, system_a, modes_a, [(k, names_a[k]) for k in elastic])
+    modes_b, motions_b = modes_and_motions(workshop, system_b, BEYOND * limit)
+    hz_a, hz_b = modes_a.frequency_hz[modes_a.rigid :], modes_b.frequency_hz[modes_b.rigid :]
+    partner = {j: k for k, j in partners(hz_a, motions_a, hz_b, motions_b).items()}
+    names_b = mode_names(workshop, system_b, modes_b)
+    chosen = []
+    for j, frequency in enumerate(hz_b):
         if j in partner:
-            kept.append((its.rigid + j, names[found.rigid + partner[j]]))
+            chosen.append((modes_b.rigid + j, names_a[modes_a.rigid + partner[j]]))
         elif frequency <= limit:
-            kept.append((its.rigid + j, f"{own[its.rigid + j]}, {_title(workshop, second)} alone"))
-    return [base, _turned(workshop, second, other, its, kept, [base])]
+            chosen.append(
+                (
+                    modes_b.rigid + j,
+                    f"{names_b[modes_b.rigid + j]}, {_title(workshop, second)} alone",
+                )
+            )
+    return [base, _turning(workshop, second, system_b, modes_b, chosen, [base])]
 
 
 def _title(workshop: Workshop, models: Sequence[str]) -> str:
-    alike = len({*models}) == 1
-    return f"{workshop.train.every} shafts {models[0]}" if alike else told_mix(workshop.mix(models))
+    equal = len({*models}) == 1
+    return (
+        f"{workshop.train.every} shafts {models[0]}"
+        if equal
+        else mix_label(workshop.models_by_shaft(models))
+    )
 
 
-def _turned(
+def _turning(
     workshop: Workshop,
-    rungs: tuple[str, ...],
+    models: tuple[str, ...],
     system: System,
-    found: SystemModes,
-    kept: Sequence[tuple[int, str]],
+    system_modes: SystemModes,
+    chosen: Sequence[tuple[int, str]],
     like: Sequence[Turned] = (),
 ) -> Turned:
-    """One mix with modes of these numbers and names, in the signs of others."""
+    """Return a mix with modes of these numbers and names, in the signs of others."""
     members = [
-        Member(body, turn, origin, [[system.expand(side, found.shapes[:, k])] for k, _ in kept])
-        for side, (body, turn, origin) in _bodies(workshop, system, rungs).items()
+        Member(
+            body,
+            turn,
+            origin,
+            [[system.expand(side, system_modes.shapes[:, k])] for k, _ in chosen],
+        )
+        for side, (body, turn, origin) in _bodies(workshop, system, models).items()
     ]
-    modes = [(name, float(found.frequency_hz[k])) for k, name in kept]
-    return together(_title(workshop, rungs), modes, members, like)
+    modes = [(name, float(system_modes.frequency_hz[k])) for k, name in chosen]
+    return together(_title(workshop, models), modes, members, like)
 
 
 def draw_modes(
@@ -182,56 +175,37 @@ def draw_modes(
     folder: str | os.PathLike,
     numbers: Sequence[int],
 ) -> dict[str, RenderResult]:
-    """One picture a mode, ``system_mode_03.png`` and so on.
-
-    Parameters
-    ----------
-    numbers : sequence of int
-        Of modes as system-modes lists them, from 1.
-
-    Returns
-    -------
-    dict of str to RenderResult
-        By name and frequency; nothing is raised for a picture that could not be drawn.
-
-    Raises
-    ------
-    SolidgearError
-        For a model without a shape, a number that there is not, or a folder that cannot be written.
+    """Draw a picture a mode, ``system_mode_03.png`` and so on, with numbers from 1 as system-modes
+    lists them; return the results by name and frequency, also of pictures that could not be
+    drawn.
     """
     system = workshop.system(*models)
     most = system.free.shape[1] + len(system.elastic[0])
     wrong = [str(n) for n in numbers if not 1 <= n <= most]
     if wrong:
         raise SolidgearError(f"there is no mode {listed(wrong)}; modes are numbered 1 to {most}")
-    found = system.modes(max(1, max(numbers) - system.free.shape[1]))
-    names = mode_names(workshop, system, found)
+    modes = system.modes(max(1, max(numbers) - system.free.shape[1]))
+    names = mode_names(workshop, system, modes)
     frames = [(cos(radians(phase)), f"phase {phase}°") for phase in PHASES]
-    alike = len({*models}) == 1
-    mix = workshop.mix(models).items()
-    both = models[0] if alike else ", ".join(f"{rung} {side}" for side, rung in mix)
+    equal = len({*models}) == 1
+    by_shaft = workshop.models_by_shaft(models).items()
+    label = models[0] if equal else ", ".join(f"{model} {side}" for side, model in by_shaft)
     jobs = {}
     for n in numbers:
-        surface = system_surface(workshop, system, models, found.shapes[:, n - 1])
-        told = f"{names[n - 1]}, {found.frequency_hz[n - 1]:.1f} Hz"
+        surface = system_surface(workshop, system, models, modes.shapes[:, n - 1])
+        caption = f"{names[n - 1]}, {modes.frequency_hz[n - 1]:.1f} Hz"
         path = Path(folder) / f"system_mode_{n:02d}.png"
-        jobs[told] = RenderJob(surface, f"{told} ({both})", path, frames, along=False)
+        jobs[caption] = RenderJob(surface, f"{caption} ({label})", path, frames, along=False)
     prepare(folder)
     return dict(zip(jobs, render_modes(jobs.values(), timeout=PATIENCE * len(jobs))))
 
 
-def still_of(workshop: Workshop, *models: str, number: int) -> tuple[str, str]:
-    """A picture of one mode for a page: its data URI, and else why there is none.
-
-    Parameters
-    ----------
-    workshop, models
-        As of :func:`draw_modes`.
-    number : int
-        Of the mode, from 1.
+def still_picture(workshop: Workshop, *models: str, number: int) -> tuple[str, str]:
+    """Return a picture of a mode, from 1, for a page: the data URI, and else the reason why there
+    is none.
     """
     with tempfile.TemporaryDirectory(prefix="solidgear-turn-") as folder:
-        (one,) = draw_modes(workshop, *models, folder=folder, numbers=[number]).values()
-        if not one.ok:
-            return "", f"no picture for print: {one.reason}"
-        return data_uri("mode", one.path) or "", ""
+        (picture,) = draw_modes(workshop, *models, folder=folder, numbers=[number]).values()
+        if not picture.ok:
+            return "", f"no picture for print: {picture.reason}"
+        return data_uri("mode", picture.path) or "", ""

@@ -2,7 +2,7 @@
 
 Directions are in the axes of the shaft that a port is on.  With the losses of the file the matrices
 stay symmetric, so that ends may change places (reciprocity).  Sums over modes place the
-frequencies; the values are solved one frequency at a time, since what reaches a far port is the
+frequencies; the values are solved one frequency at a time, since the motion of a far port is the
 small difference of large terms.
 """
 
@@ -17,9 +17,9 @@ from solidgear.frames import DOF_NAMES
 from solidgear.studies.train.components import FORCE_UNITS, MOTION_UNITS
 from solidgear.studies.train.models import Workshop
 from solidgear.studies.train.respond import Drive
-from solidgear.studies.train.shaft import told_mix
+from solidgear.studies.train.shaft import mix_label
 
-#: a motion this much smaller than what reciprocal motions of both ends allow is rounding
+#: a motion this much smaller than reciprocal motions of both ends allow is rounding
 NOTHING = 1e-12
 
 #: port and direction, such as ("gear.gear", "z")
@@ -43,7 +43,7 @@ class TrainReceptance:
     @property
     def label(self) -> str:
         """Name in a legend: the models of the shafts."""
-        return told_mix(self.models)
+        return mix_label(self.models)
 
 
 def receptance(
@@ -56,24 +56,10 @@ def receptance(
     matched_hz: float = 0.0,
     frequency_hz: np.ndarray | None = None,
 ) -> TrainReceptance:
-    """Receptance between two ports of a train with its shafts by models.
-
-    Parameters
-    ----------
-    from_, to : (str, str)
-        Port and direction of the force and of the motion, such as ``("gear.gear", "z")``.
-    highest_hz : float, optional
-        That of the file by default.
-    damping, matched_hz
-        As :class:`solidgear.studies.train.respond.Drive`.
-    frequency_hz : (f,) ndarray, optional
-        Instead of an adaptive grid.
-
-    Raises
-    ------
-    SolidgearError
-        For unknown ports and directions, those in which a port does not move, ends that do not
-        feel each other, or a frequency beyond what the reduction resolves.
+    """Compute the receptance between two ports of a train with the shafts by models, from port and
+    direction of the force to those of the motion, such as ``("gear.gear", "z")``, on an adaptive
+    grid unless frequencies are given; refused for directions in which a port does not move, and
+    for ends that do not move each other.
 
     Examples
     --------
@@ -84,30 +70,41 @@ def receptance(
     >>> found.unit, [mode for _, _, mode in found.peaks][:2]
     ('m/N', ['load torsion 1', 'gear torsion 1'])
     """
-    force = np.eye(6)[_number(from_)]
+    force = np.eye(6)[_component(from_)]
     load = {from_[0]: force}
     drive = Drive(workshop, *models, damping=damping, matched_hz=matched_hz, forces=load)
-    row = drive.system.motion(to[0])[_number(to)]
-    for end, own in ((from_, drive.load), (to, row)):
-        if not own.any():
+    row = drive.system.motion(to[0])[_component(to)]
+    for end, row_of_end in ((from_, drive.load), (to, row)):
+        if not row_of_end.any():
             moves = [d for d, r in zip(DOF_NAMES, drive.system.motion(end[0])) if r.any()]
             raise SolidgearError(f"{end[0]} does not move in {end[1]}, only in {' '.join(moves)}")
 
-    def seen(hz):
+    def response(hz):
         return drive.motion(hz, row[None])
 
-    _felt(drive, row)
+    _refuse_unrelated(drive, row)
     highest = highest_hz or workshop.train.ask.max_frequency
-    given = frequency_hz is not None
-    hz = np.asarray(frequency_hz, float) if given else drive.grid(highest, seen=seen)
+    is_given = frequency_hz is not None
+    hz = np.asarray(frequency_hz, float) if is_given else drive.grid(highest, motions_of=response)
     value = drive.steady.solved(hz, drive.load, row[None])[:, 0]
     top = drive.tops(hz, np.abs(value), row)
-    unit = f"{MOTION_UNITS[_number(to)]}/{_bracketed(FORCE_UNITS[_number(from_)])}"
-    rungs = workshop.mix(models)
-    return TrainReceptance(rungs, damping, from_, to, unit, hz, value, tuple(top))
+    force_unit = FORCE_UNITS[_component(from_)]
+    if " " in force_unit:
+        force_unit = f"({force_unit})"
+    rungs = workshop.models_by_shaft(models)
+    return TrainReceptance(
+        models=rungs,
+        damping=damping,
+        from_=from_,
+        to=to,
+        unit=f"{MOTION_UNITS[_component(to)]}/{force_unit}",
+        frequency_hz=hz,
+        value=value,
+        peaks=tuple(top),
+    )
 
 
-def _number(end: End) -> int:
+def _component(end: End) -> int:
     if end[1] not in DOF_NAMES:
         raise SolidgearError(
             f"{show(end[1], 20)} is no direction of {end[0]}; use one of {' '.join(DOF_NAMES)}"
@@ -115,15 +112,11 @@ def _number(end: End) -> int:
     return DOF_NAMES.index(end[1])
 
 
-def _bracketed(unit: str) -> str:
-    return f"({unit})" if " " in unit else unit
-
-
-def _felt(drive: Drive, row: np.ndarray) -> None:
+def _refuse_unrelated(drive: Drive, row: np.ndarray) -> None:
     """Refuse two ends that move each other by rounding alone, judged mode by mode."""
     shapes = np.hstack([drive.system.free, drive.system.elastic[1]])
-    there, here = np.abs(row @ shapes), np.abs(drive.load @ shapes)
-    if not (there * here).max() > NOTHING * there.max() * here.max():
+    moved, loaded = np.abs(row @ shapes), np.abs(drive.load @ shapes)
+    if not (moved * loaded).max() > NOTHING * moved.max() * loaded.max():
         raise SolidgearError(
             "a force there does not move the other end: no mode has a part in both; "
             "choose other ports or directions"

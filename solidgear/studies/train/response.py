@@ -1,4 +1,4 @@
-"""Amplitudes of a train over frequency, and what is read off them."""
+"""Amplitudes of a train over frequency, and the peaks read off them."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solidgear.studies.train.shaft import told_mix
+from solidgear.studies.train.shaft import mix_label
 
 
 @dataclass(frozen=True)
@@ -20,10 +20,10 @@ class Peak:
 
 @dataclass(frozen=True, eq=False)
 class OrderCurve:
-    """Mesh force by one order of the transmission error."""
+    """Mesh force by an order of the transmission error."""
 
     order: int  #: counted from 1
-    #: (f,) amplitude at the frequencies of the response, which are those of the order itself, N
+    #: (f,) amplitude at the frequencies of the response, of the order itself, N
     force: np.ndarray
     peaks: tuple[Peak, ...]
 
@@ -43,7 +43,7 @@ class TrainResponse:
     parting: tuple[str, ...]
     cautions: tuple[str, ...]
     seconds: float  #: to build and reduce both shafts
-    name: str = ""  #: of the train, where it is shown beside another one
+    name: str = ""  #: of the train, where two are compared
 
     @property
     def peaks(self) -> tuple[Peak, ...]:
@@ -52,8 +52,8 @@ class TrainResponse:
 
     @property
     def label(self) -> str:
-        """Name in a legend: the train, or the models of its shafts."""
-        return self.name or told_mix(self.models)
+        """Name in a legend: the train, or the models of the shafts."""
+        return self.name or mix_label(self.models)
 
     @property
     def force(self) -> np.ndarray:
@@ -62,5 +62,7 @@ class TrainResponse:
 
 
 def figures(value: float) -> str:
-    """Three figures, without a power of ten; as many as there are before the point."""
+    """Return a number with three figures, without a power of ten; as many as there are before the
+    point.
+    """
     return f"{value:.0f}" if value >= 1000 else f"{value:.3g}"

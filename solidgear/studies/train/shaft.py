@@ -36,13 +36,9 @@ JUDGE = LADDER.judges[0]
 MODELS = (*LADDER.bodies, RIGID, *LUMPED)
 
 
-def checked_rung(name: str) -> tuple[str, str]:
-    """Kind of a shaft's model, and the body it rests on (empty for a body of its own).
-
-    Raises
-    ------
-    SolidgearError
-        For a model that there is not.
+def checked_model(name: str) -> tuple[str, str]:
+    """Split the name of a shaft's model into its kind and the body it rests on, which is empty
+    where the model is a body itself; an unknown name is refused.
     """
     kind, _, body = name.partition("/")
     if kind not in MODELS:
@@ -61,14 +57,16 @@ def checked_rung(name: str) -> tuple[str, str]:
 
 
 def ladder_place(name: str) -> tuple[int, int]:
-    """Place of a model among all, and of the body beneath it."""
-    kind, body = checked_rung(name)
+    """Return the places of a model and of the body beneath it in the sequence of all models, to
+    sort by.
+    """
+    kind, body = checked_model(name)
     return MODELS.index(kind), MODELS.index(body) if body else -1
 
 
-def told_mix(models: Mapping[str, str]) -> str:
-    """Models by shaft in words."""
-    return ", ".join(f"{side} {rung}" for side, rung in models.items())
+def mix_label(models: Mapping[str, str]) -> str:
+    """Return the models by shaft in words, such as ``pinion harmonic, gear euler``."""
+    return ", ".join(f"{side} {model}" for side, model in models.items())
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,9 +74,9 @@ class ShaftModel:
     """One shaft by one model, a part of a system."""
 
     side: str
-    rung: str
+    model: str
     part: Part
-    body: Body  #: what the part was made of
+    body: Body  #: from which the part is reduced
     unknowns: int  #: of the body's mesh
     seconds: float  #: to build and reduce it
     #: the part with harmonics that teeth drive at a mesh point, by these
@@ -86,49 +84,45 @@ class ShaftModel:
 
     @cached_property
     def rigid_mass(self) -> np.ndarray:
-        """(6, 6) rigid mass of the body about the origin of its scene."""
+        """Rigid mass (6, 6) of the body about the origin of the scene."""
         return self.body.mass_matrix()
 
 
-def lumped(under: ShaftModel, kind: str, scene: Scene, gears: Sequence[str]) -> Part:
-    """A shaft condensed to the lumped points of its gears, by one of the lumped models.
-
-    Raises
-    ------
-    SolidgearError
-        If it has no mode-matched masses, or several gears and a mass that is the whole one at a point.
+def lumped(shaft_model: ShaftModel, kind: str, scene: Scene, gears: Sequence[str]) -> Part:
+    """Condense a shaft to the lumped points of the gears, by one of the lumped models; refused for
+    a mass at one point where a shaft has several gears, and where no mode-matched masses exist.
     """
-    shaft = under.part
+    part = shaft_model.part
     supports, port = as_supports(scene), scene.port.name
-    assert isinstance(shaft, Superelement)
-    whole = condensed_shaft(shaft, np.array(supports.stiffness), supports.ports, gears)
+    assert isinstance(part, Superelement)
+    condensed = condensed_shaft(part, np.array(supports.stiffness), supports.ports, gears)
     if kind == "lumped":
-        return whole
+        return condensed
     if len(gears) > 1:
         raise SolidgearError(
-            f"a {kind} shaft has its whole mass at one point, and the {under.side} carries several "
+            f"a {kind} shaft has its whole mass at one point, and the {shaft_model.side} carries several "
             f"gears, which share it in no one way; use lumped, or one of {listed(LADDER.bodies)}"
         )
-    rigid = _mass_about(under.body, scene.port.y)
+    rigid = _mass_about(shaft_model.body, scene.port.y)
     if kind == "lumped-old":
-        return whole.with_mass(np.diag(np.diag(rigid)))
+        return condensed.with_mass(np.diag(np.diag(rigid)))
     mass = np.diag(np.diag(rigid))
     if kind == "lumped-bending":
         for plane in ([0, 5], [2, 3]):
-            mass[np.ix_(plane, plane)] = whole.mass[np.ix_(plane, plane)]
-        return whole.with_mass(mass)
-    _, models = synthesise(under.body, supports, port)
+            mass[np.ix_(plane, plane)] = condensed.mass[np.ix_(plane, plane)]
+        return condensed.with_mass(mass)
+    _, models = synthesise(shaft_model.body, supports, port)
     matched = models["mode-matched"]
     if matched.mass is None or not matched.feasible:
         raise SolidgearError(
-            f"the {under.side} has no mode-matched masses: {matched.verdict}; use lumped"
+            f"the {shaft_model.side} has no mode-matched masses: {matched.verdict}; use lumped"
         )
     for plane in ([0, 5], [2, 3]):
         mass[np.ix_(plane, plane)] = np.diag(np.diag(matched.mass))
-    return whole.with_mass(mass)
+    return condensed.with_mass(mass)
 
 
 def _mass_about(body: Body, y: float) -> np.ndarray:
-    """(6, 6) rigid mass about a point of the axis."""
-    back = shift([0.0, -y, 0.0])
-    return back.T @ body.mass_matrix() @ back
+    """Return the (6, 6) rigid mass about the point y of the axis."""
+    to_point = shift([0.0, -y, 0.0])
+    return to_point.T @ body.mass_matrix() @ to_point

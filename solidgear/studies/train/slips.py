@@ -9,17 +9,17 @@ from solidgear.studies.guards.notice import slip_in_units
 from solidgear.studies.loading import SHAFT
 from solidgear.studies.train.models import Workshop
 
-#: what a slip of 1000 in the data of a mesh leaves: ISO 6336 puts some 20 N/(mm um) into a steel
+#: ranges that a slip of 1000 in the data of a mesh leaves: ISO 6336 puts some 20 N/(mm um) into a steel
 #: mesh, 0.1 of E times the face width, and a face is 0.1 to 3 lever arms wide; errors of teeth are
-#: some thousandths of the module at most, and 1e-5 of it is what no gear is ground to
+#: some thousandths of the module at most, and no gear is ground to 1e-5 of it
 SOUND = {
     "mesh stiffness over E r": (1e-3, 2.0),
     "transmission error over 2 r / z": (1e-5, 0.05),
 }
 
 
-def slips(workshop: Workshop) -> tuple[str, ...]:
-    """Sentences on meshes and shafts; none where every number is one that can be made.
+def unit_slips(workshop: Workshop) -> tuple[str, ...]:
+    """Return sentences on meshes and shafts; none where every number can be true.
 
     Examples
     --------
@@ -31,7 +31,7 @@ def slips(workshop: Workshop) -> tuple[str, ...]:
     >>> slips(Workshop(soft))[0][:62]
     'probably a slip in units: mesh stiffness over E r is 2.73e-05,'
     """
-    out = slips_of_meshes(workshop)
+    out = mesh_unit_slips(workshop)
     for side in workshop.scenes:
         scene = workshop.scenes[side].plain
         probe = Probe(scene, build(scene, SHAFT))
@@ -39,8 +39,10 @@ def slips(workshop: Workshop) -> tuple[str, ...]:
     return tuple(out)
 
 
-def slips_of_meshes(workshop: Workshop) -> list[str]:
-    """Sentences on the stiffness and the transmission error of meshes; none where all are sound."""
+def mesh_unit_slips(workshop: Workshop) -> list[str]:
+    """Return sentences on the stiffness and the transmission error of meshes; none where all are
+    sound.
+    """
     out = []
     stiff = max(s.material.E for scene in workshop.scenes.values() for s in scene.segments)
     for pair in workshop.train.drivers:
@@ -48,15 +50,15 @@ def slips_of_meshes(workshop: Workshop) -> list[str]:
             lever, teeth = pair.stage.teeth.base_radii[0], pair.stage.teeth.sun
             stiffness = pair.stiffness
         else:
-            met, teeth = workshop.contacts[pair.name], pair.pinion.teeth
-            lever, stiffness = abs(met.pinion.lever), met.stiffness
+            contact, teeth = workshop.contacts[pair.name], pair.pinion.teeth
+            lever, stiffness = abs(contact.pinion.lever), contact.stiffness
         table = pair.mesh.transmission_error
         error = max((*table.orders, *table.amplitude), default=0.0) if table else 0.0
         values = stiffness / (stiff * lever), error * teeth / (2 * lever)
-        found = [(name, value, "") for name, value in zip(SOUND, values)]
+        rows = [(name, value, "") for name, value in zip(SOUND, values)]
         if not error:
-            found.pop()  # zero is told by itself, and without any there is nothing to say
+            rows.pop()  # zero has a caution elsewhere, and without an error there is nothing to check
         legend = f"r: lever arm of the pinion, {1e3 * lever:.4g} mm; z: its {teeth} teeth"
-        if sentence := slip_in_units(found, SOUND, legend):
+        if sentence := slip_in_units(rows, SOUND, legend):
             out.append(f"{pair.name}: {sentence}" if pair.label else sentence)
     return out

@@ -1,10 +1,9 @@
 """Shafts of a train that take the same space: a gear that runs into a shaft, or a shaft into another.
 
-Every shaft is its segments as bodies of revolution, its gears up to their tips and its bearings of
-catalogue data.  Teeth that mesh
-take each other's space as far as their tips reach.  On parallel axes what lies over the same stretch
-of both is compared, which is exact; of axes at an angle points of the one are looked for in the
-other, on circles that are close beside the radii.
+Every shaft is segments as bodies of revolution, gears up to their tips and bearings of
+catalogue data.  Teeth that mesh take each other's space as far as their tips reach.  On parallel
+axes both shafts are compared over the stretch that they share, which is exact; on axes at an angle
+points of one shaft are looked for in the other, on circles that are close beside the radii.
 """
 
 from __future__ import annotations
@@ -35,7 +34,7 @@ ALONG, AROUND, FINE, MOST = 9, 72, 6, 500
 
 @dataclass(frozen=True)
 class Piece:
-    """A length of a shaft with straight meridians; pairs are its values at both ends."""
+    """A length of a shaft with straight meridians; pairs are values at both ends."""
 
     name: str  #: in words
     #: y, outer, inner: m
@@ -45,7 +44,7 @@ class Piece:
     meshes: frozenset[str] = frozenset()  #: meshes whose teeth it has or carries
 
     def radii(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Inner and outer radius at places."""
+        """Return the inner and the outer radius at places along the shaft."""
         return np.interp(y, self.y, self.inner), np.interp(y, self.y, self.outer)
 
 
@@ -60,52 +59,54 @@ class Overlap:
     places: tuple[tuple[float, float], tuple[float, float]]
 
     def __str__(self) -> str:
-        (one, two), (first, second) = self.shafts, self.pieces
-        at = [
+        (side_a, side_b), (piece_a, piece_b) = self.shafts, self.pieces
+        stretches = [
             f"{1e3 * low:.1f} to {1e3 * high:.1f} mm along the {side}"
             for side, (low, high) in zip(self.shafts, self.places)
         ]
         return (
-            f"{first} of the {one} and {second} of the {two} take the same space, by "
-            f"{1e3 * self.depth:.4g} mm: {' and '.join(at)}; correct azimuth, places or sizes"
+            f"{piece_a} of the {side_a} and {piece_b} of the {side_b} take the same space, by "
+            f"{1e3 * self.depth:.4g} mm: {' and '.join(stretches)}; correct azimuth, places or sizes"
         )
 
 
 def overlaps(
     train: Train, scenes: Mapping[str, Scene], places: Mapping[str, Place]
 ) -> tuple[Overlap, ...]:
-    """The deepest overlap of every two shafts that have any.
-
-    Parameters
-    ----------
-    places : mapping of str to (turn, origin)
-        Of every shaft, as :func:`solidgear.studies.train.layout.places`.
+    """Return the deepest overlap of every two shafts that have any; `places` are those of
+    :func:`solidgear.studies.train.layout.places`.
     """
     tips: dict[str, float] = {}
     pieces = {side: _pieces(train, side, scene, tips) for side, scene in scenes.items()}
-    out = []
-    around = [{*stage.shafts} for stage in train.stages]  # a carrier is around its sun
-    for one, two in combinations(scenes, 2):
-        if {one, two} in around:
+    deepest = []
+    nested = [{*stage.shafts} for stage in train.stages]  # a carrier is around its sun
+    for side_a, side_b in combinations(scenes, 2):
+        if {side_a, side_b} in nested:
             continue
-        (turned, origin), (other, end) = places[one], places[two]
-        turn, at = turned.T @ other, turned.T @ (end - origin)
+        (axes_a, origin_a), (axes_b, origin_b) = places[side_a], places[side_b]
+        turn, offset = axes_a.T @ axes_b, axes_a.T @ (origin_b - origin_a)
         parallel = np.hypot(turn[0, 1], turn[2, 1]) < PARALLEL
-        found: list[Overlap] = []
-        for a in pieces[one]:
-            for b in pieces[two]:
+        pair_overlaps: list[Overlap] = []
+        for a in pieces[side_a]:
+            for b in pieces[side_b]:
                 shared = a.meshes & b.meshes
                 if parallel:
-                    free = max([0.0, *(tips[m] - float(np.hypot(at[0], at[2])) for m in shared)])
-                    found += beside((one, two), a, b, turn[1, 1], at, free)
+                    free = max(
+                        [0.0, *(tips[m] - float(np.hypot(offset[0], offset[2])) for m in shared)]
+                    )
+                    pair_overlaps += parallel_overlap(
+                        (side_a, side_b), a, b, turn[1, 1], offset, free
+                    )
                 elif not shared:
-                    found += across((one, two), a, b, turn, at)
-        out += sorted(found, key=lambda o: -o.depth)[:1]
-    return tuple(out)
+                    pair_overlaps += angled_overlap((side_a, side_b), a, b, turn, offset)
+        deepest += sorted(pair_overlaps, key=lambda o: -o.depth)[:1]
+    return tuple(deepest)
 
 
 def _pieces(train: Train, side: str, scene: Scene, tips: dict[str, float]) -> list[Piece]:
-    """Segments and gears of a shaft; the tip radii of its meshes are added to `tips`."""
+    """Return segments, gears and bearings of a shaft; the tip radii of the meshes are added to
+    `tips`.
+    """
     blanks = [
         Piece(f'"{s.name}"', (s.y0, s.y1), (s.outer0, s.outer1), (s.inner0, s.inner1))
         for s in scene.segments
@@ -113,25 +114,29 @@ def _pieces(train: Train, side: str, scene: Scene, tips: dict[str, float]) -> li
     gears: list[Piece] = []
     for port in train.shafts[side].gears:
         pairs = [p for p in train.pairs if (side, port) in zip(p.shafts, p.ports)]
-        known = [made for pair in pairs if (made := _gear(pair, side, port, scene)) is not None]
+        gear_pieces = [
+            piece for pair in pairs if (piece := _gear(pair, side, port, scene)) is not None
+        ]
         seat = next(s for s in scene.stations if s.name == port)
         meshes = frozenset(pair.name for pair in pairs)
-        gear, depth = known[0] if known else (Piece("", (seat.lo, seat.hi), (0.0, 0.0)), np.inf)
-        tip = max(gear.outer) if known else np.inf
-        straight, bore = bool(known) and gear.outer[0] == gear.outer[1], gear.outer
-        for k, one in enumerate(blanks):
-            along = min(one.y[1], gear.y[1]) - max(one.y[0], gear.y[0])
-            if along < min(one.y[1] - one.y[0], gear.y[1] - gear.y[0]) / 2:
+        gear, depth = (
+            gear_pieces[0] if gear_pieces else (Piece("", (seat.lo, seat.hi), (0.0, 0.0)), np.inf)
+        )
+        tip = max(gear.outer) if gear_pieces else np.inf
+        straight, bore = bool(gear_pieces) and gear.outer[0] == gear.outer[1], gear.outer
+        for k, blank in enumerate(blanks):
+            along = min(blank.y[1], gear.y[1]) - max(blank.y[0], gear.y[0])
+            if along < min(blank.y[1] - blank.y[0], gear.y[1] - gear.y[0]) / 2:
                 continue
-            bore = min(bore, one.inner)
-            # a blank up to the teeth, whose profile shift may not be told; of a bevel gear any as large
-            size = max(one.outer)
+            bore = min(bore, blank.inner)
+            # a blank up to the teeth, whose profile shift may be unknown; for a bevel gear any as large
+            size = max(blank.outer)
             fits = size <= max(gear.outer) + depth / DEEP or not straight
             if fits and size >= min(gear.outer) - depth:
-                blanks[k], tip = replace(one, meshes=one.meshes | meshes), max(tip, size)
+                blanks[k], tip = replace(blank, meshes=blank.meshes | meshes), max(tip, size)
         for pair in pairs:
             tips[pair.name] = tips.get(pair.name, 0.0) + tip
-        gears += [replace(gear, inner=bore, meshes=meshes)] if known else []
+        gears += [replace(gear, inner=bore, meshes=meshes)] if gear_pieces else []
     for k, segment in enumerate(scene.segments):
         if segment.part == "backcone":  # of the head before it or behind it
             head = blanks[max(k - 1, 0) : k + 2]
@@ -140,7 +145,7 @@ def _pieces(train: Train, side: str, scene: Scene, tips: dict[str, float]) -> li
 
 
 def _bearings(scene: Scene) -> Iterator[Piece]:
-    """Bearings of catalogue data up to their outer diameter."""
+    """Yield bearings with catalogue data up to their outer diameter."""
     for bearing in scene.bearings:
         if (data := bearing.catalogue) is not None:
             half = width_of(data) / 2
@@ -151,7 +156,9 @@ def _bearings(scene: Scene) -> Iterator[Piece]:
 
 
 def _gear(pair: Pair, side: str, port: str, scene: Scene) -> tuple[Piece, float] | None:
-    """A gear up to its tips, and the depth of its teeth; None where the file does not tell its size."""
+    """Return a gear up to its tips, and the depth of the teeth; None where the file does not give
+    its size.
+    """
     first = side == pair.shafts[0]
     pair = pair.rolling
     wheel, mate = (pair.pinion, pair.gear)[:: 1 if first else -1]
@@ -168,8 +175,8 @@ def _gear(pair: Pair, side: str, port: str, scene: Scene) -> tuple[Piece, float]
     cone, face = wheel.pitch_angle, wheel.face_width or mate.face_width
     if abs(sin(angle)) < PARALLEL:
         tip = radius + module * (1 + wheel.profile_shift)
-        own = (wheel.face_width or 0.0) / 2
-        y = (seat.y - own, seat.y + own) if own else (seat.lo, seat.hi)
+        half_face = (wheel.face_width or 0.0) / 2
+        y = (seat.y - half_face, seat.y + half_face) if half_face else (seat.lo, seat.hi)
         return Piece(f'the gear at "{port}"', y, (tip, tip)), DEEP * module
     if cone is None and mate.pitch_angle is not None:
         cone = angle - mate.pitch_angle
@@ -181,68 +188,65 @@ def _gear(pair: Pair, side: str, port: str, scene: Scene) -> tuple[Piece, float]
     return Piece(f'the gear at "{port}"', (seat.y - half, seat.y + half), ends), DEEP * module
 
 
-def beside(
-    shafts: tuple[str, str], one: Piece, two: Piece, way: float, at: np.ndarray, free: float
+def parallel_overlap(
+    shafts: tuple[str, str], a: Piece, b: Piece, sense: float, offset: np.ndarray, free: float
 ) -> Iterator[Overlap]:
-    """Overlap of two pieces on parallel axes, where teeth may take some space.
-
-    Parameters
-    ----------
-    way : float
-        1 or -1, of the second axis along the first.
-    at : (3,) ndarray
-        Where the second scene begins, in the axes of the first.
+    """Yield the overlap of two pieces on parallel axes, where teeth may take the space `free`;
+    `sense` is 1 or -1, the second axis along the first, `offset` (3,) the origin of the second
+    scene in the axes of the first.
     """
-    ends = sorted(at[1] + way * np.array(two.y))
-    low, high = max(one.y[0], ends[0]), min(one.y[1], ends[1])
+    ends = sorted(offset[1] + sense * np.array(b.y))
+    low, high = max(a.y[0], ends[0]), min(a.y[1], ends[1])
     if high - low < LEAST:
         return
     y = np.linspace(low, high, ALONG)
-    apart = np.hypot(at[0], at[2])
-    there = way * (y - at[1])
-    (bore, outer), (other_bore, other) = one.radii(y), two.radii(there)
-    deep = outer + other - apart
-    for hole, inside in ((bore, other), (other_bore, outer)):
-        deep = np.where(hole > 0, np.minimum(deep, apart + inside - hole), deep)
-    if deep.max() - free > LEAST:
-        within = y[deep - free > 0]
-        own = float(within.min()), float(within.max())
-        far = sorted(float(way * (v - at[1])) for v in own)
-        places = own, (far[0], far[1])
-        yield Overlap(shafts, (one.name, two.name), float(deep.max() - free), places)
+    distance = np.hypot(offset[0], offset[2])
+    y_b = sense * (y - offset[1])
+    (bore_a, outer_a), (bore_b, outer_b) = a.radii(y), b.radii(y_b)
+    depth = outer_a + outer_b - distance
+    for hole, inside in ((bore_a, outer_b), (bore_b, outer_a)):
+        depth = np.where(hole > 0, np.minimum(depth, distance + inside - hole), depth)
+    if depth.max() - free > LEAST:
+        overlap_y = y[depth - free > 0]
+        span_a = float(overlap_y.min()), float(overlap_y.max())
+        span_b = sorted(float(sense * (v - offset[1])) for v in span_a)
+        places = span_a, (span_b[0], span_b[1])
+        yield Overlap(shafts, (a.name, b.name), float(depth.max() - free), places)
 
 
-def across(
-    shafts: tuple[str, str], one: Piece, two: Piece, turn: np.ndarray, at: np.ndarray
+def angled_overlap(
+    shafts: tuple[str, str], a: Piece, b: Piece, turn: np.ndarray, offset: np.ndarray
 ) -> Iterator[Overlap]:
-    """Overlap of two pieces on axes at an angle: points of either in the other."""
-    middles = [np.array([0.0, sum(piece.y) / 2, 0.0]) for piece in (one, two)]
-    reach = sum(np.hypot((p.y[1] - p.y[0]) / 2, max(p.outer)) for p in (one, two))
-    if np.linalg.norm(at + turn @ middles[1] - middles[0]) > reach:
+    """Yield overlaps of two pieces on axes at an angle: points of either in the other."""
+    middles = [np.array([0.0, sum(piece.y) / 2, 0.0]) for piece in (a, b)]
+    reach = sum(np.hypot((p.y[1] - p.y[0]) / 2, max(p.outer)) for p in (a, b))
+    if np.linalg.norm(offset + turn @ middles[1] - middles[0]) > reach:
         return
-    back = turn.T, -turn.T @ at
-    ways = ((shafts, one, two, *back), (shafts[::-1], two, one, turn, at))
-    for (a, b), own, other, into, origin in ways:
-        points = _points(own, _step(one, two))
-        there = points @ into.T + origin
-        size = np.hypot(there[:, 0], there[:, 2])
-        inner, outer = other.radii(there[:, 1])
-        deep = np.minimum(outer - size, np.where(inner > 0, size - inner, np.inf))
-        deep = np.minimum(deep, np.minimum(there[:, 1] - other.y[0], other.y[1] - there[:, 1]))
-        if len(deep) and deep.max() > LEAST:
-            within = deep > 0
-            here, far = points[within, 1], there[within, 1]
-            spans = (float(here.min()), float(here.max())), (float(far.min()), float(far.max()))
-            yield Overlap((a, b), (own.name, other.name), float(deep.max()), spans)
-
-
-def _step(*pieces: Piece) -> float:
-    """Distance of circles beside the smaller of two pieces."""
-    return min(max(piece.outer) for piece in pieces) / FINE
+    back = turn.T, -turn.T @ offset
+    step = min(max(piece.outer) for piece in (a, b)) / FINE
+    directions = ((shafts, a, b, *back), (shafts[::-1], b, a, turn, offset))
+    for sides, source, target, into, origin in directions:
+        points = _points(source, step)
+        points_in_target = points @ into.T + origin
+        size = np.hypot(points_in_target[:, 0], points_in_target[:, 2])
+        inner, outer = target.radii(points_in_target[:, 1])
+        depth = np.minimum(outer - size, np.where(inner > 0, size - inner, np.inf))
+        depth = np.minimum(
+            depth,
+            np.minimum(points_in_target[:, 1] - target.y[0], target.y[1] - points_in_target[:, 1]),
+        )
+        if len(depth) and depth.max() > LEAST:
+            hit = depth > 0
+            y_source, y_target = points[hit, 1], points_in_target[hit, 1]
+            spans = (
+                (float(y_source.min()), float(y_source.max())),
+                (float(y_target.min()), float(y_target.max())),
+            )
+            yield Overlap(sides, (source.name, target.name), float(depth.max()), spans)
 
 
 def _points(piece: Piece, step: float) -> np.ndarray:
-    """(n, 3) points of the outer surface and of both ends of a piece."""
+    """Return (n, 3) points of the outer surface and of both ends of a piece, a step apart."""
     length = piece.y[1] - piece.y[0]
     y = np.linspace(*piece.y, min(2 + ceil(length / step), MOST))
     rings = [(v, r) for v, r in zip(y, piece.radii(y)[1])]

@@ -1,4 +1,4 @@
-"""A train with backlash while its speed rises or falls evenly, beside its steady motions."""
+"""A train with backlash while the speed rises or falls evenly, compared with the steady motions."""
 
 from __future__ import annotations
 
@@ -15,26 +15,26 @@ from solidgear.studies.train.backlash import Backlash, Range
 
 @dataclass(frozen=True, eq=False)
 class SpeedRun:
-    """A run through the range of a branch, told of one mesh."""
+    """A run through the range of a branch, described for one mesh."""
 
     ramp: float  #: of the mesh frequency, Hz/s; negative as the speed falls
     run: RunUp = field(repr=False)
-    found: Backlash = field(repr=False)
+    backlash: Backlash = field(repr=False)
 
     @property
-    def every(self) -> tuple[SpeedRun, ...]:
-        """The same told of each mesh with a law, that which drives the train first."""
-        meshes = zip((self.run, *self.run.other_links), self.found.every)
-        return tuple(SpeedRun(self.ramp, run, found) for run, found in meshes)
+    def meshes(self) -> tuple[SpeedRun, ...]:
+        """The same described for each mesh with a law, that which drives the train first."""
+        meshes = zip((self.run, *self.run.other_links), self.backlash.meshes)
+        return tuple(SpeedRun(self.ramp, run, backlash) for run, backlash in meshes)
 
     @cached_property
     def frequency_hz(self) -> np.ndarray:
-        """(c,) in the middle of each mesh cycle."""
+        """Frequency (c,) in the middle of each mesh cycle."""
         return self.run.omega / (2 * np.pi)
 
     @property
     def force(self) -> np.ndarray:
-        """(c,) dynamic mesh force: half of its swing within each cycle, N."""
+        """Dynamic mesh force (c,): half of the swing within each cycle, N."""
         return self.run.swing
 
     @property
@@ -44,41 +44,41 @@ class SpeedRun:
         return float(self.frequency_hz[k]), float(self.force[k])
 
     @cached_property
-    def apart(self) -> np.ndarray:
-        """(c,) bool, whether the teeth part within each cycle."""
-        half = self.found.teeth.half_gap
+    def parted(self) -> np.ndarray:
+        """Whether the teeth part within each cycle (c,)."""
+        half = self.backlash.teeth.half_gap
         return (self.run.least < half) & (half > 0)
 
     @property
     def lost(self) -> Range | None:
-        """From the lowest to the highest frequency at which they do; None where they never do."""
-        at = self.frequency_hz[self.apart]
-        return Range(float(at.min()), float(at.max())) if len(at) else None
+        """Range from the lowest to the highest frequency at which they do; None where they never
+        do.
+        """
+        hz = self.frequency_hz[self.parted]
+        return Range(float(hz.min()), float(hz.max())) if len(hz) else None
 
     @cached_property
     def steady_force(self) -> np.ndarray:
-        """(c,) dynamic mesh force of the stable steady motion nearest to that of each cycle, N; NaN
+        """Dynamic mesh force (c,) of the stable steady motion nearest to that of each cycle, N; NaN
         where there is none.
         """
         out = np.full(len(self.force), np.nan)
-        for at, own in self.found.over(self.frequency_hz, self.found.force):
-            before = np.abs(out[at] - self.force[at])
-            nearer = ~(before <= np.abs(own - self.force[at]))
-            out[at[nearer]] = own[nearer]
+        for numbers, force in self.backlash.interpolate(self.frequency_hz, self.backlash.force):
+            distance = np.abs(out[numbers] - self.force[numbers])
+            nearer = ~(distance <= np.abs(force - self.force[numbers]))
+            out[numbers[nearer]] = force[nearer]
         return out
 
     def followed(self, tolerance: float) -> float:
-        """Share of the cycles whose force is within a relative tolerance of a steady motion's."""
+        """Return the share of the cycles whose force is within a relative tolerance of a steady
+        motion's.
+        """
         return float(np.mean(np.abs(self.force / self.steady_force - 1) <= tolerance))
 
 
 def ramp_of(rpm: float, teeth: float, low: float, high: float) -> float:
-    """Ramp of the mesh frequency, Hz/s, from one of the pinion in rpm/s, through a range in Hz.
-
-    Raises
-    ------
-    SolidgearError
-        For one that stands still, passes in a few mesh cycles, or takes very many.
+    """Return the ramp of the mesh frequency, Hz/s, from one of the pinion in rpm/s, through a range
+    in Hz; refused for a run of too few or too many mesh cycles.
     """
     cycles = (high**2 - low**2) / 2 * 60 / teeth  # times the ramp in rpm/s
     least, most = cycles / MOST_CYCLES, cycles / FEWEST_CYCLES
@@ -91,27 +91,25 @@ def ramp_of(rpm: float, teeth: float, low: float, high: float) -> float:
     return rpm * teeth / 60
 
 
-def speed_run(found: Backlash, ramp: float, told: Callable[[str], None] | None = None) -> SpeedRun:
-    """A run from one end of a branch to the other by integration in time.
-
-    Parameters
-    ----------
-    ramp : float
-        Of the mesh frequency, Hz/s; below zero it falls from the highest.
+def speed_run(
+    backlash: Backlash, ramp: float, progress: Callable[[str], None] | None = None
+) -> SpeedRun:
+    """Integrate a run from one end of a branch to the other in time, by a ramp of the mesh
+    frequency, Hz/s; below zero it falls from the highest.
     """
-    ends = found.branch.omega[[0, -1]]
+    ends = backlash.branch.omega[[0, -1]]
     begin, end = ends.tolist() if ramp > 0 else ends[::-1].tolist()
-    point = found.points[0 if ramp > 0 else -1]
+    point = backlash.points[0 if ramp > 0 else -1]
 
-    way, tenth = "up" if ramp > 0 else "down", -1
+    word, tenth = "up" if ramp > 0 else "down", -1
 
-    def share(done: float) -> None:
+    def share(fraction: float) -> None:
         nonlocal tenth
-        if told and int(10 * done) > tenth:
-            tenth = int(10 * done)
-            told(f"run {way}, {10 * tenth} %")
+        if progress and int(10 * fraction) > tenth:
+            tenth = int(10 * fraction)
+            progress(f"run {word}, {10 * tenth} %")
 
-    own = run_up(
-        found.remainder, begin, end, 2 * np.pi * abs(ramp), state=point.state(), progress=share
+    run = run_up(
+        backlash.remainder, begin, end, 2 * np.pi * abs(ramp), state=point.state(), progress=share
     )
-    return SpeedRun(ramp, own, found)
+    return SpeedRun(ramp, run, backlash)

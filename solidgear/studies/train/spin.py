@@ -1,7 +1,7 @@
-"""Opening of natural frequencies of a train by spin, from its modes at rest.
+"""Opening of natural frequencies of a train by spin, from the modes at rest.
 
-Every shaft adds its own coupling times its own turns (:mod:`solidgear.solve.spin`); the sense in which
-shafts turn is left out, so that what two of them bring is added up.
+Every shaft adds a coupling times the turns of that shaft (:mod:`solidgear.solve.spin`); the sense in which
+shafts turn is left out, so that the contributions of two of them are added up.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ from solidgear.studies.train.naming import mode_names
 from solidgear.system.system import System
 
 
-def fastest(workshop: Workshop) -> float:
-    """Turns in a second of the engine's shaft at the fastest operating point; zero where none has a
-    speed.
+def fastest_turns(workshop: Workshop) -> float:
+    """Return the turns in a second of the engine's shaft at the fastest operating point; zero where
+    none has a speed.
     """
     train = workshop.train
     speeds = [point.speed_of(train.reference, train.turns) or 0.0 for point in train.operation]
@@ -32,39 +32,35 @@ def fastest(workshop: Workshop) -> float:
 def spin_cautions(
     workshop: Workshop,
     system: System,
-    rungs: Mapping[str, str],
+    models: Mapping[str, str],
     limit: float,
     turns: float | None = None,
 ) -> list[str]:
-    """Sentence on the modes of a train up to a frequency, Hz, that spin opens by more than the error bar
-    of its meshes, or the tolerance of the file; none without a speed.
-
-    Parameters
-    ----------
-    rungs : mapping of str to str
-        Model of each shaft.
-    turns : float, optional
-        Of the engine's shaft in a second; by default at the fastest operating point.
+    """Return a sentence on the modes up to a limit, Hz, that spin opens by more than the error bar
+    of the meshes, or the tolerance of the file; none without a speed. Turns of the engine's
+    shaft in a second are by default those at the fastest operating point.
     """
-    train, turns = workshop.train, turns or fastest(workshop)
+    train, turns = workshop.train, turns or fastest_turns(workshop)
     count = int((system.elastic[0] <= 2 * np.pi * limit).sum())
     if not turns or not count:
         return []
-    found = system.modes(count)
-    hz, shapes = found.frequency_hz[found.rigid :], found.shapes[:, found.rigid :]
+    modes = system.modes(count)
+    hz, shapes = modes.frequency_hz[modes.rigid :], modes.shapes[:, modes.rigid :]
     coupling = np.zeros((len(hz), len(hz)))
-    for side, rung in rungs.items():
-        if rung not in LADDER.bodies or side not in system.parts:
+    for side, model in models.items():
+        if model not in LADDER.bodies or side not in system.parts:
             continue
-        body = workshop.shaft(side, rung).body
+        body = workshop.shaft_model(side, model).body
         fields = system.expand(side, shapes)
-        each = [{b: field[:, k] for b, field in fields.items()} for k in range(len(hz))]
-        own = couplings(body, as_supports(workshop.scenes[side]), each)
-        if own is not None:
-            coupling += abs(train.turns[side] * turns * own)
-    by = opened(hz, coupling, 1.0)
-    names = mode_names(workshop, system, found)[found.rigid :]
-    bars = mesh_bars(workshop, system, rungs, count)
-    known = {} if bars is None else dict(zip(names, map(float, bars)))
-    when = f"at {60 * turns:.6g} rpm of the {train.reference}"
-    return opened_words(dict(zip(names, by / hz)), known, train.ask.tolerance, when)
+        mode_fields = [{b: field[:, k] for b, field in fields.items()} for k in range(len(hz))]
+        coupling_of_shaft = couplings(body, as_supports(workshop.scenes[side]), mode_fields)
+        if coupling_of_shaft is not None:
+            coupling += abs(train.turns[side] * turns * coupling_of_shaft)
+    opening = opened(hz, coupling, 1.0)
+    names = mode_names(workshop, system, modes)[modes.rigid :]
+    bars = mesh_bars(workshop, system, models, count)
+    bars_by_name = {} if bars is None else dict(zip(names, map(float, bars)))
+    speed_text = f"at {60 * turns:.6g} rpm of the {train.reference}"
+    return opened_words(
+        dict(zip(names, opening / hz)), bars_by_name, train.ask.tolerance, speed_text
+    )

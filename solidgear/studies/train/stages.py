@@ -1,8 +1,8 @@
-"""Planetary stages of a train as parts and links of its system: planets, and a ring that gives way,
-as rigid bodies between the shafts of sun and carrier.
+"""Planetary stages of a train as parts and links of a system: planets, and an elastically supported
+ring, as rigid bodies between the shafts of sun and carrier.
 
-A stage is told in axes in which its sun drives about +y: those of the sun's scene, or these turned
-by half a turn about x.
+A stage is described in axes in which the sun drives about +y: those of the sun's scene, or these
+turned by half a turn about x.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from solidgear.scene.planetary import MATES, PlanetMesh, Stage
 from solidgear.scene.train import Train
 from solidgear.solve.families import FAMILIES
 from solidgear.studies.train.contact import Contact
-from solidgear.studies.train.housing import ring_in
+from solidgear.studies.train.housing import ring_port
 from solidgear.studies.train.layout import Place, sun_ways
 from solidgear.system.links import BearingSpring, Link, RowSpring
 from solidgear.system.parts import Part, Placed
@@ -48,37 +48,39 @@ class StageAtWork:
 
     @property
     def axes(self) -> np.ndarray:
-        """(3, 3) axes of the stage as columns, in those of the sun's scene."""
+        """Axes (3, 3) of the stage as columns, in those of the sun's scene."""
         return np.diag([1.0, self.way, self.way])
 
     @cached_property
     def model(self) -> PlanetaryStage:
-        """The stage by itself; sun and carrier are there for their places alone."""
+        """The stage alone; sun and carrier are there for their places."""
         table, teeth = self.stage.table, self.stage.teeth
         sun, planet, ring = teeth.base_radii
-        own, mesh = table.planet, table.mesh
-        assert own.pin is not None
+        planet_table, mesh = table.planet, table.mesh
+        assert planet_table.pin is not None
         planets = tuple(
             Planet(
-                own.mass,
-                own.torsional,
+                planet_table.mass,
+                planet_table.torsional,
                 planet,
-                np.diag(own.pin.diagonal),
+                np.diag(planet_table.pin.diagonal),
                 mesh.sun_stiffness,
                 mesh.ring_stiffness,
                 self.way * (azimuth + table.position),
-                own.bending,
+                planet_table.bending,
             )
             for azimuth in teeth.azimuths
         )
-        held = CentralMember(1.0, ring**2, ring, np.eye(6) * FIXED, diametral=ring**2)
+        ring_member = CentralMember(1.0, ring**2, ring, np.eye(6) * FIXED, diametral=ring**2)
         if table.ring is not None:
-            one, springs = table.ring, np.diag(table.ring.support.diagonal)
-            held = CentralMember(one.mass, one.torsional, ring, springs, diametral=one.bending)
+            ring_table, springs = table.ring, np.diag(table.ring.support.diagonal)
+            ring_member = CentralMember(
+                ring_table.mass, ring_table.torsional, ring, springs, diametral=ring_table.bending
+            )
         pins = teeth.pin_radius
         return PlanetaryStage(
             CentralMember(1.0, sun**2, sun, diametral=sun**2),
-            held,
+            ring_member,
             CentralMember(1.0, pins**2, pins, diametral=pins**2),
             planets,
             teeth.pressure_angle,
@@ -100,49 +102,54 @@ class StageAtWork:
 
     @property
     def ring(self) -> str | None:
-        """Name of the part that the ring is; None of a fixed one."""
+        """Name of the ring as a part; None for a fixed one."""
         return None if self.stage.table.ring is None else f"{self.stage.called} ring"
 
     @property
     def bodies(self) -> list[str]:
-        """Names of all its parts in the system of the train."""
+        """Names of all parts of the stage in the system of the train."""
         return [*self.planets.values(), *([] if self.ring is None else [self.ring])]
 
     def parts(self, turn: np.ndarray, origin: np.ndarray) -> dict[str, Part]:
-        """Planets, and the ring that gives way, with the sun's scene at a place of the train."""
-        named = self.planets | ({} if self.ring is None else {"ring": self.ring})
-        at = origin + turn @ [0.0, self.y, 0.0]
+        """Return planets and a supported ring, with the sun's scene at a place of the train."""
+        names = self.planets | ({} if self.ring is None else {"ring": self.ring})
+        centre = origin + turn @ [0.0, self.y, 0.0]
         return {
-            name: Placed(self.model.parts[own], turn @ self.axes, at) for own, name in named.items()
+            name: Placed(self.model.parts[member], turn @ self.axes, centre)
+            for member, name in names.items()
         }
 
     @cached_property
     def links(self) -> dict[str, Link]:
-        """Pins, ``stage pin 1``, meshes, ``mesh stage sun 1``, and what holds the ring."""
+        """Pins such as ``stage pin 1``, meshes such as ``mesh stage sun 1``, and the support of the
+        ring.
+        """
         stage = self.stage
 
         def port(member: str, planet: str) -> tuple[str, PortMotion] | None:
             if member == "ring":
-                whole = PortMotion(np.eye(6), np.zeros(3), np.eye(3))
-                return self.holds if self.ring is None else (f"{self.ring}.centre", whole)
-            here = PortMotion(np.eye(6), np.zeros(3), self.axes.T)
-            return self.ends[member == "carrier"], here
+                ring_motion = PortMotion(np.eye(6), np.zeros(3), np.eye(3))
+                return self.holds if self.ring is None else (f"{self.ring}.centre", ring_motion)
+            motion = PortMotion(np.eye(6), np.zeros(3), self.axes.T)
+            return self.ends[member == "carrier"], motion
 
-        out: dict[str, Link] = {}
+        links: dict[str, Link] = {}
         joints = self.model.joints(port, f"{stage.called} ")
         for k, name in enumerate(self.planets.values(), 1):
-            out[f"{stage.called} pin {k}"] = joints[f"{name} pin"]
+            links[f"{stage.called} pin {k}"] = joints[f"{name} pin"]
             for mate in MATES:
-                out[f"{stage.name} {mate} {k}"] = joints[f"{name} {mate} mesh"]
+                links[f"{stage.name} {mate} {k}"] = joints[f"{name} {mate} mesh"]
         if self.ring is not None:
             support = self.model.ring.support
             to = self.holds and self.holds[0]
-            out[f"{stage.called} ring support"] = BearingSpring(f"{self.ring}.centre", support, to)
-        return out
+            links[f"{stage.called} ring support"] = BearingSpring(
+                f"{self.ring}.centre", support, to
+            )
+        return links
 
     def kinetic(self, system: System, shapes: np.ndarray) -> dict[str, np.ndarray]:
-        """Twice the kinetic energy (k,) of planets by what they do together, in the words of
-        `solidgear.system.planetary_modes`, and of a ring that gives way by its motions.
+        """Return twice the kinetic energy (k,) of planets by their joint motions, named as in
+        `solidgear.system.planetary_modes`, and of a supported ring by motion.
         """
         out: dict[str, np.ndarray] = {}
         planets, called = self.model.planets, self.stage.called
@@ -153,9 +160,9 @@ class StageAtWork:
             ]
         )
         for words, pattern in zip(NAMES, patterns([planet.azimuth for planet in planets])):
-            seen = np.einsum("pq,pik->qik", pattern, moved) ** 2
-            for word, own in zip(words, (IN_PLANE, OUT_OF_PLANE)):
-                out[f"{called} {word}"] = seen[:, own].sum(axis=(0, 1))
+            pattern_energy = np.einsum("pq,pik->qik", pattern, moved) ** 2
+            for word, rows_of_word in zip(words, (IN_PLANE, OUT_OF_PLANE)):
+                out[f"{called} {word}"] = pattern_energy[:, rows_of_word].sum(axis=(0, 1))
         if self.ring is not None:
             energy = weights(self.model.ring)[:, None] * (
                 system.motion(f"{self.ring}.centre") @ shapes
@@ -165,19 +172,21 @@ class StageAtWork:
         return out
 
     def strained(self, energy: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
-        """Shares of the strain energy with those of all planets added up: ``stage pins``, ``mesh
-        stage sun``, ``mesh stage ring``.
+        """Return shares of the strain energy with those of all planets added up: ``stage pins``,
+        ``mesh stage sun``, ``mesh stage ring``.
         """
-        own = {f"{self.stage.called} pin": "s"} | {f"{self.stage.name} {m}": "" for m in MATES}
-        out = dict(energy)
-        for name, more in own.items():
-            every = [out.pop(f"{name} {k}") for k in range(1, len(self.model.planets) + 1)]
-            out[name + more] = np.sum(every, axis=0)
-        return out
+        suffixes = {f"{self.stage.called} pin": "s"} | {f"{self.stage.name} {m}": "" for m in MATES}
+        shares = dict(energy)
+        for name, suffix in suffixes.items():
+            planet_shares = [
+                shares.pop(f"{name} {k}") for k in range(1, len(self.model.planets) + 1)
+            ]
+            shares[name + suffix] = np.sum(planet_shares, axis=0)
+        return shares
 
 
 def mesh_row(system: System, name: str) -> tuple[np.ndarray, float]:
-    """Row (N,) that gives the stretch of a mesh by its name, m, the mean over its face, and its
+    """Return the row (N,) that gives the stretch of a mesh, m, the mean over the face, and the
     stiffness, N/m.
     """
     spring = system.links[name]
@@ -186,32 +195,35 @@ def mesh_row(system: System, name: str) -> tuple[np.ndarray, float]:
     return rows.mean(axis=0), len(rows) * spring.stiffness
 
 
-def phases_of(driver: Pair | PlanetMesh, stages: Mapping[str, StageAtWork]) -> dict[str, float]:
-    """Meshes whose errors drive, each with the angle by which it is behind the first, rad."""
-    if isinstance(driver, Pair):
-        return {driver.name: 0.0}
-    return driver.phases(stages[driver.stage.name].turns)
+def phases_of(mesh: Pair | PlanetMesh, stages: Mapping[str, StageAtWork]) -> dict[str, float]:
+    """Return the meshes whose errors drive, each with the angle by which it is behind the first,
+    rad.
+    """
+    if isinstance(mesh, Pair):
+        return {mesh.name: 0.0}
+    return mesh.phases(stages[mesh.stage.name].turns)
 
 
 def stages_at_work(
     train: Train,
-    found: Mapping[str, Contact],
+    mesh_contacts: Mapping[str, Contact],
     scenes: Mapping[str, Scene],
     places: Mapping[str, Place],
     coast: bool | None = None,
 ) -> dict[str, StageAtWork]:
-    """Planetary stages of a train by name, on the flanks that its contacts are those of."""
-    ways = sun_ways(train, found, coast)
-    out = {}
+    """Return the planetary stages of a train by name, on the flanks of the contacts."""
+    ways = sun_ways(train, mesh_contacts, coast)
+    by_name = {}
     for stage in train.stages:
         ports = scenes[stage.shafts[0]].ports
         y = next(port.y for port in ports if port.name == stage.ports[0])
-        own = StageAtWork(stage, *ways[stage.name], y)
-        if (held := ring_in(train, stage)) is not None:
-            end, point = held
+        way, turns = ways[stage.name]
+        at_work = StageAtWork(stage, way, turns, y)
+        if (ring_seat := ring_port(train, stage)) is not None:
+            end, point = ring_seat
             turn, origin = places[stage.shafts[0]]
-            axes, at = turn @ own.axes, origin + turn @ [0.0, y, 0.0]
-            holds = end, PortMotion(np.eye(6), axes.T @ (point - at), axes.T)
-            own = replace(own, holds=holds)
-        out[stage.name] = own
-    return out
+            axes, centre = turn @ at_work.axes, origin + turn @ [0.0, y, 0.0]
+            holds = end, PortMotion(np.eye(6), axes.T @ (point - centre), axes.T)
+            at_work = replace(at_work, holds=holds)
+        by_name[stage.name] = at_work
+    return by_name

@@ -1,4 +1,4 @@
-"""Strain energy of modes of a train, by what it is in: shafts, their bearings, teeth, springs."""
+"""Strain energy of modes of a train by place: shafts, bearings, teeth, springs."""
 
 from __future__ import annotations
 
@@ -10,19 +10,10 @@ import numpy as np
 def strain_shares(
     energy: Mapping[str, np.ndarray], shafts: Sequence[str] = ("pinion", "gear")
 ) -> dict[str, np.ndarray]:
-    """Shares of the strain energy of modes, along the train.
-
-    Parameters
-    ----------
-    energy : mapping of str to (k,) ndarray
-        By part and link, as of :class:`solidgear.system.modes.SystemModes`.
-    shafts : sequence of str, optional
-
-    Returns
-    -------
-    dict of str to (k,) ndarray
-        ``engine spring``, ``pinion shaft``, ``pinion bearings`` (with their housing), ``mesh``,
-        ``gear bearings``, ``gear shaft``, ``load spring``, ``mounts``; those that are never strained left out.
+    """Return shares (k,) of the strain energy of modes in the sequence of the train: ``engine
+    spring``, ``pinion shaft``, ``pinion bearings`` (with their housing), ``mesh``, ``gear
+    bearings``, ``gear shaft``, ``load spring``, ``mounts``; those that are never strained are
+    left out.
 
     Examples
     --------
@@ -31,11 +22,11 @@ def strain_shares(
     >>> {name: float(share[0]) for name, share in shares.items()}
     {'pinion shaft': 0.25, 'pinion bearings': 0.5, 'mesh': 0.25}
     """
-    first, *others = shafts
+    first, *further = shafts
     energy = mounts_together(energy)
     order = ["engine spring", f"{first} shaft", f"{first} bearings"]
     order += [name for name in energy if name.startswith("mesh")]
-    for side in others:
+    for side in further:
         order += [f"{side} bearings", f"{side} shaft"]
     order += ["load spring"]
     out: dict[str, np.ndarray] = {}
@@ -46,14 +37,14 @@ def strain_shares(
 
 
 def mounts_together(energy: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """Strain energy of modes with that of all mounts of a housing under ``mounts``."""
+    """Return the strain energy of modes with that of all mounts of a housing under ``mounts``."""
     out = {name: share for name, share in energy.items() if not name.startswith("mount ")}
     mounts = [share for name, share in energy.items() if name.startswith("mount ")]
     return out | ({"mounts": np.sum(mounts, axis=0)} if mounts else {})
 
 
 def _place(name: str, shafts: Sequence[str]) -> str:
-    """Place that a part or a link belongs to."""
+    """Return the place that a part or a link belongs to."""
     side, dot, _ = name.partition(".")
     if dot:
         return f"{side} bearings"

@@ -1,9 +1,9 @@
 """Planets over a turn of their carrier: mesh forces at an operating point, and natural frequencies.
 
-What a train with its bearings at the operating point is to a stage are a stiffness and a place at
+To a stage, a train with bearings at the operating point is a stiffness and a place at
 rest of sun and carrier: those of :func:`solidgear.system.carrier_turn.carrier_turn`, condensed from
 the rest of the train.  Weight of planets and ring and centrifugal forces act on the stage itself
-(:mod:`solidgear.studies.train.planet_loads`).  At the position of the file its forces are those of
+(:mod:`solidgear.studies.train.planet_loads`).  At the position of the file the forces are those of
 the train at rest.
 """
 
@@ -18,7 +18,7 @@ from solidgear.machine.threads import pinned
 from solidgear.scene.planetary import Stage, with_carrier_turned
 from solidgear.scene.train import Train
 from solidgear.studies.train.models import Workshop
-from solidgear.studies.train.operation import OperatingState, settled
+from solidgear.studies.train.operation import OperatingState, with_settled_bearings
 from solidgear.studies.train.planet_loads import centrifugal, weights
 from solidgear.studies.train.stages import StageAtWork
 from solidgear.system.carrier_turn import FixedSupport, carrier_turn
@@ -29,7 +29,7 @@ from solidgear.system.system import System
 HELD = [0, 1, 2, 3, 5]
 #: of a turn of the carrier
 POSITIONS = 72
-#: positions at which frequencies of planets that are not alike all around are solved
+#: positions at which frequencies of unequally spaced planets are solved
 LOOKED_AT = 6
 #: of the largest force
 ROUNDING = 1e-9
@@ -39,34 +39,41 @@ ALIKE = 3
 
 @dataclass(frozen=True, eq=False)
 class StageTurn:
-    """Mesh forces of a stage over a turn of its carrier."""
+    """Mesh forces of a stage over a turn of the carrier."""
 
     stage: str
     angle: np.ndarray  #: (a,) of the carrier from its position in the file, the way it turns, rad
-    #: (a, n) of each planet, with the sun and, for it spins freely, with the ring alike, N; less
+    #: (a, n) of each planet, with the sun, and equally with the ring, for it spins freely, N; less
     #: than zero would need teeth that pull
     force: np.ndarray
 
     @property
     def planets(self) -> list[PlanetTurn]:
-        """Planet by planet."""
+        """Forces planet by planet."""
         once = 2 * np.abs(np.fft.rfft(self.force, axis=0)[1]) / len(self.angle)
         once[once < ROUNDING * np.abs(self.force).max()] = 0.0
         return [
-            PlanetTurn(k, *map(float, (own[0], own.mean(), own.min(), own.max(), amplitude)))
-            for k, (own, amplitude) in enumerate(zip(self.force.T, once), 1)
+            PlanetTurn(
+                planet=k,
+                at=float(force[0]),
+                mean=float(force.mean()),
+                least=float(force.min()),
+                most=float(force.max()),
+                once=float(amplitude),
+            )
+            for k, (force, amplitude) in enumerate(zip(self.force.T, once), 1)
         ]
 
     def as_dict(self) -> dict:
-        """Plain data in SI that JSON can hold."""
+        """Return plain data in SI for JSON."""
         return {"angle": self.angle.tolist(), "force": self.force.T.tolist()} | {
-            "planets": [vars(one) for one in self.planets]
+            "planets": [vars(planet) for planet in self.planets]
         }
 
 
 @dataclass(frozen=True)
 class PlanetTurn:
-    """Mesh force of one planet: at the position of the file, over a turn of the carrier, and its
+    """Mesh force of one planet: at the position of the file, over a turn of the carrier, and the
     amplitude once a turn, N.
     """
 
@@ -78,9 +85,9 @@ class PlanetTurn:
     once: float
 
 
-def told_over_a_turn(train: Train) -> tuple[Stage, ...]:
-    """Stages whose forces are told over a turn: none beside a housing, by which sun, carrier and ring
-    move one another.
+def stages_over_a_turn(train: Train) -> tuple[Stage, ...]:
+    """Return stages whose forces are computed over a turn: none beside a housing, by which sun,
+    carrier and ring move one another.
     """
     return train.stages if train.housing is None else ()
 
@@ -89,69 +96,63 @@ def told_over_a_turn(train: Train) -> tuple[Stage, ...]:
 def over_a_turn(
     workshop: Workshop, state: OperatingState, models: Mapping[str, str]
 ) -> tuple[StageTurn, ...]:
-    """Mesh forces of all planetary stages that carry torque, over a turn of the carrier.
-
-    Parameters
-    ----------
-    state : OperatingState
-        Of these models; bearings keep the stiffness that they have there.
+    """Return the mesh forces of all planetary stages that carry torque, over a turn of the carrier;
+    bearings keep their stiffness at the state, which is that of these models.
     """
     flank = workshop.on_flank(state.point.coast)
-    told = [flank.stages[stage.name] for stage in told_over_a_turn(workshop.train)]
-    carrying = [one for one in told if state.mesh_forces[one.stage.name]]
+    stages = [flank.stages[stage.name] for stage in stages_over_a_turn(workshop.train)]
+    carrying = [stage for stage in stages if state.mesh_forces[stage.stage.name]]
     if not carrying:
         return ()
-    whole = workshop.with_train(settled(workshop.train, state)).system(*models.values())
+    train_system = workshop.with_train(with_settled_bearings(workshop.train, state)).system(
+        *models.values()
+    )
     out = []
-    for one in carrying:
-        rest = System(
-            {name: part for name, part in whole.parts.items() if name not in one.bodies},
-            {name: link for name, link in whole.links.items() if name not in one.links},
+    for stage in carrying:
+        outside = System(
+            {name: part for name, part in train_system.parts.items() if name not in stage.bodies},
+            {name: link for name, link in train_system.links.items() if name not in stage.links},
         )
-        pushed = port_forces(System(state.system.parts, one.links), state.coordinates)
+        pushed = port_forces(System(state.system.parts, stage.links), state.coordinates)
         supports = {
-            member: _support(one, end, rest, state, pushed[end])
-            for member, end in zip(("sun", "carrier"), one.ends)
+            member: _support(stage, end, outside, state, pushed[end])
+            for member, end in zip(("sun", "carrier"), stage.ends)
         }
-        torque = state.mesh_forces[one.stage.name] * abs(one.stage.levers[0])
-        found = carrier_turn(
-            one.model,
+        torque = state.mesh_forces[stage.stage.name] * abs(stage.stage.levers[0])
+        solved = carrier_turn(
+            stage.model,
             torque,
             supports,
             positions=POSITIONS,
-            weights=weights(workshop, one, state.point),
-            carried=centrifugal(workshop, one, state.point),
+            weights=weights(workshop, stage, state.point),
+            carried=centrifugal(workshop, stage, state.point),
         )
-        force = found.sun_mesh
-        if one.turns != one.way:  # it turns the other way than the stage is told
+        force = solved.sun_mesh
+        if stage.turns != stage.way:  # it turns the other way than the stage is described
             force = np.roll(force[::-1], 1, axis=0)
-        out.append(StageTurn(one.stage.called, found.angle, force))
+        out.append(StageTurn(stage.stage.called, solved.angle, force))
     return tuple(out)
 
 
 def _support(
-    stage: StageAtWork, end: str, rest: System, state: OperatingState, pushed: np.ndarray
+    stage: StageAtWork, end: str, outside: System, state: OperatingState, pushed: np.ndarray
 ) -> FixedSupport:
-    """A port as the rest of the train holds it, in the axes of the stage: its stiffness, and where
-    it would be without the force (6,) of the planets.
+    """Return a port as the rest of the train holds it, in the axes of the stage: the stiffness, and
+    the place without the force (6,) of the planets.
     """
-    rows = rest.motion(end)[HELD]
-    give = rows @ rest.static(rows.T)
-    own = np.ix_(HELD, HELD)
+    rows = outside.motion(end)[HELD]
+    compliance = rows @ outside.static(rows.T)
+    held_rows = np.ix_(HELD, HELD)
     stiffness, shift = np.zeros((6, 6)), np.zeros(6)
-    stiffness[own] = np.linalg.inv((give + give.T) / 2)
-    shift[HELD] = state.motion(end)[HELD] - give @ pushed[HELD]
+    stiffness[held_rows] = np.linalg.inv((compliance + compliance.T) / 2)
+    shift[HELD] = state.motion(end)[HELD] - compliance @ pushed[HELD]
     turn = np.kron(np.eye(2), stage.axes)
     return FixedSupport(turn.T @ stiffness @ turn, turn.T @ shift)
 
 
 def frequencies_over_a_turn(workshop: Workshop, models: Mapping[str, str], names: list[str]) -> str:
-    """Sentence on how far natural frequencies move over a turn of a carrier; empty without planets.
-
-    Parameters
-    ----------
-    names : list of str
-        Of the modes in question, by ascending frequency, the free ones first.
+    """Return a sentence on how far natural frequencies move over a turn of a carrier; empty without
+    planets. Names are those of the modes by ascending frequency, the free ones first.
     """
     lines = []
     for stage in workshop.train.stages:
@@ -162,17 +163,15 @@ def frequencies_over_a_turn(workshop: Workshop, models: Mapping[str, str], names
                 f"frequencies do not hang on the position of the carrier ({stage.called})."
             )
             continue
-        found = [
-            workshop.with_train(
-                with_carrier_turned(workshop.train, stage.called, 2 * np.pi * k / LOOKED_AT)
-            )
+        omegas = [
+            workshop.with_train(with_carrier_turned(workshop.train, stage.called, 2 * np.pi * k / LOOKED_AT))
             .system(*models.values())
             .elastic[0]
             for k in range(LOOKED_AT)
         ]
         free = workshop.system(*models.values()).free.shape[1]
-        own = np.array(found)[:, : len(names) - free]
-        moved = np.ptp(own, axis=0) / own[0]
+        elastic = np.array(omegas)[:, : len(names) - free]
+        moved = np.ptp(elastic, axis=0) / elastic[0]
         most = int(moved.argmax())
         lines.append(
             f"Over a turn of the carrier of the {stage.called} frequencies move by up to "

@@ -194,7 +194,7 @@ def _of_train(rung: str) -> Answer:
     omega = 2 * pi * found.frequency_hz
     values = {_name(i): float(w) for i, w in enumerate(omega[found.rigid :], start=1)}
     values["free motions"] = float(found.rigid)
-    unknowns = sum(shop.shaft(side, rung).unknowns for side in ("pinion", "gear"))
+    unknowns = sum(shop.shaft_model(side, rung).unknowns for side in ("pinion", "gear"))
     return Answer(values, unknowns)
 
 
