@@ -59,7 +59,9 @@ def test_what_is_told_of_the_axle_names_both_and_what_was_looked_for(axle):
     assert "A branch apart of two mesh periods from 100" in told
     assert "looked for from 1024 starts at 32 speeds" in told and "there may be others" in told
     assert "on a branch apart, 7392 N" in told
-    alone = " ".join(BacklashStudy(shop.train, (replace(found, branches_apart=()),), 0.044).sentences())
+    alone = " ".join(
+        BacklashStudy(shop.train, (replace(found, branches_apart=()),), 0.044).sentences()
+    )
     assert "of 1 to 3 mesh periods: none was found, and there may be some." in alone
 
 

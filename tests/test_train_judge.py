@@ -34,7 +34,11 @@ def test_the_ring_gear_decides_and_not_the_pinion(verdict):
     # the flat ring bends like a plate: its first bending mode rises by more than a tenth
     assert gear.mode == "gear bending 1" and 0.1 < gear.error < 0.2
     assert gear.to_hz < 600 and pinion.to_hz > 2000
-    assert found.departure("euler", "euler").cause == found.departure("timoshenko", "timoshenko").cause == "gear"
+    assert (
+        found.departure("euler", "euler").cause
+        == found.departure("timoshenko", "timoshenko").cause
+        == "gear"
+    )
 
 
 def test_the_departures_are_where_the_numbers_say(verdict):

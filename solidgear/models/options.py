@@ -225,7 +225,7 @@ def checked(
     """Return options of a builder by name, within the limits of those it has, lists as tuples;
     refuse an unknown name and an unusable value.
     """
-    out = {}
+    out: dict[str, Any] = {}
     for name, value in options.items():
         if name not in available:
             raise SolidgearError(

@@ -205,7 +205,10 @@ class ShaftAtRest:
         """Compute the deflection with the bearings at a choice in the ranges of their data; refuse
         a shaft that nothing holds.
         """
-        bearings = {f"{SHAFT}.{name}": rows for name, rows in catalogued_bearings(self.scene, choice).items()}
+        bearings = {
+            f"{SHAFT}.{name}": rows
+            for name, rows in catalogued_bearings(self.scene, choice).items()
+        }
         supported = OnBearings(self.system, (seats_of(SHAFT, self.scene, bearings),))
         state = supported.equilibrium(self.load)
         return shaft_deflection(

@@ -164,7 +164,9 @@ def frequencies_over_a_turn(workshop: Workshop, models: Mapping[str, str], names
             )
             continue
         omegas = [
-            workshop.with_train(with_carrier_turned(workshop.train, stage.called, 2 * np.pi * k / LOOKED_AT))
+            workshop.with_train(
+                with_carrier_turned(workshop.train, stage.called, 2 * np.pi * k / LOOKED_AT)
+            )
             .system(*models.values())
             .elastic[0]
             for k in range(LOOKED_AT)
