@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from solidgear.machine import interruptible
-from solidgear.machine.interruptible import Made, abandoned, call
+from solidgear.machine.interruptible import ThreadBound, abandoned, call
 
 ROOT = Path(__file__).parent.parent
 main = threading.main_thread()
@@ -182,7 +182,7 @@ def test_what_a_thread_made_is_freed_by_that_thread(made_by_worker):
     freed: list[threading.Thread] = []
 
     def make():
-        return Made(Heavy(freed)), threading.current_thread()
+        return ThreadBound(Heavy(freed)), threading.current_thread()
 
     held, maker = call(make) if made_by_worker else make()
     assert (maker is main) != made_by_worker and held.value.freed is freed

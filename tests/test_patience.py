@@ -35,10 +35,10 @@ class Child:
 
 def test_a_process_that_has_a_twentieth_of_a_processor_ends_its_work(monkeypatch):
     child, waiting = Child(monkeypatch, 0.05, needs=20.0), Patience(25.0)
-    assert waiting.wait(child) == 0 and not waiting.why
+    assert waiting.wait(child) == 0 and not waiting.reason
     assert child.now == pytest.approx(400.0, abs=1.0)  # on the wall, 16 times its patience
     # what is left is for the next process: 5 s
-    assert waiting.left == pytest.approx(5.0, abs=0.1)
+    assert waiting.remaining == pytest.approx(5.0, abs=0.1)
 
 
 @pytest.mark.parametrize(
@@ -50,7 +50,7 @@ def test_patience_ends_with_processor_time_or_where_nothing_is_done(
 ):
     child, waiting = Child(monkeypatch, share), Patience(25.0)
     assert waiting.wait(child) == -9
-    assert waiting.why == says and child.now == pytest.approx(after, abs=1.0)
+    assert waiting.reason == says and child.now == pytest.approx(after, abs=1.0)
 
 
 def test_a_function_that_never_returns_is_ended():

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from solidgear.errors import SolidgearError
 from solidgear.factoring import Factoring
 from solidgear.ladder.registry import LADDER
-from solidgear.machine.memory import NoRoom, anew, available_mb
+from solidgear.machine.memory import NoRoom, available_mb, fresh_run
 
 if TYPE_CHECKING:
     from solidgear.body import Body
@@ -60,7 +60,7 @@ def refusal(
     if name not in LARGE:
         return error.of_model(name, model.coarser)
     try:
-        with anew():
+        with fresh_run():
             finder = _Remedies(scene, model, model.given(scene, options), body, error)
             remedies = offered([*finder.all()], finder.room)
     except (MemoryError, ImportError):

@@ -7,9 +7,9 @@ from pathlib import Path
 
 
 def control_groups(root: Path, controller: str) -> Iterator[tuple[Path, bool]]:
-    """Groups of this process below a root, from its own up to the top, for each may carry the
-    limit of a controller (``cpu`` or ``memory``; version 1 has a tree for each), and whether they
-    are of version 2.
+    """Yield the groups of this process below a root, from the lowest up to the top, for each may
+    carry the limit of a controller (``cpu`` or ``memory``; version 1 has a tree for each), and True
+    for version 2.
     """
     for line in text_of(root / "proc/self/cgroup").splitlines():
         _, kinds, path = line.split(":", 2)
@@ -20,8 +20,8 @@ def control_groups(root: Path, controller: str) -> Iterator[tuple[Path, bool]]:
         else:
             continue
         group = top / path.lstrip("/")
-        # Inside a container the path is that of the host and need not exist here: its own group is
-        # then mounted at the top.
+        # Inside a container the path is that of the host and need not exist here: its group is then
+        # mounted at the top.
         for place in [group, *group.parents] if group.is_dir() else [top]:
             yield place, kinds == ""
             if place == top:
@@ -29,7 +29,7 @@ def control_groups(root: Path, controller: str) -> Iterator[tuple[Path, bool]]:
 
 
 def text_of(path: Path) -> str:
-    """Text of a file (`path`), empty where it cannot be read."""
+    """Return the text of a file, empty where it cannot be read."""
     try:
         return path.read_text()
     except OSError:

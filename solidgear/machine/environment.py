@@ -11,8 +11,8 @@ from solidgear.machine.threads import usable_cores
 
 
 def environment() -> dict:
-    """Versions (None of packages that are not there), processor, ``cores`` that this process may
-    use, and date, for results.json.
+    """Return versions (None of packages that are not there), processor, ``cores`` that this process
+    may use, and date, for results.json.
     """
     out: dict = {"python": platform.python_version()}
     for name in ("solidgear", "numpy", "scipy", "scikit-fem", "gmsh", "pyvista", "pypardiso"):
@@ -24,7 +24,6 @@ def environment() -> dict:
         out["solidgear"] = __version__
     out["platform"] = f"{platform.system()} {platform.machine()}"
     out["cpu"] = _cpu()
-    # those this process may use, not those of the machine
     out["cores"] = usable_cores()
     out["date"] = datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC")
     return out

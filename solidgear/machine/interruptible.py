@@ -1,6 +1,6 @@
 """Long calls into C that Ctrl-C can end.
 
-Python hears a signal between two of its own instructions, in the main thread; one call into C that
+Python hears a signal between two of its instructions, in the main thread; one call into C that
 takes a minute is one instruction.  So the call runs in a second thread and the main thread waits,
 where it hears Ctrl-C at once.  The call itself cannot be ended: it is abandoned, runs on at the
 lowest priority, and its result is discarded.  The command line then ends the process without
@@ -28,19 +28,18 @@ from typing import Any, NoReturn
 
 
 def call(function: Callable, *arguments, **options) -> Any:
-    """Result of a function, or what it raises; Ctrl-C, or whatever else a signal handler raises
+    """Return the result of a function, or raise its exception; Ctrl-C, or any exception of a signal handler
     meanwhile, ends the wait for it.
 
-    After Ctrl-C the function may still be running: what it works on must not be used again.
+    After Ctrl-C the function may still be running: its arguments must not be used again.
 
     Examples
     --------
     >>> call(divmod, 7, 2)
     (3, 1)
     """
-    if threading.current_thread() is not threading.main_thread() or not callable(
-        signal.getsignal(signal.SIGINT)
-    ):
+    in_main = threading.current_thread() is threading.main_thread()
+    if not in_main or not callable(signal.getsignal(signal.SIGINT)):
         return function(*arguments, **options)
     job = _Job(lambda: function(*arguments, **options))
     try:
@@ -55,14 +54,14 @@ def call(function: Callable, *arguments, **options) -> Any:
 
 
 def abandoned() -> bool:
-    """True while a call that was interrupted is still running."""
+    """Return True while a call that was interrupted is still running."""
     _lost[:] = [job for job in _lost if not job.done.is_set()]
     return bool(_lost)
 
 
 def leave(code: int | str | None) -> NoReturn:
     """End the process as ``sys.exit`` does; at once if an abandoned call is still running, for it
-    cannot be waited for, and libraries that run C code at exit would free what it works on.
+    cannot be waited for, and libraries that run C code at exit would free its data.
     """
     if abandoned() and (code is None or isinstance(code, int)):
         for stream in (sys.stdout, sys.stderr):
@@ -74,17 +73,10 @@ def leave(code: int | str | None) -> NoReturn:
     sys.exit(code)
 
 
-class Made:
-    """Something that only the thread that made it can free, such as a factor of SciPy's SuperLU,
-    which keeps its books by thread.
+class ThreadBound:
+    """Holder of a value that only the thread that made it can free, such as a factor of SciPy's SuperLU,
+    which keeps its books by thread; it is made in the thread that made the value.
 
-    Parameters
-    ----------
-    value : object
-        Just made, in the thread that asks.
-
-    Notes
-    -----
     Where that thread is the worker of :func:`call`, the worker is sent the value when this holder
     dies.  Nothing else may refer to it then.
     """
@@ -95,7 +87,7 @@ class Made:
 
     @property
     def value(self) -> Any:
-        """The result of the call."""
+        """The value itself."""
         return self._box[0]
 
 
@@ -107,7 +99,7 @@ def _free(box: list, maker: threading.Thread) -> None:
 
 
 class _Job:
-    """One call: made in the worker, its result or its exception handed over."""
+    """One call, made in the worker, with its result or its exception."""
 
     def __init__(self, work: Callable[[], Any]):
         self._work, self._context = work, contextvars.copy_context()
@@ -118,7 +110,7 @@ class _Job:
     def run(self) -> None:
         try:
             self._value = self._context.run(self._work)
-        except BaseException as error:  # it belongs to the caller, whatever it is
+        except BaseException as error:  # every exception belongs to the caller
             self._error = error
         finally:
             del self._work, self._context
@@ -152,8 +144,8 @@ def _idle_worker() -> queue.SimpleQueue:
 
 @atexit.register
 def _close() -> None:
-    """Let the idle worker end: what SciPy's SuperLU keeps for a thread is not freed in order
-    otherwise, and Python complains.
+    """Let the idle worker end: otherwise data of SciPy's SuperLU by thread is not freed in order,
+    and Python complains.
     """
     if _worker is not None:
         _worker.put(None)
@@ -163,22 +155,21 @@ def _close() -> None:
 def _serve(jobs: queue.SimpleQueue) -> None:
     while (job := jobs.get()) is not None:
         job.run()
-        del job  # what it holds can be large
+        del job  # its data can be large
 
 
 def _abandon(job: _Job) -> None:
-    """Leave a call to itself: another worker takes the next one, and this one steps back."""
+    """Leave a call to run on: another worker takes the next one, and this one steps back."""
     global _worker
     if job.done.is_set() or _worker is None:
         return
     _worker.put(None)  # its last one
     _worker = None
     _lost.append(job)
-    # Which threads are its own (those of MKL, for instance) is not known: all but this one step
-    # back (Linux).
-    own = threading.get_native_id()
+    # Its threads (those of MKL, for instance) are not known: all but this one step back (Linux).
+    main = threading.get_native_id()
     for place in Path("/proc/self/task").glob("*"):
-        if int(place.name) != own:
+        if int(place.name) != main:
             try:
                 os.setpriority(os.PRIO_PROCESS, int(place.name), 19)
             except (OSError, AttributeError):  # it has just ended
@@ -186,7 +177,7 @@ def _abandon(job: _Job) -> None:
 
 
 def _forget() -> None:
-    """A forked child has only the thread that forked."""
+    """Start without a worker in a forked child, which has only the thread that forked."""
     global _worker
     _worker = None
     _lost.clear()

@@ -1,6 +1,4 @@
-"""A function in a process of its own: what a library does that may end the process, or never
-return, ends that one.
-"""
+"""A function in another process: a library that ends the process, or never returns, ends that one."""
 
 from __future__ import annotations
 
@@ -25,14 +23,10 @@ class IsolatedError(RuntimeError):
 
 
 def isolated(function: Callable, *arguments: Any, seconds: float, memory_mb: float = 8000.0) -> Any:
-    """Result of a function of a module that can be imported, called in a process of its own, or what it
-    raises; arguments and result can be pickled, and the address space that it may take is limited
-    where the system can do that.
-
-    Raises
-    ------
-    IsolatedError
-        If the process ended without a result, or was killed after so many seconds of processor time.
+    """Call a function of a module that can be imported in another process and return its result, or raise
+    its exception; arguments and result can be pickled, and the address space is limited where the
+    system can do that.  IsolatedError if the process ended without a result, or was killed after so
+    many seconds of processor time.
 
     Examples
     --------
@@ -42,11 +36,11 @@ def isolated(function: Callable, *arguments: Any, seconds: float, memory_mb: flo
     """
     place = os.pathsep.join(filter(None, (_ROOT, os.environ.get("PYTHONPATH"))))
     with tempfile.TemporaryDirectory(prefix="solidgear") as folder:
-        given, made = Path(folder) / "given", Path(folder) / "made"
-        given.write_bytes(pickle.dumps((_name(function), arguments, memory_mb)))
-        # what the library prints is no message of ours
+        request, answer = Path(folder) / "request", Path(folder) / "answer"
+        request.write_bytes(pickle.dumps((_name(function), arguments, memory_mb)))
+        # the library prints no message of ours
         child = subprocess.Popen(
-            [sys.executable, "-c", _CODE, str(given), str(made)],
+            [sys.executable, "-c", _CODE, str(request), str(answer)],
             env={**os.environ, "PYTHONPATH": place},
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
@@ -57,19 +51,19 @@ def isolated(function: Callable, *arguments: Any, seconds: float, memory_mb: flo
             code = patience.wait(child)
         finally:
             child.kill()
-        if patience.why:
-            raise IsolatedError(patience.why)
-        if not made.exists():
-            how = f"signal {-code}" if code < 0 else f"code {code}"
-            raise IsolatedError(f"ended by itself ({how})")
-        succeeded, value = pickle.loads(made.read_bytes())
+        if patience.reason:
+            raise IsolatedError(patience.reason)
+        if not answer.exists():
+            status = f"signal {-code}" if code < 0 else f"code {code}"
+            raise IsolatedError(f"ended by itself ({status})")
+        succeeded, value = pickle.loads(answer.read_bytes())
     if not succeeded:
         raise value
     return value
 
 
 def _name(function: Callable) -> tuple[str, str]:
-    """Module and name of a function; of one that is run as a script, its module."""
+    """Return module and name of a function; of one that is run as a script, its module."""
     module = function.__module__
     if module == "__main__":
         spec = getattr(sys.modules["__main__"], "__spec__", None)
@@ -78,21 +72,21 @@ def _name(function: Callable) -> tuple[str, str]:
 
 
 def _serve() -> None:
-    """In the process itself: call what was given and leave what it made."""
-    given, made = (Path(name) for name in sys.argv[1:3])
-    (module, name), arguments, memory_mb = pickle.loads(given.read_bytes())
+    """Answer the request, in the other process."""
+    request, answer = (Path(name) for name in sys.argv[1:3])
+    (module, name), arguments, memory_mb = pickle.loads(request.read_bytes())
     _limit(memory_mb)
     try:
         function = getattr(importlib.import_module(module), name)
         out = (True, function(*arguments))
     except Exception as error:
         out = (False, error)
-    part = made.with_suffix(".part")
+    part = answer.with_suffix(".part")
     try:
         part.write_bytes(pickle.dumps(out))
-    except Exception as error:  # an exception that cannot be pickled is still told
+    except Exception as error:  # an exception that cannot be pickled is still reported
         part.write_bytes(pickle.dumps((False, IsolatedError(f"{type(error).__name__}: {out[1]}"))))
-    part.rename(made)
+    part.rename(answer)
 
 
 def _limit(memory_mb: float) -> None:

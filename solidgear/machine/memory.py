@@ -1,5 +1,5 @@
-"""Memory that this process may still take: of the machine, of its control groups, of what the user
-allows.
+"""Memory that this process may still take: of the machine, of its control groups, and by the limit of
+the user.
 """
 
 from __future__ import annotations
@@ -17,40 +17,41 @@ from solidgear.machine.control_groups import control_groups, text_of
 
 
 class NoRoom(SolidgearError):
-    """Refusal of what does not fit into memory, or cannot be numbered.
+    """Refusal of a mesh, matrix or factor that does not fit into memory, or cannot be numbered.
 
     Attributes
     ----------
-    what : str
-        What was asked for, what it would take and what there is, in words.
+    reason : str
+        Request, need and free memory, in words.
     need_mb, free_mb : float
-        Infinite for what no memory would hold, and where the system does not tell.
+        Infinite for a need beyond any memory, and where the system does not show the free memory.
     """
 
     def __init__(
-        self, what: str, need_mb: float, free_mb: float, instead: str = "use a coarser mesh"
+        self, reason: str, need_mb: float, free_mb: float, instead: str = "use a coarser mesh"
     ):
-        self.what, self.need_mb, self.free_mb = what, need_mb, free_mb
-        super().__init__(f"{what}; {instead}")
+        self.reason, self.need_mb, self.free_mb = reason, need_mb, free_mb
+        super().__init__(f"{reason}; {instead}")
 
     def of_model(self, model: str, instead: str) -> NoRoom:
-        """The same of a model, with what to do instead."""
-        return NoRoom(f"{model}: {self.what}", self.need_mb, self.free_mb, instead)
+        """Return the same refusal of a model, with advice."""
+        return NoRoom(f"{model}: {self.reason}", self.need_mb, self.free_mb, instead)
 
 
 def megabytes(amount: float) -> str:
-    """A number of megabytes, to what it is worth."""
+    """Return a number of megabytes in words, to two digits below ten."""
     return f"{amount:.0f}" if amount >= 10 else f"{amount:.2g}"
 
 
-def require(need_mb: float, what: str, by: str = "", free: float | None = None) -> None:
-    """Refuse (:class:`NoRoom`) what does not fit into what is free now, or was before a part of
-    the need was taken, unless it is small; told is what needs it, such as ``120 unknowns``, and
-    what factors them.
+def require(need_mb: float, unknowns: str, backend: str = "", free: float | None = None) -> None:
+    """Refuse (:class:`NoRoom`) a need beyond the memory that is free now, or was before a part of
+    it was taken, unless it is small; ``unknowns``, such as ``120 unknowns``, and the back end that
+    factors them are named in the refusal.
     """
     free = available_mb() if free is None else free
     if free is not None and need_mb > max(free, SMALL_MB):
-        needs = f"{what} need about {megabytes(need_mb)} MB{f' to factor by {by}' if by else ''}"
+        by = f" to factor by {backend}" if backend else ""
+        needs = f"{unknowns} need about {megabytes(need_mb)} MB{by}"
         raise NoRoom(f"{needs}, {megabytes(free)} MB are free", need_mb, free)
 
 
@@ -58,17 +59,17 @@ def require(need_mb: float, what: str, by: str = "", free: float | None = None) 
 class Run:
     """Memory of one run."""
 
-    #: what the process held when it began; None before that, and where the system does not tell
+    #: memory of the process when it began; None before that, and where the system does not show it
     base_mb: float | None = None
-    #: the largest peak that was told beforehand (see :func:`expect`)
+    #: the largest peak that was expected (see :func:`expect`)
     expected_mb: float | None = None
 
 
 _run: ContextVar[Run | None] = ContextVar("the run that this is part of", default=None)
 
-#: what is not refused for want of memory, MB: a beam, or a coarse solid
+#: needs below this are not refused, MB: a beam, or a coarse solid
 SMALL_MB = 25.0
-#: told of unknowns, and of memory in MB
+#: called with unknowns, and with memory in MB
 Listener = Callable[[int, float], None]
 _listener: ContextVar[Listener | None] = ContextVar("who is told what factors take", default=None)
 
@@ -77,29 +78,15 @@ UNLIMITED = 2**60
 
 
 def available_mb(root: str | Path = "/") -> float | None:
-    """Memory that can still be taken.
+    """Return the memory that can still be taken, MB of 2**20 bytes; None where the system does not show it.
 
     The least of ``MemAvailable``, the room below the limit of every control group (v1 and v2) this
-    process is in, what a limit of address space (``ulimit -v``) leaves, and the environment variable
-    ``SOLIDGEAR_MEMORY_MB``, which can only lower it (see :func:`one_run`).
-
-    Parameters
-    ----------
-    root : path
-        Where ``proc`` and ``sys`` are looked for.
-
-    Returns
-    -------
-    float or None
-        MB of 2**20 bytes; None where the system does not show it.
-
-    Raises
-    ------
-    SolidgearError
-        If ``SOLIDGEAR_MEMORY_MB`` is not a number above zero.
+    process is in, the rest of a limit of address space (``ulimit -v``), and the environment variable
+    ``SOLIDGEAR_MEMORY_MB``, a number above zero, which can only lower it (see :func:`one_run`).
+    ``proc`` and ``sys`` are looked for below ``root``.
     """
     root = Path(root)
-    found = [*_machine(root), *_groups(root), *_address_space(root)]
+    limits = [*_machine(root), *_groups(root), *_address_space(root)]
     text = os.environ.get("SOLIDGEAR_MEMORY_MB", "").strip()
     if text:
         try:
@@ -112,19 +99,15 @@ def available_mb(root: str | Path = "/") -> float | None:
             )
         run = _run.get()
         base = None if run is None else run.base_mb
-        held = 0.0 if base is None else max(0.0, (resident_mb() or base) - base)
-        found.append(max(0.0, allowed - held))
-    return min(found, default=None)
+        taken = 0.0 if base is None else max(0.0, (resident_mb() or base) - base)
+        limits.append(max(0.0, allowed - taken))
+    return min(limits, default=None)
 
 
 @contextmanager
 def one_run() -> Iterator[Run]:
-    """Within it, ``SOLIDGEAR_MEMORY_MB`` limits what is taken from here on in all, not what each
-    body may take by itself; a run within a run is part of it.
-
-    Yields
-    ------
-    Run
+    """Begin a run, in which ``SOLIDGEAR_MEMORY_MB`` limits the memory taken in all, not by each
+    body; a run within a run is part of it.
     """
     with one_command() as run:
         begin()
@@ -133,12 +116,8 @@ def one_run() -> Iterator[Run]:
 
 @contextmanager
 def one_command() -> Iterator[Run]:
-    """The same, of a run that begins with its first body (:func:`begin`): what large libraries take is
-    not counted.
-
-    Yields
-    ------
-    Run
+    """Open a run that begins with its first body (:func:`begin`): memory of large libraries is not
+    counted.
     """
     run = _run.get() or Run()
     token = _run.set(run)
@@ -149,8 +128,10 @@ def one_command() -> Iterator[Run]:
 
 
 @contextmanager
-def anew() -> Iterator[None]:
-    """Within it, what the run has taken so far does not count: for what would be in its place."""
+def fresh_run() -> Iterator[None]:
+    """Count memory from zero within it: for models in place of the one that has taken memory so
+    far.
+    """
     token = _run.set(Run(resident_mb()))
     try:
         yield
@@ -159,38 +140,40 @@ def anew() -> Iterator[None]:
 
 
 def begin() -> None:
-    """From here on count what the run takes, if it has not begun."""
+    """Count the memory of the run from here on, if it has not begun."""
     run = _run.get()
     if run is not None and run.base_mb is None:
         run.base_mb = resident_mb()
 
 
 @contextmanager
-def listening(hear: Listener) -> Iterator[None]:
-    """Within it, ``hear(unknowns, mb)`` is told of every factor before it is made."""
-    token = _listener.set(hear)
+def listening(listener: Listener) -> Iterator[None]:
+    """Call ``listener(unknowns, mb)`` before every factor that is made within it."""
+    token = _listener.set(listener)
     try:
         yield
     finally:
         _listener.reset(token)
 
 
-def tell(unknowns: int, more_mb: float) -> None:
-    """Tell whoever listens of a factor that will be made."""
-    hear = _listener.get()
-    if hear is not None:
-        hear(unknowns, more_mb)
+def announce(unknowns: int, more_mb: float) -> None:
+    """Announce a factor that will be made to the listener."""
+    listener = _listener.get()
+    if listener is not None:
+        listener(unknowns, more_mb)
 
 
 def expect(more_mb: float) -> None:
-    """Note that so much memory (MB) will be taken beyond what the process holds now."""
-    run, now = _run.get(), resident_mb()
-    if run is not None and now is not None:
-        run.expected_mb = max(run.expected_mb or 0.0, now + more_mb)
+    """Note that so much memory (MB) will be taken beyond the resident memory."""
+    run, resident = _run.get(), resident_mb()
+    if run is not None and resident is not None:
+        run.expected_mb = max(run.expected_mb or 0.0, resident + more_mb)
 
 
 def resident_mb() -> float | None:
-    """Resident memory of this process, MB of 2**20 bytes; None where the system does not show it."""
+    """Return the resident memory of this process, MB of 2**20 bytes; None where the system does not
+    show it.
+    """
     try:
         pages = int(Path("/proc/self/statm").read_text().split()[1])
     except OSError:
@@ -206,20 +189,22 @@ def _machine(root: Path) -> Iterator[float]:
 
 def _groups(root: Path) -> Iterator[float]:
     for place, unified in control_groups(root, "memory"):
-        names = (
-            ("memory.max", "memory.current", "inactive_file")
-            if unified
-            else ("memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file")
+        limit, usage, cache = (
+            "memory.limit_in_bytes",
+            "memory.usage_in_bytes",
+            "total_inactive_file",
         )
-        ceiling, taken = (text_of(place / name).strip() for name in names[:2])
+        if unified:
+            limit, usage, cache = "memory.max", "memory.current", "inactive_file"
+        ceiling, taken = (text_of(place / name).strip() for name in (limit, usage))
         if ceiling.isdigit() and taken.isdigit() and int(ceiling) < UNLIMITED:
             # Cached files count as used but are given back on demand.
-            cached = _field(text_of(place / "memory.stat"), names[2])
+            cached = _field(text_of(place / "memory.stat"), cache)
             yield max(0, int(ceiling) - int(taken) + cached) / 2**20
 
 
 def _address_space(root: Path) -> Iterator[float]:
-    """Below a limit of address space, of which a process takes more than it holds."""
+    """Yield the rest of a limit of address space, of which a process takes more than it holds."""
     rows = text_of(root / "proc/self/limits").splitlines()
     soft = next((row.split()[3] for row in rows if row.startswith("Max address space")), "")
     taken = text_of(root / "proc/self/statm").split()

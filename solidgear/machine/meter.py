@@ -12,23 +12,16 @@ from solidgear.machine.memory import resident_mb
 
 
 def processor_seconds() -> float:
-    """Processor time of this process and of those it has waited for, s: the same on a busy machine as
-    on an idle one.
+    """Return the processor time of this process and of those it has waited for, s: the same on a
+    busy machine as on an idle one.
     """
     return sum(os.times()[:4])
 
 
 class Meter:
-    """Collects ``seconds`` per stage and the peak resident memory over all of them.
+    """``seconds`` per stage and the peak resident memory over all of them, ``peak_mb`` (MB of 2**20 bytes).
 
-    Memory is sampled every 20 ms: what is shown is the size of the whole process while the stage
-    ran.
-
-    Attributes
-    ----------
-    seconds : dict of str to float
-    peak_mb : float or None
-        MB of 2**20 bytes.
+    Memory is that of the whole process, sampled every 20 ms while a stage runs.
 
     Examples
     --------
@@ -50,10 +43,10 @@ class Meter:
 
         def watch():
             while True:
-                now = resident_mb()
-                if now is None:
+                resident = resident_mb()
+                if resident is None:
                     return
-                self.peak_mb = max(self.peak_mb or 0.0, now)
+                self.peak_mb = max(self.peak_mb or 0.0, resident)
                 if stop.wait(0.02):
                     return
 
@@ -73,5 +66,5 @@ class Meter:
         self.seconds[target] = self.seconds.get(target, 0.0) + seconds
 
     def total(self) -> dict[str, float]:
-        """Seconds per stage, and their sum as ``total``."""
+        """Return the seconds per stage, and their sum as ``total``."""
         return {**self.seconds, "total": sum(self.seconds.values())}

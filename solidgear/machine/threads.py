@@ -5,12 +5,12 @@ pool              gets               why
 ================= ================== ==============================================================
 OpenBLAS of       one                every dense matrix here is small, and its pool, spinning
 numpy, scipy                         between calls, fights the one that factors
-MKL (PARDISO)     what is offered    nearly all the arithmetic of a 3D solid is its factorisation
+MKL (PARDISO)     all granted        nearly all the arithmetic of a 3D solid is its factorisation
 BLAS under        one if it is       the same variable steers it; set ``OPENBLAS_NUM_THREADS``
 CHOLMOD, MUMPS    OpenBLAS           yourself where they factor because PARDISO is absent
 ================= ================== ==============================================================
 
-Offered are the processors this process may run on (its affinity), less if a control group grants
+Granted are the processors this process may run on (its affinity), less if a control group grants
 fewer: a container with ``--cpus``, which MKL does not see, stops threads beyond that in turns.
 MKL takes ``OMP_NUM_THREADS`` at its word, also above the processors granted; then its threads wait
 for each other in turns, so the number is held down around every call.
@@ -18,7 +18,7 @@ for each other in turns, so the number is held down around every call.
 OpenBLAS reads ``OPENBLAS_NUM_THREADS`` once, when numpy is first imported, and ``OMP_NUM_THREADS``
 in its absence.  The command line sets it before that (:func:`pin`).  A program that imports numpy
 first, or a site that sets ``OPENBLAS_NUM_THREADS``, has the limit for as long as it is inside this
-package (:func:`pinned`), and its own number back afterwards.
+package (:func:`pinned`), and its previous number back afterwards.
 
 Measured on the shipped overhung pinion (two cores, busy with other work, runs in turn): with numpy
 imported first and two threads, body, compliance and ten modes took 3.4 and 5.1 times as long as
@@ -59,8 +59,7 @@ def pin() -> None:
 
 
 def pinned(function: Callable[P, R]) -> Callable[P, R]:
-    """Decorator: OpenBLAS has one thread while the function runs, and what it had before
-    afterwards.
+    """Decorate a function: OpenBLAS has one thread while it runs, and its previous number afterwards.
 
     Examples
     --------
@@ -80,8 +79,8 @@ def pinned(function: Callable[P, R]) -> Callable[P, R]:
     return inner
 
 
-# Threads that are inside, and what to restore when the last one leaves: the number is one for the
-# whole process.
+# Threads that are inside, and numbers to restore when the last one leaves: there is one number for
+# the whole process.
 _lock = threading.Lock()
 _inside = 0
 _before: list[tuple] = []
@@ -89,12 +88,8 @@ _before: list[tuple] = []
 
 @contextmanager
 def single() -> Iterator[None]:
-    """OpenBLAS on one thread; costs a microsecond where it has no more, nothing where its variable
-    says one.
-
-    Yields
-    ------
-    None
+    """Keep OpenBLAS on one thread; costs a microsecond where it has no more, nothing where its
+    variable says one.
     """
     global _inside
     if os.environ.get(VARIABLE) == "1":
@@ -121,7 +116,7 @@ def single() -> Iterator[None]:
 
 @functools.cache
 def _openblas() -> tuple:
-    """The OpenBLAS libraries of numpy and scipy, which bring one each."""
+    """Return the OpenBLAS libraries of numpy and scipy, which bring one each."""
     import scipy.linalg  # noqa: F401  (loads both)
     from threadpoolctl import ThreadpoolController
 
@@ -129,18 +124,8 @@ def _openblas() -> tuple:
 
 
 def usable_cores(root: str | Path = "/") -> int:
-    """Processors this process may use: its affinity, or what a control group (v1 or v2) grants,
-    whichever is less.
-
-    Parameters
-    ----------
-    root : path
-        Where ``proc`` and ``sys`` are looked for.
-
-    Returns
-    -------
-    int
-        At least 1.
+    """Return the processors this process may use, at least 1: its affinity, or the grant of a control
+    group (v1 or v2), whichever is less; ``proc`` and ``sys`` are looked for below ``root``.
 
     Examples
     --------
@@ -155,12 +140,13 @@ def _affinity() -> int:
 
 
 def _shares(root: Path):
-    """Processors granted by every control group of this process."""
+    """Yield the processors granted by every control group of this process."""
     for place, unified in control_groups(root, "cpu"):
         if unified:
-            both = text_of(place / "cpu.max").split()
+            words = text_of(place / "cpu.max").split()
         else:
-            both = [text_of(place / f"cpu.cfs_{name}_us").strip() for name in ("quota", "period")]
+            words = [text_of(place / f"cpu.cfs_{name}_us").strip() for name in ("quota", "period")]
         # "max" or -1: no limit
-        if len(both) == 2 and all(part.isdigit() for part in both) and int(both[1]) > 0:
-            yield int(both[0]) / int(both[1])
+        if len(words) == 2 and all(word.isdigit() for word in words) and int(words[1]) > 0:
+            quota, period = map(int, words)
+            yield quota / period

@@ -12,20 +12,8 @@ from solidgear.errors import SolidgearError
 
 @contextmanager
 def whole(path: Path) -> Iterator[Path]:
-    """Another name in the same folder to write under; it takes the place of ``path`` at the end, or
-    is gone if something was raised.
-
-    A rename within a folder is all or nothing.
-
-    Parameters
-    ----------
-    path : Path
-        File to be made or replaced.
-
-    Yields
-    ------
-    Path
-        Where to write.
+    """Yield another name in the same folder to write under; it takes the place of ``path`` at the end, or
+    is gone if something was raised, for a rename within a folder is all or nothing.
 
     Examples
     --------
@@ -47,12 +35,8 @@ def whole(path: Path) -> Iterator[Path]:
 
 
 def write_page(path: str | os.PathLike, text: str) -> Path:
-    """Write a file that a user named, and the folders above it; there is a whole one or none.
-
-    Raises
-    ------
-    SolidgearError
-        If the file cannot be written.
+    """Write a file that a user named, and the folders above it, whole or not at all; refuse one
+    that cannot be written.
     """
     path = Path(path)
     try:

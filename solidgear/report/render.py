@@ -106,7 +106,7 @@ class Drawing:
             return []
         end = self._end or self._wait()
         # A child that reached the end of its list has said all there is to say.
-        while end and self._windows and self._patience.left > 0:
+        while end and self._windows and self._patience.remaining > 0:
             end = self._start() or self._wait()
         return [
             RenderResult(job.path, _collect(self._room, i, job.path, end))
@@ -157,8 +157,8 @@ class Drawing:
         child = self._child
         assert child is not None
         code = self._patience.wait(child)
-        if self._patience.why:
-            return self._patience.why
+        if self._patience.reason:
+            return self._patience.reason
         if code == 0:
             return ""
         if code < 0:

@@ -13,7 +13,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from solidgear.factoring import Factoring
-from solidgear.machine.memory import available_mb, expect, require, tell
+from solidgear.machine.memory import announce, available_mb, expect, require
 from solidgear.solve.backends import BACKENDS, missing
 from solidgear.solve.backends.matrix import FactorError
 from solidgear.solve.choice import FORCED, USUAL, choice
@@ -156,7 +156,7 @@ def factored(plans: Sequence[Planned], free: float | None = None) -> list[Factor
     unknowns, need = sum(p.unknowns for p in plans), sum(p.estimate_mb for p in plans)
     require(need, f"{unknowns} unknowns", plans[0].backend, free)
     expect(need)
-    tell(unknowns, need)
+    announce(unknowns, need)
     return [plan.make() for plan in plans]
 
 

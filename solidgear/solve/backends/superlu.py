@@ -6,7 +6,7 @@ import numpy as np
 import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 
-from solidgear.machine.interruptible import Made
+from solidgear.machine.interruptible import ThreadBound
 from solidgear.solve.backends.matrix import FactorError
 from solidgear.solve.backends.memory_law import law
 
@@ -45,7 +45,7 @@ class SuperLU:
         """Factor; :class:`FactorError` if memory ends, or the matrix cannot be factored."""
         n = self.matrix.shape[0]
         try:
-            self._lu = Made(
+            self._lu = ThreadBound(
                 spla.splu(
                     self.matrix,
                     permc_spec="MMD_AT_PLUS_A",

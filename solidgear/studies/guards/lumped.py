@@ -39,13 +39,13 @@ def effective_mass(probe: Probe) -> Notices:
     beam = "its beam" if probe.beam_fits else "the beam of the plain part"
     matched, reasons, level = variants["mode-matched"], [], "caution"
     if not (matched.feasible and matched.first):
-        frequency_error = variants["guyan"].frequency_error
-        assert frequency_error is not None  # its mass is always positive definite
-        level = beyond(frequency_error, probe.scene.ask.tolerance)
+        deviation = variants["guyan"].frequency_error
+        assert deviation is not None  # its mass is always positive definite
+        level = beyond(deviation, probe.scene.ask.tolerance)
         lacks = "holds the mode as its second one" if matched.feasible else "has a negative entry"
         reasons.append(
             f"the mode-matched pair of masses {lacks}: Guyan's stands in, whose first bending is "
-            f"{against(frequency_error, 'higher', 'lower')} that of {beam}"
+            f"{against(deviation, 'higher', 'lower')} that of {beam}"
         )
     if point.static_share < ENERGY:
         reasons.append(
