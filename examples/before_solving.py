@@ -9,7 +9,7 @@ It illustrates how to:
 from pathlib import Path
 
 import solidgear as sg
-from solidgear.studies.check import check_scene
+from solidgear.guards.check import check_scene
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 

@@ -15,9 +15,9 @@ from pathlib import Path
 import numpy as np
 
 import solidgear as sg
-from solidgear.studies.train.models import Workshop
-from solidgear.studies.train.modes import train_modes
-from solidgear.studies.train.respond import Drive
+from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.modes.modes import train_modes
+from solidgear.trains.response.respond import Drive
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 

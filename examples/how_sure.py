@@ -9,8 +9,8 @@ It illustrates how to:
 from pathlib import Path
 
 import solidgear as sg
-from solidgear.judge.study import study
-from solidgear.judge.ties import SCENE
+from solidgear.core.judge.study import study
+from solidgear.core.judge.ties import SCENE
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 

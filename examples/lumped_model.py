@@ -9,7 +9,7 @@ It illustrates how to:
 from pathlib import Path
 
 import solidgear as sg
-from solidgear.reduction.effective_mass import synthesise
+from solidgear.core.reduction.effective_mass import synthesise
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 import solidgear as sg
-from solidgear.system.gear_mesh import line_of_action, mesh_point, to_gear_frame
+from solidgear.core.system.gear_mesh import line_of_action, mesh_point, to_gear_frame
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 RADIUS, TEETH, MESH = 0.055, (14, 45), 8.6e8

@@ -37,56 +37,56 @@ from typing import TYPE_CHECKING
 __version__ = "0.1.0"
 
 _WHERE = {
-    "load": "solidgear.studies.loading",
-    "load_train": "solidgear.studies.loading",
-    "Train": "solidgear.scene.train",
-    "Scene": "solidgear.scene",
-    "Segment": "solidgear.scene",
-    "Bearing": "solidgear.scene",
-    "PointMass": "solidgear.scene",
-    "Port": "solidgear.scene",
-    "Housing": "solidgear.scene",
-    "Lubrication": "solidgear.scene",
-    "Material": "solidgear.scene",
-    "Ask": "solidgear.scene",
-    "STEEL": "solidgear.scene",
-    "Body": "solidgear.body",
-    "Supports": "solidgear.body",
-    "build": "solidgear.ladder",
-    "Superelement": "solidgear.reduction.superelement",
-    "rubin": "solidgear.reduction.rubin",
-    "craig_bampton": "solidgear.reduction.craig_bampton",
-    "System": "solidgear.system",
-    "RigidBody": "solidgear.system",
-    "Inertia": "solidgear.system",
-    "Placed": "solidgear.system",
-    "BearingSpring": "solidgear.system",
-    "RowSpring": "solidgear.system",
-    "PortInertia": "solidgear.system",
-    "PlanetaryStage": "solidgear.system",
-    "PlanetaryTeeth": "solidgear.system",
-    "CentralMember": "solidgear.system",
-    "FixedSupport": "solidgear.system",
-    "PlanetError": "solidgear.system",
-    "carrier_turn": "solidgear.system",
-    "elastic_ring": "solidgear.studies.elastic_ring",
-    "Planet": "solidgear.system",
-    "MeshVector": "solidgear.system",
-    "grounded": "solidgear.system",
-    "mesh_spring": "solidgear.system",
-    "torsion_spring": "solidgear.system",
-    "condense": "solidgear.solve.statics",
-    "modes": "solidgear.solve.modes",
-    "answer": "solidgear.judge.answer",
-    "budget": "solidgear.studies.budget",
-    "compare": "solidgear.studies.comparison",
-    "optimise": "solidgear.studies.optimise",
-    "sweep": "solidgear.studies.sweep.file_sweep",
-    "sensitivities": "solidgear.studies.sensitivity.run",
-    "shaft_stress": "solidgear.studies.stress.shaft",
-    "turn": "solidgear.report.viewer",
-    "SolidgearError": "solidgear.errors",
-    "SceneError": "solidgear.errors",
+    "load": "solidgear.core.loading",
+    "load_train": "solidgear.core.loading",
+    "Train": "solidgear.trains.file.train",
+    "Scene": "solidgear.core.scene",
+    "Segment": "solidgear.core.scene",
+    "Bearing": "solidgear.core.scene",
+    "PointMass": "solidgear.core.scene",
+    "Port": "solidgear.core.scene",
+    "Housing": "solidgear.core.scene",
+    "Lubrication": "solidgear.core.scene",
+    "Material": "solidgear.core.scene",
+    "Ask": "solidgear.core.scene",
+    "STEEL": "solidgear.core.scene",
+    "Body": "solidgear.core.body",
+    "Supports": "solidgear.core.body",
+    "build": "solidgear.core.ladder",
+    "Superelement": "solidgear.core.reduction.superelement",
+    "rubin": "solidgear.core.reduction.rubin",
+    "craig_bampton": "solidgear.core.reduction.craig_bampton",
+    "System": "solidgear.core.system",
+    "RigidBody": "solidgear.core.system",
+    "Inertia": "solidgear.core.system",
+    "Placed": "solidgear.core.system",
+    "BearingSpring": "solidgear.core.system",
+    "RowSpring": "solidgear.core.system",
+    "PortInertia": "solidgear.core.system",
+    "PlanetaryStage": "solidgear.core.system",
+    "PlanetaryTeeth": "solidgear.core.system",
+    "CentralMember": "solidgear.core.system",
+    "FixedSupport": "solidgear.core.system",
+    "PlanetError": "solidgear.core.system",
+    "carrier_turn": "solidgear.core.system",
+    "elastic_ring": "solidgear.bearings.elastic_ring",
+    "Planet": "solidgear.core.system",
+    "MeshVector": "solidgear.core.system",
+    "grounded": "solidgear.core.system",
+    "mesh_spring": "solidgear.core.system",
+    "torsion_spring": "solidgear.core.system",
+    "condense": "solidgear.core.solve.statics",
+    "modes": "solidgear.core.solve.modes",
+    "answer": "solidgear.core.judge.answer",
+    "budget": "solidgear.variants.budget.budget",
+    "compare": "solidgear.compare.comparison",
+    "optimise": "solidgear.variants.optimise.optimise",
+    "sweep": "solidgear.variants.sweep.file_sweep",
+    "sensitivities": "solidgear.variants.sensitivity.run",
+    "shaft_stress": "solidgear.strength.stress.shaft",
+    "turn": "solidgear.show.viewer",
+    "SolidgearError": "solidgear.core.errors",
+    "SceneError": "solidgear.core.errors",
 }
 __all__ = [
     "STEEL",
@@ -143,15 +143,15 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
-    from solidgear.body import Body, Supports
-    from solidgear.errors import SceneError, SolidgearError
-    from solidgear.judge.answer import answer
-    from solidgear.ladder import build
-    from solidgear.reduction.craig_bampton import craig_bampton
-    from solidgear.reduction.rubin import rubin
-    from solidgear.reduction.superelement import Superelement
-    from solidgear.report.viewer import turn
-    from solidgear.scene import (
+    from solidgear.core.body import Body, Supports
+    from solidgear.core.errors import SceneError, SolidgearError
+    from solidgear.core.judge.answer import answer
+    from solidgear.core.ladder import build
+    from solidgear.core.reduction.craig_bampton import craig_bampton
+    from solidgear.core.reduction.rubin import rubin
+    from solidgear.core.reduction.superelement import Superelement
+    from solidgear.show.viewer import turn
+    from solidgear.core.scene import (
         STEEL,
         Ask,
         Bearing,
@@ -163,18 +163,18 @@ if TYPE_CHECKING:
         Scene,
         Segment,
     )
-    from solidgear.scene.train import Train
-    from solidgear.solve.modes import modes
-    from solidgear.solve.statics import condense
-    from solidgear.studies.budget import budget
-    from solidgear.studies.comparison import compare
-    from solidgear.studies.elastic_ring import elastic_ring
-    from solidgear.studies.loading import load, load_train
-    from solidgear.studies.optimise import optimise
-    from solidgear.studies.sensitivity.run import sensitivities
-    from solidgear.studies.stress.shaft import shaft_stress
-    from solidgear.studies.sweep.file_sweep import sweep
-    from solidgear.system import (
+    from solidgear.trains.file.train import Train
+    from solidgear.core.solve.modes import modes
+    from solidgear.core.solve.statics import condense
+    from solidgear.variants.budget.budget import budget
+    from solidgear.compare.comparison import compare
+    from solidgear.bearings.elastic_ring import elastic_ring
+    from solidgear.core.loading import load, load_train
+    from solidgear.variants.optimise.optimise import optimise
+    from solidgear.variants.sensitivity.run import sensitivities
+    from solidgear.strength.stress.shaft import shaft_stress
+    from solidgear.variants.sweep.file_sweep import sweep
+    from solidgear.core.system import (
         BearingSpring,
         CentralMember,
         FixedSupport,
@@ -189,16 +189,16 @@ if TYPE_CHECKING:
         RigidBody,
         RowSpring,
         System,
-        carrier_turn,
         grounded,
         mesh_spring,
         torsion_spring,
     )
+    from solidgear.trains.system import carrier_turn
 
 
 def __getattr__(name: str):
     if name not in _WHERE:
-        from solidgear.errors import nearest  # start-up
+        from solidgear.core.errors import nearest  # start-up
 
         raise AttributeError(f"module 'solidgear' has no attribute {name!r}{nearest(name, _WHERE)}")
     value = getattr(importlib.import_module(_WHERE[name]), name)

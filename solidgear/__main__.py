@@ -1,6 +1,6 @@
 """``python -m solidgear``."""
 
-from solidgear.cli import main
+from solidgear.app import main
 
 if __name__ == "__main__":
     main()

@@ -3,8 +3,8 @@
 import html
 import re
 
-from solidgear.judge.race.pareto import Row
-from solidgear.report.plot import Chart
+from solidgear.compare.race.pareto import Row
+from solidgear.show.plot import Chart
 
 SETUP = {"numpy and scipy": 0.5, "gmsh, first use": 0.1}
 

@@ -6,7 +6,7 @@ import re
 
 from typer.testing import CliRunner
 
-from solidgear.cli import app
+from solidgear.show import command as app
 
 
 def command(*words, **how):

@@ -15,8 +15,8 @@ from pathlib import Path
 
 import pytest
 
-from solidgear.machine.memory import resident_mb
-from solidgear.machine.threads import pin
+from solidgear.core.machine.memory import resident_mb
+from solidgear.core.machine.threads import pin
 
 pin()
 # A shell starts what it runs in the background deaf to Ctrl-C; tests that interrupt themselves
@@ -124,8 +124,8 @@ def solved_once():
     """Light solids by which guards judge a scene, which every command on a beam asks for: the last
     scenes of a process once.
     """
-    from solidgear.judge import refinement as loop
-    from solidgear.studies.guards import probe
+    from solidgear.core.judge import refinement as loop
+    from solidgear.guards import probe
 
     solve, known = probe.study, {}
 
@@ -149,8 +149,8 @@ def read_once():
     Each start costs more than the reading.  Mesh files are read in this process; parts, whose reader
     may end it, and files that are broken at random have their own.
     """
-    from solidgear.meshing import part_file
-    from solidgear.meshing.mesh_file import mesh_from
+    from solidgear.parts import part_file
+    from solidgear.parts.mesh_file import mesh_from
 
     known, starts = {}, part_file.isolated
 
@@ -167,7 +167,7 @@ def read_once():
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(part_file, "isolated", once)
-        patch.setattr("solidgear.models.solid.part.isolated", once)
+        patch.setattr("solidgear.parts.part_body.isolated", once)
         yield
 
 
@@ -193,7 +193,7 @@ class Drawn:
 @pytest.fixture(scope="session", autouse=True)
 def drawn_once():
     """Charts that several tests write, drawn once."""
-    from solidgear.report import plot
+    from solidgear.show import plot
 
     library = functools.cache(lambda: Drawn(make()))
     make = plot._drawing_library
@@ -205,7 +205,7 @@ def drawn_once():
 @pytest.fixture
 def no_charts(monkeypatch):
     """Reports without their charts: drawing is what takes the time, and few tests look at them."""
-    from solidgear.report import charts
+    from solidgear.compare.page import charts
 
     monkeypatch.setattr(charts, "CHARTS", dict.fromkeys(charts.CHARTS, lambda results: None))
 
@@ -225,7 +225,7 @@ def no_sudden_end(monkeypatch):
 @pytest.fixture
 def run(monkeypatch, capsys, tmp_path, no_sudden_end):
     """The installed command's entry point, in an empty folder: exit code, standard output and error."""
-    from solidgear import cli
+    from solidgear import app as cli
 
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("SOLIDGEAR_BACKEND", raising=False)
@@ -248,7 +248,7 @@ def run(monkeypatch, capsys, tmp_path, no_sudden_end):
 def raced():
     """A small race on a light reference."""
     import solidgear as sg
-    from solidgear.judge.race.timing import race
+    from solidgear.compare.race.timing import race
     from tests.charted import SETUP, few
 
     scene = sg.load(Path(__file__).parent.parent / "geometry" / "shaft_stepped.toml")
@@ -258,7 +258,7 @@ def raced():
 @pytest.fixture
 def two_meshes(monkeypatch):
     """A climb that ends with its second mesh, where a tolerance of 1e-8 is far away."""
-    from solidgear.judge import refinement as loop
+    from solidgear.core.judge import refinement as loop
 
     monkeypatch.setattr(loop, "MOST_MESHES", 2)
 
@@ -268,8 +268,8 @@ def builds_until(monkeypatch):
     """Lets a climb build so many meshes and refuses every further one for want of memory; gives the
     options that each was asked for with.
     """
-    from solidgear.errors import SolidgearError
-    from solidgear.judge import question
+    from solidgear.core.errors import SolidgearError
+    from solidgear.core.judge import question
 
     def limit(count: int) -> list[dict]:
         real, calls = question.build, []

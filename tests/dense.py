@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from solidgear.scene.closed_form import mass_properties
+from solidgear.core.scene.closed_form import mass_properties
 from validation.side_by_side import side_by_side
 
 

@@ -1,6 +1,6 @@
 """A shaft with one filleted shoulder, for tests of its stress."""
 
-from solidgear.scene import Bearing, Fillet, Material, Port, Scene, Segment, Strength
+from solidgear.core.scene import Bearing, Fillet, Material, Port, Scene, Segment, Strength
 
 STRONG = Strength(yield_point=700e6, ultimate=1000e6)
 

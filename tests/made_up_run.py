@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from solidgear.judge.record import SCHEMA
+from solidgear.core.judge.record import SCHEMA
 
 LOOKS = {
     "euler": ("Euler beam", "Euler", "beam", "#c98a00", "v"),

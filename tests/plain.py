@@ -2,9 +2,10 @@
 
 from pathlib import Path
 
-from solidgear.judge.record import Record
-from solidgear.report import html, terminal
-from solidgear.report.border import as_record
+from solidgear.core.judge.record import Record
+from solidgear.compare.page import html
+from solidgear.show import terminal
+from solidgear.show.border import as_record
 
 #: a folder without a file
 NOWHERE = Path("there is no such folder")

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from solidgear.frames import shift
-from solidgear.scene import Scene, Segment
+from solidgear.core.frames import shift
+from solidgear.core.scene import Scene, Segment
 
 #: (length, outer at both ends, inner at both ends): steps up and down outside and in the bore,
 #: cones next to steps, a blind bore, a conical bore

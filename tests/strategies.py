@@ -7,7 +7,7 @@ import math
 import numpy as np
 from hypothesis import strategies as st
 
-from solidgear.scene import Bearing, Material, Port, Scene, Segment
+from solidgear.core.scene import Bearing, Material, Port, Scene, Segment
 
 MATERIALS = (
     Material(E=2.07e11, nu=0.30, density=7850.0),

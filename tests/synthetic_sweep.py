@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from solidgear.studies.sweep.bearing_sweep import sweep
-from solidgear.studies.sweep.bearing_variants import bearing_variants
-from solidgear.studies.sweep.rows import RowFile
+from solidgear.variants.sweep.bearing_sweep import sweep
+from solidgear.variants.sweep.bearing_variants import bearing_variants
+from solidgear.variants.sweep.rows import RowFile
 from tests.command import command
 
 SCENE = "geometry/pinion_overhung.toml"

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from solidgear.nonlinear.model import remainder
-from solidgear.system import Inertia, RowSpring, System
+from solidgear.backlash.solver.model import remainder
+from solidgear.core.system import Inertia, RowSpring, System
 
 #: of the motion along z, of six
 ALONG = [0, 0, 1, 0, 0, 0]

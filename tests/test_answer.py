@@ -9,19 +9,19 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.body import as_supports
-from solidgear.cli.answer import _absent, sentences
-from solidgear.judge import question
-from solidgear.judge.answer import answer
-from solidgear.judge.quantities import change
-from solidgear.judge.question import FamilySolver
-from solidgear.judge.refinement import Refinement, refine
-from solidgear.judge.solving import Numbers, solve
-from solidgear.ladder.harmonic import Harmonic
-from solidgear.ladder.meshes import Sequence
-from solidgear.ladder.registry import LADDER
-from solidgear.quantity import C_ZZ, FIRST_BENDING, K_ZZ, Quantity
-from solidgear.scene import Bearing, BoltCircle
+from solidgear.core.body import as_supports
+from solidgear.app.answer import _absent, sentences
+from solidgear.core.judge import question
+from solidgear.core.judge.answer import answer
+from solidgear.core.judge.quantities import change
+from solidgear.core.judge.question import FamilySolver
+from solidgear.core.judge.refinement import Refinement, refine
+from solidgear.core.judge.solving import Numbers, solve
+from solidgear.core.ladder.harmonic import Harmonic
+from solidgear.core.ladder.meshes import Sequence
+from solidgear.core.ladder.registry import LADDER
+from solidgear.core.quantity import C_ZZ, FIRST_BENDING, K_ZZ, Quantity
+from solidgear.core.scene import Bearing, BoltCircle
 from tests.command import command
 
 ROOT = Path(__file__).parent.parent
@@ -346,7 +346,7 @@ def test_a_climb_ends_where_no_mesh_makes_bars_narrow_enough():
 
 def test_what_heavy_meshes_cost_is_told_before_they_are_made(monkeypatch):
     """Holes of 2 mm through 60 mm, where 80,000 unknowns are many; those of 12 mm are no matter."""
-    from solidgear.judge import effort
+    from solidgear.core.judge import effort
 
     monkeypatch.setattr(effort, "HEAVY", 80_000)
     monkeypatch.setattr(effort, "MAYBE_HEAVY", 80_000 / 3)

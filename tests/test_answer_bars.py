@@ -3,9 +3,9 @@
 import pytest
 
 import solidgear as sg
-from solidgear.judge.answer import answer
-from solidgear.judge.solving import solve
-from solidgear.scene import Bearing
+from solidgear.core.judge.answer import answer
+from solidgear.core.judge.solving import solve
+from solidgear.core.scene import Bearing
 
 
 def layered(order):

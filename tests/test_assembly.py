@@ -16,10 +16,10 @@ from skfem.quadrature import get_quadrature
 from skfem.refdom import RefQuad
 
 import solidgear as sg
-from solidgear.kernel.assembly import STRAIGHT, straight
-from solidgear.models.solid import matrices as solid_matrices
-from solidgear.models.solid import mesh as solid_mesh
-from solidgear.scene import STEEL, Material, Port, Scene, Segment
+from solidgear.core.kernel.assembly import STRAIGHT, straight
+from solidgear.core.models.solid import matrices as solid_matrices
+from solidgear.core.models.solid import mesh as solid_mesh
+from solidgear.core.scene import STEEL, Material, Port, Scene, Segment
 
 SOLID = ("tet4", "tet10", "hex8", "hex20", "hex27")
 
@@ -215,7 +215,7 @@ def test_bends_large_and_small_match_skfem(amount):
 def test_taking_a_slightly_bent_element_for_straight_would_be_seen(monkeypatch):
     geometry, _ = bent_box("tet10", 1e-9)
     right, _ = solid_matrices._matrices(geometry, TWO)
-    monkeypatch.setattr("solidgear.kernel.assembly.STRAIGHT", 1e-3)
+    monkeypatch.setattr("solidgear.core.kernel.assembly.STRAIGHT", 1e-3)
     wrong, _ = solid_matrices._matrices(geometry, TWO)
     assert 1e-11 < relative_difference(wrong, right) < 1e-7
 

@@ -10,10 +10,10 @@ import scipy.linalg as sla
 import scipy.sparse as sp
 
 import solidgear as sg
-from solidgear.solve import factor
-from solidgear.solve.backends import missing
-from solidgear.solve.factor import factorise, indefinite
-from solidgear.solve.statics import flexibility
+from solidgear.core.solve import factor
+from solidgear.core.solve.backends import missing
+from solidgear.core.solve.factor import factorise, indefinite
+from solidgear.core.solve.statics import flexibility
 
 SCENE = sg.load(Path(__file__).parent.parent / "geometry" / "pinion_overhung.toml")
 NAMES = ("superlu", "pardiso", "cholmod", "mumps")

@@ -68,7 +68,7 @@ def bare(tmp_path):
 
 
 def solidgear(*arguments):
-    return ("-m", "solidgear.cli", "--quiet", *map(str, arguments))
+    return ("-m", "solidgear.app", "--quiet", *map(str, arguments))
 
 
 def scene(name):
@@ -88,7 +88,7 @@ def test_every_module_can_be_imported_without_any_of_it(bare):
 
 TWO = """
 import sys
-from solidgear.cli import main
+from solidgear.app import main
 for line in sys.argv[1:]:
     sys.argv = ["solidgear", "--quiet", *line.split()]
     try:
@@ -126,7 +126,7 @@ def test_a_comparison_writes_its_report_without_any_of_it(bare, tmp_path):
 
 def test_a_process_is_never_signalled_where_that_would_end_it(monkeypatch):
     """On Windows `os.kill` with 0 sends Ctrl-C."""
-    from solidgear.report import folder
+    from solidgear.show import folder
 
     def ended(*arguments):
         raise AssertionError("the process would have been ended")

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.frames import DOF_NAMES
+from solidgear.core.frames import DOF_NAMES
 from validation.shipped import shafts_of_revolution
 
 HERE = Path(__file__).parent

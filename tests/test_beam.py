@@ -10,9 +10,9 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import solidgear as sg
-from solidgear.errors import SolidgearError
-from solidgear.models.beam.element import shear_coefficient
-from solidgear.scene import STEEL, Bearing, Port, Scene, Segment
+from solidgear.core.errors import SolidgearError
+from solidgear.core.models.beam.element import shear_coefficient
+from solidgear.core.scene import STEEL, Bearing, Port, Scene, Segment
 from validation.manual.exact import Tube, beam_frequencies
 
 LENGTH, RADIUS = 0.5, 0.03

@@ -5,12 +5,12 @@ from types import SimpleNamespace
 
 import pytest
 
-from solidgear.scene.file import load
-from solidgear.scene.train_file import load_train
-from solidgear.studies.guards import GUARDS
-from solidgear.studies.guards.bearings import misfits
-from solidgear.studies.train.layout import contacts, places
-from solidgear.studies.train.space import overlaps
+from solidgear.core.scene.file import load
+from solidgear.trains.file.reading import load_train
+from solidgear.guards import GUARDS
+from solidgear.guards.bearings import misfits
+from solidgear.trains.assembly.layout import contacts, places
+from solidgear.trains.assembly.space import overlaps
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 SCENE = load(GEOMETRY / "gearbox_catalogue.toml")

@@ -27,9 +27,9 @@ from solidgear.bearings.rating import (
 from solidgear.bearings.reference_life import damage, edge_stress, raceways
 from solidgear.bearings.roller import RollerRow
 from solidgear.bearings.rolling import RollingBearing
-from solidgear.errors import SceneError
-from solidgear.scene.catalogue import Catalogue
-from solidgear.scene.lubrication import Lubrication
+from solidgear.core.errors import SceneError
+from solidgear.bearings.catalogue import Catalogue
+from solidgear.bearings.lubrication import Lubrication
 
 SCENE = "geometry/gearbox_catalogue.toml"
 RPM = math.pi / 30

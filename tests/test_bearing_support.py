@@ -10,9 +10,9 @@ from solidgear.bearings.equilibrium import equilibrium
 from solidgear.bearings.rolling import RollingBearing
 from solidgear.bearings.solved import solved
 from solidgear.bearings.spinning import SpinningBalls
-from solidgear.errors import SceneError
-from solidgear.scene.file import load as read
-from solidgear.scene.support import sliding
+from solidgear.core.errors import SceneError
+from solidgear.core.scene.file import load as read
+from solidgear.core.scene.support import sliding
 
 FELT = [0, 1, 2, 3, 5]
 ACROSS = np.ix_([0, 2, 3, 5], [0, 2, 3, 5])

@@ -16,11 +16,11 @@ from solidgear.bearings.rating import ball_rating, ratings, roller_rating
 from solidgear.bearings.roller import RollerRow
 from solidgear.bearings.rolling import RollingBearing
 from solidgear.bearings.spinning import SpinningBalls
-from solidgear.errors import SceneError
-from solidgear.scene.catalogue import Catalogue, Kind
-from solidgear.scene.designation import boundary
-from solidgear.scene.rules import preload_problems
-from solidgear.scene.stations import Bearing
+from solidgear.core.errors import SceneError
+from solidgear.bearings.catalogue import Catalogue, Kind
+from solidgear.bearings.designation import boundary
+from solidgear.core.scene.rules import preload_problems
+from solidgear.core.scene.stations import Bearing
 
 #: designation, rating makers give, and the inside as published: balls, diameter, pitch, mm
 KNOWN_BALLS = (

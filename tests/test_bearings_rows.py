@@ -9,8 +9,8 @@ from solidgear.bearings.ball import BallRow
 from solidgear.bearings.hertz import line_constant, point_contact
 from solidgear.bearings.roller import RollerRow
 from solidgear.bearings.rolling import RollingBearing
-from solidgear.errors import SolidgearError
-from solidgear.frames import rotation
+from solidgear.core.errors import SolidgearError
+from solidgear.core.frames import rotation
 
 ANGULAR_218 = BallRow(
     count=16,

@@ -13,9 +13,9 @@ from solidgear.bearings.hertz import line_constant, point_contact
 from solidgear.bearings.life import life
 from solidgear.bearings.rating import ball_rating, static_ball_rating
 from solidgear.bearings.spherical import SphericalRow
-from solidgear.errors import SceneError
-from solidgear.scene.catalogue import Catalogue
-from solidgear.scene.designation import boundary
+from solidgear.core.errors import SceneError
+from solidgear.bearings.catalogue import Catalogue
+from solidgear.bearings.designation import boundary
 
 #: Harris and Kotzalas, Essential Concepts, ch. 2: a 22317
 HARRIS = SphericalRow(14, 25e-3, 135.077e-3, length=20.76e-3, angle=math.radians(12))

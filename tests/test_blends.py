@@ -7,13 +7,13 @@ import scipy.sparse.linalg as spla
 
 import solidgear as sg
 from solidgear import Port, Scene, SceneError, Segment
-from solidgear.bounds.harmonic import richer_space
-from solidgear.ladder.registry import LADDER
-from solidgear.scene import Chamfer, Fillet
-from solidgear.scene.closed_form import mass_properties, volume_of
-from solidgear.scene.coned import coned
-from solidgear.studies.guards import Probe, elements
-from solidgear.studies.guards.edges import fillets
+from solidgear.core.bounds.harmonic import richer_space
+from solidgear.core.ladder.registry import LADDER
+from solidgear.core.scene import Chamfer, Fillet
+from solidgear.core.scene.closed_form import mass_properties, volume_of
+from solidgear.core.scene.coned import coned
+from solidgear.guards import Probe, elements
+from solidgear.guards.edges import fillets
 
 HEAD, SHAFT = ("head", 0.068, 0.134), ("shaft", 0.208, 0.09)
 

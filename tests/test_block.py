@@ -11,11 +11,11 @@ from numpy.polynomial import legendre
 from skfem import MeshTet
 
 import solidgear as sg
-from solidgear.judge.coarser_mesh import coarser_bars
-from solidgear.judge.settle import settle
-from solidgear.ladder.registry import LADDER
-from solidgear.machine.memory import NoRoom
-from solidgear.quantity import Quantity
+from solidgear.core.judge.coarser_mesh import coarser_bars
+from solidgear.core.judge.settle import settle
+from solidgear.core.ladder.registry import LADDER
+from solidgear.core.machine.memory import NoRoom
+from solidgear.core.quantity import Quantity
 
 EDGES = (0.010, 0.009, 0.011)
 E, NU, DENSITY = 207e9, 0.29, 7850.0
@@ -230,7 +230,7 @@ def test_a_block_whose_next_mesh_does_not_fit_is_told_with_the_last_one(block, m
             raise NoRoom("matrices need about 9000 MB, 3000 MB are free", 9000.0, 3000.0)
         return sg.build(scene, model, **options)
 
-    monkeypatch.setattr("solidgear.judge.settle.build", build)
+    monkeypatch.setattr("solidgear.core.judge.settle.build", build)
     settled = settle(block, 1e-6, "modes")
     assert not settled.reached and settled.options["refinement"] == 1.0 and settled.bars
     assert "the next mesh could not be solved: matrices need" in settled.steps[-1].why

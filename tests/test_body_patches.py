@@ -10,8 +10,8 @@ from skfem import Basis, ElementHex2, ElementVector, FacetBasis, LinearForm, Mes
 from skfem.models.elasticity import lame_parameters, linear_elasticity
 
 import solidgear as sg
-from solidgear.judge.settle import settle
-from solidgear.quantity import Quantity
+from solidgear.core.judge.settle import settle
+from solidgear.core.quantity import Quantity
 
 E, NU = 207e9, 0.29
 HEAD = f"material = {{ E = {E}, nu = {NU}, density = 7850 }}\n"

@@ -12,25 +12,25 @@ import pytest
 
 import solidgear as sg
 from solidgear import Bearing, Port, Scene, Segment
-from solidgear.body import Body, as_supports
-from solidgear.bounds import richer_space as meridian_pieces
-from solidgear.bounds.harmonic import (
+from solidgear.core.body import Body, as_supports
+from solidgear.core.bounds import richer_space as meridian_pieces
+from solidgear.core.bounds.harmonic import (
     HarmonicBounds,
     _lower_ends,
     harmonic_bounds,
     richer_space,
     with_tail,
 )
-from solidgear.bounds.safety import LOCAL
-from solidgear.judge.bars import ErrorBar
-from solidgear.judge.bounded import bounded
-from solidgear.judge.quantities import measure, size
-from solidgear.judge.solving import Statics, search_modes
-from solidgear.quantity import Quantity
-from solidgear.scene import STEEL, Fillet, Housing, Material
-from solidgear.scene.coned import coned
-from solidgear.solve.modes import Mode
-from solidgear.solve.statics import condense, flexibility
+from solidgear.core.bounds.safety import LOCAL
+from solidgear.core.judge.bars import ErrorBar
+from solidgear.core.judge.bounded import bounded
+from solidgear.core.judge.quantities import measure, size
+from solidgear.core.judge.solving import Statics, search_modes
+from solidgear.core.quantity import Quantity
+from solidgear.core.scene import STEEL, Fillet, Housing, Material
+from solidgear.core.scene.coned import coned
+from solidgear.core.solve.modes import Mode
+from solidgear.core.solve.statics import condense, flexibility
 
 MM = 1e-3
 ALUMINIUM = Material(E=7e10, nu=0.34, density=2700)

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.judge.settle import settle
-from solidgear.quantity import Quantity
-from solidgear.studies.check import check_scene
+from solidgear.core.judge.settle import settle
+from solidgear.core.quantity import Quantity
+from solidgear.guards.check import check_scene
 from tests.command import command
 from validation.mesh_files import write_mesh
 

@@ -8,8 +8,8 @@ import time
 import numpy as np
 import pytest
 
-from solidgear.ladder import build
-from solidgear.scene import Scene
+from solidgear.core.ladder import build
+from solidgear.core.scene import Scene
 from validation.campaign import __main__ as command
 from validation.campaign import results, scoreboard, table
 from validation.campaign import run as running

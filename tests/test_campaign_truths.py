@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.body import as_supports
-from solidgear.judge.quantities import measure, size
-from solidgear.meshing.teeth import section_area, section_polar
-from solidgear.scene import (
+from solidgear.core.body import as_supports
+from solidgear.core.judge.quantities import measure, size
+from solidgear.cuts.sector.teeth import section_area, section_polar
+from solidgear.core.scene import (
     STEEL,
     Bearing,
     BoltCircle,
@@ -23,8 +23,8 @@ from solidgear.scene import (
     Segment,
     Teeth,
 )
-from solidgear.scene.closed_form import mass_properties
-from solidgear.scene.outline import Outline
+from solidgear.core.scene.closed_form import mass_properties
+from solidgear.core.scene.outline import Outline
 from validation.campaign.truths import reference as spectral_levels
 from validation.campaign.truths.corner_mesh import corner_mesh, singular_points
 from validation.campaign.truths.reference import SURE, settle, spectral_reference

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.errors import SolidgearError
-from solidgear.frames import rotation
+from solidgear.core.errors import SolidgearError
+from solidgear.core.frames import rotation
 
 TORQUE, SHIFT = 20.0, 10e-6
 #: N/m, N m/rad: members that stand still give by 1e-12 of what teeth give

@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 import solidgear as sg
-from solidgear.judge.causes import attachment_causes, beam_causes, shoulder_cause
-from solidgear.judge.quantities import change, measure
-from solidgear.scene import Scene, Segment
+from solidgear.core.judge.causes import attachment_causes, beam_causes, shoulder_cause
+from solidgear.core.judge.quantities import change, measure
+from solidgear.core.scene import Scene, Segment
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 LIGHT = {"order": 3, "layers": 1}
@@ -165,7 +165,7 @@ def test_what_is_taken_off_is_the_gap_of_the_plain_shaft(overhung):
 @pytest.mark.parametrize("name", ["cylinder_free", "shaft_hollow"])
 def test_no_shoulder_cause_without_steps(name, monkeypatch):
     monkeypatch.setattr(
-        "solidgear.judge.causes.solve", lambda *a, **k: pytest.fail("nothing is to be built")
+        "solidgear.core.judge.causes.solve", lambda *a, **k: pytest.fail("nothing is to be built")
     )
     assert shoulder_cause(sg.load(GEOMETRY / f"{name}.toml"), {"C_zz": -0.1}, {}) is None
 

@@ -11,17 +11,17 @@ from pathlib import Path
 import pytest
 
 import solidgear as sg
-from solidgear.cli import chart as command
-from solidgear.judge.race import timing as racing
-from solidgear.judge.race.answers import answer
-from solidgear.judge.race.cases import AUTO, plan
-from solidgear.judge.race.pareto import Race, Row
-from solidgear.judge.race.timing import race
-from solidgear.quantity import QUANTITIES
-from solidgear.report import race_rows, race_style
-from solidgear.report.panel import SHAPES
-from solidgear.report.race_figure import draw, race_chart
-from solidgear.report.race_rows import (
+from solidgear.compare.race import command
+from solidgear.compare.race import timing as racing
+from solidgear.compare.race.answers import answer
+from solidgear.compare.race.cases import AUTO, plan
+from solidgear.compare.race.pareto import Race, Row
+from solidgear.compare.race.timing import race
+from solidgear.core.quantity import QUANTITIES
+from solidgear.compare.race import rows as race_rows, style as race_style
+from solidgear.show.panel import SHAPES
+from solidgear.compare.race.figure import draw, race_chart
+from solidgear.compare.race.rows import (
     MACHINE,
     PICTURE,
     ROWS,
@@ -31,7 +31,7 @@ from solidgear.report.race_rows import (
     records,
     write_rows,
 )
-from solidgear.report.race_tables import front_rows, section
+from solidgear.compare.race.tables import front_rows, section
 from tests.charted import SETUP, few, texts_of, words_of
 from tests.plain import render_page, write_report
 

@@ -12,9 +12,9 @@ from typing import NamedTuple
 
 import pytest
 
-from solidgear.judge import question
-from solidgear.ladder.registry import LADDER
-from solidgear.solve.backends import missing
+from solidgear.core.judge import question
+from solidgear.core.ladder.registry import LADDER
+from solidgear.core.solve.backends import missing
 from tests.command import strict
 
 ROOT = Path(__file__).parent.parent
@@ -193,12 +193,12 @@ def test_compare_in_which_all_fails_says_so(run, monkeypatch):
 
 
 def test_interrupted_compare_ends_with_130(run, monkeypatch):
-    import solidgear.studies.comparison
+    import solidgear.compare.comparison
 
     def stop(*_, **__):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(solidgear.studies.comparison, "study", stop)
+    monkeypatch.setattr(solidgear.compare.comparison, "study", stop)
     done = run("compare", SCENE, "--models", "euler", "-o", "out", "--json")
     assert done.code == 130 and strict(done.out)["complete"] is False
 
@@ -207,7 +207,7 @@ def test_interrupt_elsewhere_is_a_sentence(run, monkeypatch, tmp_path):
     def stop(*_, **__):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("solidgear.cli.shared.build", stop)
+    monkeypatch.setattr("solidgear.show.options.build", stop)
     refused(run("stiffness", SCENE, "-f", "euler"), tmp_path, "interrupted", code=130)
 
 
@@ -304,7 +304,7 @@ def test_refused_in_one_sentence(run, tmp_path, name):
 def test_unwritable_folder_is_found_before_the_work(run, tmp_path, monkeypatch, out):
     (tmp_path / "occupied").write_text("a file")
     monkeypatch.setattr(
-        "solidgear.cli.compare.compared", lambda *_, **__: pytest.fail("solved first")
+        "solidgear.app.compare.compared", lambda *_, **__: pytest.fail("solved first")
     )
     done = run("compare", SCENE, "--models", "euler", "--out", out)
     assert done.code == 1 and done.out == "" and done.err.count("\n") == 1
@@ -341,7 +341,7 @@ def test_memory_that_runs_out_is_a_sentence(run, tmp_path, monkeypatch):
     def broken(*_, **__):
         raise MemoryError
 
-    monkeypatch.setattr("solidgear.cli.shared.build", broken)
+    monkeypatch.setattr("solidgear.show.options.build", broken)
     refused(run("stiffness", SCENE, *HARMONIC), tmp_path, "not enough memory")
     monkeypatch.setattr(question, "build", broken)
     refused(run("stiffness", SCENE), tmp_path, "not enough memory")
@@ -349,7 +349,7 @@ def test_memory_that_runs_out_is_a_sentence(run, tmp_path, monkeypatch):
     def unmapped(*_, **__):
         raise ImportError("libfast.so: failed to map segment from shared object")
 
-    monkeypatch.setattr("solidgear.cli.shared.build", unmapped)
+    monkeypatch.setattr("solidgear.show.options.build", unmapped)
     refused(run("stiffness", SCENE, *HARMONIC), tmp_path, "not enough memory")
 
 
@@ -386,7 +386,7 @@ def test_modules_run_as_programs(tmp_path):
     done = python("-m", "solidgear", "stiffness", FREE, "-f", "euler", "--json", cwd=tmp_path)
     assert done.returncode == 0 and done.stderr == ""
     assert strict(done.stdout)["fidelity"] == "euler"
-    done = python("-m", "solidgear.cli", "stiffness", "nowhere.toml", cwd=tmp_path)
+    done = python("-m", "solidgear.app", "stiffness", "nowhere.toml", cwd=tmp_path)
     assert (
         done.returncode == 1
         and done.stdout == ""
@@ -396,9 +396,9 @@ def test_modules_run_as_programs(tmp_path):
 
 
 def test_the_command_line_and_the_help_of_a_command_import_nothing_heavy():
-    heavy = {"numpy", "scipy", "skfem", "gmsh", "matplotlib", "pyvista", "solidgear.scene"}
+    heavy = {"numpy", "scipy", "skfem", "gmsh", "matplotlib", "pyvista", "solidgear.core.scene"}
     code = (
-        "import atexit, sys; from solidgear.cli.app import app; "
+        "import atexit, sys; from solidgear.show.command import app; "
         f"atexit.register(lambda: print(sorted({heavy} & set(sys.modules)))); app(['modes', '-h'])"
     )
     done = python("-c", code)
@@ -408,14 +408,14 @@ def test_the_command_line_and_the_help_of_a_command_import_nothing_heavy():
 @pytest.mark.parametrize("name", ["modes", "sweep", "response"])
 def test_help_without_the_work_is_that_of_the_command_itself(run, monkeypatch, name):
     alone = run(name, "--help").out
-    monkeypatch.setattr(sys.modules["solidgear.cli.app"], "options_alone", nullcontext)
+    monkeypatch.setattr(sys.modules["solidgear.show.command"], "options_alone", nullcontext)
     assert run(name, "--help").out == alone and "--json" in alone
 
 
 def test_an_answer_imports_nothing_that_it_does_not_use():
     code = (
         "import solidgear, sys; solidgear.answer(solidgear.load(sys.argv[1]), tol=0.1); "
-        "from solidgear.cli import answer, check, modes, stiffness; "
+        "from solidgear.app import answer, check, modes, stiffness; "
         "print(sorted({'scipy.optimize', 'scipy.stats', 'pint', 'gmsh', 'matplotlib', 'pyvista'} & set(sys.modules)))"
     )
     done = python("-c", code, SCENE)

@@ -9,13 +9,13 @@ from pathlib import Path
 import pytest
 
 import solidgear as sg
-from solidgear.cli import files
-from solidgear.cli.starts import SHAFTS, STARTS, start
-from solidgear.errors import SolidgearError
-from solidgear.ladder.registry import LADDER
-from solidgear.scene.file import load
-from solidgear.studies.train.deflection import deflection
-from solidgear.studies.train.models import Workshop
+from solidgear.app import files
+from solidgear.app.starts import SHAFTS, STARTS, start
+from solidgear.core.errors import SolidgearError
+from solidgear.core.ladder.registry import LADDER
+from solidgear.core.scene.file import load
+from solidgear.strength.deflection.train import deflection
+from solidgear.trains.assembly.models import Workshop
 from tests.command import command
 
 ROOT = Path(__file__).parent.parent

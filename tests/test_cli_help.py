@@ -10,8 +10,8 @@ import typer
 from command import command
 from rich.console import Console
 
-from solidgear.cli import app
-from solidgear.cli.app import COMMANDS, GROUPS, Progress, _imported, console
+from solidgear.show import command as app
+from solidgear.show.command import COMMANDS, GROUPS, Progress, _imported, console
 
 #: what rich would take for markup
 BRACKETS = re.compile(r"\[[^\[\]]+\]")

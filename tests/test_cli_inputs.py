@@ -11,10 +11,10 @@ import typer
 from typer.main import get_command
 from typer.testing import CliRunner
 
-from solidgear.cli import app
-from solidgear.cli.app import command
-from solidgear.cli.shared import Run
-from solidgear.cli.train_options import Reduced
+from solidgear.show import command as app
+from solidgear.show.command import command
+from solidgear.show.options import Run
+from solidgear.trains.options import Reduced
 
 SCENE = Path(__file__).parents[1] / "geometry" / "pinion_overhung.toml"
 

@@ -12,13 +12,13 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.errors import SolidgearError
-from solidgear.ladder.registry import LADDER
-from solidgear.meshing.quality import MeshError
-from solidgear.models.options import ATTACHMENTS
-from solidgear.quantity import ACROSS, QUANTITIES
-from solidgear.report.outputs import OUTPUTS
-from solidgear.studies.comparison import compare
+from solidgear.core.errors import SolidgearError
+from solidgear.core.ladder.registry import LADDER
+from solidgear.core.meshing.quality import MeshError
+from solidgear.core.models.options import ATTACHMENTS
+from solidgear.core.quantity import ACROSS, QUANTITIES
+from solidgear.show.outputs import OUTPUTS
+from solidgear.compare.comparison import compare
 from tests.command import strict
 
 #: charts are drawn in the folder that all tests share, once
@@ -341,14 +341,14 @@ def test_settings_reach_the_builder_and_its_relatives(overhung):
 
 # --------------------------------------------------------------------------- when something goes wrong
 def failing(monkeypatch, model, error):
-    from solidgear.ladder import build
+    from solidgear.core.ladder import build
 
     def broken(scene, fidelity, **options):
         if fidelity == model:
             raise error
         return build(scene, fidelity, **options)
 
-    monkeypatch.setattr("solidgear.judge.study.build", broken)
+    monkeypatch.setattr("solidgear.core.judge.study.build", broken)
 
 
 @pytest.mark.long
@@ -395,14 +395,14 @@ def test_when_every_model_fails_there_is_still_a_report(overhung, monkeypatch, t
 
 @pytest.mark.long
 def test_bar_that_cannot_be_made_is_a_warning(overhung, monkeypatch):
-    from solidgear.ladder import build
+    from solidgear.core.ladder import build
 
     def broken(scene, fidelity, **options):
         if options.get("refinement", 1.0) < 0.39:
             raise MeshError("too coarse to mesh")
         return build(scene, fidelity, **options)
 
-    monkeypatch.setattr("solidgear.judge.study.build", broken)
+    monkeypatch.setattr("solidgear.core.judge.study.build", broken)
     found = compare(
         overhung, ("solid",), settings={"solid": {"element": "tet10", "refinement": 0.4}}
     ).results

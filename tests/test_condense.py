@@ -10,10 +10,10 @@ import pytest
 import scipy.linalg as sla
 
 import solidgear as sg
-from solidgear.body import Supports, as_supports
-from solidgear.scene import Bearing, Port, Scene, Segment
-from solidgear.solve.condensed import Condensed
-from solidgear.solve.statics import flexibility
+from solidgear.core.body import Supports, as_supports
+from solidgear.core.scene import Bearing, Port, Scene, Segment
+from solidgear.core.solve.condensed import Condensed
+from solidgear.core.solve.statics import flexibility
 from tests.dense import bearing_by_hand, relative, whole
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.errors import SolidgearError
-from solidgear.meshing.corner_layers import cut_towards, side_at
-from solidgear.meshing.grading import Grading
-from solidgear.meshing.layout import layout
-from solidgear.meshing.meridian import CUT_RATIO, cut_meridian, drawn_across, meridian
-from solidgear.scene import Fillet, Port
+from solidgear.core.errors import SolidgearError
+from solidgear.core.meshing.corner_layers import cut_towards, side_at
+from solidgear.core.meshing.grading import Grading
+from solidgear.core.meshing.layout import layout
+from solidgear.core.meshing.meridian import CUT_RATIO, cut_meridian, drawn_across, meridian
+from solidgear.core.scene import Fillet, Port
 from tests.shafts import NASTY, shaft
 
 #: three squares around a re-entrant corner, and a slender one beside; the corner is vertex 4

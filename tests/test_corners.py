@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.meshing.corners import corner_exponent, sharpest_corner
+from solidgear.core.meshing.corners import corner_exponent, sharpest_corner
 from tests.shafts import shaft
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.models import corrected as module
-from solidgear.models.modal import modal
+from solidgear.cuts.corrected import body as module
+from solidgear.cuts.corrected.modal import modal
 
 ROOT = Path(__file__).parent.parent
 
@@ -146,9 +146,9 @@ def test_a_stub_is_corrected_on_its_coarsest_mesh():
     the flat changes is what the two 3D solids say all the same, in both planes: no mode stands for
     one of the other plane. The change itself is 0.4 to 0.8 %, of which the square is left out.
     """
-    from solidgear.models.solid.featured import featured_body, meshed
-    from solidgear.models.solid.plan import tetrahedra_plan
-    from solidgear.scene import Flat
+    from solidgear.cuts.solid.featured import featured_body, meshed
+    from solidgear.core.models.solid.plan import tetrahedra_plan
+    from solidgear.core.scene import Flat
 
     stub = [
         sg.Segment.cylinder("thick", length=0.035, diameter=0.098),
@@ -229,7 +229,7 @@ def test_compliance_grows_by_what_is_cut(scene, plain, body):
     """Removing material softens every load (monotonicity): the change of the free flexibility is
     positive but for what the two meshes leave of it.
     """
-    from solidgear.solve.statics import condense
+    from solidgear.core.solve.statics import condense
 
     keyed = condense(body, scene, "pinion").compliance
     bare = condense(plain, scene.plain, "pinion").compliance
@@ -242,7 +242,7 @@ def test_compliance_grows_by_what_is_cut(scene, plain, body):
 @pytest.mark.slow
 def test_a_part_without_a_mirror_plane():
     """A flat and an oblique hole that share no plane: one block, against the 3D solid on a finer mesh."""
-    from solidgear.scene import CrossHole, Flat
+    from solidgear.core.scene import CrossHole, Flat
 
     rod = sg.Segment.cylinder("rod", length=0.13, diameter=0.06)
     firm = {"kxx": 1e9, "kyy": 1e8, "kzz": 1e9}

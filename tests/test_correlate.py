@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.judge.correlation import correlate, subspace_mac
+from solidgear.core.judge.correlation import correlate, subspace_mac
 
 RNG = np.random.default_rng(4)
 N = 12

@@ -8,10 +8,10 @@ import pytest
 from skfem import Basis, ElementTetP2, MeshTet1, MeshTet2
 
 import solidgear as sg
-from solidgear.judge.coarser_mesh import coarser_bars
-from solidgear.ladder import build
-from solidgear.meshing.bisecting import bisected
-from solidgear.meshing.curving import (
+from solidgear.core.judge.coarser_mesh import coarser_bars
+from solidgear.core.ladder import build
+from solidgear.core.meshing.bisecting import bisected
+from solidgear.core.meshing.curving import (
     FOLD,
     Filling,
     relaxed,
@@ -19,15 +19,15 @@ from solidgear.meshing.curving import (
     volume_preserved,
     with_nodes,
 )
-from solidgear.meshing.edge_places import edge_places
-from solidgear.meshing.quality import element_ratios, element_volumes
-from solidgear.meshing.sector import volume_of_sector
-from solidgear.meshing.tetrahedra import tetrahedra
-from solidgear.models.sector.body import cyclic_features, meshed_sector
-from solidgear.models.solid.plan import tetrahedra_plan
-from solidgear.scene.closed_form import integrals_along, volume_of
-from solidgear.scene.outline import Frustum, Outline
-from solidgear.solve.modes import modes
+from solidgear.core.meshing.edge_places import edge_places
+from solidgear.core.meshing.quality import element_ratios, element_volumes
+from solidgear.cuts.sector.meshing import volume_of_sector
+from solidgear.core.meshing.tetrahedra import tetrahedra
+from solidgear.cuts.sector.body import cyclic_features, meshed_sector
+from solidgear.core.models.solid.plan import tetrahedra_plan
+from solidgear.core.scene.closed_form import integrals_along, volume_of
+from solidgear.core.scene.outline import Frustum, Outline
+from solidgear.core.solve.modes import modes
 
 GEOMETRY = Path(__file__).parents[1] / "geometry"
 

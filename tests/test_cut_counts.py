@@ -5,16 +5,16 @@ import pytest
 from test_features import FLAT, KEY, mesh_of, shaft
 
 import solidgear as sg
-from solidgear.ladder.registry import LADDER
-from solidgear.meshing.cuts import edge_size, feature_size
-from solidgear.meshing.featured import submesh
-from solidgear.models.corrected_mesh import meshed_cuts, sizes
-from solidgear.models.solid.featured import meshed
-from solidgear.models.solid.plan import tetrahedra_plan
-from solidgear.scene import CrossHole
-from solidgear.scene.closed_form import volume_of
-from solidgear.scene.outline import Outline
-from solidgear.studies.guards import Probe, elements
+from solidgear.core.ladder.registry import LADDER
+from solidgear.cuts.solid.cuts import edge_size, feature_size
+from solidgear.cuts.solid.meshing import submesh
+from solidgear.cuts.corrected.mesh import meshed_cuts, sizes
+from solidgear.cuts.solid.featured import meshed
+from solidgear.core.models.solid.plan import tetrahedra_plan
+from solidgear.core.scene import CrossHole
+from solidgear.core.scene.closed_form import volume_of
+from solidgear.core.scene.outline import Outline
+from solidgear.guards import Probe, elements
 
 SMALL = CrossHole(name="small", segment="rod", y=0.12, diameter=0.002)
 WIDE = SMALL.with_changes(diameter=0.012)

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.errors import SceneError
-from solidgear.scene.cylindrical import working_cylinders
-from solidgear.studies.train.layout import contacts
-from solidgear.studies.train.models import Workshop
-from solidgear.studies.train.modes import train_modes
-from solidgear.studies.train.operation import at_point
+from solidgear.core.errors import SceneError
+from solidgear.cuts.cylindrical import working_cylinders
+from solidgear.trains.assembly.layout import contacts
+from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.modes.modes import train_modes
+from solidgear.trains.load.operation import at_point
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 PLAIN = {"pitch_radius": None, "spiral_angle": None, "pitch_angle": None, "scene_load": "replaced"}

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.meshing.decks import read
-from solidgear.meshing.mesh_file import mesh_from
-from solidgear.meshing.placing import TURNS, Placing
-from solidgear.meshing.quality import MeshError
-from solidgear.scene.outline import Outline
+from solidgear.parts.decks import read
+from solidgear.parts.mesh_file import mesh_from
+from solidgear.core.meshing.placing import TURNS, Placing
+from solidgear.core.meshing.quality import MeshError
+from solidgear.core.scene.outline import Outline
 from validation.fuzz.decks import DECK_CHANGES, DECKS
 from validation.mesh_files import rod, write_mesh
 
@@ -199,7 +199,7 @@ def test_a_missing_number_is_told_once(tmp_path):
 
 def test_commands_tell_what_is_doubtful(tmp_path, capsys):
     """On the terminal beside the numbers, for commands without cautions of their own."""
-    from solidgear.cli.reading import load
+    from solidgear.show.arguments import load
 
     write_mesh(tmp_path / "part.inp", POINTS, "tetra", CELLS, GROUPS)
     scene = tmp_path / "scene.toml"
@@ -217,7 +217,7 @@ def test_a_list_of_elements_that_ends_early_is_told(tmp_path):
     """Elements in any order, the last of them lost while what is left needs every node: their numbers
     run through, the file ends as it should, and only the surface shows it.
     """
-    from solidgear.meshing.tetrahedra import tetrahedra
+    from solidgear.core.meshing.tetrahedra import tetrahedra
 
     mesh = tetrahedra(
         Outline([sg.Segment.cylinder("rod", length=0.04, diameter=0.02)]), size=0.006
@@ -245,11 +245,11 @@ def test_sound_parts_have_no_pits():
     """
     from skfem import MeshTet1
 
-    from solidgear.meshing.featured import submesh
-    from solidgear.meshing.mesh_file import lost_elements
-    from solidgear.meshing.tetrahedra import tetrahedra
-    from solidgear.models.solid.featured import meshed
-    from solidgear.models.solid.plan import tetrahedra_plan
+    from solidgear.cuts.solid.meshing import submesh
+    from solidgear.parts.mesh_file import lost_elements
+    from solidgear.core.meshing.tetrahedra import tetrahedra
+    from solidgear.cuts.solid.featured import meshed
+    from solidgear.core.models.solid.plan import tetrahedra_plan
 
     keyed, hollow = (sg.load(f"geometry/{n}.toml") for n in ("pinion_keyed", "shaft_hollow"))
     keyed = keyed.with_changes(

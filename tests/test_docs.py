@@ -17,7 +17,7 @@ from pathlib import Path
 import pytest
 
 import solidgear as sg
-from solidgear import cli
+from solidgear import app as cli
 from validation.stability import page as stability
 
 ROOT = Path(__file__).parent.parent
@@ -214,8 +214,8 @@ def test_the_reference_holds_all_that_is_exported():
 
 
 def test_every_mark_and_column_of_the_final_table_is_explained():
-    from solidgear.judge.record import Record
-    from solidgear.report import terminal
+    from solidgear.core.judge.record import Record
+    from solidgear.show import terminal
 
     page = (DOCS / "guide" / "verdict.md").read_text()
     # what the program prints explains nothing
@@ -229,7 +229,7 @@ def test_every_mark_and_column_of_the_final_table_is_explained():
 def test_every_command_and_exit_code_is_listed():
     import typer.main
 
-    from solidgear.cli import app
+    from solidgear.show import command as app
 
     page = (DOCS / "guide" / "commands.md").read_text()
     for name in typer.main.get_command(app).commands:

@@ -10,9 +10,9 @@ import pytest
 import scipy.linalg as sla
 
 import solidgear as sg
-from solidgear.body import as_supports
-from solidgear.reduction.effective_mass import effective_masses, modal_receptance, synthesise
-from solidgear.reduction.lumped_point import LumpedPoint, lumped_point
+from solidgear.core.body import as_supports
+from solidgear.core.reduction.effective_mass import effective_masses, modal_receptance, synthesise
+from solidgear.core.reduction.lumped_point import LumpedPoint, lumped_point
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 PINIONS = ("pinion_overhung", "pinion_straddle", "thesis_overhung", "thesis_straddle")

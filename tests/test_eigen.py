@@ -10,13 +10,13 @@ import pytest
 import scipy.linalg as sla
 
 import solidgear as sg
-from solidgear.body import as_supports
-from solidgear.scene import STEEL, Material, Scene, Segment
-from solidgear.solve import eigen
-from solidgear.solve import groups as parts
-from solidgear.solve.coupling import decoupled, groups
-from solidgear.solve.eigen import count_below, lowest
-from solidgear.solve.supported import Supported
+from solidgear.core.body import as_supports
+from solidgear.core.scene import STEEL, Material, Scene, Segment
+from solidgear.core.solve import eigen
+from solidgear.core.solve import groups as parts
+from solidgear.core.solve.coupling import decoupled, groups
+from solidgear.core.solve.eigen import count_below, lowest
+from solidgear.core.solve.supported import Supported
 
 ROOT = Path(__file__).parent.parent
 

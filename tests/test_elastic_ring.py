@@ -7,7 +7,7 @@ import pytest
 import scipy.linalg as sla
 
 import solidgear as sg
-from solidgear.errors import SolidgearError
+from solidgear.core.errors import SolidgearError
 from tests.test_planetary import frequencies, of_kind
 
 STEEL = sg.STEEL

@@ -4,8 +4,8 @@ from math import pi
 
 import pytest
 
-from solidgear.meshing.gmsh_session import Session, import_gmsh
-from solidgear.meshing.step import volumes_of
+from solidgear.core.meshing.gmsh_session import Session, import_gmsh
+from solidgear.parts.step import volumes_of
 
 
 def drawn(gmsh, splines: bool) -> list[int]:

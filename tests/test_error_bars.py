@@ -5,14 +5,14 @@ truth is asked by validation/campaign.
 import pytest
 
 import solidgear as sg
-from solidgear.bounds.safety import REFINEMENT, Safety
-from solidgear.judge.bars import moves_freely, step_bars
-from solidgear.judge.sequence_bars import feature_effect, sequence_bars
-from solidgear.judge.solving import solve
-from solidgear.ladder.meshes import Sequence
-from solidgear.ladder.registry import LADDER
-from solidgear.quantity import ACROSS, QUANTITIES, Quantity
-from solidgear.scene import Fillet, Spline
+from solidgear.core.bounds.safety import REFINEMENT, Safety
+from solidgear.core.judge.bars import moves_freely, step_bars
+from solidgear.core.judge.sequence_bars import feature_effect, sequence_bars
+from solidgear.core.judge.solving import solve
+from solidgear.core.ladder.meshes import Sequence
+from solidgear.core.ladder.registry import LADDER
+from solidgear.core.quantity import ACROSS, QUANTITIES, Quantity
+from solidgear.core.scene import Fillet, Spline
 
 FINEST = {
     Quantity(name): value

@@ -10,13 +10,13 @@ import scipy.linalg as sla
 import scipy.sparse as sp
 
 import solidgear as sg
-from solidgear.errors import SolidgearError
-from solidgear.machine.memory import NoRoom
-from solidgear.solve import choice as choosing
-from solidgear.solve import factor
-from solidgear.solve.backends import missing
-from solidgear.solve.choice import SMALL
-from solidgear.solve.factor import FactorError, factorise
+from solidgear.core.errors import SolidgearError
+from solidgear.core.machine.memory import NoRoom
+from solidgear.core.solve import choice as choosing
+from solidgear.core.solve import factor
+from solidgear.core.solve.backends import missing
+from solidgear.core.solve.choice import SMALL
+from solidgear.core.solve.factor import FactorError, factorise
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 
@@ -216,7 +216,7 @@ def test_what_will_not_fit_is_refused_before_it_is_factored(plane, backend, plan
     monkeypatch.setattr(
         factor.BACKENDS[backend], "factor", lambda self: pytest.fail("the numbers were begun")
     )
-    monkeypatch.setattr("solidgear.machine.memory.SMALL_MB", 0.0)
+    monkeypatch.setattr("solidgear.core.machine.memory.SMALL_MB", 0.0)
     monkeypatch.setenv("SOLIDGEAR_MEMORY_MB", "0.5")
     with pytest.raises(
         NoRoom,
@@ -251,7 +251,7 @@ def test_threes_of_unknowns_that_are_not_nodes_are_not_ordered_as_such():
     """Nodes on the plane of a half have fewer unknowns: an order of threes filled the factor with
     2.4 times the entries on one half in three.
     """
-    from solidgear.solve.backends.pardiso import Pardiso, _node_order
+    from solidgear.core.solve.backends.pardiso import Pardiso, _node_order
 
     whole = shifted(sg.build(sg.load(GEOMETRY / "cylinder_free.toml"), "solid", refinement=0.9))[0]
     assert _node_order(whole) is not None

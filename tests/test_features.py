@@ -11,17 +11,17 @@ import pytest
 from skfem import MeshTet1, MeshTet2
 
 import solidgear as sg
-from solidgear.judge.record import ModelRecord, ModeRecord
-from solidgear.meshing.cuts import mirror_plane
-from solidgear.meshing.featured import FeaturedMesh, submesh
-from solidgear.meshing.quality import MeshError, check_mesh
-from solidgear.models.solid.featured import featured_body, meshed
-from solidgear.models.solid.halves import half_blocks
-from solidgear.models.solid.mesh import _isoparametric
-from solidgear.models.solid.plan import tetrahedra_plan
-from solidgear.models.solid.seat_faces import Seats
-from solidgear.report.reading import mode_of
-from solidgear.scene import CrossHole, Flat, Keyway
+from solidgear.core.judge.record import ModelRecord, ModeRecord
+from solidgear.cuts.solid.cuts import mirror_plane
+from solidgear.cuts.solid.meshing import FeaturedMesh, submesh
+from solidgear.core.meshing.quality import MeshError, check_mesh
+from solidgear.cuts.solid.featured import featured_body, meshed
+from solidgear.cuts.solid.halves import half_blocks
+from solidgear.core.models.solid.mesh import _isoparametric
+from solidgear.core.models.solid.plan import tetrahedra_plan
+from solidgear.core.models.solid.seat_faces import Seats
+from solidgear.show.reading import mode_of
+from solidgear.core.scene import CrossHole, Flat, Keyway
 from validation.campaign.truths.volumes import removed_mass
 
 ROOT = Path(__file__).parent.parent
@@ -379,7 +379,7 @@ def test_a_wide_hole_is_meshed_at_every_refinement(refinement):
 
 def test_a_cut_of_another_volume_is_refused(monkeypatch):
     """Elements that are left out of the cut, a tenth of them, are told in a sentence."""
-    from solidgear.meshing import featured
+    from solidgear.cuts.solid import meshing as featured
 
     def loses_some(mesh, keep):
         keep = keep.copy()

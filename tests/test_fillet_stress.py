@@ -6,16 +6,16 @@ from filleted import STRONG, shoulder
 
 import solidgear as sg
 from solidgear import SolidgearError
-from solidgear.frames import rotation
-from solidgear.models.harmonic.arc_stress import Arc
-from solidgear.models.harmonic.body import harmonic
-from solidgear.scene import Chamfer, Fillet
-from solidgear.solve.backends.matrix import FactorError
-from solidgear.solve.statics import flexibility
-from solidgear.studies.stress import notch
-from solidgear.studies.stress.notch import UNIT_LOADS, fillet_factors, piece_around
-from solidgear.studies.stress.published import CHARTS
-from solidgear.studies.stress.shaft import shaft_stress, sharp_corners
+from solidgear.core.frames import rotation
+from solidgear.strength.stress.arc_stress import Arc
+from solidgear.core.models.harmonic.body import harmonic
+from solidgear.core.scene import Chamfer, Fillet
+from solidgear.core.solve.backends.matrix import FactorError
+from solidgear.core.solve.statics import flexibility
+from solidgear.strength.stress import notch
+from solidgear.strength.stress.notch import UNIT_LOADS, fillet_factors, piece_around
+from solidgear.strength.stress.published import CHARTS
+from solidgear.strength.stress.shaft import shaft_stress, sharp_corners
 from validation.manual.exact_fillets import finite_elements
 
 LOADS = UNIT_LOADS[:3]

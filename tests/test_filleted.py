@@ -5,12 +5,12 @@ from pathlib import Path
 import pytest
 
 import solidgear as sg
-from solidgear.ladder.registry import LADDER
-from solidgear.scene import CrossHole, Fillet, Keyway, Port
-from solidgear.scene.closed_form import volume_of
-from solidgear.scene.filleted import filleted
-from solidgear.studies.loading import as_written
-from solidgear.studies.stress.at_rest import _file_cautions, _settling
+from solidgear.core.ladder.registry import LADDER
+from solidgear.core.scene import CrossHole, Fillet, Keyway, Port
+from solidgear.core.scene.closed_form import volume_of
+from solidgear.core.scene.filleted import filleted
+from solidgear.core.loading import as_written
+from solidgear.strength.stress.at_rest import _file_cautions, _settling
 from validation.step_parts import write_step
 
 GEOMETRY = Path(__file__).parents[1] / "geometry"

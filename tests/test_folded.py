@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.models.solid.block import mirrored
-from solidgear.solve.factor import factorise
-from solidgear.solve.shifted import SHIFT, factors
-from solidgear.solve.symmetry import planned_by_symmetry
+from solidgear.core.models.solid.block import mirrored
+from solidgear.core.solve.factor import factorise
+from solidgear.core.solve.shifted import SHIFT, factors
+from solidgear.core.solve.symmetry import planned_by_symmetry
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 COARSE = {"refinement": 0.5, "layers": 1, "edge_layers": 0, "radial_layers": 1, "around": 8}

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from solidgear.frames import cross_matrix, rotation, shift
+from solidgear.core.frames import cross_matrix, rotation, shift
 
 # Every identity here is a handful of products of numbers of order one: 1e-14 is fifty roundings.
 ROUNDING = 1e-14

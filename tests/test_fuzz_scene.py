@@ -12,10 +12,10 @@ from pathlib import Path
 
 import pytest
 
-from solidgear.errors import SceneError, SolidgearError
-from solidgear.machine.isolated import isolated
-from solidgear.scene import Bearing, Material, Port, Scene, Segment
-from solidgear.scene.file import load
+from solidgear.core.errors import SceneError, SolidgearError
+from solidgear.core.machine.isolated import isolated
+from solidgear.core.scene import Bearing, Material, Port, Scene, Segment
+from solidgear.core.scene.file import load
 
 ROOT = Path(__file__).parents[1]
 GOOD = (ROOT / "geometry" / "pinion_overhung.toml").read_text(encoding="utf-8")
@@ -96,7 +96,7 @@ def test_what_reserves_address_space_is_within_the_limits(fuzz):
 import sys
 from validation.fuzz.limits import Limits
 with Limits(room=1 << 30).watched():
-    from solidgear.report.plot import _drawing_library
+    from solidgear.show.plot import _drawing_library
     print(_drawing_library().vegalite_to_svg({"mark": "point", "data": {"values": [{}]}})[:4])
     try:
         bytearray(2 << 30)
@@ -162,7 +162,7 @@ def prints_a_traceback():
     + ["another code", "traceback", "nothing said"],
 )
 def test_what_the_fuzz_calls_a_bad_command(fuzz, main, monkeypatch):
-    import solidgear.cli
+    import solidgear.app
 
     case, _, scenes = fuzz
 
@@ -172,7 +172,7 @@ def test_what_the_fuzz_calls_a_bad_command(fuzz, main, monkeypatch):
 
     good = case.Case("good", {scenes.FILE: GOOD.encode()}, use)
     if main:
-        monkeypatch.setattr(solidgear.cli, "main", main)
+        monkeypatch.setattr(solidgear.app, "main", main)
     assert case.one(scenes.SCENES, good).kind == ("finding" if main else "accepted")
 
 

@@ -4,10 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from solidgear.errors import SceneError
-from solidgear.scene.train_file import load_train
-from solidgear.studies.train.gear_bodies import gear_cautions
-from solidgear.studies.train.layout import contacts
+from solidgear.core.errors import SceneError
+from solidgear.trains.file.reading import load_train
+from solidgear.trains.assembly.gear_bodies import gear_cautions
+from solidgear.trains.assembly.layout import contacts
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 

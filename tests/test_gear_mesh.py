@@ -5,8 +5,8 @@ import itertools
 import numpy as np
 import pytest
 
-from solidgear.errors import SolidgearError
-from solidgear.system.gear_mesh import (
+from solidgear.core.errors import SolidgearError
+from solidgear.core.system.gear_mesh import (
     MeshVector,
     line_of_action,
     mean_radius,

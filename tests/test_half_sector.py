@@ -11,14 +11,14 @@ from scipy.sparse.linalg import eigsh
 from test_sector import BOLTS, SPIRAL, STEEL, TEETH, apart, shaft
 
 import solidgear as sg
-from solidgear.frames import rotation
-from solidgear.ladder.registry import LADDER
-from solidgear.meshing.sector import mirrored
-from solidgear.models.sector.body import meshed_sector, sector, whole
-from solidgear.models.sector.half import HalfSector, basis, half_sector_solid
-from solidgear.models.solid.matrices import _matrices
-from solidgear.scene import Spline
-from solidgear.scene.features.around import mirror_angle
+from solidgear.core.frames import rotation
+from solidgear.core.ladder.registry import LADDER
+from solidgear.cuts.sector.meshing import mirrored
+from solidgear.cuts.sector.body import meshed_sector, sector, whole
+from solidgear.cuts.sector.half import HalfSector, basis, half_sector_solid
+from solidgear.core.models.solid.matrices import _matrices
+from solidgear.core.scene import Spline
+from solidgear.cuts.features.around import mirror_angle
 
 #: equal to rounding whatever the mesh
 COARSE = 0.1

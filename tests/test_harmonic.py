@@ -9,11 +9,11 @@ from scipy.optimize import brentq
 from skfem import Basis
 
 import solidgear as sg
-from solidgear.body import as_supports
-from solidgear.scene import STEEL, Port, Scene, Segment
-from solidgear.solve.coupling import decoupled
-from solidgear.solve.eigen import lowest
-from solidgear.solve.supported import Supported
+from solidgear.core.body import as_supports
+from solidgear.core.scene import STEEL, Port, Scene, Segment
+from solidgear.core.solve.coupling import decoupled
+from solidgear.core.solve.eigen import lowest
+from solidgear.core.solve.supported import Supported
 from tests.dense import mass_matrix
 from validation.manual.exact import Tube, beam_frequencies
 from validation.manual.exact_waves import bending_wave

@@ -10,10 +10,10 @@ from shafts import NASTY, shaft
 from skfem.quadrature import get_quadrature
 
 import solidgear as sg
-from solidgear.meshing.grading import Grading
-from solidgear.meshing.hexahedra import hexahedra
-from solidgear.meshing.layout import layout
-from solidgear.meshing.quality import MeshError
+from solidgear.core.meshing.grading import Grading
+from solidgear.core.meshing.hexahedra import hexahedra
+from solidgear.core.meshing.layout import layout
+from solidgear.core.meshing.quality import MeshError
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 PLAN = {"size": 0.03, "layers": 1, "edge_layers": 1, "ratio": 0.35, "core": True}

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.body import as_supports
-from solidgear.judge.bounded import mode_bars
-from solidgear.judge.completeness import completeness
-from solidgear.judge.hidden import COMPLETE, COUNTED, complete_list, less_widest
-from solidgear.scene import Bearing, Material, Scene
+from solidgear.core.body import as_supports
+from solidgear.core.judge.bounded import mode_bars
+from solidgear.core.judge.completeness import completeness
+from solidgear.core.judge.hidden import COMPLETE, COUNTED, complete_list, less_widest
+from solidgear.core.scene import Bearing, Material, Scene
 from tests.shafts import shaft
 
 RUBBER = Material(E=1e7, nu=0.49, density=1100.0)

@@ -12,11 +12,11 @@ import solidgear as sg
 from solidgear.bearings.balance import Linear, Mounted
 from solidgear.bearings.equilibrium import equilibrium
 from solidgear.bearings.solved import solved
-from solidgear.body import as_supports
-from solidgear.scene import Bearing, Elastic, Housing
-from solidgear.springs import in_series
-from solidgear.studies.sweep.bearing_sweep import sweep
-from solidgear.studies.sweep.bearing_variants import bearing_variants
+from solidgear.core.body import as_supports
+from solidgear.core.scene import Bearing, Elastic, Housing
+from solidgear.core.springs import in_series
+from solidgear.variants.sweep.bearing_sweep import sweep
+from solidgear.variants.sweep.bearing_variants import bearing_variants
 from tests.command import table
 from tests.dense import relative, rigid_at, whole
 

@@ -3,8 +3,8 @@
 import pytest
 
 import solidgear as sg
-from solidgear.studies.measured.data import load_measured
-from solidgear.studies.measured.identify import identify
+from solidgear.measured.data import load_measured
+from solidgear.measured.identify import identify
 
 SHAFT = """
 material = %s

@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from solidgear.machine import interruptible
-from solidgear.machine.interruptible import ThreadBound, abandoned, call
+from solidgear.core.machine import interruptible
+from solidgear.core.machine.interruptible import ThreadBound, abandoned, call
 
 ROOT = Path(__file__).parent.parent
 main = threading.main_thread()
@@ -125,7 +125,7 @@ def test_an_abandoned_call_gets_out_of_the_way():
     code = """
 import os, signal, threading
 signal.signal(signal.SIGINT, signal.default_int_handler)  # even where this process was told not to hear it
-from solidgear.machine.interruptible import call, leave
+from solidgear.core.machine.interruptible import call, leave
 numbers = []
 def long():
     numbers.append(threading.get_native_id())
@@ -156,7 +156,7 @@ def test_a_forked_child_has_a_thread_of_its_own():
     # a child of a small process: to fork this one, the system may want as much memory again
     code = """
 import os
-from solidgear.machine.interruptible import call
+from solidgear.core.machine.interruptible import call
 call(lambda: None)
 child = os.fork()
 if child == 0:
@@ -199,7 +199,7 @@ def test_factors_of_superlu_are_given_back():
     code = """
 import gc, re
 import numpy as np, scipy.sparse as sp
-from solidgear.solve import factor, factored
+from solidgear.core.solve import factor, factored
 factored.LONG = 0
 def taken():
     gc.collect()

@@ -12,7 +12,7 @@ import pytest
 from scipy.optimize import brentq
 
 import solidgear as sg
-from solidgear.scene import Fillet, Scene, Segment
+from solidgear.core.scene import Fillet, Scene, Segment
 from validation.thesis.krylov import Span, Station, from_scene, krylov, krylov_duncan
 
 GEOMETRY = Path(__file__).parents[1] / "geometry"

@@ -5,7 +5,7 @@ failure.
 import numpy as np
 import pytest
 
-from solidgear.solve.lanczos import block_lanczos
+from solidgear.core.solve.lanczos import block_lanczos
 
 
 def problem(theta, seed=0):

@@ -8,14 +8,14 @@ import pytest
 import scipy.sparse as sp
 
 import solidgear as sg
-from solidgear.factoring import Factoring
-from solidgear.machine.memory import NoRoom
-from solidgear.models.size import size_of_body
-from solidgear.solve import single
-from solidgear.solve.backends import missing
-from solidgear.solve.factor import FactorError, factorise
-from solidgear.solve.shifted import factors, needed_mb
-from solidgear.solve.single import Refining
+from solidgear.core.factoring import Factoring
+from solidgear.core.machine.memory import NoRoom
+from solidgear.core.models.size import size_of_body
+from solidgear.core.solve import single
+from solidgear.core.solve.backends import missing
+from solidgear.core.solve.factor import FactorError, factorise
+from solidgear.core.solve.shifted import factors, needed_mb
+from solidgear.core.solve.single import Refining
 
 GEOMETRY = Path(__file__).parents[1] / "geometry"
 
@@ -185,7 +185,7 @@ def test_back_ends_that_cannot_are_told():
 
 
 def test_no_back_end_for_files(monkeypatch):
-    monkeypatch.setattr("solidgear.solve.choice.missing", lambda name: f"{name} is not usable")
+    monkeypatch.setattr("solidgear.core.solve.choice.missing", lambda name: f"{name} is not usable")
     with pytest.raises(FactorError, match="no back end here .*pardiso is not usable: pip install"):
         factorise(sp.identity(9, format="csr"), factoring=Factoring(out_of_core=True))
 

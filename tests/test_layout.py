@@ -11,13 +11,13 @@ import pytest
 from shafts import NASTY, shaft
 
 import solidgear as sg
-from solidgear.errors import SolidgearError
-from solidgear.meshing.bands import STEEPEST, first_of_run, radial_bands
-from solidgear.meshing.grading import Grading, graded, joint_length
-from solidgear.meshing.layout import layout
-from solidgear.meshing.meridian import meridian
-from solidgear.scene import Bearing, Port
-from solidgear.scene.outline import Outline
+from solidgear.core.errors import SolidgearError
+from solidgear.core.meshing.bands import STEEPEST, first_of_run, radial_bands
+from solidgear.core.meshing.grading import Grading, graded, joint_length
+from solidgear.core.meshing.layout import layout
+from solidgear.core.meshing.meridian import meridian
+from solidgear.core.scene import Bearing, Port
+from solidgear.core.scene.outline import Outline
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 #: milder than those made up here

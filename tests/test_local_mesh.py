@@ -5,14 +5,14 @@ import pytest
 import scipy.sparse.linalg as spla
 
 import solidgear as sg
-from solidgear.errors import SolidgearError
-from solidgear.models.harmonic.patch import Patch, PatchMotion
-from solidgear.reduction.waves import local_compliance, own_waves, with_waves
-from solidgear.solve.factor import factorise
-from solidgear.studies.train.local import TEETH, patch_of, undriven
-from solidgear.studies.train.models import Workshop
-from solidgear.studies.train.modes import train_modes
-from solidgear.studies.train.respond import Drive
+from solidgear.core.errors import SolidgearError
+from solidgear.core.models.harmonic.patch import Patch, PatchMotion
+from solidgear.core.reduction.waves import local_compliance, own_waves, with_waves
+from solidgear.core.solve.factor import factorise
+from solidgear.trains.assembly.local import TEETH, patch_of, undriven
+from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.modes.modes import train_modes
+from solidgear.trains.response.respond import Drive
 from tests.command import command
 
 AXLE = "geometry/axle_overhung.toml"

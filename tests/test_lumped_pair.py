@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from shafts import moved_by
 
-from solidgear.system.gear_mesh import MeshVector, line_of_action, mesh_point, to_gear_frame
+from solidgear.core.system.gear_mesh import MeshVector, line_of_action, mesh_point, to_gear_frame
 from validation.thesis.identification import highest, torsion_springs
 from validation.thesis.identify import Unknown, identify
 from validation.thesis.lumped_pair import COMPONENTS, LumpedPair, diagonal_mass, shaft_stiffness

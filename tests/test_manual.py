@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 import solidgear as sg
-from solidgear.models.beam import element as beam_element
+from solidgear.core.models.beam import element as beam_element
 from validation.manual import CASES
 from validation.manual import __main__ as command
 from validation.manual.case import Answer, CaseError, Model, Reference

@@ -7,7 +7,7 @@ import pytest
 import scipy.sparse as sp
 
 import solidgear as sg
-from solidgear.body.mass import ScalarMass
+from solidgear.core.body.mass import ScalarMass
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 N, C = 17, 3

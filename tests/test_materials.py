@@ -3,8 +3,8 @@
 import pytest
 
 import solidgear as sg
-from solidgear.errors import SceneError
-from solidgear.scene.materials import MATERIALS, by_name
+from solidgear.core.errors import SceneError
+from solidgear.core.scene.materials import MATERIALS, by_name
 
 SCENE = """
 material = "{top}"

@@ -11,23 +11,23 @@ import pytest
 from command import command
 
 import solidgear as sg
-from solidgear.body import as_supports
-from solidgear.judge.bounded import mode_bars
-from solidgear.scene.paths import keys_of, with_entry
-from solidgear.scene.toml_file import parse
-from solidgear.scene.uncertain import with_ranges
-from solidgear.solve.adjoint import mode_form
-from solidgear.studies.loading import scene_of
-from solidgear.studies.measured.alignment import Peak, ShapeLikeness, align
-from solidgear.studies.measured.computed import Computed, computed_up_to
-from solidgear.studies.measured.correlate import SURE, correlate
-from solidgear.studies.measured.data import Measured, load_measured
-from solidgear.studies.measured.fit import Fit
-from solidgear.studies.measured.identify import identify
-from solidgear.studies.measured.same_part import Common
-from solidgear.studies.measured.sprung import Sprung
-from solidgear.studies.measured.varied import varied_of
-from solidgear.studies.sensitivity.derivatives import Derivatives
+from solidgear.core.body import as_supports
+from solidgear.core.judge.bounded import mode_bars
+from solidgear.core.scene.paths import keys_of, with_entry
+from solidgear.core.scene.toml_file import parse
+from solidgear.core.scene.uncertain import with_ranges
+from solidgear.variants.sensitivity.adjoint import mode_form
+from solidgear.core.loading import scene_of
+from solidgear.measured.alignment import Peak, ShapeLikeness, align
+from solidgear.measured.computed import Computed, computed_up_to
+from solidgear.measured.correlate import SURE, correlate
+from solidgear.measured.data import Measured, load_measured
+from solidgear.measured.fit import Fit
+from solidgear.measured.identify import identify
+from solidgear.measured.same_part import Common
+from solidgear.measured.sprung import Sprung
+from solidgear.measured.varied import varied_of
+from solidgear.variants.sensitivity.derivatives import Derivatives
 
 ROD = """
 material = { E = "200 GPa", nu = 0.3, density = "7850 kg/m^3" }

@@ -4,9 +4,9 @@ import mmap
 
 import pytest
 
-from solidgear.errors import SolidgearError
-from solidgear.machine import threads
-from solidgear.machine.memory import available_mb, one_run
+from solidgear.core.errors import SolidgearError
+from solidgear.core.machine import threads
+from solidgear.core.machine.memory import available_mb, one_run
 
 MB = 2**20
 
@@ -81,7 +81,7 @@ def test_the_user_can_only_lower_it(root, monkeypatch):
 def test_one_run_shares_the_limit_of_the_user(root, monkeypatch):
     monkeypatch.setenv("SOLIDGEAR_MEMORY_MB", "500")
     held = iter([100.0, 100.0, 350.0, 80.0])
-    monkeypatch.setattr("solidgear.machine.memory.resident_mb", lambda: next(held))
+    monkeypatch.setattr("solidgear.core.machine.memory.resident_mb", lambda: next(held))
     with one_run():
         # what has been taken since is no longer free; what was given back does not make more than
         # was allowed

@@ -8,10 +8,10 @@ import pytest
 from scipy.integrate import quad
 from skfem import MeshHex, MeshHex2, MeshQuad, MeshTet, MeshTet2
 
-from solidgear.errors import SolidgearError
-from solidgear.meshing.quality import MeshError, check_mesh, element_ratios
-from solidgear.scene.closed_form import mass_properties, volume_of
-from solidgear.scene.outline import Outline
+from solidgear.core.errors import SolidgearError
+from solidgear.core.meshing.quality import MeshError, check_mesh, element_ratios
+from solidgear.core.scene.closed_form import mass_properties, volume_of
+from solidgear.core.scene.outline import Outline
 
 
 def box(kind, n=3):
@@ -100,8 +100,8 @@ def bent():
 
 @pytest.mark.parametrize("mesh, name", [(bent(), "tet10"), (pressed(1.1), "hex27")])
 def test_inversion_between_all_samples_is_seen(mesh, name):
-    from solidgear.kernel.assembly import tabulate
-    from solidgear.models.solid.matrices import _cell_rule
+    from solidgear.core.kernel.assembly import tabulate
+    from solidgear.core.models.solid.matrices import _cell_rule
 
     element, nodes = mesh.elem(), mesh.doflocs[:, mesh.dofs.element_dofs]
     for points in (
@@ -125,8 +125,8 @@ def test_the_least_jacobian_is_that_of_the_polynomial(amount):
 
 @pytest.mark.parametrize("kind, name", [("tet2", "tet10"), ("hex2", "hex27")])
 def test_the_volume_of_any_curved_element_is_exact(kind, name):
-    from solidgear.kernel.assembly import tabulate
-    from solidgear.models.solid.matrices import _cell_rule
+    from solidgear.core.kernel.assembly import tabulate
+    from solidgear.core.models.solid.matrices import _cell_rule
 
     mesh = box(kind, 1)
     # every node moved at random: det J has all the terms it can have, and the rule of the stiffness

@@ -9,10 +9,10 @@ import pytest
 import scipy.linalg as sla
 
 import solidgear as sg
-from solidgear.errors import SolidgearError
-from solidgear.scene import STEEL, Bearing, Port, Scene, Segment
-from solidgear.scene.closed_form import volume_of
-from solidgear.scene.outline import Outline
+from solidgear.core.errors import SolidgearError
+from solidgear.core.scene import STEEL, Bearing, Port, Scene, Segment
+from solidgear.core.scene.closed_form import volume_of
+from solidgear.core.scene.outline import Outline
 from tests.dense import bearing_by_hand, every, whole
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.body import as_supports
-from solidgear.solve.naming import Names, Projection
+from solidgear.core.body import as_supports
+from solidgear.core.solve.naming import Names, Projection
 
 STOUT = sg.Scene.from_parts([sg.Segment.cylinder("body", length=0.0134, diameter=0.019)])
 #: lowest shapes of the harmonic solid: 23 modes, of n = 0 to 4, axial, breathing and torsion among them

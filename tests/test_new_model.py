@@ -8,17 +8,17 @@ from pathlib import Path
 import pytest
 
 import solidgear as sg
-from solidgear.judge.race.cases import plan
-from solidgear.judge.race.timing import race
-from solidgear.ladder.beams import Timoshenko
-from solidgear.ladder.harmonic import Harmonic
-from solidgear.ladder.model import Model
-from solidgear.ladder.registry import LADDER
-from solidgear.report.html import render_page
-from solidgear.report.race_figure import race_chart
-from solidgear.report.terminal import final_table
-from solidgear.report.write import Drawn, render_mode
-from solidgear.studies.check import check_scene
+from solidgear.compare.race.cases import plan
+from solidgear.compare.race.timing import race
+from solidgear.core.ladder.beams import Timoshenko
+from solidgear.core.ladder.harmonic import Harmonic
+from solidgear.core.ladder.model import Model
+from solidgear.core.ladder.registry import LADDER
+from solidgear.compare.page.html import render_page
+from solidgear.compare.race.figure import race_chart
+from solidgear.show.terminal import final_table
+from solidgear.compare.page.write import Drawn, render_mode
+from solidgear.guards.check import check_scene
 from tests.charted import texts_of
 
 ROOT = Path(__file__).parent.parent
@@ -142,12 +142,12 @@ def test_it_is_charted(ladder, scene):
 def test_it_is_in_the_help_and_among_the_choices():
     code = (
         "import sys\n"
-        "from solidgear.ladder.beams import Timoshenko\n"
-        "from solidgear.ladder.registry import LADDER\n"
+        "from solidgear.core.ladder.beams import Timoshenko\n"
+        "from solidgear.core.ladder.registry import LADDER\n"
         "class Coarse(Timoshenko):\n"
         "    name, title = 'coarse', 'coarse beam'\n"
         "LADDER.models += (Coarse(),)\n"
-        "from solidgear.cli import main\n"
+        "from solidgear.app import main\n"
         "for line in sys.argv[1:]:\n"
         "    sys.argv = ['solidgear', *line.split()]\n"
         "    try:\n"

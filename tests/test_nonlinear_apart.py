@@ -8,13 +8,13 @@ import pytest
 from test_nonlinear_pair import pair
 
 import solidgear as sg
-from solidgear.nonlinear.apart import search
-from solidgear.nonlinear.continuation import follow
-from solidgear.nonlinear.motion import steady_motion
-from solidgear.nonlinear.stability import stable
-from solidgear.studies.train.models import Workshop
-from solidgear.studies.train.nonlinear import teeth_of, with_backlash
-from solidgear.studies.train.nonlinear_told import BacklashStudy
+from solidgear.backlash.solver.apart import search
+from solidgear.backlash.solver.continuation import follow
+from solidgear.backlash.solver.motion import steady_motion
+from solidgear.backlash.solver.stability import stable
+from solidgear.trains.assembly.models import Workshop
+from solidgear.backlash.train import teeth_of, with_backlash
+from solidgear.backlash.results import BacklashStudy
 
 OVERHUNG = Path(__file__).parent.parent / "geometry" / "axle_overhung.toml"
 

@@ -7,15 +7,15 @@ import pytest
 from scipy.integrate import solve_ivp
 from test_nonlinear_varying import rotor
 
-from solidgear.nonlinear.balance import Balance
-from solidgear.nonlinear.continuation import follow
-from solidgear.nonlinear.integrated import Integrated
-from solidgear.nonlinear.model import remainder
-from solidgear.nonlinear.motion import steady_motion
-from solidgear.nonlinear.stability import multipliers
-from solidgear.nonlinear.varying import edges, growth
-from solidgear.system import BearingSpring, RigidBody, RowSpring, System
-from solidgear.system.law import Gap
+from solidgear.backlash.solver.balance import Balance
+from solidgear.backlash.solver.continuation import follow
+from solidgear.backlash.solver.integrated import Integrated
+from solidgear.backlash.solver.model import remainder
+from solidgear.backlash.solver.motion import steady_motion
+from solidgear.backlash.solver.stability import multipliers
+from solidgear.backlash.solver.varying import edges, growth
+from solidgear.core.system import BearingSpring, RigidBody, RowSpring, System
+from solidgear.core.system.law import Gap
 
 #: springs to ground and their losses, along x and z; of the teeth that touch
 GROUND, LOSS = np.array([0.3, 0.5]), 0.1

@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 from teeth import ALONG, mass_on_teeth
 
-from solidgear.errors import SolidgearError
-from solidgear.nonlinear.apart import period_doubled_branches
-from solidgear.nonlinear.balance import Balance
-from solidgear.nonlinear.continuation import follow
-from solidgear.nonlinear.model import remainder
-from solidgear.nonlinear.motion import Run, steady_motion, sweep
-from solidgear.nonlinear.run_up import run_up
-from solidgear.nonlinear.stability import multipliers, stable
-from solidgear.system import Inertia, RowSpring, System
-from solidgear.system.law import Gap
+from solidgear.core.errors import SolidgearError
+from solidgear.backlash.solver.apart import period_doubled_branches
+from solidgear.backlash.solver.balance import Balance
+from solidgear.backlash.solver.continuation import follow
+from solidgear.backlash.solver.model import remainder
+from solidgear.backlash.solver.motion import Run, steady_motion, sweep
+from solidgear.backlash.solver.run_up import run_up
+from solidgear.backlash.solver.stability import multipliers, stable
+from solidgear.core.system import Inertia, RowSpring, System
+from solidgear.core.system.law import Gap
 
 ZETA, MEAN = 0.05, 0.1
 TEETH = Gap(1.0, 1.0)

@@ -8,12 +8,12 @@ from scipy.integrate import solve_ivp
 from scipy.special import wofz
 from teeth import ALONG, mass_on_teeth
 
-from solidgear.errors import SolidgearError
-from solidgear.nonlinear.continuation import follow
-from solidgear.nonlinear.model import remainder
-from solidgear.nonlinear.run_up import run_up
-from solidgear.system import Inertia, RowSpring, System
-from solidgear.system.law import Gap
+from solidgear.core.errors import SolidgearError
+from solidgear.backlash.solver.continuation import follow
+from solidgear.backlash.solver.model import remainder
+from solidgear.backlash.solver.run_up import run_up
+from solidgear.core.system import Inertia, RowSpring, System
+from solidgear.core.system.law import Gap
 
 ZETA, ERROR = 0.05, 0.05
 

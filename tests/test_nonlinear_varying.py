@@ -10,14 +10,14 @@ from scipy.optimize import brentq
 from scipy.special import mathieu_a, mathieu_b
 from teeth import ALONG, mass_on_teeth
 
-from solidgear.nonlinear.continuation import follow
-from solidgear.nonlinear.integrated import Integrated
-from solidgear.nonlinear.model import remainder
-from solidgear.nonlinear.motion import steady_motion
-from solidgear.nonlinear.stability import multipliers
-from solidgear.nonlinear.varying import edges, growth, hill
-from solidgear.system import BearingSpring, Inertia, RigidBody, RowSpring, System
-from solidgear.system.law import Gap, RadialGap
+from solidgear.backlash.solver.continuation import follow
+from solidgear.backlash.solver.integrated import Integrated
+from solidgear.backlash.solver.model import remainder
+from solidgear.backlash.solver.motion import steady_motion
+from solidgear.backlash.solver.stability import multipliers
+from solidgear.backlash.solver.varying import edges, growth, hill
+from solidgear.core.system import BearingSpring, Inertia, RigidBody, RowSpring, System
+from solidgear.core.system.law import Gap, RadialGap
 
 
 @pytest.mark.parametrize("depth", [0.1, 0.5])

@@ -13,8 +13,8 @@ from pathlib import Path
 import pytest
 
 import solidgear as sg
-from solidgear.report.folder import LOCK, held
-from solidgear.studies.comparison import compare
+from solidgear.show.folder import LOCK, held
+from solidgear.compare.comparison import compare
 
 pytestmark = pytest.mark.usefixtures("no_charts")
 
@@ -29,9 +29,9 @@ PATIENCE = 120
 # for.
 ENDLESS = """
 import hashlib, os
-from solidgear.cli import main
-from solidgear.solve import factored
-from solidgear.solve.backends.superlu import SuperLU
+from solidgear.app import main
+from solidgear.core.solve import factored
+from solidgear.core.solve.backends.superlu import SuperLU
 factored.LONG = 0
 real = SuperLU.factor
 
@@ -116,7 +116,7 @@ def test_ctrl_c_in_the_middle_of_a_factorisation(name, tmp_path, monkeypatch):
 
 
 @posix
-@pytest.mark.parametrize("module", ["typer", "solidgear.cli.modes"])
+@pytest.mark.parametrize("module", ["typer", "solidgear.app.modes"])
 def test_ctrl_c_while_modules_are_read(module):
     """A breath after the start nothing has begun, and there is nothing to trace back."""
     code = "import os, signal, sys, types\n"
@@ -125,8 +125,8 @@ def test_ctrl_c_while_modules_are_read(module):
         + module
         + "': os.kill(os.getpid(), signal.SIGINT)\n"
     )
-    code += "sys.meta_path.insert(0, Finder())\nimport solidgear.cli\n"
-    code += "sys.argv[1:] = ['modes', 'shaft.toml']\nsolidgear.cli.main()\n"
+    code += "sys.meta_path.insert(0, Finder())\nimport solidgear.app\n"
+    code += "sys.argv[1:] = ['modes', 'shaft.toml']\nsolidgear.app.main()\n"
     child = started(code)
     out, err = child.communicate(timeout=PATIENCE)
     assert (child.returncode, out, err) == (130, "", "solidgear: interrupted\n")
@@ -140,8 +140,8 @@ KILLED = """
 import os, shutil, signal, sys
 from pathlib import Path
 import solidgear as sg
-from solidgear.report import charts
-from solidgear.studies.comparison import compare
+from solidgear.compare.page import charts
+from solidgear.compare.comparison import compare
 charts.CHARTS = dict.fromkeys(charts.CHARTS, lambda results: None)
 root, scene, other, files = Path(sys.argv[1]), *sys.argv[2:4], int(sys.argv[4])
 before = compare(sg.load(other), ("euler", "timoshenko"))
@@ -209,8 +209,8 @@ def test_killed_while_files_are_written(at, killed):
 
 
 def test_a_chart_that_is_killed_leaves_no_picture_of_another(tmp_path):
-    from solidgear.judge.race.pareto import Race, Row
-    from solidgear.report.race_rows import MACHINE, PICTURE, ROWS, write_rows
+    from solidgear.compare.race.pareto import Race, Row
+    from solidgear.compare.race.rows import MACHINE, PICTURE, ROWS, write_rows
 
     (tmp_path / PICTURE).write_bytes(b"of an earlier chart")
     row = Row(
@@ -282,8 +282,8 @@ def test_results_that_are_not_ours_are_no_hindrance(text, tmp_path):
 # --------------------------------------------------------------------------- two runs in one folder
 HOLD = """
 import sys, time
-from solidgear.report import charts
-from solidgear.report.folder import held
+from solidgear.compare.page import charts
+from solidgear.show.folder import held
 with held(sys.argv[1]):
     print("held", flush=True)
     time.sleep(600)

@@ -7,15 +7,15 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.cli.shared import build_body, options
-from solidgear.elements import ELEMENTS
-from solidgear.ladder.registry import LADDER
-from solidgear.ladder.solid import _CHARTED
-from solidgear.models.beam.body import beam
-from solidgear.models.harmonic.body import harmonic
-from solidgear.models.options import FACTORING_OPTIONS, THINNEST_LAYER
-from solidgear.models.solid.body import solid
-from solidgear.studies.guards.elements import LINEAR, LOCKING
+from solidgear.show.options import build_body, options
+from solidgear.core.elements import ELEMENTS
+from solidgear.core.ladder.registry import LADDER
+from solidgear.core.ladder.solid import _CHARTED
+from solidgear.core.models.beam.body import beam
+from solidgear.core.models.harmonic.body import harmonic
+from solidgear.core.models.options import FACTORING_OPTIONS, THINNEST_LAYER
+from solidgear.core.models.solid.body import solid
+from solidgear.guards.elements import LINEAR, LOCKING
 
 SCENE = sg.load(Path(__file__).parents[1] / "geometry" / "shaft_stepped.toml")
 BUILDERS = {"euler": beam, "timoshenko": beam, "harmonic": harmonic, "solid": solid}

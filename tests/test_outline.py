@@ -5,9 +5,9 @@ import pytest
 from shafts import shaft
 from test_blends import everywhere, root, stepped
 
-from solidgear.scene import Chamfer, Fillet
-from solidgear.scene.closed_form import mass_properties
-from solidgear.scene.outline import Outline
+from solidgear.core.scene import Chamfer, Fillet
+from solidgear.core.scene.closed_form import mass_properties
+from solidgear.core.scene.outline import Outline
 
 
 def points(scene, count=400):

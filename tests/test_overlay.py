@@ -13,12 +13,12 @@ from command import command
 from universal_files import nodes, response, units, written
 
 import solidgear as sg
-from solidgear.scene.file import load
-from solidgear.studies.measured.correlate import correlate
-from solidgear.studies.measured.data import load_measured
-from solidgear.studies.measured.overlay import overlay, stiffer_motions
-from solidgear.studies.measured.shapes import SurfacePoints
-from solidgear.studies.measured.turned import turned_beside
+from solidgear.core.scene.file import load
+from solidgear.measured.correlate import correlate
+from solidgear.measured.data import load_measured
+from solidgear.measured.overlay import overlay, stiffer_motions
+from solidgear.measured.shapes import SurfacePoints
+from solidgear.measured.turned import turned_beside
 
 pytest.importorskip("pyuff")
 

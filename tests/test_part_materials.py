@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.ladder.registry import LADDER
-from solidgear.machine.isolated import isolated
+from solidgear.core.ladder.registry import LADDER
+from solidgear.core.machine.isolated import isolated
 from validation.mesh_files import rod, write_mesh, written_by_gmsh
 from validation.step_parts import write_solids
 
@@ -323,7 +323,7 @@ def test_solids_that_are_refused(solids, materials, sentence, tmp_path):
 
 
 def said(scene):
-    from solidgear.studies.round_part import described
+    from solidgear.guards.round_part import described
 
     return [n.sentence for n in described(scene)]
 
@@ -344,8 +344,8 @@ def test_gmsh_writes_what_is_read_here(tmp_path):
     """Order of nodes and numbers of groups, as another program writes them: the same volumes from
     every format, second-order tetrahedra and bricks.
     """
-    from solidgear.meshing.mesh_file import mesh_from
-    from solidgear.meshing.placing import TURNS, Placing
+    from solidgear.parts.mesh_file import mesh_from
+    from solidgear.core.meshing.placing import TURNS, Placing
 
     place = Placing(1e-3, TURNS["y"], (0.0, 0.0, 0.0))
     for hexes, kind in ((False, "tet10"), (True, "hex20")):

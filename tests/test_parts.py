@@ -11,17 +11,17 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.elements import ELEMENTS
-from solidgear.ladder.registry import LADDER
-from solidgear.machine.isolated import isolated
-from solidgear.meshing.mesh_file import mesh_from
-from solidgear.meshing.placing import TURNS, Placing
-from solidgear.models.solid.own_mesh import solid_body
-from solidgear.report.outputs import node_order
-from solidgear.scene import Keyway
-from solidgear.scene.closed_form import volume_of
-from solidgear.scene.outline import Outline
-from solidgear.studies import check, round_part
+from solidgear.core.elements import ELEMENTS
+from solidgear.core.ladder.registry import LADDER
+from solidgear.core.machine.isolated import isolated
+from solidgear.parts.mesh_file import mesh_from
+from solidgear.core.meshing.placing import TURNS, Placing
+from solidgear.parts.own_mesh import solid_body
+from solidgear.show.outputs import node_order
+from solidgear.core.scene import Keyway
+from solidgear.core.scene.closed_form import volume_of
+from solidgear.core.scene.outline import Outline
+from solidgear.guards import check, round_part
 from validation.step_parts import shaft_step, with_unit, write_step
 
 ROOT = Path(__file__).parent.parent
@@ -264,7 +264,7 @@ def test_a_seat_ends_where_it_is_said_to(stepped, tmp_path):
     """
     (tmp_path / "part.step").write_bytes(stepped)
     scene = load(tmp_path, step="part.step")
-    from solidgear.meshing.tetrahedra import tetrahedra
+    from solidgear.core.meshing.tetrahedra import tetrahedra
 
     cuts = sorted({y for s in scene.stations for y in (s.lo, s.hi)})
     sizes = {"size": 0.012, "graded_size": 0.006}
@@ -283,9 +283,9 @@ def test_a_seat_ends_where_it_is_said_to(stepped, tmp_path):
 
 def test_the_area_of_a_clipped_seat(tmp_path):
     """2 pi r b to what curved faces leave of the circle, wherever faces end."""
-    from solidgear.meshing.tetrahedra import tetrahedra
-    from solidgear.models.solid.mesh import _isoparametric
-    from solidgear.models.solid.seat_faces import Seats
+    from solidgear.core.meshing.tetrahedra import tetrahedra
+    from solidgear.core.models.solid.mesh import _isoparametric
+    from solidgear.core.models.solid.seat_faces import Seats
 
     rod = sg.Segment.cylinder("rod", length=0.2, diameter=0.06)
     mesh = _isoparametric(tetrahedra(Outline([rod]), size=0.02).mesh, "tet10", np.zeros(0))
@@ -464,11 +464,11 @@ def test_a_keyed_mesh_has_no_seat_on_the_floor_of_the_key():
     """Floors and walls of a keyway that crosses a seat are none of it: its area is that of the
     cylinder less the opening.
     """
-    from solidgear.meshing.featured import submesh
-    from solidgear.models.solid.featured import meshed
-    from solidgear.models.solid.mesh import _isoparametric
-    from solidgear.models.solid.plan import tetrahedra_plan
-    from solidgear.models.solid.seat_faces import Seats
+    from solidgear.cuts.solid.meshing import submesh
+    from solidgear.cuts.solid.featured import meshed
+    from solidgear.core.models.solid.mesh import _isoparametric
+    from solidgear.core.models.solid.plan import tetrahedra_plan
+    from solidgear.core.models.solid.seat_faces import Seats
 
     rod = sg.Segment.cylinder("rod", length=0.2, diameter=0.06)
     key = Keyway(

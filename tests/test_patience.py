@@ -7,9 +7,9 @@ from types import SimpleNamespace
 
 import pytest
 
-from solidgear.machine import patience
-from solidgear.machine.isolated import IsolatedError, isolated
-from solidgear.machine.patience import Patience
+from solidgear.core.machine import patience
+from solidgear.core.machine.isolated import IsolatedError, isolated
+from solidgear.core.machine.patience import Patience
 
 
 class Child:

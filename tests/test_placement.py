@@ -9,11 +9,11 @@ import pytest
 from universal_files import header, mode, nodes, response, units, written
 
 import solidgear as sg
-from solidgear.errors import SceneError, SolidgearError
-from solidgear.studies.loading import scene_of
-from solidgear.studies.measured.data import load_measured
-from solidgear.studies.measured.placement import Places, PointsTable
-from solidgear.studies.measured.universal import Responses, read_universal
+from solidgear.core.errors import SceneError, SolidgearError
+from solidgear.core.loading import scene_of
+from solidgear.measured.data import load_measured
+from solidgear.measured.placement import Places, PointsTable
+from solidgear.measured.universal import Responses, read_universal
 
 pytest.importorskip("pyuff")
 

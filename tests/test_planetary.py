@@ -9,8 +9,8 @@ import pytest
 import scipy.linalg as sla
 
 import solidgear as sg
-from solidgear.errors import SolidgearError
-from solidgear.system.gear_mesh import cylindrical_mesh
+from solidgear.core.errors import SolidgearError
+from solidgear.core.system.gear_mesh import cylindrical_mesh
 
 # both are eigenvalues of the same 18 to 27 coordinates, whose stiffness spans four decades
 ROUNDING = 1e-9

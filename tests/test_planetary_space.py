@@ -8,10 +8,10 @@ import pytest
 import scipy.linalg as sla
 
 import solidgear as sg
-from solidgear.errors import SolidgearError
-from solidgear.frames import cross_matrix, rotation, shift
-from solidgear.reduction.superelement import PortMotion
-from solidgear.system.gear_mesh import cylindrical_mesh, line_of_action
+from solidgear.core.errors import SolidgearError
+from solidgear.core.frames import cross_matrix, rotation, shift
+from solidgear.core.reduction.superelement import PortMotion
+from solidgear.core.system.gear_mesh import cylindrical_mesh, line_of_action
 from tests.test_planetary import frequencies, of_kind, published
 
 # eigenvalues of 36 to 54 coordinates, whose stiffness spans four decades

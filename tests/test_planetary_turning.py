@@ -7,8 +7,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import solidgear as sg
-from solidgear.errors import SolidgearError
-from solidgear.frames import rotation
+from solidgear.core.errors import SolidgearError
+from solidgear.core.frames import rotation
 from tests.test_planetary import (
     PIN,
     frequencies,

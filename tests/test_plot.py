@@ -8,14 +8,14 @@ import pytest
 from test_train_models import COARSE, OVERHUNG
 
 import solidgear as sg
-from solidgear.report.charts import CHARTS
-from solidgear.report.panel import Axis, Panel, read_places, readout
-from solidgear.report.plot import NARROW, WIDE, Chart, page_svg
-from solidgear.report.train_chart import receptance_chart, response_chart
-from solidgear.report.units import SYSTEMS
-from solidgear.studies.train.models import Workshop
-from solidgear.studies.train.receptance import receptance
-from solidgear.studies.train.respond import respond
+from solidgear.compare.page.charts import CHARTS
+from solidgear.show.panel import Axis, Panel, read_places, readout
+from solidgear.show.plot import NARROW, WIDE, Chart, page_svg
+from solidgear.trains.page.chart import receptance_chart, response_chart
+from solidgear.show.units import SYSTEMS
+from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.response.receptance import receptance
+from solidgear.trains.response.respond import respond
 from tests.charted import facts_of, texts_of, words_of
 from tests.made_up_run import fixture_results
 

@@ -12,11 +12,11 @@ import scipy.linalg as sla
 import scipy.sparse as sp
 
 import solidgear as sg
-from solidgear.body import as_supports
-from solidgear.body.cache import Cache
-from solidgear.reduction.effective_mass import synthesise
-from solidgear.studies.sweep.bearing_sweep import sweep
-from solidgear.studies.sweep.bearing_variants import bearing_variants
+from solidgear.core.body import as_supports
+from solidgear.core.body.cache import Cache
+from solidgear.core.reduction.effective_mass import synthesise
+from solidgear.variants.sweep.bearing_sweep import sweep
+from solidgear.variants.sweep.bearing_variants import bearing_variants
 from tests.command import table
 from tests.dense import every, whole
 
@@ -81,7 +81,7 @@ def test_low_rank_equals_mass_in_the_matrix(bodies, scene, rung):
 def test_nothing_is_factored_again_and_statics_do_not_change(bodies, scene, monkeypatch):
     body = bodies["harmonic"]
     bare = sg.condense(body, scene.with_changes(masses=()).bearings, "fan")
-    monkeypatch.setattr("solidgear.solve.shifted._plan", None)  # the factors are there
+    monkeypatch.setattr("solidgear.core.solve.shifted._plan", None)  # the factors are there
     laden = sg.condense(body, scene, "fan")
     assert np.abs(laden.compliance - bare.compliance).max() <= 1e-13 * np.abs(bare.compliance).max()
     sg.modes(body, scene, n=4, ovalising=False)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.scene import Port, Scene, Segment
+from solidgear.core.scene import Port, Scene, Segment
 from tests.dense import rigid_at
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"

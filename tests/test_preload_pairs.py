@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from solidgear.bearings.solved import AS_STATED, Choice, catalogued_bearings, partners, solved
-from solidgear.errors import SceneError
-from solidgear.scene.file import load
+from solidgear.core.errors import SceneError
+from solidgear.core.scene.file import load
 
 ROD = """material = "steel"
 {words}

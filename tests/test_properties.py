@@ -15,10 +15,10 @@ from hypothesis import strategies as st
 from strategies import scenes, stiffnesses
 
 import solidgear as sg
-from solidgear.body import Supports, as_supports
-from solidgear.frames import rotation
-from solidgear.solve.statics import condense, flexibility
-from solidgear.solve.supported import Supported
+from solidgear.core.body import Supports, as_supports
+from solidgear.core.frames import rotation
+from solidgear.core.solve.statics import condense, flexibility
+from solidgear.core.solve.supported import Supported
 
 # the same examples every time; a failing one is shown as found, since making it smaller takes
 # minutes

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from pydantic import TypeAdapter
 
-from solidgear.body.mode_names import ModeName
-from solidgear.frames import DOF_NAMES
-from solidgear.quantity import ACROSS, BLOCK_UNITS, QUANTITIES, Quantity
+from solidgear.core.body.mode_names import ModeName
+from solidgear.core.frames import DOF_NAMES
+from solidgear.core.quantity import ACROSS, BLOCK_UNITS, QUANTITIES, Quantity
 
 
 @pytest.mark.parametrize("name", [Quantity("C_z,thx@wheel@pinion"), ModeName("bending x 2")])

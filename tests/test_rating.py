@@ -8,11 +8,11 @@ import pytest
 from filleted import STRONG, shoulder
 
 from solidgear import SceneError, SolidgearError
-from solidgear.scene import Material, Strength
-from solidgear.studies.stress import din743
-from solidgear.studies.stress.nominal import CrossSection, NominalStress
-from solidgear.studies.stress.notch import Factor, FilletFactors
-from solidgear.studies.stress.rating import Conditions, fatigue_factors, rated
+from solidgear.core.scene import Material, Strength
+from solidgear.strength.stress import din743
+from solidgear.strength.stress.nominal import CrossSection, NominalStress
+from solidgear.strength.stress.notch import Factor, FilletFactors
+from solidgear.strength.stress.rating import Conditions, fatigue_factors, rated
 
 SCENE = shoulder(1.5, 0.1, d=0.04)
 LARGE = 0.06

@@ -7,12 +7,12 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.special import beta
 
-from solidgear.errors import SolidgearError
-from solidgear.nonlinear.balance import Balance, as_complex
-from solidgear.nonlinear.model import remainder
-from solidgear.nonlinear.two_tone import TwoTone
-from solidgear.system import Inertia, RowSpring, System, torsion_spring
-from solidgear.system.law import Gap
+from solidgear.core.errors import SolidgearError
+from solidgear.backlash.solver.balance import Balance, as_complex
+from solidgear.backlash.solver.model import remainder
+from solidgear.backlash.solver.two_tone import TwoTone
+from solidgear.core.system import Inertia, RowSpring, System, torsion_spring
+from solidgear.core.system.law import Gap
 from validation.reducer.design import Design
 from validation.reducer.dynamics import amplitudes
 from validation.reducer.independent import envelope

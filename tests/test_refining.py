@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.bounds.refining import Meshed, refined
-from solidgear.judge.answer import answer
-from solidgear.kernel.cell_shapes import Shapes
-from solidgear.kernel.lobatto import gauss
-from solidgear.scene import Fillet
-from solidgear.scene.closed_form import mass_properties
+from solidgear.core.bounds.refining import Meshed, refined
+from solidgear.core.judge.answer import answer
+from solidgear.core.kernel.cell_shapes import Shapes
+from solidgear.core.kernel.lobatto import gauss
+from solidgear.core.scene import Fillet
+from solidgear.core.scene.closed_form import mass_properties
 from tests.test_bounds import shaft
 
 MM = 1e-3

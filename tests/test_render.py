@@ -17,14 +17,15 @@ from skfem.quadrature import get_quadrature
 from skfem.refdom import RefHex, RefTet
 
 import solidgear as sg
-from solidgear.errors import SolidgearError
-from solidgear.report import render, write
-from solidgear.report.folder import OWN, clear
-from solidgear.report.outputs import OUTPUTS, Output, write_vtu
-from solidgear.report.render import PACKAGES, Drawing, RenderJob, render_modes
-from solidgear.scene.closed_form import volume_of
-from solidgear.scene.outline import Outline
-from solidgear.solve.modes import Mode
+from solidgear.core.errors import SolidgearError
+from solidgear.show import render
+from solidgear.compare.page import write
+from solidgear.show.folder import OWN, clear
+from solidgear.show.outputs import OUTPUTS, Output, write_vtu
+from solidgear.show.render import PACKAGES, Drawing, RenderJob, render_modes
+from solidgear.core.scene.closed_form import volume_of
+from solidgear.core.scene.outline import Outline
+from solidgear.core.solve.modes import Mode
 
 ROOT = Path(__file__).parents[1]
 SOLID = {"refinement": 0.5}
@@ -220,7 +221,7 @@ def test_a_child_is_gone_when_its_caller_has_left(drawable, tmp_path, monkeypatc
 
 
 def test_the_child_starts_without_the_rest_of_the_package():
-    code = "import sys, json, solidgear.report.drawing; print(json.dumps([m for m in sys.modules if m.startswith(('solidgear', 'scipy', 'skfem', 'pyvista'))]))"
+    code = "import sys, json, solidgear.show.drawing; print(json.dumps([m for m in sys.modules if m.startswith(('solidgear', 'scipy', 'skfem', 'pyvista'))]))"
     out = subprocess.run(
         [sys.executable, "-c", code],
         capture_output=True,
@@ -230,8 +231,8 @@ def test_the_child_starts_without_the_rest_of_the_package():
     )
     assert set(json.loads(out.stdout)) == {
         "solidgear",
-        "solidgear.report",
-        "solidgear.report.drawing",
+        "solidgear.show",
+        "solidgear.show.drawing",
     }
 
 

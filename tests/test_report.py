@@ -14,17 +14,17 @@ import pytest
 from rich.console import Console
 
 import solidgear as sg
-from solidgear.errors import SolidgearError
-from solidgear.judge.record import SCHEMA, Record
-from solidgear.judge.recording import recorded
-from solidgear.report import charts, input_tables
-from solidgear.report.border import as_record
-from solidgear.report.page_parts import data_uri
-from solidgear.report.plot import WIDE
-from solidgear.report.terminal import matrix_table, modes_table
-from solidgear.report.units import ENGINEERING
-from solidgear.report.viewer import END, START, TURNED
-from solidgear.report.words import engineering, hertz, percent
+from solidgear.core.errors import SolidgearError
+from solidgear.core.judge.record import SCHEMA, Record
+from solidgear.compare.recording import recorded
+from solidgear.compare.page import charts, input_tables
+from solidgear.show.border import as_record
+from solidgear.show.page_parts import data_uri
+from solidgear.show.plot import WIDE
+from solidgear.show.terminal import matrix_table, modes_table
+from solidgear.show.units import ENGINEERING
+from solidgear.show.viewer import END, START, TURNED
+from solidgear.show.words import engineering, hertz, percent
 from tests.made_up_run import STIFFNESS, fixture_results
 from tests.plain import final_table, render_page, verdict_text, write_report
 
@@ -335,7 +335,7 @@ def test_pictures_named_by_the_results_come_from_the_folder_only(tmp_path, no_ch
 def test_failed_report_leaves_the_old_one(tmp_path, monkeypatch, no_charts):
     path = write_report(fixture_results(), tmp_path)
     before = path.read_bytes()
-    monkeypatch.setattr("solidgear.report.html.render_page", lambda *a: 1 / 0)
+    monkeypatch.setattr("solidgear.compare.page.html.render_page", lambda *a: 1 / 0)
     with pytest.raises(ZeroDivisionError):
         write_report(fixture_results(), tmp_path)
     assert path.read_bytes() == before and len(list(tmp_path.iterdir())) == 1

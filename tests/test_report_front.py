@@ -9,12 +9,12 @@ import re
 import pytest
 
 import solidgear as sg
-from solidgear.errors import SolidgearError
-from solidgear.judge.record import Record
-from solidgear.report import front
-from solidgear.report.input_tables import scene_facts
-from solidgear.report.terminal import matrix_table
-from solidgear.report.units import (
+from solidgear.core.errors import SolidgearError
+from solidgear.core.judge.record import Record
+from solidgear.compare.page import front
+from solidgear.compare.page.input_tables import scene_facts
+from solidgear.show.terminal import matrix_table
+from solidgear.show.units import (
     ENGINEERING,
     SI,
     SYSTEMS,
@@ -24,7 +24,7 @@ from solidgear.report.units import (
     plain,
     units_named,
 )
-from solidgear.report.viewer import END, START, TURNED
+from solidgear.show.viewer import END, START, TURNED
 from tests.made_up_run import fixture_results
 from tests.plain import final_table, render_page
 from tests.test_report import shown, text_of

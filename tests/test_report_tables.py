@@ -3,11 +3,11 @@
 from dataclasses import fields
 
 import solidgear as sg
-from solidgear.judge.bars import ErrorBar
-from solidgear.judge.record import BarRecord, Record
-from solidgear.report import evidence_tables
-from solidgear.report.input_tables import bearings, scene_facts
-from solidgear.report.units import US
+from solidgear.core.judge.bars import ErrorBar
+from solidgear.core.judge.record import BarRecord, Record
+from solidgear.compare.page import evidence_tables
+from solidgear.compare.page.input_tables import bearings, scene_facts
+from solidgear.show.units import US
 
 CATALOGUE = sg.load("geometry/gearbox_catalogue.toml").as_dict()
 GIVEN = sg.load("geometry/shaft_stepped.toml").as_dict()

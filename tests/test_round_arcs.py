@@ -3,9 +3,9 @@
 import pytest
 
 import solidgear as sg
-from solidgear.scene import Fillet, Keyway
-from solidgear.scene.closed_form import mass_properties
-from solidgear.studies.round_part import described
+from solidgear.core.scene import Fillet, Keyway
+from solidgear.core.scene.closed_form import mass_properties
+from solidgear.guards.round_part import described
 from validation.step_parts import write_step
 
 SCENE = """

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.cli.answer import _of_round_part
-from solidgear.ladder.registry import LADDER
-from solidgear.meshing.round_part import round_part
-from solidgear.studies.guards import Probe, elements
-from solidgear.studies.round_part import described
+from solidgear.app.answer import _of_round_part
+from solidgear.core.ladder.registry import LADDER
+from solidgear.parts.round_part import round_part
+from solidgear.guards import Probe, elements
+from solidgear.guards.round_part import described
 from validation.mesh_files import rod, write_mesh
 
 SCENE = """

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.studies.loading import scene_of
-from solidgear.studies.measured.alignment import Peak
-from solidgear.studies.measured.correlate import correlate
-from solidgear.studies.measured.data import Measured
-from solidgear.studies.measured.identify import identify
-from solidgear.studies.measured.same_part import FAR_SHIFTS, SAME_PART, Likeness, alignment_of
+from solidgear.core.loading import scene_of
+from solidgear.measured.alignment import Peak
+from solidgear.measured.correlate import correlate
+from solidgear.measured.data import Measured
+from solidgear.measured.identify import identify
+from solidgear.measured.same_part import FAR_SHIFTS, SAME_PART, Likeness, alignment_of
 
 #: lengths and diameters of shafts, mm
 SHAFTS = (

@@ -11,17 +11,17 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.errors import SceneError
-from solidgear.ladder.registry import LADDER
-from solidgear.scene import STEEL, Bearing, Material, Port, Scene, Segment
-from solidgear.scene.bearing_stiffness import (
+from solidgear.core.errors import SceneError
+from solidgear.core.ladder.registry import LADDER
+from solidgear.core.scene import STEEL, Bearing, Material, Port, Scene, Segment
+from solidgear.core.scene.bearing_stiffness import (
     STIFFNESS_NAMES,
     checked_matrix,
     stiffness_entries,
     stiffness_matrix,
 )
-from solidgear.scene.file import load
-from solidgear.scene.units import COMMON, _by_pint, quantity
+from solidgear.core.scene.file import load
+from solidgear.core.scene.units import COMMON, _by_pint, quantity
 from validation.shipped import shipped_shafts
 
 GEOMETRY = Path(__file__).parents[1] / "geometry"
@@ -217,7 +217,7 @@ def test_units_as_they_stand_on_a_nameplate(text, dimension, value):
 
 
 def test_plain_numbers_do_not_import_pint():
-    code = "import sys; from solidgear.scene import *; Scene.from_parts([Segment.cylinder('rod', length=0.3, diameter=0.06)]); print('pint' in sys.modules)"
+    code = "import sys; from solidgear.core.scene import *; Scene.from_parts([Segment.cylinder('rod', length=0.3, diameter=0.06)]); print('pint' in sys.modules)"
     out = subprocess.run(
         [sys.executable, "-c", code],
         cwd=GEOMETRY.parent,

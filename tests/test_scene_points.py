@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.body import as_supports
-from solidgear.errors import SceneError
+from solidgear.core.body import as_supports
+from solidgear.core.errors import SceneError
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 GOOD = (GEOMETRY / "intermediate_shaft.toml").read_text(encoding="utf-8")

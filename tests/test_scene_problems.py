@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from solidgear.errors import MOST_PROBLEMS, SceneError, show
-from solidgear.scene import Port, Scene, Segment
-from solidgear.scene.file import load
+from solidgear.core.errors import MOST_PROBLEMS, SceneError, show
+from solidgear.core.scene import Port, Scene, Segment
+from solidgear.core.scene.file import load
 
 GOOD = (Path(__file__).parents[1] / "geometry" / "pinion_overhung.toml").read_text(encoding="utf-8")
 

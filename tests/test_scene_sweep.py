@@ -7,7 +7,7 @@ import math
 import pytest
 
 import solidgear as sg
-from solidgear.studies.sweep.bearing_variants import bearing_variants
+from solidgear.variants.sweep.bearing_variants import bearing_variants
 from tests.command import command, table
 
 SHAFT = "geometry/shaft_stepped.toml"

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.studies.searching import FINE, searched
+from solidgear.variants.optimise.searching import FINE, searched
 
 #: a shaft with a disc at either end: bending 2 is high where bearing B stands beside either
 DISCS = """

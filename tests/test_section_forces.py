@@ -5,9 +5,9 @@ import pytest
 from filleted import shoulder
 
 from solidgear import PointMass, SolidgearError
-from solidgear.scene.closed_form import mass_properties
-from solidgear.studies.stress.nominal import CrossSection, nominal_rows, nominal_stress
-from solidgear.studies.stress.section_forces import (
+from solidgear.core.scene.closed_form import mass_properties
+from solidgear.strength.stress.nominal import CrossSection, nominal_rows, nominal_stress
+from solidgear.strength.stress.section_forces import (
     Load,
     move_load,
     on_ports,

@@ -12,17 +12,17 @@ import pytest
 from scipy.integrate import quad
 
 import solidgear as sg
-from solidgear.ladder.registry import LADDER
-from solidgear.meshing.sector import volume_of_sector
-from solidgear.meshing.teeth import half_outline, outline, section_area, section_polar
-from solidgear.models.sector.body import meshed_sector, sector, whole
-from solidgear.models.sector.cyclic import Sector, basis, doubled
-from solidgear.models.solid.featured import featured_body, meshed
-from solidgear.models.solid.plan import tetrahedra_plan
-from solidgear.scene import BoltCircle, Fillet, Keyway, Spline, Teeth
-from solidgear.scene.closed_form import volume_of
-from solidgear.scene.features.around import no_common_sector
-from solidgear.scene.outline import Outline
+from solidgear.core.ladder.registry import LADDER
+from solidgear.cuts.sector.meshing import volume_of_sector
+from solidgear.cuts.sector.teeth import half_outline, outline, section_area, section_polar
+from solidgear.cuts.sector.body import meshed_sector, sector, whole
+from solidgear.cuts.sector.cyclic import Sector, basis, doubled
+from solidgear.cuts.solid.featured import featured_body, meshed
+from solidgear.core.models.solid.plan import tetrahedra_plan
+from solidgear.core.scene import BoltCircle, Fillet, Keyway, Spline, Teeth
+from solidgear.core.scene.closed_form import volume_of
+from solidgear.cuts.features.around import no_common_sector
+from solidgear.core.scene.outline import Outline
 
 ROOT = Path(__file__).parent.parent
 TOOTHED = ROOT / "geometry" / "pinion_toothed.toml"
@@ -154,8 +154,8 @@ def test_volume_mass_and_inertia(name):
     # edges of a seventh of a turn lose (pi/7)^4/30 of an arc
     assert made.quality.volume == pytest.approx(exact, rel=2e-3)
     if name != "bolts":
-        from solidgear.models.sector.half import half_sector_solid
-        from solidgear.models.sector.mesh import sector_solid
+        from solidgear.cuts.sector.half import half_sector_solid
+        from solidgear.cuts.sector.mesh import sector_solid
 
         mesh = (half_sector_solid if made.half else sector_solid)(made)
         pieces = mesh.over_cells(np.flatnonzero(made.segment == 0))
@@ -283,7 +283,7 @@ def test_smeared_teeth_change_no_model_of_revolution():
         assert np.array_equal(a.compliance, b.compliance, equal_nan=True)
     assert sg.build(scene, "solid", layers=1, radial_layers=1).mesh["element"] == "hex20"
     assert sg.build(scene, "sector", refinement=COARSE).mesh["features"] == ["teeth"]
-    from solidgear.ladder.registry import LADDER
+    from solidgear.core.ladder.registry import LADDER
 
     assert "sector" not in LADDER.fit(scene) and "sector" in LADDER.fit(shaft(TEETH))
     assert "solid" not in LADDER.fit(shaft(TEETH))  # copies of the sector are no second opinion
@@ -413,8 +413,8 @@ def test_a_spline_is_a_cylinder_with_teeth():
 @pytest.mark.long
 def test_check_says_what_smearing_costs():
     """Bounds of the rule hold for what the sector says of one pinion, and the tolerance decides."""
-    from solidgear.studies.check import check_scene
-    from solidgear.studies.guards.smearing import expected
+    from solidgear.guards.check import check_scene
+    from solidgear.guards.smearing import expected
 
     smeared = TEETH.with_changes(model="pitch_cone")
     scene = shaft(smeared)
@@ -429,7 +429,7 @@ def test_check_says_what_smearing_costs():
         apart = g.named(name).frequency_hz / f.named(name).frequency_hz - 1
         assert abs(apart) < frequency, name
     # mass and inertia by the closed form against those of the mesh of the head
-    from solidgear.meshing.teeth import lacking
+    from solidgear.cuts.sector.teeth import lacking
 
     mass, polar = lacking(smeared, scene.segments[0])
     more = teeth.mass_matrix() - cone.mass_matrix()
@@ -472,7 +472,7 @@ def test_smeared_teeth_stay_smeared_beside_bolts():
     """The segment of revolution stands for them in every model that the scene fits, so that their
     count asks for no common sector.
     """
-    from solidgear.ladder.registry import LADDER
+    from solidgear.core.ladder.registry import LADDER
 
     smeared = TEETH.with_changes(model="pitch_cone", count=14)
     scene, bare = shaft(smeared, BOLTS), shaft(BOLTS)
@@ -579,7 +579,7 @@ def test_a_fillet_beside_teeth_does_what_one_at_the_pitch_cone_does():
 
 def test_a_model_that_says_it_fits_can_be_built():
     """Fillets, counts and phases that leave no sector are told before anything is meshed."""
-    from solidgear.ladder import way_out
+    from solidgear.core.ladder import way_out
 
     high = filleted(0.0124)
     spline = Spline(name="s", segment="rod", count=7, angle=0.1, dedendum=0.5, model="sector")

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.scene.file import scene_of
-from solidgear.scene.paths import entry, keys_of, with_entry
-from solidgear.scene.toml_file import parse
+from solidgear.core.scene.file import scene_of
+from solidgear.core.scene.paths import entry, keys_of, with_entry
+from solidgear.core.scene.toml_file import parse
 from tests.command import command
 
 #: of the strongest elasticity: central differences of fine meshes that are made anew repeat to 3e-6

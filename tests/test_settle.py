@@ -12,20 +12,20 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.body import as_supports
-from solidgear.judge import bounded
-from solidgear.judge.answer import answer
-from solidgear.judge.bounded import mode_bars
-from solidgear.judge.quantities import at_points, between, change, measure
-from solidgear.judge.refinement import Refinement
-from solidgear.judge.settle import settle
-from solidgear.judge.solving import Numbers, Statics, solve
-from solidgear.ladder.registry import LADDER
-from solidgear.quantity import QUANTITIES
-from solidgear.scene import Bearing
-from solidgear.solve.statics import condense
-from solidgear.studies.sweep.bearing_variants import bearing_variants
-from solidgear.studies.sweep.choice import settled_for_sweep
+from solidgear.core.body import as_supports
+from solidgear.core.judge import bounded
+from solidgear.core.judge.answer import answer
+from solidgear.core.judge.bounded import mode_bars
+from solidgear.core.judge.quantities import at_points, between, change, measure
+from solidgear.core.judge.refinement import Refinement
+from solidgear.core.judge.settle import settle
+from solidgear.core.judge.solving import Numbers, Statics, solve
+from solidgear.core.ladder.registry import LADDER
+from solidgear.core.quantity import QUANTITIES
+from solidgear.core.scene import Bearing
+from solidgear.core.solve.statics import condense
+from solidgear.variants.sweep.bearing_variants import bearing_variants
+from solidgear.variants.sweep.choice import settled_for_sweep
 
 ROOT = Path(__file__).parent.parent
 SCENE = str(ROOT / "geometry" / "pinion_overhung.toml")

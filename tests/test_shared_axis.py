@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.meshing.placing import turn_of
-from solidgear.meshing.shared_axis import shared_axis
+from solidgear.core.meshing.placing import turn_of
+from solidgear.parts.shared_axis import shared_axis
 from validation.step_parts import shaft_step, write_step
 
 SCENE = """

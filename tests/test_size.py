@@ -9,14 +9,14 @@ from pathlib import Path
 import pytest
 
 import solidgear as sg
-from solidgear.kernel import room
-from solidgear.ladder.registry import LADDER
-from solidgear.machine import memory
-from solidgear.machine.memory import NoRoom
-from solidgear.meshing.element_size import rough_cells
-from solidgear.models.size import size_of_body
-from solidgear.solve.backends import missing
-from solidgear.solve.shifted import factors, needed_mb
+from solidgear.core.kernel import room
+from solidgear.core.ladder.registry import LADDER
+from solidgear.core.machine import memory
+from solidgear.core.machine.memory import NoRoom
+from solidgear.core.meshing.element_size import rough_cells
+from solidgear.core.models.size import size_of_body
+from solidgear.core.solve.backends import missing
+from solidgear.core.solve.shifted import factors, needed_mb
 
 GEOMETRY = Path(__file__).parents[1] / "geometry"
 SCENES = {
@@ -113,7 +113,7 @@ def test_factors_are_refused_before_a_number_is_computed(monkeypatch, model, opt
             continue
         for backend in ("Pardiso", "SuperLU"):
             monkeypatch.setattr(
-                f"solidgear.solve.backends.{backend}.factor",
+                f"solidgear.core.solve.backends.{backend}.factor",
                 lambda self: pytest.fail("the numbers were begun"),
             )
         with pytest.raises(NoRoom) as caught:
@@ -150,15 +150,15 @@ def no_mesh(monkeypatch):
     def meshed(*_, **__):
         pytest.fail("meshed")
 
-    monkeypatch.setattr("solidgear.models.harmonic.body.meridian", meshed)
-    monkeypatch.setattr("solidgear.models.solid.body.hexahedra", meshed)
-    monkeypatch.setattr("solidgear.models.solid.body.tetrahedra", meshed)
+    monkeypatch.setattr("solidgear.core.models.harmonic.body.meridian", meshed)
+    monkeypatch.setattr("solidgear.core.models.solid.body.hexahedra", meshed)
+    monkeypatch.setattr("solidgear.core.models.solid.body.tetrahedra", meshed)
 
 
 @pytest.mark.parametrize("model, options", ABSURD)
 def test_what_cannot_be_numbered_is_refused_before_meshing(no_mesh, monkeypatch, model, options):
     monkeypatch.setattr(memory, "available_mb", lambda: 1e9)
-    monkeypatch.setattr("solidgear.ladder.remedies.LARGE", ())
+    monkeypatch.setattr("solidgear.core.ladder.remedies.LARGE", ())
     with pytest.raises(NoRoom, match=r"more than the 2e\+09 that can be numbered; lower"):
         sg.build(SCENES["pinion_overhung"], model, **options)
 
@@ -170,7 +170,7 @@ def test_what_cannot_be_numbered_is_refused_before_meshing(no_mesh, monkeypatch,
 def test_a_mesh_that_would_not_fit_is_refused_before_it_is_made(
     no_mesh, monkeypatch, model, options
 ):
-    monkeypatch.setattr("solidgear.ladder.remedies.LARGE", ())
+    monkeypatch.setattr("solidgear.core.ladder.remedies.LARGE", ())
     monkeypatch.setenv("SOLIDGEAR_MEMORY_MB", "100")
     with pytest.raises(NoRoom, match="elements need about [0-9]* MB, 100 MB are free; lower"):
         sg.build(SCENES["pinion_overhung"], model, **options)
@@ -199,13 +199,13 @@ def test_a_builder_that_runs_out_of_memory_says_what_to_lower(monkeypatch):
     def broken(*_, **__):
         raise MemoryError
 
-    monkeypatch.setattr("solidgear.models.solid.body._hexes", broken)
+    monkeypatch.setattr("solidgear.core.models.solid.body._hexes", broken)
     with pytest.raises(sg.SolidgearError, match=r"matrices did not fit into memory; lower refine"):
         sg.build(SCENES["pinion_overhung"], "solid", refinement=0.3)
 
 
 def test_matrices_that_would_not_fit_are_refused_before_they_are_made(monkeypatch):
-    monkeypatch.setattr("solidgear.ladder.remedies.LARGE", ())
+    monkeypatch.setattr("solidgear.core.ladder.remedies.LARGE", ())
     scene, options = SCENES["pinion_overhung"], {"refinement": 0.7}
     size = LADDER["solid"].size(scene, options)
     monkeypatch.setenv("SOLIDGEAR_MEMORY_MB", str(0.95 * size.matrices_mb))
@@ -237,16 +237,16 @@ def test_whoever_listens_is_told_before_factors_are_made():
 # ------------------------------------------------------------------------------------------------- peaks
 PEAK = """
 import json, resource, sys
-from solidgear.machine.threads import pin
+from solidgear.core.machine.threads import pin
 pin()
 import solidgear as sg
-from solidgear.machine.memory import one_run
-from solidgear.solve.backends import missing
+from solidgear.core.machine.memory import one_run
+from solidgear.core.solve.backends import missing
 path, model, options = sys.argv[1], sys.argv[2], json.loads(sys.argv[3])
 scene = sg.load(path)
 missing("pardiso")
 sg.condense(sg.build(scene, "timoshenko"), scene, scene.port.name)
-import solidgear.models.harmonic.body, solidgear.models.solid.body
+import solidgear.core.models.harmonic.body, solidgear.core.models.solid.body
 with one_run() as run:
     body = sg.build(scene, model, **options)
     sg.condense(body, scene, scene.port.name)
@@ -294,7 +294,7 @@ def test_the_expected_peak_is_within_a_third(name, model, options):
 
 WHOLE = """
 import json, sys
-from solidgear.machine.threads import pin
+from solidgear.core.machine.threads import pin
 pin()
 import solidgear as sg
 results = sg.compare(sg.load(sys.argv[1])).results

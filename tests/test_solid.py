@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.scene import Scene, Segment
+from solidgear.core.scene import Scene, Segment
 from tests.dense import mass_matrix
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.body import as_supports
-from solidgear.judge.at_rest import opened_words, spin_caution
-from solidgear.scene import Bearing, Material, PointMass, Scene
-from solidgear.solve.spin import couplings, opened, spin_openings
-from solidgear.studies.train.models import Workshop
-from solidgear.studies.train.modes import train_modes
+from solidgear.core.body import as_supports
+from solidgear.core.judge.at_rest import opened_words, spin_caution
+from solidgear.core.scene import Bearing, Material, PointMass, Scene
+from solidgear.core.solve.spin import couplings, opened, spin_openings
+from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.modes.modes import train_modes
 from tests.shafts import shaft
 from validation.shipped import GEOMETRY
 

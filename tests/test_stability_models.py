@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.models.beam.shoulder import hinges
+from solidgear.core.models.beam.shoulder import hinges
 
 
 @pytest.fixture

@@ -11,15 +11,15 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.judge.completeness import completeness
-from solidgear.judge.study import study
-from solidgear.judge.ties import SCENE
-from solidgear.ladder.registry import LADDER
-from solidgear.ladder.solid import HEXAHEDRA
-from solidgear.scene import Bearing, Port, Scene, Segment
-from solidgear.studies.check import check_scene
-from solidgear.studies.comparison import compare
-from solidgear.studies.guards.probe import Probe
+from solidgear.core.judge.completeness import completeness
+from solidgear.core.judge.study import study
+from solidgear.core.judge.ties import SCENE
+from solidgear.core.ladder.registry import LADDER
+from solidgear.core.ladder.solid import HEXAHEDRA
+from solidgear.core.scene import Bearing, Port, Scene, Segment
+from solidgear.guards.check import check_scene
+from solidgear.compare.comparison import compare
+from solidgear.guards.probe import Probe
 
 SCENES = Path(__file__).parent / "scenes"
 COARSE = {"order": 3, "layers": 1, "edge_layers": 0, "relative_size": 4.0}

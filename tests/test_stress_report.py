@@ -7,11 +7,11 @@ from charted import facts_of
 from filleted import STRONG, shoulder
 from test_fillet_stress import loads_on
 
-from solidgear.report import stress_tables
-from solidgear.report.section_chart import section_chart
-from solidgear.report.units import US
-from solidgear.studies.stress.rating import Conditions
-from solidgear.studies.stress.shaft import shaft_stress
+from solidgear.strength.stress import tables as stress_tables
+from solidgear.strength.stress.section_chart import section_chart
+from solidgear.show.units import US
+from solidgear.strength.stress.rating import Conditions
+from solidgear.strength.stress.shaft import shaft_stress
 
 
 @pytest.fixture(scope="module")

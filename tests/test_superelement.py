@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.solve.statics import flexibility
+from solidgear.core.solve.statics import flexibility
 from tests.dense import every
 
 SCENE = sg.load("geometry/pinion_overhung.toml")

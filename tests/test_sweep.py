@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.errors import SolidgearError
-from solidgear.scene.bearing_stiffness import STIFFNESS_NAMES
-from solidgear.studies.sweep import bearing_sweep as runner
-from solidgear.studies.sweep.bearing_sweep import sweep
-from solidgear.studies.sweep.bearing_task import ENTRIES
-from solidgear.studies.sweep.bearing_variants import bearing_variants
+from solidgear.core.errors import SolidgearError
+from solidgear.core.scene.bearing_stiffness import STIFFNESS_NAMES
+from solidgear.variants.sweep import bearing_sweep as runner
+from solidgear.variants.sweep.bearing_sweep import sweep
+from solidgear.variants.sweep.bearing_task import ENTRIES
+from solidgear.variants.sweep.bearing_variants import bearing_variants
 from tests.command import command, numbers
 from tests.counted import from_the_start
 
@@ -285,7 +285,7 @@ def test_two_processes_give_the_rows_of_one(finished, tmp_path):
 def test_workers_get_the_small_operators_only(monkeypatch):
     import pickle
 
-    from solidgear.reduction.moments import reduce
+    from solidgear.core.reduction.moments import reduce
 
     variants = bearing_variants(PATH, VARY)
     body = sg.build(variants.shaft(), "harmonic", order=4, layers=2)

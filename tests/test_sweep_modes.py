@@ -5,11 +5,11 @@ import pytest
 import scipy.linalg as sla
 
 import solidgear as sg
-from solidgear.body import Supports
-from solidgear.reduction import moments as reduction
-from solidgear.reduction.moments import reduce
-from solidgear.studies.sweep.bearing_variants import bearing_variants
-from solidgear.studies.sweep.ritz import Seats, _bound, _Group, ritz_modes
+from solidgear.core.body import Supports
+from solidgear.core.reduction import moments as reduction
+from solidgear.core.reduction.moments import reduce
+from solidgear.variants.sweep.bearing_variants import bearing_variants
+from solidgear.variants.sweep.ritz import Seats, _bound, _Group, ritz_modes
 from tests.counted import from_the_start
 from tests.dense import whole
 

@@ -5,9 +5,9 @@ import re
 import pytest
 
 import solidgear as sg
-from solidgear.errors import SolidgearError
-from solidgear.studies.sweep.bearing_sweep import sweep as swept
-from solidgear.studies.sweep.bearing_variants import bearing_variants
+from solidgear.core.errors import SolidgearError
+from solidgear.variants.sweep.bearing_sweep import sweep as swept
+from solidgear.variants.sweep.bearing_variants import bearing_variants
 from tests.command import numbers
 
 #: a head, two cylinders; bearing "front" stands in all cases at 90 mm, "rear" at 220 mm

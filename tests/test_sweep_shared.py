@@ -21,8 +21,8 @@ from synthetic_sweep import (
     write,
 )
 
-from solidgear.errors import SolidgearError
-from solidgear.studies.sweep.rows import RowFile
+from solidgear.core.errors import SolidgearError
+from solidgear.variants.sweep.rows import RowFile
 
 
 # ------------------------------------------------------------------------------------------ shared
@@ -143,7 +143,7 @@ def test_no_room_for_the_file_keeps_the_rows(tmp_path, right, monkeypatch):
     assert sorted(os.listdir(tmp_path)) == ["rows.csv", "rows.csv.sqlite"]
     monkeypatch.undo()
     # killed between noting what the file will be and putting it there: either is right
-    monkeypatch.setattr("solidgear.machine.whole_file.os.replace", _raise)
+    monkeypatch.setattr("solidgear.core.machine.whole_file.os.replace", _raise)
     with pytest.raises(SolidgearError, match="cannot be written"):
         write(out)
     monkeypatch.undo()

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 from synthetic_sweep import PLAN, TOTAL, call, one_sentence, right, row, stop, tmp_path, write
 
-from solidgear.errors import SolidgearError
+from solidgear.core.errors import SolidgearError
 
 
 def spoil_bytes(rng, path):

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.errors import SceneError, SolidgearError
-from solidgear.studies.sweep.bearing_sweep import sweep
-from solidgear.studies.sweep.bearing_variants import bearing_variants
-from solidgear.studies.sweep.design import Design
-from solidgear.studies.sweep.scene_task import scene_task
+from solidgear.core.errors import SceneError, SolidgearError
+from solidgear.variants.sweep.bearing_sweep import sweep
+from solidgear.variants.sweep.bearing_variants import bearing_variants
+from solidgear.variants.sweep.design import Design
+from solidgear.variants.sweep.scene_task import scene_task
 from tests.counted import from_the_start
 
 PATH = from_the_start("geometry/pinion_overhung.toml")
@@ -139,7 +139,7 @@ def test_a_variant_is_the_scene_a_file_would_give():
 
 
 def _entries(bearing):
-    from solidgear.scene.bearing_stiffness import stiffness_entries
+    from solidgear.core.scene.bearing_stiffness import stiffness_entries
 
     return stiffness_entries(bearing.matrix)
 

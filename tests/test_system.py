@@ -9,9 +9,9 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 
 import solidgear as sg
-from solidgear.frames import rotation, shift
-from solidgear.reduction.superelement import PortMotion
-from solidgear.system.gear_mesh import line_of_action, mesh_point, to_gear_frame
+from solidgear.core.frames import rotation, shift
+from solidgear.core.reduction.superelement import PortMotion
+from solidgear.core.system.gear_mesh import line_of_action, mesh_point, to_gear_frame
 
 PINION, GEAR = sg.load("geometry/pinion_overhung.toml"), sg.load("geometry/gear_shaft.toml")
 RATIO = 45 / 14

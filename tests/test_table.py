@@ -9,10 +9,10 @@ import re
 import pytest
 from rich.console import Console
 
-from solidgear.report.matrices import block
-from solidgear.report.table import Cell, Column, Table, quantity, text
-from solidgear.report.units import ENGINEERING, SI
-from solidgear.report.words import plus_minus
+from solidgear.show.matrices import block
+from solidgear.show.table import Cell, Column, Table, quantity, text
+from solidgear.show.units import ENGINEERING, SI
+from solidgear.show.words import plus_minus
 
 #: a name that rich would take for markup and a page for a tag; a number of five digits in groups
 ROWS = [("[red]<b>", 4.7105e10, 0.012), ("none – µ", None, float("nan"))]

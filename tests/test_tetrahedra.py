@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from skfem import MeshTet1, MeshTet2
 
-from solidgear.meshing.quality import MeshError, check_mesh
-from solidgear.meshing.tetrahedra import tetrahedra
-from solidgear.scene.closed_form import mass_properties, volume_of
-from solidgear.scene.outline import Outline
+from solidgear.core.meshing.quality import MeshError, check_mesh
+from solidgear.core.meshing.tetrahedra import tetrahedra
+from solidgear.core.scene.closed_form import mass_properties, volume_of
+from solidgear.core.scene.outline import Outline
 
 
 def piece(y0, y1, outer0, outer1=None, inner0=0.0, inner1=None):

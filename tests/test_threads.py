@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from solidgear.machine import threads
-from solidgear.solve.backends import missing
+from solidgear.core.machine import threads
+from solidgear.core.solve.backends import missing
 
 ROOT = Path(__file__).parent.parent
 VARIABLES = ("OPENBLAS_NUM_THREADS", "GOTO_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
@@ -48,16 +48,16 @@ def test_numpy_first_is_held_to_one_thread_inside_and_gets_its_own_back():
         + """
 set_all(2)
 import solidgear as sg
-from solidgear.machine import threads
+from solidgear.core.machine import threads
 scene = sg.load("geometry/pinion_overhung.toml")
 seen = []
-import solidgear.models.beam.body as beam
+import solidgear.core.models.beam.body as beam
 real = beam.beam
 import functools
 beam.beam = functools.wraps(real)(lambda *a, **k: (seen.append(numbers()), real(*a, **k))[1])
 body = sg.build(scene, "timoshenko")
 print(seen[0], numbers())
-import solidgear.solve.modes as solve
+import solidgear.core.solve.modes as solve
 real_parts = solve.solved_parts
 solve.solved_parts = lambda *a, **k: (seen.append(numbers()), real_parts(*a, **k))[1]
 sg.modes(body, scene, n=2)
@@ -81,7 +81,7 @@ def test_a_number_that_a_site_has_chosen_is_held_to_one_inside_and_kept_outside(
         NUMBERS
         + """
 set_all(2)
-from solidgear.machine import threads
+from solidgear.core.machine import threads
 with threads.single():
     print(numbers())
 threads.pin()
@@ -92,14 +92,14 @@ print(numbers())
 
 
 def test_the_command_line_has_one_thread_whatever_omp_says():
-    code = "import solidgear.cli" + NUMBERS + "print(numbers())"
+    code = "import solidgear.app" + NUMBERS + "print(numbers())"
     assert said(code, OMP_NUM_THREADS="2") == ["[1]"]
 
 
 def test_pin_tells_a_numpy_that_is_there_already():
     assert said(
         NUMBERS
-        + "set_all(2)\nfrom solidgear.machine import threads\nthreads.pin()\nprint(numbers())"
+        + "set_all(2)\nfrom solidgear.core.machine import threads\nthreads.pin()\nprint(numbers())"
     ) == ["[1]"]
 
 
@@ -148,7 +148,7 @@ def test_mkl_takes_no_more_threads_than_processors():
 import os
 os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
 import scipy.sparse as sp
-from solidgear.solve.factor import factorise
+from solidgear.core.solve.factor import factorise
 n = 4000
 matrix = sp.diags([4.0, -1.0, -1.0, -0.5, -0.5], [0, 1, -1, 90, -90], shape=(n, n)).tocsr()
 before = len(os.listdir("/proc/self/task"))

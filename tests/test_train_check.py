@@ -6,11 +6,11 @@ from pathlib import Path
 import pytest
 
 import solidgear as sg
-from solidgear.studies.guards.probe import Probe
-from solidgear.studies.train import check as checked
-from solidgear.studies.train.check import check_train
-from solidgear.studies.train.models import Workshop
-from solidgear.studies.train.slips import mesh_unit_slips, unit_slips
+from solidgear.guards.probe import Probe
+from solidgear.trains.judge import check as checked
+from solidgear.trains.judge.check import check_train
+from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.slips import mesh_unit_slips, unit_slips
 from tests.command import command
 
 AXLE = "geometry/axle_overhung.toml"

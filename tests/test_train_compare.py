@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from solidgear.studies.train import models
+from solidgear.trains.assembly import models
 from tests.command import command, page_of, table
 
 ROOT = Path(__file__).parent.parent

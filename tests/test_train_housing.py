@@ -8,16 +8,16 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.errors import SceneError, SolidgearError
-from solidgear.studies.train.deflection import deflection
-from solidgear.studies.train.judge import _Judge
-from solidgear.studies.train.meshes import mesh_bars
-from solidgear.studies.train.models import Workshop
-from solidgear.studies.train.modes import train_modes
-from solidgear.studies.train.operation import Operating
-from solidgear.studies.train.pairing import modes_and_motions
-from solidgear.studies.train.receptance import receptance
-from solidgear.studies.train.respond import Drive
+from solidgear.core.errors import SceneError, SolidgearError
+from solidgear.strength.deflection.train import deflection
+from solidgear.trains.judge.judge import _Judge
+from solidgear.trains.assembly.meshes import mesh_bars
+from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.modes.modes import train_modes
+from solidgear.trains.load.operation import Operating
+from solidgear.trains.modes.pairing import modes_and_motions
+from solidgear.trains.response.receptance import receptance
+from solidgear.trains.response.respond import Drive
 from tests.command import command
 from tests.test_train_many import BEARING, DENSITY, MESHES, SHAFTS, by_hand, hertz, written
 

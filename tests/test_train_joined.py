@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.errors import SceneError
-from solidgear.scene.operation import OperatingPoint
-from solidgear.studies.train.deflection import deflection
-from solidgear.studies.train.housing import BOX, mount_rows
-from solidgear.studies.train.models import Workshop
-from solidgear.studies.train.operation import Operating
+from solidgear.core.errors import SceneError
+from solidgear.trains.file.operation import OperatingPoint
+from solidgear.strength.deflection.train import deflection
+from solidgear.trains.assembly.housing import BOX, mount_rows
+from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.load.operation import Operating
 from tests.test_train_housing import carried
 from tests.test_train_planetary import (
     CARRIER,

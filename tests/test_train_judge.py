@@ -7,15 +7,15 @@ import pytest
 from typer.testing import CliRunner
 
 import solidgear as sg
-from solidgear.cli import app
-from solidgear.scene.train import SIDES
-from solidgear.studies.train import judge as judging
-from solidgear.studies.train.judge import JUDGE, judge_train
-from solidgear.studies.train.meshes import mesh_bars
-from solidgear.studies.train.models import Workshop
-from solidgear.studies.train.modes import train_modes
-from solidgear.studies.train.respond import Drive
-from solidgear.studies.train.shaft import LUMPED
+from solidgear.show import command as app
+from solidgear.trains.file.train import SIDES
+from solidgear.trains.judge import judge as judging
+from solidgear.trains.judge.judge import JUDGE, judge_train
+from solidgear.trains.assembly.meshes import mesh_bars
+from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.modes.modes import train_modes
+from solidgear.trains.response.respond import Drive
+from solidgear.trains.assembly.shaft import LUMPED
 
 TRAIN = sg.load_train("geometry/axle_overhung.toml")
 COARSE = {"harmonic": {"order": 2, "layers": 1}}
@@ -115,7 +115,7 @@ def test_a_mode_above_the_list_that_may_lie_in_it_is_told(verdict):
 
 @pytest.mark.slow
 def test_the_command_writes_the_verdict(tmp_path, monkeypatch):
-    from solidgear.studies.train import models
+    from solidgear.trains.assembly import models
 
     monkeypatch.setattr(models, "MESH", COARSE)
     args = ["judge-system", "geometry/axle_overhung.toml", "--kept", "12", "--max-frequency", "900"]

@@ -9,10 +9,10 @@ import pytest
 from command import command
 
 import solidgear as sg
-from solidgear.errors import SolidgearError
-from solidgear.studies.train.life import train_lives
-from solidgear.studies.train.models import Workshop
-from solidgear.studies.train.operation import Operating
+from solidgear.core.errors import SolidgearError
+from solidgear.trains.load.life import train_lives
+from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.load.operation import Operating
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 GEARBOX = GEOMETRY / "gearbox_train.toml"

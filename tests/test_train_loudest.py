@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.studies.train.loudest import loudest
-from solidgear.studies.train.models import Workshop
-from solidgear.studies.train.modes import train_modes
-from solidgear.studies.train.respond import Drive, respond
+from solidgear.trains.response.loudest import loudest
+from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.modes.modes import train_modes
+from solidgear.trains.response.respond import Drive, respond
 from tests.command import command
 
 BEAMS = ("timoshenko", "timoshenko")

@@ -8,12 +8,12 @@ import pytest
 import scipy.linalg as sla
 
 import solidgear as sg
-from solidgear.errors import SolidgearError
-from solidgear.studies.train.judge import JUDGE, MIXED, mixes_of
-from solidgear.studies.train.models import Workshop
-from solidgear.studies.train.modes import train_modes
-from solidgear.studies.train.operation import Operating
-from solidgear.studies.train.respond import Drive
+from solidgear.core.errors import SolidgearError
+from solidgear.trains.judge.judge import JUDGE, MIXED, mixes_of
+from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.modes.modes import train_modes
+from solidgear.trains.load.operation import Operating
+from solidgear.trains.response.respond import Drive
 from tests.command import command
 
 DENSITY = 7850.0

@@ -9,12 +9,12 @@ import scipy.linalg as sla
 from shafts import moved_by
 
 import solidgear as sg
-from solidgear.frames import shift
-from solidgear.solve.statics import condense
-from solidgear.studies.train.meshes import mesh_limit
-from solidgear.studies.train.models import Workshop
-from solidgear.studies.train.modes import train_modes
-from solidgear.studies.train.naming import TRAIN, mode_names
+from solidgear.core.frames import shift
+from solidgear.core.solve.statics import condense
+from solidgear.trains.assembly.meshes import mesh_limit
+from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.modes.modes import train_modes
+from solidgear.trains.modes.naming import TRAIN, mode_names
 from tests.command import command
 from tests.dense import whole
 from validation.thesis.lumped_pair import LumpedPair

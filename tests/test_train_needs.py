@@ -2,13 +2,13 @@
 
 import pytest
 
-from solidgear.errors import SceneError, SolidgearError
-from solidgear.scene.file import load
-from solidgear.scene.train_file import load_train
-from solidgear.studies.train.models import Workshop
-from solidgear.studies.train.modes import train_modes
-from solidgear.studies.train.nonlinear import teeth_of
-from solidgear.studies.train.respond import respond
+from solidgear.core.errors import SceneError, SolidgearError
+from solidgear.core.scene.file import load
+from solidgear.trains.file.reading import load_train
+from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.modes.modes import train_modes
+from solidgear.backlash.train import teeth_of
+from solidgear.trains.response.respond import respond
 from tests.command import command
 
 SHAFT = """material = "steel"

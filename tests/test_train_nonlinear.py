@@ -8,22 +8,16 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.errors import SceneError
-from solidgear.nonlinear.balance import Balance
-from solidgear.nonlinear.continuation import follow
-from solidgear.nonlinear.integrated import Integrated
-from solidgear.nonlinear.model import remainder
-from solidgear.nonlinear.motion import sweep
-from solidgear.studies.train.models import Workshop
-from solidgear.studies.train.nonlinear import (
-    backlash_model,
-    over_force,
-    parting,
-    teeth_of,
-    with_backlash,
-)
-from solidgear.studies.train.nonlinear_told import BacklashStudy
-from solidgear.studies.train.respond import Drive
+from solidgear.core.errors import SceneError
+from solidgear.backlash.solver.balance import Balance
+from solidgear.backlash.solver.continuation import follow
+from solidgear.backlash.solver.integrated import Integrated
+from solidgear.backlash.solver.model import remainder
+from solidgear.backlash.solver.motion import sweep
+from solidgear.trains.assembly.models import Workshop
+from solidgear.backlash.train import backlash_model, over_force, parting, teeth_of, with_backlash
+from solidgear.backlash.results import BacklashStudy
+from solidgear.trains.response.respond import Drive
 
 OVERHUNG = Path(__file__).parent.parent / "geometry" / "axle_overhung.toml"
 BEAMS = "timoshenko", "timoshenko"

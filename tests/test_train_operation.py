@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.errors import SceneError, SolidgearError
-from solidgear.scene.operation import GRAVITY, OperatingPoint
-from solidgear.studies.deflection import deflect_scene
-from solidgear.studies.train.deflection import deflect_train, deflection
-from solidgear.studies.train.misalignment import misalignment
-from solidgear.studies.train.models import Workshop
-from solidgear.studies.train.modes import train_modes
-from solidgear.studies.train.operation import Operating, at_point
+from solidgear.core.errors import SceneError, SolidgearError
+from solidgear.trains.file.operation import GRAVITY, OperatingPoint
+from solidgear.strength.deflection.shaft import deflect_scene
+from solidgear.strength.deflection.train import deflect_train, deflection
+from solidgear.strength.deflection.misalignment import misalignment
+from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.modes.modes import train_modes
+from solidgear.trains.load.operation import Operating, at_point
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 GEARBOX = GEOMETRY / "gearbox_train.toml"

@@ -5,11 +5,11 @@ import pytest
 from test_train_models import COARSE, OVERHUNG
 
 import solidgear as sg
-from solidgear.report.order_chart import spread
-from solidgear.studies.train.models import Workshop
-from solidgear.studies.train.modes import train_modes
-from solidgear.studies.train.orders import order_map
-from solidgear.studies.train.respond import Drive
+from solidgear.trains.response.order_chart import spread
+from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.modes.modes import train_modes
+from solidgear.trains.assembly.orders import order_map
+from solidgear.trains.response.respond import Drive
 
 TRAIN = sg.load_train(OVERHUNG)
 MIX = ("timoshenko", "timoshenko")

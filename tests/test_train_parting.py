@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.studies.train.models import Workshop
-from solidgear.studies.train.nonlinear import teeth_of, with_backlash
-from solidgear.studies.train.operation import Operating, with_settled_bearings
-from solidgear.studies.train.parting import largest_relief, parting_frequency, teeth_relief
-from solidgear.studies.train.respond import Drive, respond
+from solidgear.trains.assembly.models import Workshop
+from solidgear.backlash.train import teeth_of, with_backlash
+from solidgear.trains.load.operation import Operating, with_settled_bearings
+from solidgear.trains.modes.parting import largest_relief, parting_frequency, teeth_relief
+from solidgear.trains.response.respond import Drive, respond
 from tests.command import command, numbers
 
 BEAMS = ("timoshenko", "timoshenko")

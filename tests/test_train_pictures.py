@@ -7,11 +7,11 @@ import pytest
 from test_train_models import COARSE, OVERHUNG
 
 import solidgear as sg
-from solidgear.report.folder import clear
-from solidgear.report.turning import sections
-from solidgear.studies.train.models import Workshop
-from solidgear.studies.train.naming import mode_names
-from solidgear.studies.train.pictures import draw_modes, system_surface, turning_modes, turning_pair
+from solidgear.show.folder import clear
+from solidgear.show.turning import sections
+from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.modes.naming import mode_names
+from solidgear.trains.modes.pictures import draw_modes, system_surface, turning_modes, turning_pair
 from tests.command import command
 
 TRAIN = sg.load_train(OVERHUNG)

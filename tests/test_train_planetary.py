@@ -10,17 +10,17 @@ import pytest
 import scipy.linalg as sla
 
 import solidgear as sg
-from solidgear.errors import SceneError
-from solidgear.scene.operation import OperatingPoint
-from solidgear.scene.planetary import MATES, with_carrier_turned
-from solidgear.studies.train.deflection import deflection
-from solidgear.studies.train.kinematics import train_orders
-from solidgear.studies.train.layout import mesh_forces
-from solidgear.studies.train.models import Workshop
-from solidgear.studies.train.modes import train_modes
-from solidgear.studies.train.operation import Operating
-from solidgear.studies.train.respond import Drive, respond
-from solidgear.studies.train.stages import mesh_row
+from solidgear.core.errors import SceneError
+from solidgear.trains.file.operation import OperatingPoint
+from solidgear.trains.file.planetary import MATES, with_carrier_turned
+from solidgear.strength.deflection.train import deflection
+from solidgear.trains.assembly.kinematics import train_orders
+from solidgear.trains.assembly.layout import mesh_forces
+from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.modes.modes import train_modes
+from solidgear.trains.load.operation import Operating
+from solidgear.trains.response.respond import Drive, respond
+from solidgear.trains.assembly.stages import mesh_row
 from validation.reducer.design import FACE, Design
 
 REDUCER, RIGID = "geometry/reducer.toml", "rigid/timoshenko"

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.errors import SceneError
-from solidgear.nonlinear.continuation import follow
-from solidgear.nonlinear.motion import steady_motion
-from solidgear.studies.train.contact import axes_of
-from solidgear.studies.train.models import Workshop
-from solidgear.studies.train.nonlinear import backlash_model, teeth_of
-from solidgear.studies.train.operation import Operating
+from solidgear.core.errors import SceneError
+from solidgear.backlash.solver.continuation import follow
+from solidgear.backlash.solver.motion import steady_motion
+from solidgear.trains.load.contact import axes_of
+from solidgear.trains.assembly.models import Workshop
+from solidgear.backlash.train import backlash_model, teeth_of
+from solidgear.trains.load.operation import Operating
 from tests.test_train_many import BEARING, PRESSURE, SHAFTS, scene_text, written
 
 LOAD = '[load]\nshaft = "output"\ninertia = 2.5\n[load.spring]\nstiffness = 90000.0\nat = "b1"\n'

@@ -7,12 +7,12 @@ import pytest
 from test_train_models import COARSE, OVERHUNG, assembled
 
 import solidgear as sg
-from solidgear.frames import DOF_NAMES
-from solidgear.studies.train.models import Workshop
-from solidgear.studies.train.naming import mode_names
-from solidgear.studies.train.receptance import receptance
-from solidgear.studies.train.respond import NO_MODE, Drive
-from solidgear.system.steady import peaks
+from solidgear.core.frames import DOF_NAMES
+from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.modes.naming import mode_names
+from solidgear.trains.response.receptance import receptance
+from solidgear.trains.response.respond import NO_MODE, Drive
+from solidgear.core.system.steady import peaks
 from tests.command import command, table
 
 TRAIN = sg.load_train(OVERHUNG)

@@ -5,10 +5,10 @@ import pytest
 from test_train_models import COARSE, OVERHUNG, assembled
 
 import solidgear as sg
-from solidgear.scene.train_tables import ErrorTable
-from solidgear.studies.train.models import Workshop
-from solidgear.studies.train.respond import Drive, respond
-from solidgear.system.steady import SteadyState, peaks
+from solidgear.trains.file.tables import ErrorTable
+from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.response.respond import Drive, respond
+from solidgear.core.system.steady import SteadyState, peaks
 from tests.command import command, table
 
 TRAIN = sg.load_train(OVERHUNG)

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.frames import cross_matrix
-from solidgear.scene.train_file import load_train
-from solidgear.studies.train.layout import contacts
-from solidgear.studies.train.models import Workshop
-from solidgear.studies.train.modes import wrench_lines
-from solidgear.system.contact_cells import contact_wrench
-from solidgear.system.gear_mesh import to_gear_frame
+from solidgear.core.frames import cross_matrix
+from solidgear.trains.file.reading import load_train
+from solidgear.trains.assembly.layout import contacts
+from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.modes.modes import wrench_lines
+from solidgear.core.system.contact_cells import contact_wrench
+from solidgear.core.system.gear_mesh import to_gear_frame
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 OVERHUNG = (GEOMETRY / "axle_overhung.toml").read_text()

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.studies.train.models import Workshop
-from solidgear.studies.train.space import Piece, angled_overlap, overlaps, parallel_overlap
+from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.space import Piece, angled_overlap, overlaps, parallel_overlap
 from tests.test_train_many import written
 from tests.test_train_power import looped
 

@@ -10,12 +10,12 @@ from test_train_models import OVERHUNG
 import solidgear as sg
 from solidgear.bearings.geometry import Inside, inner_geometry
 from solidgear.bearings.passing import passing
-from solidgear.errors import SolidgearError
-from solidgear.report.measured_chart import outline
-from solidgear.scene.catalogue import Catalogue
-from solidgear.studies.spectrum import Spectrum, read_spectrum
-from solidgear.studies.train.at_speed import Line, at_speed, explained, turns_of_pinion
-from solidgear.studies.train.kinematics import SLIP, bearing_orders, settled_angles, train_orders
+from solidgear.core.errors import SolidgearError
+from solidgear.measured.chart import outline
+from solidgear.bearings.catalogue import Catalogue
+from solidgear.trains.response.spectrum import Spectrum, read_spectrum
+from solidgear.trains.response.at_speed import Line, at_speed, explained, turns_of_pinion
+from solidgear.trains.assembly.kinematics import SLIP, bearing_orders, settled_angles, train_orders
 from tests.charted import words_of
 from tests.command import command, table
 

@@ -10,20 +10,20 @@ import pytest
 from command import command, numbers
 
 import solidgear as sg
-from solidgear.errors import SolidgearError
-from solidgear.scene.paths import keys_of, label_of, with_entry
-from solidgear.scene.toml_file import parse
-from solidgear.studies.sweep import file_task
-from solidgear.studies.sweep.design import Design
-from solidgear.studies.sweep.file_task import run
-from solidgear.studies.sweep.train_task import train_task
-from solidgear.studies.train import models
-from solidgear.studies.train.deflection import deflection
-from solidgear.studies.train.misalignment import measured_names
-from solidgear.studies.train.models import Workshop
-from solidgear.studies.train.modes import train_modes
-from solidgear.studies.train.operation import at_point
-from solidgear.studies.train.respond import respond
+from solidgear.core.errors import SolidgearError
+from solidgear.core.scene.paths import keys_of, label_of, with_entry
+from solidgear.core.scene.toml_file import parse
+from solidgear.variants.sweep import file_task
+from solidgear.variants.sweep.design import Design
+from solidgear.variants.sweep.file_task import run
+from solidgear.variants.sweep.train_task import train_task
+from solidgear.trains.assembly import models
+from solidgear.strength.deflection.train import deflection
+from solidgear.strength.deflection.misalignment import measured_names
+from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.modes.modes import train_modes
+from solidgear.trains.load.operation import at_point
+from solidgear.trains.response.respond import respond
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 TWO_STAGE = GEOMETRY / "gearbox_two_stage.toml"

@@ -6,16 +6,17 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.cli.app import say
-from solidgear.report import deflection_tables, speed_tables
-from solidgear.report.units import ENGINEERING
-from solidgear.scene.operation import OperatingPoint
-from solidgear.studies.train.at_speed import Coincidence
-from solidgear.studies.train.deflection import Measured, deflect_train
-from solidgear.studies.train.layout import senses
-from solidgear.studies.train.models import Workshop
-from solidgear.studies.train.operation import Operating
-from solidgear.system.equilibrium import without_rounding
+from solidgear.show.command import say
+from solidgear.strength.deflection import tables as deflection_tables
+from solidgear.show import speed_tables
+from solidgear.show.units import ENGINEERING
+from solidgear.trains.file.operation import OperatingPoint
+from solidgear.trains.response.at_speed import Coincidence
+from solidgear.strength.deflection.train import Measured, deflect_train
+from solidgear.trains.assembly.layout import senses
+from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.load.operation import Operating
+from solidgear.trains.system.equilibrium import without_rounding
 
 GEARBOX, REDUCER = "geometry/gearbox_train.toml", "geometry/reducer.toml"
 

@@ -7,12 +7,12 @@ import pytest
 from universal_files import mode, nodes, response, units, written
 
 import solidgear as sg
-from solidgear.errors import SceneError, SolidgearError
-from solidgear.studies.measured.computed import computed_up_to
-from solidgear.studies.measured.correlate import correlate
-from solidgear.studies.measured.data import load_measured
-from solidgear.studies.measured.shapes import OnPoints
-from solidgear.studies.measured.universal import Shapes, read_universal
+from solidgear.core.errors import SceneError, SolidgearError
+from solidgear.measured.computed import computed_up_to
+from solidgear.measured.correlate import correlate
+from solidgear.measured.data import load_measured
+from solidgear.measured.shapes import OnPoints
+from solidgear.measured.universal import Shapes, read_universal
 
 pytest.importorskip("pyuff")
 

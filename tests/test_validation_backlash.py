@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from solidgear.nonlinear.continuation import follow
+from solidgear.backlash.solver.continuation import follow
 from validation.backlash.gears import PARTING, ours, spur_pair, told
 from validation.backlash.spur_pair import SpurPair
 from validation.race import pyharm_peer, ross_peer

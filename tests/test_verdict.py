@@ -5,19 +5,19 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from solidgear.body.mode_names import ModeName
-from solidgear.judge.bars import ErrorBar
-from solidgear.judge.deviations import BEYOND, OPEN, WITHIN, deviations, gap_verdict
-from solidgear.judge.quantities import JUDGED
-from solidgear.judge.record import GuardRecord, LevelRecord
-from solidgear.judge.solution import Solution
-from solidgear.judge.solving import Answer, Statics
-from solidgear.judge.ties import SCENE, SECTION
-from solidgear.judge.verdict import judge, percent, trusted
-from solidgear.quantity import Quantity
-from solidgear.scene import Ask, Bearing, Scene, Segment
-from solidgear.solve.modes import Mode, ModeSet
-from solidgear.studies.comparison import compare
+from solidgear.core.body.mode_names import ModeName
+from solidgear.core.judge.bars import ErrorBar
+from solidgear.core.judge.deviations import BEYOND, OPEN, WITHIN, deviations, gap_verdict
+from solidgear.core.judge.quantities import JUDGED
+from solidgear.core.judge.record import GuardRecord, LevelRecord
+from solidgear.core.judge.solution import Solution
+from solidgear.core.judge.solving import Answer, Statics
+from solidgear.core.judge.ties import SCENE, SECTION
+from solidgear.compare.verdict import judge, percent, trusted
+from solidgear.core.quantity import Quantity
+from solidgear.core.scene import Ask, Bearing, Scene, Segment
+from solidgear.core.solve.modes import Mode, ModeSet
+from solidgear.compare.comparison import compare
 
 STATIONS = np.linspace(0.0, 1.0, 13)
 

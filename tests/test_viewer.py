@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.errors import SolidgearError
-from solidgear.report import viewer
-from solidgear.report.packing import mesh_of
-from solidgear.report.turning import picks, turned
-from solidgear.scene.closed_form import volume_of
-from solidgear.scene.outline import Outline
+from solidgear.core.errors import SolidgearError
+from solidgear.show import viewer
+from solidgear.show.packing import mesh_of
+from solidgear.show.turning import picks, turned
+from solidgear.core.scene.closed_form import volume_of
+from solidgear.core.scene.outline import Outline
 from tests.command import command
 
 ROOT = Path(__file__).parents[1]

@@ -12,9 +12,9 @@ import pytest
 from test_train_models import COARSE, OVERHUNG
 
 import solidgear as sg
-from solidgear.report.viewer import Turning, turn, viewer_page
-from solidgear.studies.train.models import Workshop
-from solidgear.studies.train.pictures import turning_modes
+from solidgear.show.viewer import Turning, turn, viewer_page
+from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.modes.pictures import turning_modes
 
 ROOT = Path(__file__).parents[1]
 BROWSER = next(

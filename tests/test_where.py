@@ -7,17 +7,17 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.bounds.refining import Meshed
-from solidgear.errors import SolidgearError
-from solidgear.judge.quantities import usual
-from solidgear.judge.record import PlaceRecord, WhereRecord
-from solidgear.judge.singular_places import singular_places
-from solidgear.judge.study import study
-from solidgear.judge.ties import SCENE
-from solidgear.judge.where import ELSEWHERE, recorded_places
-from solidgear.judge.where import error_places as places_of
-from solidgear.quantity import Quantity
-from solidgear.report.where_chart import draw_where
+from solidgear.core.bounds.refining import Meshed
+from solidgear.core.errors import SolidgearError
+from solidgear.core.judge.quantities import usual
+from solidgear.core.judge.record import PlaceRecord, WhereRecord
+from solidgear.core.judge.singular_places import singular_places
+from solidgear.core.judge.study import study
+from solidgear.core.judge.ties import SCENE
+from solidgear.core.judge.where import ELSEWHERE, recorded_places
+from solidgear.core.judge.where import error_places as places_of
+from solidgear.core.quantity import Quantity
+from solidgear.compare.page.where_chart import draw_where
 from tests.command import command
 
 ROOT = Path(__file__).parent.parent

@@ -13,7 +13,7 @@ import pytest
 import scipy.linalg as sla
 import scipy.sparse.linalg as spla
 
-from solidgear.machine.threads import pin
+from solidgear.core.machine.threads import pin
 
 pin()
 #: Values so near, relative to the largest, are equal: what rounding leaves between them.
@@ -121,7 +121,7 @@ def refined(refine):
 
 @pytest.fixture(scope="session", autouse=True)
 def turned_vectors():
-    from solidgear.solve import eigen
+    from solidgear.core.solve import eigen
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(np.linalg, "eigh", symmetric(np.linalg.eigh))

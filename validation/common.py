@@ -12,8 +12,8 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-from solidgear.machine.environment import environment
-from solidgear.machine.threads import pin
+from solidgear.core.machine.environment import environment
+from solidgear.core.machine.threads import pin
 
 ROOT = Path(__file__).resolve().parent.parent
 RESULTS = ROOT / "validation" / "results"

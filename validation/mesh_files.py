@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.meshing.gmsh_session import Session, import_gmsh
+from solidgear.core.meshing.gmsh_session import Session, import_gmsh
 
 #: by kind of cell in meshio's words: type in Abaqus, card in Nastran, descriptor in a universal
 #: file, number in gmsh

@@ -51,7 +51,7 @@ class Mutation:
 MUTATIONS = (
     Mutation(
         "a narrow seat is meshed as a wide one",
-        "solidgear/meshing/grading.py",
+        "solidgear/core/meshing/grading.py",
         "Grading.seat_layers",
         "return max(0, more)",
         "return 0",
@@ -59,7 +59,7 @@ MUTATIONS = (
     ),
     Mutation(
         "a narrow seat on a plain bar has no layer",
-        "solidgear/meshing/grading.py",
+        "solidgear/core/meshing/grading.py",
         "Grading.seat_layers",
         "return int(width < DEEP * max(ungraded_depth(segments, k) for k in seat_segments) * (1 - ROUNDING))",
         "return 0",
@@ -67,7 +67,7 @@ MUTATIONS = (
     ),
     Mutation(
         "bounds: the richer space has one order more only",
-        "solidgear/bounds/richer_space.py",
+        "solidgear/core/bounds/richer_space.py",
         "RicherSpace.__init__",
         "self.order + EXTRA",
         "self.order + 1",
@@ -75,7 +75,7 @@ MUTATIONS = (
     ),
     Mutation(
         "bounds: no cuts towards corners in the richer space",
-        "solidgear/bounds/richer_space.py",
+        "solidgear/core/bounds/richer_space.py",
         "RicherSpace.__init__",
         "min(1, LAYERS) if kind == 'load' else LAYERS",
         "0",
@@ -83,7 +83,7 @@ MUTATIONS = (
     ),
     Mutation(
         "bounds: hats of a rigid seat are not one",
-        "solidgear/bounds/richer_space.py",
+        "solidgear/core/bounds/richer_space.py",
         "RicherSpace._seats",
         "joined += [np.array([ends[0], v]) for v in ends[1:]]",
         "pass",
@@ -131,7 +131,7 @@ MUTATIONS = (
     ),
     Mutation(
         "pairs: as the file has them",
-        "solidgear/scene/arrangement.py",
+        "solidgear/bearings/arrangement.py",
         "Pair.ways",
         "sorted(zip(places, self.bearings))",
         "zip(places, self.bearings)",
@@ -171,7 +171,7 @@ MUTATIONS = (
     ),
     Mutation(
         "bounds: bearings do not push a mode",
-        "solidgear/bounds/harmonic.py",
+        "solidgear/core/bounds/harmonic.py",
         "_vibrating",
         "_on_ports(block, residual)",
         "0.0 * _on_ports(block, residual)",
@@ -179,7 +179,7 @@ MUTATIONS = (
     ),
     Mutation(
         "bounds: rigid motions of a patch are left in",
-        "solidgear/kernel/local_problems.py",
+        "solidgear/core/kernel/local_problems.py",
         "_solved",
         "_orthonormal(rigid[ids] / root[:, None])",
         "_orthonormal(0.0 * rigid[ids])",
@@ -187,7 +187,7 @@ MUTATIONS = (
     ),
     Mutation(
         "bounds: of the hats of a cell the last one counts alone",
-        "solidgear/kernel/local_problems.py",
+        "solidgear/core/kernel/local_problems.py",
         "energies",
         "solutions[k] += x",
         "solutions[k] = x",
@@ -195,7 +195,7 @@ MUTATIONS = (
     ),
     Mutation(
         "bounds: a near mode does not matter",
-        "solidgear/bounds/harmonic.py",
+        "solidgear/core/bounds/harmonic.py",
         "lower_ends",
         "value - energy / gap",
         "value - energy",
@@ -203,7 +203,7 @@ MUTATIONS = (
     ),
     Mutation(
         "bounds: near modes keep their places",
-        "solidgear/bounds/harmonic.py",
+        "solidgear/core/bounds/harmonic.py",
         "lower_ends",
         "np.sort(value - energy / gap)",
         "value - energy / gap",
@@ -211,7 +211,7 @@ MUTATIONS = (
     ),
     Mutation(
         "bounds: functions of the top order inside a cell are forgotten",
-        "solidgear/bounds/patches.py",
+        "solidgear/core/bounds/patches.py",
         "_Loaded._eliminate",
         "_eliminated(stiffness, loads, const, top)",
         "reduced",
@@ -219,7 +219,7 @@ MUTATIONS = (
     ),
     Mutation(
         "trains: the meshes of one shaft alone count",
-        "solidgear/studies/train/meshes.py",
+        "solidgear/trains/assembly/meshes.py",
         "mesh_bars",
         "double_energy + energies[0]",
         "energies[0]",
@@ -227,7 +227,7 @@ MUTATIONS = (
     ),
     Mutation(
         "bounds: what further orders would see is forgotten",
-        "solidgear/bounds/harmonic.py",
+        "solidgear/core/bounds/harmonic.py",
         "with_tail",
         "two_more + (two_more - one_more) * ratio / (1 - ratio)",
         "two_more",
@@ -235,7 +235,7 @@ MUTATIONS = (
     ),
     Mutation(
         "a coupling of a body has the bar of the middle of what is open",
-        "solidgear/judge/bounded.py",
+        "solidgear/core/judge/bounded.py",
         "_between",
         "half + abs(middle - stiff[name])",
         "half",
@@ -243,7 +243,7 @@ MUTATIONS = (
     ),
     Mutation(
         "phase of the cut faces turned the other way",
-        "solidgear/models/sector/cyclic.py",
+        "solidgear/cuts/sector/cyclic.py",
         "basis",
         "1j * h * sector.angle",
         "-1j * h * sector.angle",
@@ -251,7 +251,7 @@ MUTATIONS = (
     ),
     Mutation(
         "the axis of a sector moves against the turn",
-        "solidgear/models/sector/cyclic.py",
+        "solidgear/cuts/sector/cyclic.py",
         "_across",
         "motion if np.allclose(turn @ motion, np.exp(-1j * angle) * motion) else motion.conj()",
         "motion.conj() if np.allclose(turn @ motion, np.exp(-1j * angle) * motion) else motion",
@@ -259,7 +259,7 @@ MUTATIONS = (
     ),
     Mutation(
         "energy of waves counted once a sector",
-        "solidgear/models/sector/cyclic.py",
+        "solidgear/cuts/sector/cyclic.py",
         "_block",
         "count / 2",
         "count / 1",
@@ -267,7 +267,7 @@ MUTATIONS = (
     ),
     Mutation(
         "ports of waves turned the other way",
-        "solidgear/models/sector/cyclic.py",
+        "solidgear/cuts/sector/cyclic.py",
         "_block",
         "p * turn",
         "p * turn.T",
@@ -275,7 +275,7 @@ MUTATIONS = (
     ),
     Mutation(
         "the cut face of half a sector moves against its phase",
-        "solidgear/models/sector/half.py",
+        "solidgear/cuts/sector/half.py",
         "basis",
         "-sin * around",
         "sin * around",
@@ -283,7 +283,7 @@ MUTATIONS = (
     ),
     Mutation(
         "the other part of a tilt with the wrong sign",
-        "solidgear/models/sector/half.py",
+        "solidgear/cuts/sector/half.py",
         "_in_parts",
         "(1.0, -1.0)",
         "(1.0, 1.0)",
@@ -291,7 +291,7 @@ MUTATIONS = (
     ),
     Mutation(
         "energy of half a sector counted once",
-        "solidgear/models/sector/half.py",
+        "solidgear/cuts/sector/half.py",
         "_block",
         "2 * mesh.sector.count",
         "mesh.sector.count",
@@ -299,7 +299,7 @@ MUTATIONS = (
     ),
     Mutation(
         "hand of a spiral turned",
-        "solidgear/scene/features/toothed.py",
+        "solidgear/cuts/features/toothed.py",
         "_Toothed.twist",
         "1 if self.hand == 'right' else -1",
         "-1 if self.hand == 'right' else 1",
@@ -307,7 +307,7 @@ MUTATIONS = (
     ),
     Mutation(
         "spiral of a cylinder on a cone",
-        "solidgear/meshing/teeth.py",
+        "solidgear/cuts/sector/teeth.py",
         "turn_at",
         "hypot(1.0, slope)",
         "1.0",
@@ -315,7 +315,7 @@ MUTATIONS = (
     ),
     Mutation(
         "Young's modulus 1 % high in the beam",
-        "solidgear/models/beam/element.py",
+        "solidgear/core/models/beam/element.py",
         "Section.__init__",
         "self.bend = modulus * second",
         "self.bend = 1.01 * modulus * second",
@@ -323,7 +323,7 @@ MUTATIONS = (
     ),
     Mutation(
         "Young's modulus 1 % high in the harmonic solid",
-        "solidgear/models/harmonic/blocks.py",
+        "solidgear/core/models/harmonic/blocks.py",
         "Work.block",
         "stiffness.add(part, law.reshape(c * c, k * k) @ gram)",
         "stiffness.add(part, 1.01 * law.reshape(c * c, k * k) @ gram)",
@@ -331,7 +331,7 @@ MUTATIONS = (
     ),
     Mutation(
         "shoulder as soft in stretch as in bending",
-        "solidgear/models/beam/shoulder.py",
+        "solidgear/core/models/beam/shoulder.py",
         "hinges",
         "float(straight * stretch / (material.E * area))",
         "float(straight * bend / (material.E * area))",
@@ -339,7 +339,7 @@ MUTATIONS = (
     ),
     Mutation(
         "shear coefficient of a rectangle, 5/6",
-        "solidgear/models/beam/element.py",
+        "solidgear/core/models/beam/element.py",
         "Section.__init__",
         "self.shear = factor * g * area",
         "self.shear = 5 / 6 * g * area",
@@ -347,7 +347,7 @@ MUTATIONS = (
     ),
     Mutation(
         "shear stiffness with E for G",
-        "solidgear/models/beam/element.py",
+        "solidgear/core/models/beam/element.py",
         "Section.__init__",
         "g = modulus / (2 * (1 + nu))",
         "g = modulus / 2",
@@ -355,7 +355,7 @@ MUTATIONS = (
     ),
     Mutation(
         "rotary inertia missing",
-        "solidgear/models/beam/element.py",
+        "solidgear/core/models/beam/element.py",
         "bending_matrices",
         "c.rotary if rotary else none",
         "none",
@@ -363,7 +363,7 @@ MUTATIONS = (
     ),
     Mutation(
         "lumped for consistent mass in the rod",
-        "solidgear/models/beam/element.py",
+        "solidgear/core/models/beam/element.py",
         "rod_matrices",
         "m = shape.transpose(0, 2, 1) @ ((c.w * inertia)[..., None] * shape)",
         "m = ((c.w * inertia)[..., None] * shape).sum(axis=1)[:, None] * np.eye(2)",
@@ -371,7 +371,7 @@ MUTATIONS = (
     ),
     Mutation(
         "taper ignored: cone as the cylinder at its start",
-        "solidgear/models/beam/element.py",
+        "solidgear/core/models/beam/element.py",
         "Section.__init__",
         "a = e.outer0[:, None] + t * (e.outer1 - e.outer0)[:, None]",
         "a = e.outer0[:, None] + 0 * t",
@@ -379,7 +379,7 @@ MUTATIONS = (
     ),
     Mutation(
         "sign of the tilt in the x plane",
-        "solidgear/models/beam/body.py",
+        "solidgear/core/models/beam/body.py",
         "on_nodes",
         'bending.mirrored("bending_x", (0, 5), 0, (1.0, -1.0))',
         'bending.mirrored("bending_x", (0, 5), 0, (1.0, 1.0))',
@@ -387,7 +387,7 @@ MUTATIONS = (
     ),
     Mutation(
         "sign of a lever in the shift of a reference point",
-        "solidgear/frames.py",
+        "solidgear/core/frames.py",
         "shift",
         "-cross_matrix(np.asarray(offset, float))",
         "cross_matrix(np.asarray(offset, float))",
@@ -395,7 +395,7 @@ MUTATIONS = (
     ),
     Mutation(
         "axis condition of bending dropped",
-        "solidgear/models/harmonic/families.py",
+        "solidgear/core/models/harmonic/families.py",
         "Family.zero_on_axis",
         "(1, 2)",
         "(2,)",
@@ -403,7 +403,7 @@ MUTATIONS = (
     ),
     Mutation(
         "one sign in the strain of the first harmonic",
-        "solidgear/models/harmonic/families.py",
+        "solidgear/core/models/harmonic/families.py",
         "strains",
         "ty[2, 0], ty[2, 1], ty[0, 2] = -1.0, 1.0, -n",
         "ty[2, 0], ty[2, 1], ty[0, 2] = -1.0, 1.0, n",
@@ -411,7 +411,7 @@ MUTATIONS = (
     ),
     Mutation(
         "mass of p and q taken like that of w",
-        "solidgear/models/harmonic/families.py",
+        "solidgear/core/models/harmonic/families.py",
         "Family.share",
         "np.array([2.0, 2.0, 1.0])",
         "np.array([1.0, 1.0, 1.0])",
@@ -419,7 +419,7 @@ MUTATIONS = (
     ),
     Mutation(
         "torsion with r squared for r cubed",
-        "solidgear/models/harmonic/families.py",
+        "solidgear/core/models/harmonic/families.py",
         "Family.power",
         "3 if self.waves == TORSION else 1",
         "2 if self.waves == TORSION else 1",
@@ -427,7 +427,7 @@ MUTATIONS = (
     ),
     Mutation(
         "Lame's lambda of plane stress",
-        "solidgear/models/harmonic/families.py",
+        "solidgear/core/models/harmonic/families.py",
         "Family.stiffness",
         "lame = 2 * mu * material.nu / (1 - 2 * material.nu)",
         "lame = 2 * mu * material.nu / (1 - material.nu)",
@@ -435,7 +435,7 @@ MUTATIONS = (
     ),
     Mutation(
         "seat mean without the weight of the radius",
-        "solidgear/models/harmonic/families.py",
+        "solidgear/core/models/harmonic/families.py",
         "Family.means",
         "raw[..., 2, 1] = -np.pi * w * r * r",
         "raw[..., 2, 1] = -np.pi * w * r",
@@ -443,7 +443,7 @@ MUTATIONS = (
     ),
     Mutation(
         "sign of a rigid rotation of the solid",
-        "solidgear/models/solid/block.py",
+        "solidgear/core/models/solid/block.py",
         "rigid_motions",
         "np.column_stack([zero, -z, y])",
         "np.column_stack([zero, z, y])",
@@ -451,7 +451,7 @@ MUTATIONS = (
     ),
     Mutation(
         "housing spring left out",
-        "solidgear/body/supports.py",
+        "solidgear/core/body/supports.py",
         "as_supports",
         "(e @ ke + housing)",
         "(e @ ke + 1e30)",
@@ -459,7 +459,7 @@ MUTATIONS = (
     ),
     Mutation(
         "housing: seen from the origin, not from its own point",
-        "solidgear/scene/housing.py",
+        "solidgear/core/scene/housing.py",
         "Housing.moves",
         "y - self.y",
         "y",
@@ -467,7 +467,7 @@ MUTATIONS = (
     ),
     Mutation(
         "housing: half as soft as it is",
-        "solidgear/springs.py",
+        "solidgear/core/springs.py",
         "in_series",
         "np.hypot(1.0, s)",
         "np.hypot(1.0, 0.5 * s)",
@@ -475,7 +475,7 @@ MUTATIONS = (
     ),
     Mutation(
         "housing: springs in series the wrong way round",
-        "solidgear/springs.py",
+        "solidgear/core/springs.py",
         "in_series",
         "1 / np.hypot(1.0, s)",
         "np.hypot(1.0, s)",
@@ -483,7 +483,7 @@ MUTATIONS = (
     ),
     Mutation(
         "housing: seen at the place of the other bearing",
-        "solidgear/body/supports.py",
+        "solidgear/core/body/supports.py",
         "as_supports",
         "[b.y for b in bearings]",
         "[b.y for b in bearings[::-1]]",
@@ -491,7 +491,7 @@ MUTATIONS = (
     ),
     Mutation(
         "sweep: the housing of the other bearing",
-        "solidgear/scene/sprung.py",
+        "solidgear/core/scene/sprung.py",
         "resprung",
         '_bearing(bearings[k], tables["bearing"][k])',
         '_bearing(bearings[k], tables["bearing"][0])',
@@ -499,7 +499,7 @@ MUTATIONS = (
     ),
     Mutation(
         "two points: the block between them transposed",
-        "solidgear/solve/condensed.py",
+        "solidgear/core/solve/condensed.py",
         "Coupled.between",
         "np.ix_(a, b)",
         "np.ix_(b, a)",
@@ -507,7 +507,7 @@ MUTATIONS = (
     ),
     Mutation(
         "two points: a term between them related to itself",
-        "solidgear/quantity.py",
+        "solidgear/core/quantity.py",
         "Quantity.diagonals",
         "not self.is_coupling and (pair is None or pair[0] == pair[1])",
         "True",
@@ -515,7 +515,7 @@ MUTATIONS = (
     ),
     Mutation(
         "two points: stiffness as sure as the compliance it is inverted from",
-        "solidgear/judge/solving.py",
+        "solidgear/core/judge/solving.py",
         "_solver_errors",
         "inverted.evidence['stiffness_error']",
         "inverted.evidence['residual']",
@@ -523,7 +523,7 @@ MUTATIONS = (
     ),
     Mutation(
         "two points: the springs between them left out",
-        "solidgear/solve/statics.py",
+        "solidgear/core/solve/statics.py",
         "_full_compliance",
         "f_ll - reach.T @ reach + swing.T @ swing",
         "f_ll + swing.T @ swing",
@@ -531,7 +531,7 @@ MUTATIONS = (
     ),
     Mutation(
         "sign of a bearing's coupling",
-        "solidgear/body/supports.py",
+        "solidgear/core/body/supports.py",
         "as_supports",
         "k[6 * i : 6 * i + 6, 6 * i : 6 * i + 6] = bearing.stiffness",
         "k[6 * i : 6 * i + 6, 6 * i : 6 * i + 6] = bearing.stiffness * np.where(np.eye(6) > 0, 1, -1)",
@@ -539,7 +539,7 @@ MUTATIONS = (
     ),
     Mutation(
         "series spring beside the bearing instead of behind it",
-        "solidgear/scene/stations.py",
+        "solidgear/core/scene/stations.py",
         "Bearing.stiffness",
         "K -= np.outer(K[:, 1], K[1, :]) / (K[1, 1] + spring)",
         "K[1, 1] += spring",
@@ -547,7 +547,7 @@ MUTATIONS = (
     ),
     Mutation(
         "lumped point 1 mm off",
-        "solidgear/scene/shapes.py",
+        "solidgear/core/scene/shapes.py",
         "lay_out",
         "(lo + hi) / 2",
         "(lo + hi) / 2 + 1e-3",
@@ -555,7 +555,7 @@ MUTATIONS = (
     ),
     Mutation(
         "shift not refined away in statics",
-        "solidgear/solve/inertia_relief.py",
+        "solidgear/core/solve/inertia_relief.py",
         "elastic_fields",
         "missing < tolerance or share > 0.5 * last",
         "True",
@@ -563,7 +563,7 @@ MUTATIONS = (
     ),
     Mutation(
         "rigid motions of the load port forgotten",
-        "solidgear/solve/statics.py",
+        "solidgear/core/solve/statics.py",
         "_full_compliance",
         "x = (p_l @ resisted - reach.T @ rigid).T",
         "x = (p_l @ resisted).T",
@@ -571,7 +571,7 @@ MUTATIONS = (
     ),
     Mutation(
         "springs forgotten in the energy of a mode",
-        "solidgear/solve/refine.py",
+        "solidgear/core/solve/refine.py",
         "_modes",
         "value = (columns(elastic, pull) + columns(stretch, stretch)) / columns(u, heavy)",
         "value = columns(elastic, pull) / columns(u, heavy)",
@@ -579,7 +579,7 @@ MUTATIONS = (
     ),
     Mutation(
         "springs missing from the modes",
-        "solidgear/solve/supported.py",
+        "solidgear/core/solve/supported.py",
         "Supported._quick_inverse",
         "y = y - self._through @ sla.lu_solve(self._inner, self.load.T @ y)",
         "pass",
@@ -587,7 +587,7 @@ MUTATIONS = (
     ),
     Mutation(
         "a mode dropped by the eigensolver",
-        "solidgear/solve/eigen.py",
+        "solidgear/core/solve/eigen.py",
         "lowest",
         "enumerate(refined.value)",
         "((i, v) for i, v in enumerate(refined.value) if i != 1)",
@@ -595,7 +595,7 @@ MUTATIONS = (
     ),
     Mutation(
         "Lame's lambda of plane stress in the 3D solid",
-        "solidgear/models/solid/matrices.py",
+        "solidgear/core/models/solid/matrices.py",
         "_matrices",
         "lame = 2 * mu * nu / (1 - 2 * nu)",
         "lame = 2 * mu * nu / (1 - nu)",
@@ -603,7 +603,7 @@ MUTATIONS = (
     ),
     Mutation(
         "flexibility one per cent high",
-        "solidgear/solve/statics.py",
+        "solidgear/core/solve/statics.py",
         "port_fields",
         "work + work.T - u.T @ (k @ u)",
         "1.01 * work",
@@ -611,7 +611,7 @@ MUTATIONS = (
     ),
     Mutation(
         "inertia of the bearings left out of the count",
-        "solidgear/solve/eigen.py",
+        "solidgear/core/solve/eigen.py",
         "count_below",
         "negative += int((np.linalg.eigvalsh(inner) < 0).sum()) - springs",
         "pass",
@@ -627,7 +627,7 @@ MUTATIONS = (
     ),
     Mutation(
         "Guyan mass on compliance shapes instead of unit motions",
-        "solidgear/reduction/lumped_point.py",
+        "solidgear/core/reduction/lumped_point.py",
         "_guyan",
         "shapes = fields @ np.linalg.inv(compliance)",
         "shapes = fields @ np.diag(1 / np.diag(compliance))",
@@ -635,7 +635,7 @@ MUTATIONS = (
     ),
     Mutation(
         "hand of the spiral swapped",
-        "solidgear/system/gear_mesh.py",
+        "solidgear/core/system/gear_mesh.py",
         "line_of_action",
         's = _SPIRAL[_word("hand", hand, _SPIRAL)]',
         's = -_SPIRAL[_word("hand", hand, _SPIRAL)]',
@@ -643,7 +643,7 @@ MUTATIONS = (
     ),
     Mutation(
         "planetary: teeth of a ring lean like those of a sun",
-        "solidgear/system/gear_mesh.py",
+        "solidgear/core/system/gear_mesh.py",
         "cylindrical_mesh",
         "leans = -pressure_angle if internal else pressure_angle",
         "leans = pressure_angle",
@@ -651,7 +651,7 @@ MUTATIONS = (
     ),
     Mutation(
         "planetary: a planet turns in a ring as on a sun",
-        "solidgear/system/gear_mesh.py",
+        "solidgear/core/system/gear_mesh.py",
         "cylindrical_mesh",
         "mate_pitch = mate_radius if internal else -mate_radius",
         "mate_pitch = -mate_radius",
@@ -659,7 +659,7 @@ MUTATIONS = (
     ),
     Mutation(
         "planetary: a ring that stands still pulls its planets",
-        "solidgear/system/planetary.py",
+        "solidgear/trains/system/planetary.py",
         "PlanetaryStage.joints",
         "RowSpring(centre, -planet_rows, stiffness)",
         "RowSpring(centre, planet_rows, stiffness)",
@@ -668,7 +668,7 @@ MUTATIONS = (
     ),
     Mutation(
         "planetary: teeth of a sun that is driven back touch by the same flank",
-        "solidgear/studies/train/stages.py",
+        "solidgear/trains/assembly/stages.py",
         "StageAtWork.axes",
         "np.diag([1.0, self.way, self.way])",
         "np.eye(3)",
@@ -677,7 +677,7 @@ MUTATIONS = (
     ),
     Mutation(
         "planetary: a ring pushes its housing beside the place where it stands",
-        "solidgear/studies/train/stages.py",
+        "solidgear/trains/assembly/stages.py",
         "stages_at_work",
         "point - centre",
         "point",
@@ -686,7 +686,7 @@ MUTATIONS = (
     ),
     Mutation(
         "planetary: errors of all planets come at once",
-        "solidgear/scene/planetary.py",
+        "solidgear/trains/file/planetary.py",
         "PlanetMesh.phases",
         "way * teeth.sun * teeth.azimuths[k - 1]",
         "0.0",
@@ -695,7 +695,7 @@ MUTATIONS = (
     ),
     Mutation(
         "planetary: a sun rests where its planets have pushed it",
-        "solidgear/studies/train/turn.py",
+        "solidgear/trains/assembly/turn.py",
         "_support",
         "state.motion(end)[HELD] - compliance @ pushed[HELD]",
         "state.motion(end)[HELD]",
@@ -704,7 +704,7 @@ MUTATIONS = (
     ),
     Mutation(
         "planetary: planets lie in the axes of the carrier",
-        "solidgear/system/planetary.py",
+        "solidgear/trains/system/planetary.py",
         "PlanetaryStage.parts",
         "Placed(body_of(planet, {}), planet.axes, pins[name])",
         "Placed(body_of(planet, {}), np.eye(3), pins[name])",
@@ -712,7 +712,7 @@ MUTATIONS = (
     ),
     Mutation(
         "planetary: a pin carries one of its two tooth forces",
-        "solidgear/system/planetary.py",
+        "solidgear/trains/system/planetary.py",
         "PlanetaryStage.path_stiffness",
         "self.meshes(k).values()",
         "[self.meshes(k)['sun']]",
@@ -720,7 +720,7 @@ MUTATIONS = (
     ),
     Mutation(
         "planetary: a shift turns with the carrier",
-        "solidgear/system/carrier_turn.py",
+        "solidgear/trains/system/carrier_turn.py",
         "_loads_beyond_mean",
         "fixed.matrix @ fixed.off",
         "np.einsum('ij,ajk,k->ai', fixed.matrix, turns, fixed.off)",
@@ -728,7 +728,7 @@ MUTATIONS = (
     ),
     Mutation(
         "planetary: a support turns with the carrier",
-        "solidgear/system/carrier_turn.py",
+        "solidgear/trains/system/carrier_turn.py",
         "_loads_beyond_mean",
         "turns.transpose(0, 2, 1)",
         "np.broadcast_to(np.eye(6), turns.shape)",
@@ -736,7 +736,7 @@ MUTATIONS = (
     ),
     Mutation(
         "planetary: a late pin unloads its planet",
-        "solidgear/system/carrier_turn.py",
+        "solidgear/trains/system/carrier_turn.py",
         "_gaps",
         "-root_of(planet.support).T @ error_motion",
         "root_of(planet.support).T @ error_motion",
@@ -744,7 +744,7 @@ MUTATIONS = (
     ),
     Mutation(
         "planetary: a ring has the hand of its sun",
-        "solidgear/system/planetary.py",
+        "solidgear/trains/system/planetary.py",
         "PlanetaryStage.meshes",
         "hand = -self.base_helix if internal else self.base_helix",
         "hand = self.base_helix",
@@ -752,7 +752,7 @@ MUTATIONS = (
     ),
     Mutation(
         "planetary: a right-handed tooth pushes as a left-handed one",
-        "solidgear/system/gear_mesh.py",
+        "solidgear/core/system/gear_mesh.py",
         "cylindrical_mesh",
         "-sin(base_helix)",
         "sin(base_helix)",
@@ -760,7 +760,7 @@ MUTATIONS = (
     ),
     Mutation(
         "planetary: the face tilts as if all teeth were at its ends",
-        "solidgear/system/planetary.py",
+        "solidgear/trains/system/planetary.py",
         "PlanetaryStage._rows",
         "offset = self.face_width / sqrt(12)",
         "offset = self.face_width / 2",
@@ -768,7 +768,7 @@ MUTATIONS = (
     ),
     Mutation(
         "planetary: half a Coriolis force",
-        "solidgear/system/planetary_turning.py",
+        "solidgear/trains/system/planetary_turning.py",
         "turning_terms",
         "2 * about * body.mass",
         "about * body.mass",
@@ -776,7 +776,7 @@ MUTATIONS = (
     ),
     Mutation(
         "planetary: members that tilt are no gyroscopes",
-        "solidgear/system/planetary_turning.py",
+        "solidgear/trains/system/planetary_turning.py",
         "turning_terms",
         "2 * across - polar",
         "2 * across",
@@ -784,7 +784,7 @@ MUTATIONS = (
     ),
     Mutation(
         "planetary: planets pull where they were",
-        "solidgear/system/planetary_turning.py",
+        "solidgear/trains/system/planetary_turning.py",
         "turning_terms",
         "turned = -force * relative.T @ cross_matrix(outward) @ carried[3:]",
         "turned = 0 * system.mass",
@@ -792,7 +792,7 @@ MUTATIONS = (
     ),
     Mutation(
         "planetary: a ring is pushed on a quarter turn from its planets",
-        "solidgear/studies/elastic_ring.py",
+        "solidgear/bearings/elastic_ring.py",
         "elastic_ring",
         "azimuth + np.pi / 2",
         "azimuth",
@@ -848,7 +848,7 @@ MUTATIONS = (
     ),
     Mutation(
         "operating point: the gear is pushed the way the pinion is",
-        "solidgear/studies/train/layout.py",
+        "solidgear/trains/assembly/layout.py",
         "force_on",
         "-contact.gear.vector",
         "contact.gear.vector",
@@ -856,7 +856,7 @@ MUTATIONS = (
     ),
     Mutation(
         "operating point: a coasting torque pulls at the driving flank",
-        "solidgear/studies/train/contact.py",
+        "solidgear/trains/load/contact.py",
         "_other_flank",
         "2 * (normal @ across) * across - normal",
         "-normal",
@@ -864,7 +864,7 @@ MUTATIONS = (
     ),
     Mutation(
         "housing of a train: its products of inertia are left out",
-        "solidgear/scene/train_housing.py",
+        "solidgear/trains/file/housing.py",
         "TrainHousing.mass_matrix",
         "out[3:, 3:] = self.inertia",
         "out[3:, 3:] = np.diag(np.diag(self.inertia))",
@@ -872,7 +872,7 @@ MUTATIONS = (
     ),
     Mutation(
         "housing of a train: its bearings settle against ground",
-        "solidgear/system/equilibrium.py",
+        "solidgear/trains/system/equilibrium.py",
         "OnBearings._seat_motions",
         "relative_motion(self.system.port(end), *base)",
         "self.system.port(end).rows",
@@ -880,7 +880,7 @@ MUTATIONS = (
     ),
     Mutation(
         "housing of a train: its bearings push back as if it stood still",
-        "solidgear/studies/train/housing.py",
+        "solidgear/trains/assembly/housing.py",
         "seat_motion",
         "[system.port(port)] if port is not None else []",
         "[]",
@@ -888,7 +888,7 @@ MUTATIONS = (
     ),
     Mutation(
         "equilibrium of a system: what the load bends is left out at the seats",
-        "solidgear/system/equilibrium.py",
+        "solidgear/trains/system/equilibrium.py",
         "OnBearings.equilibrium",
         "pushed - self._soft @ (self._soft.T @ rigid)",
         "0.0 * pushed",
@@ -896,7 +896,7 @@ MUTATIONS = (
     ),
     Mutation(
         "harmonic balance: what lies between two instants at a kink has the wrong sign",
-        "solidgear/nonlinear/balance.py",
+        "solidgear/backlash/solver/balance.py",
         "Balance._parts",
         "kink.jump / 4",
         "-kink.jump / 4",
@@ -904,7 +904,7 @@ MUTATIONS = (
     ),
     Mutation(
         "impact: what leaves is held back",
-        "solidgear/system/law.py",
+        "solidgear/core/system/law.py",
         "Gap.force",
         "side * value > 0",
         "side * value > -np.inf",
@@ -912,7 +912,7 @@ MUTATIONS = (
     ),
     Mutation(
         "harmonic balance: sidebands move at the mesh frequency",
-        "solidgear/nonlinear/two_tone.py",
+        "solidgear/backlash/solver/two_tone.py",
         "TwoTone.frequencies",
         "np.array(self.pairs) @ np.array(self.omega)",
         "np.array(self.pairs)[:, 0] * self.omega[0]",
@@ -920,7 +920,7 @@ MUTATIONS = (
     ),
     Mutation(
         "motion in time: a tooth that touches pushes back a little less",
-        "solidgear/nonlinear/pieces.py",
+        "solidgear/backlash/solver/pieces.py",
         "Pieces._piece",
         "push[:, 2 * r] -= f",
         "push[:, 2 * r] -= 0.98 * f",
@@ -929,7 +929,7 @@ MUTATIONS = (
     ),
     Mutation(
         "a line of action turns the other way round over the mesh cycle",
-        "solidgear/nonlinear/sway.py",
+        "solidgear/backlash/solver/sway.py",
         "Sway.line",
         "(turn @ self.orders).real",
         "(turn.conj() @ self.orders).real",
@@ -938,7 +938,7 @@ MUTATIONS = (
     ),
     Mutation(
         "run-up: the angle of the excitation is that of the speed of the moment all along",
-        "solidgear/nonlinear/motion.py",
+        "solidgear/backlash/solver/motion.py",
         "Run.__init__",
         "middle * (omega + self.speeds) / 2",
         "middle * self.speeds",
@@ -946,7 +946,7 @@ MUTATIONS = (
     ),
     Mutation(
         "Floquet: where damping sets in, small motions leap the other way",
-        "solidgear/nonlinear/stability.py",
+        "solidgear/backlash/solver/stability.py",
         "_saltation",
         "-remainder.shapes.T @ jump @ rate",
         "remainder.shapes.T @ jump @ rate",
@@ -954,7 +954,7 @@ MUTATIONS = (
     ),
     Mutation(
         "remainder: a transmission error is no stretch of the teeth",
-        "solidgear/nonlinear/model.py",
+        "solidgear/backlash/solver/model.py",
         "Remainder.linear",
         "(h @ push[..., None])[..., 0] + e @ self.stiffness @ self.flexible - e",
         "(h @ push[..., None])[..., 0] + e @ self.stiffness @ self.flexible",
@@ -962,7 +962,7 @@ MUTATIONS = (
     ),
     Mutation(
         "remainder: a mode has its loss factor as damping ratio",
-        "solidgear/nonlinear/model.py",
+        "solidgear/backlash/solver/model.py",
         "remainder",
         "np.diag(np.diag(lost_energy)[moving] / omega)",
         "np.diag(2 * np.diag(lost_energy)[moving] / omega)",
@@ -970,7 +970,7 @@ MUTATIONS = (
     ),
     Mutation(
         "branches: the balance is taken for the same at all speeds",
-        "solidgear/nonlinear/continuation.py",
+        "solidgear/backlash/solver/continuation.py",
         "Follower.bordered",
         "residual.by_omega * self.width / self.size",
         "0.0 * residual.by_omega",
@@ -978,7 +978,7 @@ MUTATIONS = (
     ),
     Mutation(
         "branches: more harmonics are asked for at the same speed alone",
-        "solidgear/nonlinear/continuation.py",
+        "solidgear/backlash/solver/continuation.py",
         "Follower.refit",
         "self.correct(near, 0.0)",
         "None",
@@ -986,7 +986,7 @@ MUTATIONS = (
     ),
     Mutation(
         "period doubling: the excitation of one period is that of two",
-        "solidgear/nonlinear/apart.py",
+        "solidgear/backlash/solver/apart.py",
         "_doubled_branch",
         "begin.balance.remainder.slower(2)",
         "begin.balance.remainder.slower(1)",
@@ -995,7 +995,7 @@ MUTATIONS = (
     ),
     Mutation(
         "Hill: a motion of two cycles has whole orders",
-        "solidgear/nonlinear/varying.py",
+        "solidgear/backlash/solver/varying.py",
         "hill",
         "0.5 if half else 0.0",
         "0.0",
@@ -1003,7 +1003,7 @@ MUTATIONS = (
     ),
     Mutation(
         "motion in time: the stiffness stands still",
-        "solidgear/nonlinear/integrated.py",
+        "solidgear/backlash/solver/integrated.py",
         "Integrated._stretches",
         "self.angle(t)",
         "0.0 * self.angle(t)",
@@ -1011,7 +1011,7 @@ MUTATIONS = (
     ),
     Mutation(
         "misalignment: the gear's own tilt is left out",
-        "solidgear/studies/train/misalignment.py",
+        "solidgear/strength/deflection/misalignment.py",
         "_parallel",
         "pinion[3:] - gear[3:]",
         "pinion[3:] - 0.0 * gear[3:]",
@@ -1019,7 +1019,7 @@ MUTATIONS = (
     ),
     Mutation(
         "transmission error added to the stretch of the teeth",
-        "solidgear/studies/train/respond.py",
+        "solidgear/trains/response/respond.py",
         "Drive._teeth",
         "factor * (dte - error)",
         "factor * (dte + error)",
@@ -1027,7 +1027,7 @@ MUTATIONS = (
     ),
     Mutation(
         "bearing reactions from the diagonal alone",
-        "solidgear/studies/train/respond.py",
+        "solidgear/trains/response/respond.py",
         "Drive._reaction_rows",
         "force = -np.array(supports.stiffness) @ seats",
         "force = -np.diag(np.diag(supports.stiffness)) @ seats",
@@ -1035,7 +1035,7 @@ MUTATIONS = (
     ),
     Mutation(
         "receptance as a sum over modes",
-        "solidgear/studies/train/receptance.py",
+        "solidgear/trains/response/receptance.py",
         "receptance",
         "drive.steady.solved(hz, drive.load, row[None])[:, 0]",
         "drive.motion(hz, row[None])[:, 0]",
@@ -1043,7 +1043,7 @@ MUTATIONS = (
     ),
     Mutation(
         "teeth lose no more than the rest",
-        "solidgear/system/common_loss.py",
+        "solidgear/core/system/common_loss.py",
         "in_real_modes",
         "lost = 1j * common.difference",
         "lost = 0j * common.difference",
@@ -1051,7 +1051,7 @@ MUTATIONS = (
     ),
     Mutation(
         "the gear drawn where the pinion is",
-        "solidgear/studies/train/pictures.py",
+        "solidgear/trains/modes/pictures.py",
         "system_surface",
         "drawn.points @ turn.T + origin",
         "drawn.points @ turn.T",
@@ -1059,7 +1059,7 @@ MUTATIONS = (
     ),
     Mutation(
         "orders of the gear at the speed of the pinion",
-        "solidgear/studies/train/orders.py",
+        "solidgear/trains/assembly/orders.py",
         "order_map",
         "train.turns.items()",
         "dict.fromkeys(train.turns, 1.0).items()",
@@ -1067,7 +1067,7 @@ MUTATIONS = (
     ),
     Mutation(
         "a mesh about the corner turns the first of its shafts alone",
-        "solidgear/studies/train/contact.py",
+        "solidgear/trains/load/contact.py",
         "axes_of",
         'parallel or side == "pinion"',
         'side == "pinion"',
@@ -1075,7 +1075,7 @@ MUTATIONS = (
     ),
     Mutation(
         "torque passes a shaft as if both of its gears had one radius",
-        "solidgear/studies/train/layout.py",
+        "solidgear/trains/assembly/layout.py",
         "mesh_forces",
         "torque_on(joint, side, mesh_contacts) * turns[side]",
         "torque_on(joint, side, mesh_contacts)",
@@ -1084,7 +1084,7 @@ MUTATIONS = (
     ),
     Mutation(
         "all of the power passes a mesh that a load before it has taken some of",
-        "solidgear/scene/power.py",
+        "solidgear/trains/file/power.py",
         "flows_of",
         "flow * (abs(flow) > NONE)",
         "(flow > NONE) - (flow < -NONE)",
@@ -1092,7 +1092,7 @@ MUTATIONS = (
     ),
     Mutation(
         "teeth of a gear take no space beyond its pitch circle",
-        "solidgear/studies/train/space.py",
+        "solidgear/trains/assembly/space.py",
         "_gear",
         "radius + module * (1 + wheel.profile_shift)",
         "radius",
@@ -1100,7 +1100,7 @@ MUTATIONS = (
     ),
     Mutation(
         "no grid points at the poles",
-        "solidgear/system/steady.py",
+        "solidgear/core/system/steady.py",
         "SteadyState.grid",
         "width[near, None] * AROUND",
         "width[near, None] * 1e9",
@@ -1108,7 +1108,7 @@ MUTATIONS = (
     ),
     Mutation(
         "bearings 1 % stiff in the condensed shaft",
-        "solidgear/reduction/condensed.py",
+        "solidgear/core/reduction/condensed.py",
         "condensed_shaft",
         "np.diag(elastic.astype(float)) + seats.T @ supports @ seats",
         "np.diag(elastic.astype(float)) + 1.01 * seats.T @ supports @ seats",
@@ -1116,7 +1116,7 @@ MUTATIONS = (
     ),
     Mutation(
         "central axis of contact cells on the wrong side",
-        "solidgear/system/contact_cells.py",
+        "solidgear/core/system/contact_cells.py",
         "ContactWrench.point",
         "np.cross(self.force, self.moment)",
         "np.cross(self.moment, self.force)",
@@ -1124,7 +1124,7 @@ MUTATIONS = (
     ),
     Mutation(
         "fillets: shear counts with the wrong sign in one plane",
-        "solidgear/studies/stress/shaft.py",
+        "solidgear/strength/stress/shaft.py",
         "local_stress",
         "((-m_x, q_z), (m_z, q_x))",
         "((-m_x, q_z), (-m_z, q_x))",
@@ -1132,7 +1132,7 @@ MUTATIONS = (
     ),
     Mutation(
         "fillets: the unit of shear bends the fillet too",
-        "solidgear/studies/stress/notch.py",
+        "solidgear/strength/stress/notch.py",
         "_profiles",
         "place - end",
         "0.0",
@@ -1140,7 +1140,7 @@ MUTATIONS = (
     ),
     Mutation(
         "fillets: stress without that of the volume",
-        "solidgear/models/harmonic/arc_stress.py",
+        "solidgear/strength/stress/arc_stress.py",
         "Arc._tensor",
         "2 * sigma[:3] + lame * strain[:3].sum(axis=0)",
         "2 * sigma[:3]",
@@ -1148,7 +1148,7 @@ MUTATIONS = (
     ),
     Mutation(
         "section forces: a load moves without its moment",
-        "solidgear/studies/stress/section_forces.py",
+        "solidgear/strength/stress/section_forces.py",
         "move_load",
         "y - target",
         "0.0",
@@ -1156,7 +1156,7 @@ MUTATIONS = (
     ),
     Mutation(
         "stress of a train: weight of the gear in the axes of the pinion",
-        "solidgear/studies/stress/at_rest.py",
+        "solidgear/strength/stress/at_rest.py",
         "_on_shafts",
         "turned @ np.array(state.point.gravity)",
         "np.array(state.point.gravity)",
@@ -1164,7 +1164,7 @@ MUTATIONS = (
     ),
     Mutation(
         "stress of a train: a wheel without weight",
-        "solidgear/studies/stress/at_rest.py",
+        "solidgear/strength/stress/at_rest.py",
         "_on_shafts",
         "head.mass * np.r_[gravity, np.zeros(3)]",
         "np.zeros(6)",
@@ -1172,7 +1172,7 @@ MUTATIONS = (
     ),
     Mutation(
         "Peterson: depth of the step over the small diameter",
-        "solidgear/studies/stress/published.py",
+        "solidgear/strength/stress/published.py",
         "peterson",
         "1 - small / large",
         "large / small - 1",
@@ -1180,7 +1180,7 @@ MUTATIONS = (
     ),
     Mutation(
         "DIN 743: torsion adds as a normal stress does",
-        "solidgear/studies/stress/rating.py",
+        "solidgear/strength/stress/rating.py",
         "_safety",
         "math.hypot(normal, shares.get('torsion', 0.0))",
         "normal + shares.get('torsion', 0.0)",

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import scipy.sparse as sp
 
-from solidgear.body import Block
+from solidgear.core.body import Block
 
 
 def side_by_side(

@@ -11,9 +11,9 @@ import inspect
 import re
 from pathlib import Path
 
-from solidgear.scene.catalogue import Catalogue
-from solidgear.scene.stations import Bearing
-from solidgear.scene.typed import Model
+from solidgear.bearings.catalogue import Catalogue
+from solidgear.core.scene.stations import Bearing
+from solidgear.core.scene.typed import Model
 
 PAGE = Path(__file__).parent.parent / "guide" / "bearing_keys.md"
 #: SI units by the types of the models

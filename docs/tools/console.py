@@ -95,7 +95,7 @@ def run(command: str, folder: Path) -> str:
         "NO_COLOR": "1",
     }
     words = re.sub(r"\bpython (?=\S)", f"{sys.executable} ", command)
-    words = re.sub(r"\bsolidgear (?=\S)", f"{sys.executable} -m solidgear.cli --quiet ", words)
+    words = re.sub(r"\bsolidgear (?=\S)", f"{sys.executable} -m solidgear.app --quiet ", words)
     done = subprocess.run(
         words,
         shell=True,

@@ -111,7 +111,7 @@ def real(part: str) -> str:
 
 def materials() -> str:
     """The table of materials by name, those with the same constants in one row."""
-    from solidgear.scene.materials import MATERIALS
+    from solidgear.core.scene.materials import MATERIALS
 
     rows: dict[object, list[str]] = {}
     for name, known in MATERIALS.items():
@@ -127,8 +127,8 @@ def materials() -> str:
 def options() -> str:
     """One table a model, the words of `solidgear options`."""
     # the words of the command itself, which has no other place for them
-    from solidgear.cli.files import _default, _may_be
-    from solidgear.ladder.registry import LADDER
+    from solidgear.app.files import _default, _may_be
+    from solidgear.core.ladder.registry import LADDER
 
     lines = []
     for name in LADDER.bodies:

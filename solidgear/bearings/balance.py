@@ -21,9 +21,9 @@ import scipy.linalg as sla
 
 from solidgear.bearings.newton import NothingHolds, Settled, settle
 from solidgear.bearings.rolling import UNITS
-from solidgear.errors import SolidgearError
-from solidgear.frames import DOF_NAMES
-from solidgear.scene.housing import Elastic, Housing
+from solidgear.core.errors import SolidgearError
+from solidgear.core.frames import DOF_NAMES
+from solidgear.core.scene.housing import Elastic, Housing
 
 E = TypeVar("E", bound=Elastic)
 

@@ -17,8 +17,8 @@ from solidgear.bearings.roller import RollerRow
 from solidgear.bearings.rolling import RollingBearing, Row
 from solidgear.bearings.spherical import SphericalRow
 from solidgear.bearings.spinning import SpinningBalls
-from solidgear.errors import SceneError, SolidgearError
-from solidgear.scene.catalogue import WAYS, Catalogue
+from solidgear.core.errors import SceneError, SolidgearError
+from solidgear.bearings.catalogue import WAYS, Catalogue
 
 End = Literal["middle", "softer", "stiffer"]
 
@@ -147,7 +147,7 @@ def state(
 
     Examples
     --------
-    >>> from solidgear.scene.catalogue import Catalogue
+    >>> from solidgear.bearings.catalogue import Catalogue
     >>> data = Catalogue(designation="6206", load_rating="19.5 kN", load={"z": "2 kN"})
     >>> round(float(state(data, catalogued(data))[2]) * 1e6, 1)  # micrometres
     21.8

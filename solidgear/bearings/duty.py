@@ -10,8 +10,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from solidgear.errors import SceneError
-from solidgear.scene.units import TYPED
+from solidgear.core.errors import SceneError
+from solidgear.core.scene.units import TYPED
 
 
 @dataclass(frozen=True)

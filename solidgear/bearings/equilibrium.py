@@ -22,12 +22,12 @@ from solidgear.bearings.balance import (
     not_held,
 )
 from solidgear.bearings.newton import NothingHolds
-from solidgear.errors import SolidgearError
-from solidgear.scene.housing import Housing
-from solidgear.solve.statics import flexibility
+from solidgear.core.errors import SolidgearError
+from solidgear.core.scene.housing import Housing
+from solidgear.core.solve.statics import flexibility
 
 if TYPE_CHECKING:
-    from solidgear.body import Body
+    from solidgear.core.body import Body
 
 
 @dataclass(frozen=True)

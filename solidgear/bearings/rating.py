@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from solidgear.bearings.ball import BallRow
 from solidgear.bearings.kinds import SHARES
-from solidgear.scene.catalogue import Catalogue
+from solidgear.bearings.catalogue import Catalogue
 
 if TYPE_CHECKING:
     from solidgear.bearings.geometry import Inside
@@ -134,7 +134,7 @@ def ratings(data: Catalogue, inside: Inside) -> Ratings:
     Examples
     --------
     >>> from solidgear.bearings.geometry import inner_geometry
-    >>> from solidgear.scene.catalogue import Catalogue
+    >>> from solidgear.bearings.catalogue import Catalogue
     >>> data = Catalogue(designation="7208 B", arrangement="tandem", holds="+y",
     ...                  load_rating="32.1 kN")
     >>> found = ratings(data, inner_geometry(data).middle)

@@ -16,12 +16,12 @@ import numpy as np
 from solidgear.bearings.balance import Linear, Mounted
 from solidgear.bearings.catalogued import Catalogued, End, catalogued, state
 from solidgear.bearings.equilibrium import Equilibrium, equilibrium
-from solidgear.errors import SceneError
-from solidgear.scene import Bearing, Scene
-from solidgear.scene.catalogue import Preload
+from solidgear.core.errors import SceneError
+from solidgear.core.scene import Bearing, Scene
+from solidgear.bearings.catalogue import Preload
 
 if TYPE_CHECKING:
-    from solidgear.body import Body
+    from solidgear.core.body import Body
 
 
 @dataclass(frozen=True)

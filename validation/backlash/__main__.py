@@ -11,9 +11,9 @@ import sys
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from solidgear.report.panel import GREY, Axis, Panel, Series
-from solidgear.report.plot import Chart
-from solidgear.report.words import capital
+from solidgear.show.panel import GREY, Axis, Panel, Series
+from solidgear.show.plot import Chart
+from solidgear.show.words import capital
 from validation.backlash import axle, gears, pairs
 from validation.common import ROOT, kept, markdown, read_result, stamp
 

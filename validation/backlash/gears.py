@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.nonlinear.continuation import follow
-from solidgear.nonlinear.stability import stable
+from solidgear.backlash.solver.continuation import follow
+from solidgear.backlash.solver.stability import stable
 from validation.backlash.spur_pair import SpurPair
 from validation.race import ross_peer
 

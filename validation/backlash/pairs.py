@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.nonlinear.continuation import follow
+from solidgear.backlash.solver.continuation import follow
 from validation.race import pyharm_peer
 from validation.race.backlash import BEGIN, END, branch_rms, pair, pair_for_pyharm, turning
 

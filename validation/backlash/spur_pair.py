@@ -15,12 +15,12 @@ from functools import cached_property
 
 import numpy as np
 
-from solidgear.nonlinear.balance import Balance
-from solidgear.nonlinear.continuation import Point
-from solidgear.nonlinear.model import Remainder, remainder
-from solidgear.nonlinear.motion import Integrated
-from solidgear.system import BearingSpring, RigidBody, RowSpring, System
-from solidgear.system.law import Gap
+from solidgear.backlash.solver.balance import Balance
+from solidgear.backlash.solver.continuation import Point
+from solidgear.backlash.solver.model import Remainder, remainder
+from solidgear.backlash.solver.motion import Integrated
+from solidgear.core.system import BearingSpring, RigidBody, RowSpring, System
+from solidgear.core.system.law import Gap
 
 #: orders of the mesh by which its stiffness and its motion are told, and looks at each
 MESH_ORDERS, LOOKS = 16, 4

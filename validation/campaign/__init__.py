@@ -10,6 +10,6 @@ results     the score of a run, with date, commit, seeds and machine
 scoreboard  the page of all scores
 """
 
-from solidgear.machine.threads import pin
+from solidgear.core.machine.threads import pin
 
 pin()  # before numpy: one thread for the many small dense matrices

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from solidgear.scene import Scene
+from solidgear.core.scene import Scene
 from validation.campaign.rows import Found
 from validation.campaign.table import Parts
 from validation.campaign.truths.kept import Truths

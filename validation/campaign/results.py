@@ -7,7 +7,7 @@ import json
 import re
 from pathlib import Path
 
-from solidgear.machine.whole_file import whole
+from solidgear.core.machine.whole_file import whole
 from validation.campaign import table
 from validation.campaign.case import Case
 from validation.campaign.rows import Found

@@ -14,7 +14,7 @@ import traceback
 from collections.abc import Callable
 from typing import Any
 
-from solidgear.errors import SolidgearError
+from solidgear.core.errors import SolidgearError
 
 #: address space of the worker, bytes: SuperLU reserves some ten times what it touches (11 GB for a
 #: peak of 0.9), and how much is touched the product watches itself

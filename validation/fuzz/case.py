@@ -19,8 +19,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from unittest import mock
 
-from solidgear.errors import MOST_PROBLEMS, SceneError, SolidgearError
-from solidgear.studies.loading import load
+from solidgear.core.errors import MOST_PROBLEMS, SceneError, SolidgearError
+from solidgear.core.loading import load
 from validation.fuzz.limits import Limits, Overrun
 from validation.shipped import GEOMETRY
 

@@ -266,7 +266,7 @@ def ran(arguments: Sequence[str], folder: Path) -> None:
     Refused
     Finding
     """
-    from solidgear.cli import main
+    from solidgear.app import main
 
     out, err = io.StringIO(), io.StringIO()
     before, code = set(folder.rglob("*")), 0

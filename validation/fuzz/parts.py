@@ -19,7 +19,7 @@ import meshio
 import numpy as np
 
 import solidgear as sg
-from solidgear.meshing.tetrahedra import tetrahedra
+from solidgear.core.meshing.tetrahedra import tetrahedra
 from validation.fuzz.case import Case, Finding, Fuzz, Refused, refusing
 from validation.fuzz.decks import DECK_CHANGES, DECKS
 from validation.fuzz.limits import Limits

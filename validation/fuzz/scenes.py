@@ -12,11 +12,11 @@ from pathlib import Path
 
 import numpy as np
 
-from solidgear.ladder import build
-from solidgear.solve.modes import modes
-from solidgear.solve.statics import condense
-from solidgear.studies.check import check_scene
-from solidgear.studies.loading import load
+from solidgear.core.ladder import build
+from solidgear.core.solve.modes import modes
+from solidgear.core.solve.statics import condense
+from solidgear.guards.check import check_scene
+from solidgear.core.loading import load
 from validation.fuzz.case import Case, Finding, Fuzz, Refused, refusing
 from validation.fuzz.commands import ran
 from validation.fuzz.spoiling import spoilt

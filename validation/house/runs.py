@@ -28,7 +28,7 @@ def follow(frame, event, argument):
 import solidgear
 words = json.loads(sys.argv[1])
 if words:
-    from solidgear.cli import main
+    from solidgear.app import main
     sys.argv = ["solidgear", *words]
     sys.setprofile(follow)
     try:

@@ -14,7 +14,7 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
-from solidgear.errors import SolidgearError
+from solidgear.core.errors import SolidgearError
 from validation.manual import CASES
 from validation.manual.case import Answer, Case
 from validation.manual.page import FOLDER, INDEX, index, lines, read, render

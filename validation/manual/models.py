@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 import solidgear as sg
-from solidgear.body import Body
-from solidgear.solve.modes import ModeSet
+from solidgear.core.body import Body
+from solidgear.core.solve.modes import ModeSet
 from validation.manual.exact import STEEL, Tube
 
 #: a spring of this stiffness (N/m, N m/rad) holds to rounding

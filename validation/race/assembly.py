@@ -17,8 +17,8 @@ from skfem.quadrature import get_quadrature
 from skfem.refdom import RefQuad
 
 import solidgear as sg
-from solidgear.models.harmonic import blocks as harmonic_blocks
-from solidgear.models.solid import matrices as solid_matrices
+from solidgear.core.models.harmonic import blocks as harmonic_blocks
+from solidgear.core.models.solid import matrices as solid_matrices
 from validation.common import ROOT
 from validation.race.heat import Check, Clock, Heat, Sample
 from validation.race.race import Race

@@ -14,13 +14,13 @@ from time import process_time
 import numpy as np
 
 import solidgear as sg
-from solidgear.nonlinear.continuation import Branch, follow
-from solidgear.nonlinear.model import Remainder, remainder
-from solidgear.nonlinear.motion import sweep
-from solidgear.studies.train.models import Workshop
-from solidgear.studies.train.nonlinear import STEP, backlash_model, teeth_of
-from solidgear.system import Inertia, RowSpring, System
-from solidgear.system.law import Gap
+from solidgear.backlash.solver.continuation import Branch, follow
+from solidgear.backlash.solver.model import Remainder, remainder
+from solidgear.backlash.solver.motion import sweep
+from solidgear.trains.assembly.models import Workshop
+from solidgear.backlash.train import STEP, backlash_model, teeth_of
+from solidgear.core.system import Inertia, RowSpring, System
+from solidgear.core.system.law import Gap
 from validation.common import ROOT
 from validation.race import pyharm_peer
 from validation.race.heat import Check, Heat, Sample

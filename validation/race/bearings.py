@@ -11,7 +11,7 @@ from solidgear.bearings.ball import BallRow
 from solidgear.bearings.roller import RollerRow
 from solidgear.bearings.solved import solved
 from solidgear.bearings.spinning import SpinningBalls
-from solidgear.solve.statics import flexibility
+from solidgear.core.solve.statics import flexibility
 from validation.race.heat import Clock, Heat, Sample
 from validation.race.race import Race
 from validation.thesis.bearings import axle

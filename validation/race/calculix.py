@@ -17,9 +17,9 @@ from pathlib import Path
 
 import numpy as np
 
-from solidgear.elements import ELEMENTS
-from solidgear.frames import cross_matrix
-from solidgear.report.outputs import node_order
+from solidgear.core.elements import ELEMENTS
+from solidgear.core.frames import cross_matrix
+from solidgear.show.outputs import node_order
 from validation.race.heat import Heat, Lane, Sample
 from validation.race.problem import Problem
 from validation.race.process import WATCH, Done, PeerError, cores, last_words, run

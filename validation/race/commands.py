@@ -30,7 +30,7 @@ def whole_process(command: list[str]) -> Sample:
 
 def main_job(heat: Heat) -> None:
     """Commands beside the import of numpy; seconds asked for are those on two cores."""
-    program = ["-m", "solidgear.cli"]
+    program = ["-m", "solidgear.app"]
     jobs: dict[str, tuple[list[str], float | None]] = {
         "solidgear --help": (["--help"], None),
         "stiffness -f timoshenko": (["stiffness", SCENE, "-f", "timoshenko"], None),

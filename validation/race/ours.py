@@ -65,7 +65,7 @@ def solve(scene, fidelity: str, options: dict, modes: int = 10, *, free: bool = 
         Modes of the free shaft and no loads.
     """
     import solidgear as sg
-    from solidgear.solve.shifted import factors
+    from solidgear.core.solve.shifted import factors
 
     gc.collect()
     clock, static = Clock(), None
@@ -90,7 +90,7 @@ def _assembly_seconds(fidelity: str) -> Iterator[list[float]]:
     if fidelity != "solid":
         yield spent
         return
-    from solidgear.models.solid import block as solid_block
+    from solidgear.core.models.solid import block as solid_block
 
     plain = solid_block._matrices
 
@@ -128,7 +128,7 @@ def whole(heat: Heat, who: str, scene, attachment, fidelity, options, **more) ->
 
 def answered(scene: str, attachment: str, fidelity: str, options: dict) -> dict:
     """What a process of its own answers, as plain data."""
-    from solidgear.machine.threads import pin
+    from solidgear.core.machine.threads import pin
 
     pin()
     done = solve(held(scene, attachment), fidelity, options)

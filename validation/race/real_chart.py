@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from solidgear.report.panel import PERCENT, SHAPES, Axis, Panel, Series, tolerance_line
-from solidgear.report.plot import Chart
+from solidgear.show.panel import PERCENT, SHAPES, Axis, Panel, Series, tolerance_line
+from solidgear.show.plot import Chart
 from validation.race import real_lines as lines
 from validation.race.real_costs import QUANTITIES, Row, errors, references
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from solidgear.ladder.corrected import FEWER
+from solidgear.cuts.corrected.model import FEWER
 from validation.common import ROOT
 from validation.race.ours import held
 

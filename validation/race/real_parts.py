@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 import solidgear as sg
-from solidgear.solve.shifted import factors
+from solidgear.core.solve.shifted import factors
 from validation.common import ROOT
 from validation.race import calculix
 from validation.race import real_lines as lines
@@ -109,7 +109,7 @@ def run(job: Job) -> Found:
 
 def _difference(scene, options, base) -> Found:
     """Harmonic solid of the pitch cone, and what teeth change by two sectors of like meshes."""
-    from solidgear.models.sector.body import sector
+    from solidgear.cuts.sector.body import sector
 
     count = scene.features[0].count
     toothed, plain = (

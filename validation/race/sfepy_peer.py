@@ -34,8 +34,8 @@ def straightened(body, scene):
     from skfem import Basis, BilinearForm, ElementTetP2, ElementVector, MeshTet1
     from skfem.helpers import ddot, dot, sym_grad, trace
 
-    from solidgear.body import Block
-    from solidgear.body.cache import Cache
+    from solidgear.core.body import Block
+    from solidgear.core.body.cache import Cache
 
     curved = body.geometry.mesh
     straight = MeshTet1(curved.p[:, : curved.t.max() + 1], curved.t)

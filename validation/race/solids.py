@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 import solidgear as sg
-from solidgear.solve.shifted import factors
+from solidgear.core.solve.shifted import factors
 from validation.race.heat import Check, Clock, Heat, Sample
 from validation.race.process import ROOT, called
 from validation.race.race import Race

@@ -20,8 +20,8 @@ from pathlib import Path
 import numpy as np
 
 import solidgear as sg
-from solidgear.studies.sweep.bearing_sweep import sweep
-from solidgear.studies.sweep.bearing_variants import bearing_variants
+from solidgear.variants.sweep.bearing_sweep import sweep
+from solidgear.variants.sweep.bearing_variants import bearing_variants
 from validation.common import ROOT
 from validation.race.heat import Check, Clock, Heat, Sample
 from validation.race.process import spent

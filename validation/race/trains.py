@@ -7,9 +7,9 @@ from functools import partial
 import numpy as np
 
 import solidgear as sg
-from solidgear.studies.train.models import Workshop
-from solidgear.studies.train.respond import Drive
-from solidgear.studies.train.shaft import JUDGE
+from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.response.respond import Drive
+from solidgear.trains.assembly.shaft import JUDGE
 from validation.common import ROOT
 from validation.race.heat import Check, Clock, Heat, Sample
 from validation.race.race import Race

@@ -10,8 +10,8 @@ from dataclasses import asdict
 
 import numpy as np
 
-from solidgear.report.panel import INK, Axis, Panel, Series
-from solidgear.report.plot import Chart
+from solidgear.show.panel import INK, Axis, Panel, Series
+from solidgear.show.plot import Chart
 from validation.common import ROOT, kept, markdown, read_result, stamp
 from validation.reducer import claims, spectra
 from validation.reducer.checks import checked

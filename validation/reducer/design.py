@@ -20,10 +20,10 @@ import solidgear as sg
 from solidgear.bearings.balance import Linear, Mounted
 from solidgear.bearings.catalogued import catalogued
 from solidgear.bearings.equilibrium import Equilibrium, equilibrium
-from solidgear.scene.catalogue import Catalogue
-from solidgear.scene.file import scene_of
-from solidgear.system import CarrierTurn
-from solidgear.system.gear_mesh import line_of_action, mean_radius, mesh_point
+from solidgear.bearings.catalogue import Catalogue
+from solidgear.core.scene.file import scene_of
+from solidgear.core.system import CarrierTurn
+from solidgear.core.system.gear_mesh import line_of_action, mean_radius, mesh_point
 
 PRESSURE = radians(20)
 #: of the face of a bevel gear, of its cone distance

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solidgear.frames import shift
+from solidgear.core.frames import shift
 from validation.reducer.design import HUB, Design
 from validation.reducer.multibody import ORDERS, Reducer
 from validation.reducer.stepping import Motion, run, together

@@ -4,7 +4,7 @@ Shafts stand in their own axes, planets and carrier in those of the carrier, so 
 planet meshes are constant there and turn on the sun.  The ring stands still, the pinion turns
 uniformly, the carrier is held by its torque.  Bearings are linear at their load; in ideal joints
 everything turns only, and planets ride on their pins.  What turning axes add to the inertia is left
-out, as in :mod:`solidgear.system.planetary`.
+out, as in :mod:`solidgear.trains.system.planetary`.
 """
 
 from __future__ import annotations
@@ -19,11 +19,16 @@ import solidgear as sg
 from solidgear.bearings.balance import Mounted
 from solidgear.bearings.catalogued import catalogued
 from solidgear.bearings.equilibrium import Equilibrium, equilibrium
-from solidgear.frames import rotation
-from solidgear.scene.catalogue import Catalogue
-from solidgear.scene.file import scene_of
-from solidgear.system.gear_mesh import cylindrical_mesh, line_of_action, mean_radius, mesh_point
-from solidgear.system.law import Gap
+from solidgear.core.frames import rotation
+from solidgear.bearings.catalogue import Catalogue
+from solidgear.core.scene.file import scene_of
+from solidgear.core.system.gear_mesh import (
+    cylindrical_mesh,
+    line_of_action,
+    mean_radius,
+    mesh_point,
+)
+from solidgear.core.system.law import Gap
 from validation.reducer.design import FACE, HUB, PRESSURE, Design
 from validation.reducer.stepping import Bodies
 

@@ -13,9 +13,9 @@ from math import pi
 import numpy as np
 
 import solidgear as sg
-from solidgear.nonlinear.model import Remainder, remainder
-from solidgear.nonlinear.two_tone import TwoTone
-from solidgear.system.law import Gap
+from solidgear.backlash.solver.model import Remainder, remainder
+from solidgear.backlash.solver.two_tone import TwoTone
+from solidgear.core.system.law import Gap
 from validation.reducer.multibody import LOSS, Reducer, disc
 from validation.reducer.stepping import Bodies
 

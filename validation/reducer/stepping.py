@@ -16,9 +16,9 @@ from dataclasses import dataclass, field, fields
 
 import numpy as np
 
-from solidgear.errors import SolidgearError
-from solidgear.machine.threads import pinned
-from solidgear.system.law import Gap
+from solidgear.core.errors import SolidgearError
+from solidgear.core.machine.threads import pinned
+from solidgear.core.system.law import Gap
 
 #: step times the fastest mode of the contacts, rad: a sixth of its period
 COARSE = 1.0

@@ -8,7 +8,7 @@ from math import radians
 
 import numpy as np
 
-from solidgear.errors import SolidgearError
+from solidgear.core.errors import SolidgearError
 from validation.reducer.design import ACROSS, Design
 
 #: pinion, wheel, sun, planet, ring: those that three planets assemble with at a ratio of ten

@@ -15,11 +15,11 @@ import scipy.sparse.linalg as spla
 from skfem import MeshHex, MeshHex2, MeshTet, MeshTet2
 
 import solidgear as sg
-from solidgear.kernel.assembly import tabulate
-from solidgear.meshing.quality import MeshError, check_mesh, element_ratios
-from solidgear.models.solid.matrices import _cell_rule, _matrices
-from solidgear.models.solid.mesh import _isoparametric
-from solidgear.scene import Scene, Segment
+from solidgear.core.kernel.assembly import tabulate
+from solidgear.core.meshing.quality import MeshError, check_mesh, element_ratios
+from solidgear.core.models.solid.matrices import _cell_rule, _matrices
+from solidgear.core.models.solid.mesh import _isoparametric
+from solidgear.core.scene import Scene, Segment
 from validation.stability.frame import Finding, curve
 
 HEIGHTS = (1.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-6)

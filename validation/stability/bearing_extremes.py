@@ -14,8 +14,8 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 
 import solidgear as sg
-from solidgear.body import Supports
-from solidgear.scene import STEEL, Port, Scene, Segment
+from solidgear.core.body import Supports
+from solidgear.core.scene import STEEL, Port, Scene, Segment
 from validation.manual.models import bearing, frequencies
 from validation.stability.frame import Finding, crossing, curve
 from validation.thesis.krylov import from_scene, krylov

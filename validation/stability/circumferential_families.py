@@ -12,14 +12,14 @@ from __future__ import annotations
 import numpy as np
 import scipy.sparse.linalg as spla
 
-from solidgear.meshing.grading import Grading
-from solidgear.meshing.layout import layout
-from solidgear.meshing.meridian import meridian
-from solidgear.models.harmonic.blocks import Work
-from solidgear.models.harmonic.circumferential import Families
-from solidgear.models.harmonic.mesh import harmonic_mesh
-from solidgear.scene import STEEL, Material, Scene, Segment
-from solidgear.solve.groups import LIGHT, MARGIN
+from solidgear.core.meshing.grading import Grading
+from solidgear.core.meshing.layout import layout
+from solidgear.core.meshing.meridian import meridian
+from solidgear.core.models.harmonic.blocks import Work
+from solidgear.core.models.harmonic.circumferential import Families
+from solidgear.core.models.harmonic.mesh import harmonic_mesh
+from solidgear.core.scene import STEEL, Material, Scene, Segment
+from solidgear.core.solve.groups import LIGHT, MARGIN
 from validation.stability.frame import Finding, columns
 
 MATERIALS = (

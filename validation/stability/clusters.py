@@ -12,9 +12,9 @@ import numpy as np
 import scipy.linalg as sla
 
 import solidgear as sg
-from solidgear.body import Supports
-from solidgear.judge.correlation import subspace_mac
-from solidgear.scene import Port, Scene, Segment
+from solidgear.core.body import Supports
+from solidgear.core.judge.correlation import subspace_mac
+from solidgear.core.scene import Port, Scene, Segment
 from validation.manual.models import bearing, frequencies
 from validation.stability.frame import Finding, curve
 from validation.stability.free_body_shift import shift_invert

@@ -10,8 +10,8 @@ from __future__ import annotations
 import numpy as np
 
 import solidgear as sg
-from solidgear.body import as_supports
-from solidgear.frames import DOF_NAMES
+from solidgear.core.body import as_supports
+from solidgear.core.frames import DOF_NAMES
 from validation.common import ROOT
 from validation.stability.frame import Finding, curve
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 import solidgear as sg
-from solidgear.reduction.effective_mass import METHODS, synthesise
+from solidgear.core.reduction.effective_mass import METHODS, synthesise
 from validation.common import ROOT
 from validation.stability.frame import Finding, columns
 

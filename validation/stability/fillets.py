@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import solidgear as sg
 from solidgear import Port, Scene, Segment
-from solidgear.judge.quantities import change
-from solidgear.judge.solving import solve
-from solidgear.scene import Chamfer, Fillet
+from solidgear.core.judge.quantities import change
+from solidgear.core.judge.solving import solve
+from solidgear.core.scene import Chamfer, Fillet
 from validation.shipped import GEOMETRY
 
 SHARES = (0.0, 0.02, 0.05, 0.10)

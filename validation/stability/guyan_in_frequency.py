@@ -12,8 +12,8 @@ import numpy as np
 import scipy.linalg as sla
 
 import solidgear as sg
-from solidgear.body import as_supports
-from solidgear.reduction.lumped_point import lumped_point
+from solidgear.core.body import as_supports
+from solidgear.core.reduction.lumped_point import lumped_point
 from validation.common import ROOT
 from validation.stability.bearing_extremes import assembled, block_of
 from validation.stability.frame import Finding, crossing, curve

@@ -11,9 +11,9 @@ from __future__ import annotations
 import numpy as np
 
 import solidgear as sg
-from solidgear.scene import Port, Scene, Segment
-from solidgear.scene.closed_form import mass_properties
-from solidgear.scene.outline import Outline
+from solidgear.core.scene import Port, Scene, Segment
+from solidgear.core.scene.closed_form import mass_properties
+from solidgear.core.scene.outline import Outline
 from validation.manual.models import FIRM, bearing
 from validation.stability.frame import Finding, curve
 

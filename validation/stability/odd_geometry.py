@@ -13,8 +13,8 @@ import re
 import numpy as np
 
 import solidgear as sg
-from solidgear.scene import Bearing, Port, Scene, Segment
-from solidgear.studies.check import check_scene
+from solidgear.core.scene import Bearing, Port, Scene, Segment
+from solidgear.guards.check import check_scene
 from validation.stability.frame import Finding, curve
 
 K = np.diag([1e9, 5e8, 1e9, 2e6, 0.0, 2e6])

@@ -17,7 +17,7 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from solidgear.report.folder import LOCK
+from solidgear.show.folder import LOCK
 from validation.common import ROOT
 from validation.fuzz.commands import not_whole
 from validation.stability.frame import Finding
@@ -221,7 +221,7 @@ def run(case: Case, room: Path) -> dict:
         # errors go through a pipe there.
         pipe = case.limit is not None and case.limit[0] == resource.RLIMIT_FSIZE
         child = subprocess.Popen(
-            [sys.executable, "-m", "solidgear.cli", *words],
+            [sys.executable, "-m", "solidgear.app", *words],
             env=env,
             cwd=room,
             stdin=subprocess.DEVNULL,

@@ -12,9 +12,9 @@ import scipy.sparse.linalg as spla
 from skfem import ElementQuad1
 
 import solidgear as sg
-from solidgear.kernel.assembly import reference, tabulate
-from solidgear.meshing.corners import sharpest_corner
-from solidgear.scene import STEEL, Port, Scene, Segment
+from solidgear.core.kernel.assembly import reference, tabulate
+from solidgear.core.meshing.corners import sharpest_corner
+from solidgear.core.scene import STEEL, Port, Scene, Segment
 from validation.manual.models import FIRM, bearing
 from validation.stability.frame import Finding, curve
 

@@ -13,7 +13,7 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 
 import solidgear as sg
-from solidgear.body import as_supports
+from solidgear.core.body import as_supports
 from validation.common import ROOT
 from validation.side_by_side import side_by_side
 from validation.stability.frame import Finding, curve

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 import solidgear as sg
-from solidgear.scene import STEEL, Port, Scene, Segment
+from solidgear.core.scene import STEEL, Port, Scene, Segment
 from validation.manual.models import bearing, frequencies
 from validation.stability.frame import Finding, crossing, curve
 

@@ -11,8 +11,8 @@ from __future__ import annotations
 import numpy as np
 
 import solidgear as sg
-from solidgear.body import Supports, as_supports
-from solidgear.judge.correlation import subspace_mac
+from solidgear.core.body import Supports, as_supports
+from solidgear.core.judge.correlation import subspace_mac
 from validation.common import ROOT
 from validation.stability.frame import Finding, crossing, curve
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 import solidgear as sg
-from solidgear.scene import Scene, Segment
+from solidgear.core.scene import Scene, Segment
 from validation.manual.exact import STEEL, ring_frequency
 from validation.manual.models import frequencies as elastic
 from validation.stability.frame import Finding, columns, crossing, curve

@@ -12,8 +12,8 @@ from __future__ import annotations
 import numpy as np
 
 import solidgear as sg
-from solidgear.scene import STEEL, Port, Scene, Segment
-from solidgear.solve.factor import factorise
+from solidgear.core.scene import STEEL, Port, Scene, Segment
+from solidgear.core.solve.factor import factorise
 from validation.manual.models import bearing
 from validation.stability.frame import Finding, curve
 

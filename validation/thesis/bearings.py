@@ -30,7 +30,7 @@ from solidgear.bearings.hertz import LINE_POWER, line_constant, line_pressure
 from solidgear.bearings.kinds import SHARES
 from solidgear.bearings.rating import static_roller_rating
 from solidgear.bearings.solved import solved
-from solidgear.scene import Bearing, BearingLoad, Catalogue, Scene
+from solidgear.core.scene import Bearing, BearingLoad, Catalogue, Scene
 from validation.common import ROOT
 
 PAGE = Path(__file__).with_suffix(".md")

@@ -13,7 +13,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.linalg import eigh
 
-from solidgear.system.gear_mesh import line_of_action, mean_radius
+from solidgear.core.system.gear_mesh import line_of_action, mean_radius
 from validation.common import results_folder, show, write_rows
 from validation.thesis.identify import Unknown
 from validation.thesis.lumped_pair import shaft_stiffness

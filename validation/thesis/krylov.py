@@ -22,7 +22,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from solidgear.errors import SolidgearError
+from solidgear.core.errors import SolidgearError
 
 #: greatest ``k l`` of a piece: below the first clamped root, 4.730, and a growth by exp(2) at most
 #: between orthonormalisations

@@ -1,7 +1,7 @@
 """A geared pair of rotors as 14 degrees of freedom: engine, pinion, gear and load.
 
-The pair is a :class:`solidgear.system.System` of two inertias and two rigid bodies at their lumped
-points, each in its own frame (drawn in :mod:`solidgear.system.gear_mesh`).  The system keeps
+The pair is a :class:`solidgear.core.system.System` of two inertias and two rigid bodies at their lumped
+points, each in its own frame (drawn in :mod:`solidgear.core.system.gear_mesh`).  The system keeps
 springs as strain rows and solves the modes; here are the words of its energies.
 """
 
@@ -12,10 +12,10 @@ from functools import cached_property
 
 import numpy as np
 
-from solidgear.system.gear_mesh import MeshVector
-from solidgear.system.links import BearingSpring, Link, mesh_spring, torsion_spring
-from solidgear.system.parts import Inertia, Part, RigidBody
-from solidgear.system.system import System
+from solidgear.core.system.gear_mesh import MeshVector
+from solidgear.core.system.links import BearingSpring, Link, mesh_spring, torsion_spring
+from solidgear.core.system.parts import Inertia, Part, RigidBody
+from solidgear.core.system.system import System
 
 # Components of the strain energy in the order and words of Hua (2010), figure 3.8 (a).
 COMPONENTS = (

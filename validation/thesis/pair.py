@@ -13,7 +13,7 @@ import numpy as np
 from scipy.linalg import eigh
 
 import solidgear as sg
-from solidgear.system.gear_mesh import (
+from solidgear.core.system.gear_mesh import (
     MeshVector,
     line_of_action,
     mean_radius,

@@ -13,12 +13,12 @@ from collections.abc import Mapping
 import numpy as np
 
 import solidgear as sg
-from solidgear.scene import Scene
-from solidgear.scene.train import SIDES, Train
-from solidgear.studies.train.local import local_give
-from solidgear.studies.train.models import Workshop
-from solidgear.studies.train.respond import Drive
-from solidgear.studies.train.shaft import JUDGE
+from solidgear.core.scene import Scene
+from solidgear.trains.file.train import SIDES, Train
+from solidgear.trains.assembly.local import local_give
+from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.response.respond import Drive
+from solidgear.trains.assembly.shaft import JUDGE
 from validation.common import ROOT, results_folder, show, write_rows
 
 LOWEST, MIDDLE, HIGHEST = 100.0, 1000.0, 4000.0

@@ -13,10 +13,10 @@ from dataclasses import replace
 import numpy as np
 
 import solidgear as sg
-from solidgear.reduction.superelement import Superelement, Truncation, assemble
-from solidgear.scene.train import SIDES, Train
-from solidgear.studies.train.models import Workshop
-from solidgear.studies.train.shaft import JUDGE
+from solidgear.core.reduction.superelement import Superelement, Truncation, assemble
+from solidgear.trains.file.train import SIDES, Train
+from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.shaft import JUDGE
 from validation.common import ROOT, results_folder, show, write_rows
 
 HIGHEST, REFERENCE = 4000.0, 160

@@ -9,10 +9,10 @@ from collections.abc import Iterable
 from functools import partial
 
 import solidgear as sg
-from solidgear.errors import SolidgearError
-from solidgear.quantity import Quantity
-from solidgear.scene import Scene
-from solidgear.scene.coned import coned
+from solidgear.core.errors import SolidgearError
+from solidgear.core.quantity import Quantity
+from solidgear.core.scene import Scene
+from solidgear.core.scene.coned import coned
 from validation.campaign.case import Case, Run
 from validation.campaign.rows import SMALL, SURE, Cost, Found, Row, Said, held
 from validation.campaign.scenes.bodies import BODIES

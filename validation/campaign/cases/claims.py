@@ -13,15 +13,15 @@ from typing import Any
 import numpy as np
 
 import solidgear as sg
-from solidgear.judge.quantities import JUDGED
-from solidgear.judge.study import study
-from solidgear.judge.ties import SCENE
-from solidgear.ladder.model import SOLID
-from solidgear.ladder.registry import LADDER
-from solidgear.models.kinds import CYCLIC
-from solidgear.models.solid.featured import featured_body, meshed
-from solidgear.models.solid.plan import tetrahedra_plan
-from solidgear.scene.closed_form import mass_properties
+from solidgear.core.judge.quantities import JUDGED
+from solidgear.core.judge.study import study
+from solidgear.core.judge.ties import SCENE
+from solidgear.core.ladder.model import SOLID
+from solidgear.core.ladder.registry import LADDER
+from solidgear.core.models.kinds import CYCLIC
+from solidgear.cuts.solid.featured import featured_body, meshed
+from solidgear.core.models.solid.plan import tetrahedra_plan
+from solidgear.core.scene.closed_form import mass_properties
 from validation.campaign.case import Case, Run
 from validation.campaign.cases.commands import spoken
 from validation.campaign.rows import CLAIM, Cost, Found, Row

@@ -6,9 +6,9 @@ import subprocess
 import sys
 from pathlib import Path
 
-from solidgear.ladder.model import SOLID
-from solidgear.ladder.registry import LADDER
-from solidgear.scene import Scene
+from solidgear.core.ladder.model import SOLID
+from solidgear.core.ladder.registry import LADDER
+from solidgear.core.scene import Scene
 from validation.common import ROOT
 
 #: exit codes of a command that knows what it says: done, refused, tolerance not reached
@@ -47,7 +47,7 @@ def spoken(scene: Scene, path: Path) -> list[str]:
 
 def _said(words: list[str]) -> tuple[int, str]:
     found = subprocess.run(
-        [sys.executable, "-m", "solidgear.cli", "-q", *words],
+        [sys.executable, "-m", "solidgear.app", "-q", *words],
         capture_output=True,
         text=True,
         timeout=LONGEST,

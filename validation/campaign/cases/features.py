@@ -12,14 +12,14 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import solidgear as sg
-from solidgear.judge.bars import sizes_of
-from solidgear.judge.quantities import JUDGED, size
-from solidgear.judge.sequence_bars import sequence_bars
-from solidgear.judge.solution import Solution
-from solidgear.judge.study import study
-from solidgear.judge.ties import SCENE
-from solidgear.ladder.registry import LADDER
-from solidgear.quantity import Quantity
+from solidgear.core.judge.bars import sizes_of
+from solidgear.core.judge.quantities import JUDGED, size
+from solidgear.core.judge.sequence_bars import sequence_bars
+from solidgear.core.judge.solution import Solution
+from solidgear.core.judge.study import study
+from solidgear.core.judge.ties import SCENE
+from solidgear.core.ladder.registry import LADDER
+from solidgear.core.quantity import Quantity
 from validation.campaign.case import Case, Run
 from validation.campaign.rows import (
     DECIDED,

@@ -7,7 +7,7 @@ from __future__ import annotations
 import argparse
 import time
 
-from solidgear.studies.stress.notch import UNIT_LOADS, fillet_factors
+from solidgear.strength.stress.notch import UNIT_LOADS, fillet_factors
 from validation.campaign.case import Case, Run
 from validation.campaign.rows import DECIDED, Cost, Found, Said, Truth, held
 from validation.campaign.scenes.fillets import NAME, filleted_shoulder

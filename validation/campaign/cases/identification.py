@@ -11,9 +11,9 @@ from pathlib import Path
 import numpy as np
 
 import solidgear as sg
-from solidgear.errors import SolidgearError
-from solidgear.studies.measured.data import Measured
-from solidgear.studies.measured.identify import identify
+from solidgear.core.errors import SolidgearError
+from solidgear.measured.data import Measured
+from solidgear.measured.identify import identify
 from validation.campaign.case import Case, Run
 from validation.campaign.rows import CLAIM, Found, Row
 

@@ -8,8 +8,8 @@ import argparse
 
 import numpy as np
 
-from solidgear.ladder import build
-from solidgear.solve.modes import modes
+from solidgear.core.ladder import build
+from solidgear.core.solve.modes import modes
 from validation.campaign.case import Case, Run
 from validation.campaign.rows import CLAIM, Found, Row
 from validation.campaign.scenes.small import small

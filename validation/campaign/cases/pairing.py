@@ -15,17 +15,17 @@ from typing import Any
 import numpy as np
 
 import solidgear as sg
-from solidgear.body.surface import Surface
-from solidgear.scene.file import scene_of
-from solidgear.scene.paths import Tables
-from solidgear.studies.measured import correlate
-from solidgear.studies.measured.alignment import BANDWIDTH
-from solidgear.studies.measured.computed import Computed
-from solidgear.studies.measured.correlate import POSSIBLE, SURE, peaks_of
-from solidgear.studies.measured.data import Measured
-from solidgear.studies.measured.same_part import alignment_of
-from solidgear.studies.measured.shapes import OnPoints
-from solidgear.studies.measured.universal import Shapes
+from solidgear.core.body.surface import Surface
+from solidgear.core.scene.file import scene_of
+from solidgear.core.scene.paths import Tables
+from solidgear.measured import correlate
+from solidgear.measured.alignment import BANDWIDTH
+from solidgear.measured.computed import Computed
+from solidgear.measured.correlate import POSSIBLE, SURE, peaks_of
+from solidgear.measured.data import Measured
+from solidgear.measured.same_part import alignment_of
+from solidgear.measured.shapes import OnPoints
+from solidgear.measured.universal import Shapes
 from validation.campaign.case import Case, Run
 from validation.campaign.cases.identification import NOISE, SHAPES, shaft
 from validation.campaign.rows import CLAIM, Found, Row

@@ -9,12 +9,12 @@ from __future__ import annotations
 import argparse
 import time
 
-from solidgear.judge.quantities import Values, size
-from solidgear.judge.solution import Solution
-from solidgear.judge.study import study
-from solidgear.judge.ties import SCENE
-from solidgear.quantity import COMPLIANCE, Quantity
-from solidgear.scene import Scene
+from solidgear.core.judge.quantities import Values, size
+from solidgear.core.judge.solution import Solution
+from solidgear.core.judge.study import study
+from solidgear.core.judge.ties import SCENE
+from solidgear.core.quantity import COMPLIANCE, Quantity
+from solidgear.core.scene import Scene
 from validation.campaign.case import Case, Run
 from validation.campaign.cases.shafts import FINE, MOST_UNKNOWNS, SHARE
 from validation.campaign.rows import DECIDED, Cost, Found, Row, Said, held

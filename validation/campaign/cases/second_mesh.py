@@ -7,12 +7,12 @@ from __future__ import annotations
 import argparse
 import time
 
-from solidgear.body import as_supports
-from solidgear.judge.bounded import mode_bars
-from solidgear.judge.coarser_mesh import coarser_bars
-from solidgear.ladder import build
-from solidgear.ladder.registry import LADDER
-from solidgear.solve.modes import modes
+from solidgear.core.body import as_supports
+from solidgear.core.judge.bounded import mode_bars
+from solidgear.core.judge.coarser_mesh import coarser_bars
+from solidgear.core.ladder import build
+from solidgear.core.ladder.registry import LADDER
+from solidgear.core.solve.modes import modes
 from validation.campaign.case import Case, Run
 from validation.campaign.rows import DECIDED, Found, Row
 from validation.campaign.scenes.shafts import random_scene

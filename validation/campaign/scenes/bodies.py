@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solidgear.scene import Ask, Bearing, Material, Port, Scene, Segment
+from solidgear.core.scene import Ask, Bearing, Material, Port, Scene, Segment
 
 MM = 1e-3
 STEEL = Material(E=2.07e11, nu=0.3, density=7850)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from solidgear.errors import SceneError
-from solidgear.scene import Fillet, Material, Port, Scene, Segment
+from solidgear.core.errors import SceneError
+from solidgear.core.scene import Fillet, Material, Port, Scene, Segment
 from validation.campaign.scenes.shafts import TRIES, between
 
 #: of the fillet of every scene

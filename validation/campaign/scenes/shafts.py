@@ -14,8 +14,8 @@ import zlib
 
 import numpy as np
 
-from solidgear.errors import SceneError
-from solidgear.scene import Ask, Bearing, Material, Port, Scene, Segment
+from solidgear.core.errors import SceneError
+from solidgear.core.scene import Ask, Bearing, Material, Port, Scene, Segment
 from validation.campaign.scenes.springs import random_springs
 
 MATERIALS = {

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.errors import SceneError
-from solidgear.scene import STEEL, Bearing, Material, Port, Scene, Segment
+from solidgear.core.errors import SceneError
+from solidgear.core.scene import STEEL, Bearing, Material, Port, Scene, Segment
 
 MATERIALS = (
     STEEL,

@@ -18,8 +18,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solidgear.ladder import build
-from solidgear.scene import Scene
+from solidgear.core.ladder import build
+from solidgear.core.scene import Scene
 
 #: edges at a singular vertex are no longer than this many times the shortest one there
 STRETCH = 4.0

@@ -25,19 +25,19 @@ from pathlib import Path
 from typing import Any
 
 import solidgear as sg
-from solidgear.body import as_supports
-from solidgear.judge.quantities import size
-from solidgear.judge.sequence_bars import RIGID_EDGE
-from solidgear.judge.solving import Answer, answer_of_body, solve
-from solidgear.ladder.registry import LADDER
-from solidgear.meshing.corners import SHOULDER
-from solidgear.meshing.cuts import mirror_plane
-from solidgear.models.sector.body import sector
-from solidgear.models.solid.featured import featured_body, meshed
-from solidgear.models.solid.plan import tetrahedra_plan
-from solidgear.quantity import QUANTITIES
-from solidgear.scene.shaft import resolved
-from solidgear.solve.mixtures import mixtures
+from solidgear.core.body import as_supports
+from solidgear.core.judge.quantities import size
+from solidgear.core.judge.sequence_bars import RIGID_EDGE
+from solidgear.core.judge.solving import Answer, answer_of_body, solve
+from solidgear.core.ladder.registry import LADDER
+from solidgear.core.meshing.corners import SHOULDER
+from solidgear.cuts.solid.cuts import mirror_plane
+from solidgear.cuts.sector.body import sector
+from solidgear.cuts.solid.featured import featured_body, meshed
+from solidgear.core.models.solid.plan import tetrahedra_plan
+from solidgear.core.quantity import QUANTITIES
+from solidgear.core.scene.shaft import resolved
+from solidgear.core.solve.mixtures import mixtures
 
 #: of the plain part, and a coarser one whose distance tells how sure it is
 PLAIN = {"order": 5, "layers": 3, "edge_layers": 2, "relative_size": 4.0}

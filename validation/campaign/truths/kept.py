@@ -21,11 +21,11 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.judge.correlation import subspace_mac
-from solidgear.judge.quantities import size
-from solidgear.machine.whole_file import whole
-from solidgear.quantity import Quantity
-from solidgear.scene import Ask, Scene
+from solidgear.core.judge.correlation import subspace_mac
+from solidgear.core.judge.quantities import size
+from solidgear.core.machine.whole_file import whole
+from solidgear.core.quantity import Quantity
+from solidgear.core.scene import Ask, Scene
 from validation.campaign.rows import Truth
 from validation.campaign.truths.product import product_reference
 from validation.campaign.truths.reference import LEVELS, Reference, spectral_reference

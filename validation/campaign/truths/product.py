@@ -5,9 +5,9 @@ from __future__ import annotations
 import time
 
 import solidgear as sg
-from solidgear.errors import SolidgearError
-from solidgear.judge.quantities import size
-from solidgear.scene import Scene
+from solidgear.core.errors import SolidgearError
+from solidgear.core.judge.quantities import size
+from solidgear.core.scene import Scene
 from validation.campaign.truths.reference import Reference, solved
 
 #: orders, and the rest of the mesh; the second where rounding drowns the first

@@ -22,12 +22,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from solidgear.body import as_supports
-from solidgear.judge.quantities import measure, size
-from solidgear.judge.solving import Statics
-from solidgear.quantity import QUANTITIES, STIFFNESS
-from solidgear.scene import Scene
-from solidgear.solve.modes import modes
+from solidgear.core.body import as_supports
+from solidgear.core.judge.quantities import measure, size
+from solidgear.core.judge.solving import Statics
+from solidgear.core.quantity import QUANTITIES, STIFFNESS
+from solidgear.core.scene import Scene
+from solidgear.core.solve.modes import modes
 from validation.campaign.truths.corner_mesh import TooFine, corner_mesh
 from validation.campaign.truths.spectral import spectral
 

@@ -17,10 +17,10 @@ from __future__ import annotations
 import numpy as np
 import scipy.sparse as sp
 
-from solidgear.body import Block, Body, Port
-from solidgear.kernel.attachment import tie_rigidly
-from solidgear.models.spectrum import elastic_scale
-from solidgear.scene import Scene
+from solidgear.core.body import Block, Body, Port
+from solidgear.core.kernel.attachment import tie_rigidly
+from solidgear.core.models.spectrum import elastic_scale
+from solidgear.core.scene import Scene
 from validation.campaign.truths.corner_mesh import CornerMesh
 
 #: local edges of a cell in the direction in which its nodes are counted

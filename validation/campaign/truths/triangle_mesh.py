@@ -21,9 +21,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from solidgear.errors import SolidgearError
-from solidgear.meshing.gmsh_session import Session, import_gmsh
-from solidgear.scene import Scene
+from solidgear.core.errors import SolidgearError
+from solidgear.core.meshing.gmsh_session import Session, import_gmsh
+from solidgear.core.scene import Scene
 
 #: of the largest radius: places that are one
 SAME = 1e-9

@@ -32,8 +32,8 @@ from skfem import (
     MeshTri,
 )
 
-from solidgear.errors import SolidgearError
-from solidgear.scene import Scene
+from solidgear.core.errors import SolidgearError
+from solidgear.core.scene import Scene
 from validation.campaign.truths.triangle_mesh import TriangleMesh
 
 ELEMENTS = {2: ElementTriP2, 3: ElementTriP3, 4: ElementTriP4}

@@ -27,9 +27,9 @@ import scipy.linalg as sla
 import scipy.sparse as sp
 from scipy.sparse.linalg import LinearOperator, SuperLU, eigsh, splu
 
-from solidgear.errors import SolidgearError, listed
-from solidgear.judge.quantities import size
-from solidgear.scene import Scene
+from solidgear.core.errors import SolidgearError, listed
+from solidgear.core.judge.quantities import size
+from solidgear.core.scene import Scene
 from validation.campaign.truths.triangle_mesh import triangle_mesh
 from validation.campaign.truths.triangle_solid import FAMILIES, Family, Solid
 

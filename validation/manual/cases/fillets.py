@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from solidgear.scene import Fillet, Port, Scene, Segment
-from solidgear.studies.stress.din743 import LOADS, Load, form_factor
-from solidgear.studies.stress.notch import fillet_factors
-from solidgear.studies.stress.published import peterson
+from solidgear.core.scene import Fillet, Port, Scene, Segment
+from solidgear.strength.stress.din743 import LOADS, Load, form_factor
+from solidgear.strength.stress.notch import fillet_factors
+from solidgear.strength.stress.published import peterson
 from validation.common import markdown
 from validation.manual.case import Answer, Case, Model, Reference
 from validation.manual.exact_fillets import finite_elements

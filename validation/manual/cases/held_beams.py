@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 import solidgear as sg
-from solidgear.reduction.effective_mass import synthesise
+from solidgear.core.reduction.effective_mass import synthesise
 from validation.manual.case import Answer, Case, Model, Reference, references
 from validation.manual.exact import (
     STEEL,

@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 
 import solidgear as sg
-from solidgear.judge.quantities import measure
-from solidgear.judge.ties import attached
+from solidgear.core.judge.quantities import measure
+from solidgear.core.judge.ties import attached
 from validation.common import ROOT
 from validation.manual.case import Answer, Case, Model, Reference, references
 from validation.manual.models import frequencies

@@ -9,11 +9,11 @@ from math import cos, pi, radians, sin
 import numpy as np
 import scipy.linalg as sla
 
-from solidgear.scene import Bearing, Material, Port, Scene, Segment
-from solidgear.scene.point_mass import PointMass
-from solidgear.scene.train import Train
-from solidgear.scene.train_file import ShortFile
-from solidgear.studies.train.models import Workshop
+from solidgear.core.scene import Bearing, Material, Port, Scene, Segment
+from solidgear.core.scene.point_mass import PointMass
+from solidgear.trains.file.train import Train
+from solidgear.trains.file.reading import ShortFile
+from solidgear.trains.assembly.models import Workshop
 from validation.manual.case import Answer, Case, Model, Reference, references
 
 RAO = (

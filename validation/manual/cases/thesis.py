@@ -101,7 +101,7 @@ STIFFNESS = Case(
         ),
     ),
     remarks="Equations 52 and 53 of the same source, which define its effective masses, have no "
-    "real solution on either pinion: `solidgear.reduction.effective_mass` says why and "
+    "real solution on either pinion: `solidgear.core.reduction.effective_mass` says why and "
     "`tests/test_effective_mass.py` holds it. Bearing 0 of the straddled pinion is called a "
     "straight roller and carries the numbers of bearing 2; kept as published.",
 )

@@ -1,0 +1,5 @@
+"""``python -m solidgear.app``."""
+
+from solidgear.app import main
+
+main()

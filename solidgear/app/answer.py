@@ -1,0 +1,241 @@
+"""The command that answers a question from the cheapest model."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from solidgear.show.command import NOT_REACHED, caution, command, say
+from solidgear.show.arguments import load
+from solidgear.show.options import SceneFile, Shown, relative
+from solidgear.core.errors import SolidgearError
+from solidgear.core.judge.answer import Answered, Step
+from solidgear.core.judge.answer import answer as solve
+from solidgear.core.judge.open_record import OpenNumbers
+from solidgear.core.judge.record import WhereRecord
+from solidgear.core.judge.settle import Settled
+from solidgear.core.judge.steps import ABOVE, BELOW
+from solidgear.core.judge.where import error_places
+from solidgear.core.ladder.model import BEAM
+from solidgear.core.ladder.registry import LADDER
+from solidgear.core.models.kinds import PARTS
+from solidgear.core.quantity import Quantity
+from solidgear.show.open_words import columns as ranges
+from solidgear.show.open_words import remark
+from solidgear.show.plot import check_ending
+from solidgear.show.table import Column, Table, text
+from solidgear.show.units import units_named
+from solidgear.compare.page.where_chart import draw_where, worth_naming
+from solidgear.show.words import bar_of, count, percent, seconds
+from solidgear.core.scene import Scene
+from solidgear.variants.budget.budget import beside
+from solidgear.guards.bearings import misfits
+from solidgear.guards.data import facing_one_way
+
+
+@command
+def answer(
+    scene: SceneFile,
+    *,
+    tol: Annotated[
+        float | None,
+        relative("--tol", "Relative error allowed, such as 1e-3; else the scene's own."),
+    ] = None,
+    ask: Annotated[
+        str,
+        typer.Option(
+            "--ask",
+            help="Comma-separated: C_zz, K_thx, bending, f1 (the lowest), ..., C_zz@gear at a further point, "
+            "C_zz@wheel@pinion between two; by default what the scene asks for.",
+        ),
+    ] = "",
+    where: Annotated[
+        bool,
+        typer.Option("--where", help="Also say where in the shaft the error of the answer sits."),
+    ] = False,
+    picture: Annotated[
+        Path | None,
+        typer.Option("--picture", help="The same as a picture: a file that ends in .png or .svg."),
+    ] = None,
+    run: Shown,
+) -> None:
+    if picture is not None:
+        check_ending(picture)  # before anything is solved
+    loaded = load(scene)
+    for sentence in (*facing_one_way(loaded), *misfits(loaded)):
+        print(caution(sentence), file=sys.stderr)
+    places: WhereRecord | None = None
+    unplaced = ""
+    with run.progress() as progress:
+        found = solve(loaded, tol, ask, progress=progress)
+        progress("what the data leave open")
+        open_ = beside(loaded)
+        if where or picture is not None:
+            progress("where the error sits")
+            try:
+                places = _places(loaded, found)
+            except SolidgearError as error:
+                unplaced = str(error)
+    if places is not None and picture is not None:
+        _draw(places, picture)
+    if run.as_json:
+        out = found.as_dict() | {"open": open_.model_dump(mode="json")}
+        if where or picture is not None:
+            out["where"] = {"error": unplaced} if places is None else _plain(places)
+        print(json.dumps(out, allow_nan=False))
+    else:
+        say(_values(found, run.units, open_), _path(found))
+        say(*sentences(found), *_of_round_part(loaded, found))
+        if places is not None:
+            say(_where_table(places), _sentence(places))
+        if unplaced:
+            say(f"Where the error sits: {unplaced}.")
+        if places is not None and picture is not None:
+            say(f"Picture: {picture}")
+    # the usual question is of what there is; one that names a number wants that number
+    if not found.reached or found.missing and (ask or loaded.ask.quantities):
+        raise typer.Exit(NOT_REACHED)
+
+
+def _values(found: Answered, units: str, open_: OpenNumbers) -> Table:
+    chosen = units_named(units)
+    notes = []
+    if any(row.side in (ABOVE, BELOW) for row in found.values):
+        notes.append("a bar with one sign: the exact answer lies on that side only")
+    if any(row.quantity.diagonals for row in found.values):
+        notes.append(
+            "bars of couplings are relative to the geometric mean of both diagonal entries"
+        )
+    columns = [
+        text("quantity", lambda row: row.quantity),
+        Column("value", lambda row: "0" if row.zero else chosen.number(row.value, row.unit, 6)),
+        text("unit", lambda row: chosen.unit(row.unit)),
+        Column("bar", bar_of),
+        *ranges(open_, lambda row: row.quantity),
+        text("from", lambda row: row.how),
+    ]
+    notes += filter(None, [remark(open_)])
+    return Table("", columns, found.values, "\n".join(notes))
+
+
+def _path(found: Answered) -> Table:
+    columns = [
+        text("tried", lambda step: f"{step.rung}, chosen" if step.chosen else step.rung),
+        text("mesh", lambda step: step.setting),
+        Column("dofs", lambda step: step.unknowns, count),
+        Column("bar", lambda step: percent(step.bar, signed=False)),
+        Column("time, s", lambda step: step.seconds, seconds),
+    ]
+    return Table("", columns, _solved(found))
+
+
+def _solved(found: Answered) -> list[Step]:
+    return [step for step in found.steps if step.unknowns is not None]
+
+
+def sentences(found: Answered | Settled) -> list[str]:
+    """Plain text of the choice: solids that could not answer and why, and whether the tolerance is kept.
+
+    Beams are passed over always, for they have no error of their own to show.
+    """
+    passed: dict[str, list[str]] = {}
+    for step in found.steps:
+        if not step.valid and LADDER[step.rung].family != BEAM:
+            passed.setdefault(step.why, []).append(step.rung)
+    lines = [f"Passed over: {', '.join(names)} ({why})." for why, names in passed.items()]
+    if found.missing:
+        lines.append(f"Not there: {_absent(found.missing)}.")
+    asked = f"{100 * found.tolerance:g} %"
+    if found.reached:
+        there = ", what is there" if found.missing else ""
+        lines.append(f"Within the {asked} asked{there}.")
+        return lines
+    why = next((step.why for step in found.steps if step.chosen and step.why), "")
+    lines.append(f"Not reached: {asked} was asked for{f'; {why}' if why else ''}.")
+    return lines
+
+
+def _of_round_part(scene: Scene, found: Answered) -> list[str]:
+    """Remark that numbers are of the round part, where a mesh file is answered by a model of revolution."""
+    body = scene.body
+    if body is None or not body.one_mesh or PARTS in LADDER[found.rung].holds:
+        return []
+    return [
+        f"Numbers of the round part of {body.name}, whose volume is "
+        f"{percent(body.round_volume - 1)} from that of its mesh; the mesh itself is solved "
+        f"by -f solid of stiffness and modes, {'and judged by compare' if body.coarser else 'without a bar'}."
+    ]
+
+
+def _absent(missing: Sequence[Quantity]) -> str:
+    """Quantities that a scene does not have, each kind with why."""
+    free = [q for q in missing if not q.is_frequency]
+    modes = [q for q in missing if q.is_frequency]
+    one = len(free) == 1
+    whys = [
+        (free, f"{'a motion' if one else 'motions'} that no bearing resists"),
+        (modes, "no such mode among the lowest"),
+    ]
+    return "; ".join(f"{', '.join(names)} ({why})" for names, why in whys if names)
+
+
+def _places(scene: Scene, found: Answered) -> WhereRecord:
+    """Places of the error of the number with the widest bar, on the finest mesh it was solved on.
+
+    Raises
+    ------
+    SolidgearError
+        For the answer of another model than the harmonic solid, or where nothing was answered.
+    """
+    if found.rung != "harmonic":
+        raise SolidgearError(
+            f"only known of the harmonic solid; this answer is that of the {LADDER[found.rung].title}"
+        )
+    if not found.values:
+        raise SolidgearError("nothing that was asked for exists in this scene")
+    widest = max(found.values, key=lambda value: value.bar)
+    solved = [step for step in _solved(found) if not step.only or widest.quantity in step.only]
+    places = error_places(scene, widest.quantity, solved[-1].options)
+    return places.model_copy(update={"total": widest.bar})
+
+
+def _where_table(places: WhereRecord) -> Table:
+    """Places of the error with their shares of it, the largest first."""
+
+    def millimetres(value: float) -> str:
+        return f"{1e3 * value:.4g}"
+
+    columns = [
+        Column(f"error of {places.quantity}", lambda row: row.what),
+        Column("y, mm", lambda row: row.y, millimetres),
+        Column("r, mm", lambda row: "" if row.r is None else row.r, millimetres),
+        Column("within, mm", lambda row: "" if row.reach is None else row.reach, millimetres),
+        Column("share", lambda row: row.share, lambda share: f"{100 * share:.1f} %"),
+    ]
+    return Table("", columns, worth_naming(places.rows))
+
+
+def _sentence(places: WhereRecord) -> str:
+    """Sentences on the places with most of the error, the width of the bar, and the cost of
+    telling.
+    """
+    total = percent(places.total, signed=False)
+    return f"{places.sentence} (a bound by local problems, {total}; {seconds(places.seconds)} s)."
+
+
+def _plain(places: WhereRecord) -> dict[str, Any]:
+    """Places as ``--json`` gives them: all but the mesh and the share of every cell, which only a
+    picture needs.
+    """
+    return places.model_dump(exclude={"model", "points", "cells", "shares"})
+
+
+def _draw(places: WhereRecord, picture: Path) -> None:
+    """Write a picture of the mesh, every cell with its share of the error."""
+    title = f"Bar of {places.quantity} by cells, order {places.order}"
+    draw_where(picture, places, title)

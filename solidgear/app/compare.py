@@ -1,0 +1,232 @@
+"""Command ``compare``: a scene or a train by every model, or two files of a kind."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from solidgear.show.command import caution, command, say
+from solidgear.compare.race.command import run_chart
+from solidgear.show.arguments import load
+from solidgear.show.options import MODEL, SceneFile, Shown, options_by_name, refuse
+from solidgear.trains.judge.command import compare_train
+from solidgear.trains.options import Pair, Reduced
+from solidgear.core.elements import ELEMENTS
+from solidgear.core.errors import SolidgearError, listed
+from solidgear.core.ladder.registry import LADDER
+from solidgear.compare.two import two_shafts_page, two_trains_page
+from solidgear.show.folder import held
+from solidgear.show.terminal import closing_lines, final_table, verdict_text
+from solidgear.show.units import units_named
+from solidgear.compare.two.differences import differences
+from solidgear.core.scene.toml_file import is_train
+from solidgear.compare.comparison import check_models
+from solidgear.compare.comparison import compare as compared
+from solidgear.core.loading import load as read
+from solidgear.trains.assembly.shaft import checked_model
+from solidgear.compare.two.two_trains import TwoTrains, two_trains
+from solidgear.compare.two.two_shafts import TwoShafts, two_shafts
+
+
+@command
+def compare(
+    scene: SceneFile,
+    more: Annotated[
+        list[Path] | None,
+        typer.Argument(
+            help="A second file of its kind, to be held beside the first.", show_default=False
+        ),
+    ] = None,
+    *,
+    out: Annotated[
+        Path,
+        typer.Option(
+            "--out", "-o", help="Folder for results.json, report.html, renders and vtu files."
+        ),
+    ] = Path("out"),
+    models: Annotated[
+        str,
+        typer.Option("--models", help=f"Comma-separated: {','.join(LADDER.names)}."),
+    ] = ",".join(LADDER.names),
+    renders: Annotated[
+        bool,
+        typer.Option("--renders/--no-renders", help="Draw the first bending mode of every model."),
+    ] = True,
+    solid_element: Annotated[
+        str | None, typer.Option("--solid-element", help=f"One of {listed(ELEMENTS)}.")
+    ] = None,
+    settings: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set",
+            help="Builder option of one model as MODEL.key=value, repeatable: "
+            "solid.around=32, harmonic.order=8. One that speaks of the mesh fixes it.",
+        ),
+    ] = None,
+    chart: Annotated[
+        bool,
+        typer.Option(
+            "--chart",
+            help="Also chart error against cost, as a section of the report (about four minutes more).",
+        ),
+    ] = False,
+    pinion: Annotated[
+        str | None,
+        typer.Option("--pinion", help=f"Of two trains: model of both pinions, {MODEL} else."),
+    ] = None,
+    gear: Annotated[
+        str | None, typer.Option("--gear", help="Of two trains: model of both gears, as --pinion.")
+    ] = None,
+    shafts: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--shaft",
+            help="Of two trains: model of a shaft of another name, input=euler; repeatable.",
+        ),
+    ] = None,
+    mesh: Annotated[
+        str | None,
+        typer.Option(
+            "--mesh", help="Of two trains: whose transmission error drives, of several; the first."
+        ),
+    ] = None,
+    run: Shown,
+) -> None:
+    of_one_shaft = {
+        "--models": models != ",".join(LADDER.names),
+        "--solid-element": bool(solid_element),
+        "--set": bool(settings),
+        "--chart": chart,
+    }
+    of_trains = {
+        "--pinion": bool(pinion),
+        "--gear": bool(gear),
+        "--shaft": bool(shafts),
+        "--mesh": bool(mesh),
+    }
+    if more:
+        mix = Pair(pinion or MODEL, gear or MODEL, shafts)
+        compare_two([scene, *more], out, mix, mesh, run, of_one_shaft, of_trains)
+        return
+    refuse(of_trains, f"two trains, and {scene} is one file: every model of it is solved")
+    if is_train(scene):
+        compare_train(scene, out, renders, run, of_one_shaft)
+        return
+
+    loaded = read(scene)
+    wanted = tuple(m.strip() for m in models.split(",") if m.strip())
+    check_models(wanted)
+    chosen = options_by_name(settings, LADDER.bodies, "model", "solid.around=32")
+    if solid_element:
+        chosen.setdefault("solid", {})["element"] = solid_element
+    with held(out):
+        with run.progress() as progress:
+            found = compared(loaded, wanted, settings=chosen, progress=progress)
+            drawn = renders and found.record.complete
+            found.write_report(out, renders=drawn, units=run.units, progress=progress)
+        if chart and found.record.complete:
+            run_chart(loaded, out, quiet=run.as_json)
+    if run.as_json:
+        print(json.dumps(found.results, allow_nan=False))
+    else:
+        say(final_table(found.record), verdict_text(found.record), soft_wrap=False)
+        say(*closing_lines(found.record), f"Report: {out / 'report.html'}")
+    if not found.record.complete:
+        raise typer.Exit(130)
+    if not found.solutions:
+        raise typer.Exit(1)
+
+
+#: where options of one shaft lead
+TRAINS = "of two trains --pinion, --gear and --shaft choose the models"
+
+
+def compare_two(
+    files: list[Path],
+    out: Path,
+    mix: Pair,
+    mesh: str | None,
+    run: Shown,
+    given: dict[str, bool],
+    of_trains: dict[str, bool],
+) -> None:
+    """Two trains beside each other, or two shafts: just two files of one kind. `given` and
+    `of_trains` are the options that speak of one shaft and of trains, and tell of each whether it
+    was given.
+    """
+    if len(files) > 2:
+        raise SolidgearError(f"compare takes one file, or two of a kind; {len(files)} are given")
+    a, b = map(str, files)
+    trains = is_train(a), is_train(b)
+    if trains[0] != trains[1]:
+        one, other = (a, b) if trains[0] else (b, a)
+        raise SolidgearError(
+            f"{one} is a train and {other} one shaft: compare takes two trains, two shafts, or either file alone"
+        )
+    if trains[0]:
+        refuse(given, f"one shaft, and {files[0]} is a train: {TRAINS}")
+    else:
+        _refuse_of_two_shafts(given | of_trains)
+    if a == b or (os.path.exists(a) and os.path.exists(b) and os.path.samefile(a, b)):
+        _say_same(a, b, "two trains" if trains[0] else "two shafts", run)
+        return
+    solve = _two_trains(a, b, mix, mesh) if trains[0] else _two_shafts(a, b)
+    with held(out), run.progress() as progress:
+        found = solve(progress=progress)
+        progress("report")
+        found.write_report(out, units=run.units)
+    if run.as_json:
+        print(json.dumps(found.results, allow_nan=False))
+        return
+    printed = two_trains_page.printed if trains[0] else two_shafts_page.printed
+    say(
+        *(f"{one.label}, {one.title}" for one in found.both),
+        *printed(found, units_named(run.units)),
+        *map(caution, found.cautions),
+        f"Report: {out / 'report.html'}",
+        soft_wrap=False,
+    )
+
+
+def _refuse_of_two_shafts(given: dict[str, bool]) -> None:
+    for option in (option for option, there in given.items() if there):
+        raise SolidgearError(
+            f"{option} does not apply to two shafts: both are solved by the model that the judge "
+            "chooses, to bars of a tenth of their tolerance"
+        )
+
+
+def _say_same(a: str, b: str, kind: str, run: Shown) -> None:
+    what = f"{a} is given twice" if a == b else f"{a} and {b} are one file"
+    sentence = f"{what}: nothing differs, and nothing was solved."
+    if run.as_json:
+        print(json.dumps({"kind": kind, "differences": [], "sentences": [sentence]}))
+    else:
+        say(sentence)
+
+
+def _two_trains(a: str, b: str, mix: Pair, mesh: str | None) -> Callable[..., TwoTrains]:
+    """Comparison of two train files, to be run."""
+    shops = [Reduced().workshop(Path(path)) for path in (a, b)]
+    models = mix.by_shaft(shops[0].train)
+    for model in models.values():
+        checked_model(model)
+    return partial(two_trains, shops, _names(a, b), differences(a, b), *models.values(), mesh=mesh)
+
+
+def _two_shafts(a: str, b: str) -> Callable[..., TwoShafts]:
+    """Comparison of two scene files, to be run."""
+    scenes = [load(Path(path)) for path in (a, b)]
+    return partial(two_shafts, scenes, _names(a, b), differences(a, b))
+
+
+def _names(a: str, b: str) -> tuple[str, str]:
+    """Names of two files: those without folder and ending, unless they are the same."""
+    short = Path(a).stem, Path(b).stem
+    return short if short[0] != short[1] else (a, b)

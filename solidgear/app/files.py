@@ -1,0 +1,189 @@
+"""Commands that give files to begin with: new, scenes; and the options of the models."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterator, Mapping
+from importlib.metadata import PackageNotFoundError, files
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from solidgear.show.command import command, say
+from solidgear.app.starts import STARTS, start
+from solidgear.core.errors import SolidgearError, nearest, show
+from solidgear.core.ladder.model import Model
+from solidgear.core.ladder.registry import LADDER
+from solidgear.core.machine.whole_file import whole
+from solidgear.core.models.options import Option, limits
+from solidgear.show.table import Table, text, word
+
+KINDS = "; ".join(f"{kind}: {what}" for kind, what in STARTS.items())
+
+
+@command
+def new(
+    name: Annotated[Path, typer.Argument(help="Scene file to write, with or without .toml.")],
+    kind: Annotated[str, typer.Option(help=f"{KINDS}.")] = "overhung",
+) -> None:
+    path = name if name.suffix == ".toml" else name.with_name(f"{name.name}.toml")
+    made = {path.parent / one: content for one, content in start(kind, path.stem).items()}
+    _write({one: content.encode() for one, content in made.items()})
+    beside = (
+        f" (with {', '.join(str(one) for one in made if one != path)})" if len(made) > 1 else ""
+    )
+    typer.echo(f"{path}: {STARTS[kind]}{beside}. Next: solidgear check {path}")
+
+
+@command
+def scenes(
+    names: Annotated[
+        list[str] | None, typer.Argument(help="Scenes to copy; all of them by default.")
+    ] = None,
+    to: Annotated[
+        Path | None, typer.Option("--to", help="Folder to copy them into, with what they refer to.")
+    ] = None,
+) -> None:
+    there = shipped()
+    for one in names or []:
+        if one.removesuffix(".toml") not in there:
+            raise SolidgearError(
+                f"scene {show(one, 60)} does not come with solidgear{nearest(one, there)}; "
+                f"there are {', '.join(there)}"
+            )
+    asked = [one.removesuffix(".toml") for one in names or there]
+    if to is None:
+        columns = [text("scene", str), text("what it is", lambda one: title(there[one]))]
+        say(Table("", columns, asked, style="ruled"))
+        return
+    files = sorted({file for one in asked for file in needed(there[one])})
+    _write({to / file.name: file.read_bytes() for file in files})
+    typer.echo(f"{to}: {', '.join(file.name for file in files)}")
+
+
+@command
+def options(
+    model: Annotated[
+        str, typer.Argument(help=f"{', '.join(LADDER.bodies)}; all of them by default.")
+    ] = "",
+) -> None:
+    for name in (LADDER[model].name,) if model else LADDER.bodies:
+        say(_options(LADDER[name]))
+
+
+def _options(model: Model) -> Table:
+    defaults, known = model.defaults(), model.options
+    columns = [
+        word("option", str),
+        word("default", lambda key: _default(defaults.get(key))),
+        text("may be", lambda key: _may_be(known[key])),
+        text("what it is", lambda key: known[key].meaning),
+    ]
+    return Table(f"{model.name}: {model.title}", columns, list(known))
+
+
+def _may_be(option: Option) -> str:
+    match option.kind:
+        case "flag":
+            return "true or false"
+        case "choice":
+            return " or ".join(option.choices)
+        case "several":
+            return f"one or more of {', '.join(option.choices)}"
+        case "whole":
+            return f"a whole number {limits(option)}"
+        case "harmonics":
+            return f"whole numbers {limits(option)}"
+    return f"a number {limits(option)}"
+
+
+def _default(value: object) -> str:
+    """A value as ``--set`` would take it."""
+    if value is None or value == ():
+        return "-"
+    if isinstance(value, bool):
+        return str(value).lower()
+    return ",".join(map(str, value)) if isinstance(value, tuple) else str(value)
+
+
+def _write(files: Mapping[Path, bytes]) -> None:
+    """Write new files, or refuse all of them where one is there already."""
+    for path in files:
+        if path.exists():
+            raise SolidgearError(f"{path}: there is such a file already; give another name")
+    for path, content in files.items():
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            with whole(path) as partial:
+                partial.write_bytes(content)
+        except OSError as error:
+            raise SolidgearError(
+                f"{path}: cannot be written ({error.strerror or error})"
+            ) from error
+
+
+#: where a wheel puts them, under the data folder of the installation
+SHARED = "share/solidgear/geometry/"
+CHECKOUT = Path(__file__).resolve().parents[2] / "geometry"
+#: keys that name another file
+REFERRING = ("scene", "step", "mesh", "contact_cells")
+
+
+def shipped() -> dict[str, Path]:
+    """Scene files by name; refuses an installation that has none.
+
+    Examples
+    --------
+    >>> "pinion_overhung" in shipped()
+    True
+    """
+    found = sorted(CHECKOUT.glob("*.toml")) or _installed()
+    if not found:
+        raise SolidgearError(
+            "this installation of solidgear has no scenes; they lie in geometry/ of its source"
+        )
+    return {path.stem: path for path in found}
+
+
+def _installed() -> list[Path]:
+    try:
+        listed = files("solidgear") or []
+    except PackageNotFoundError:
+        return []
+    mine = [f for f in listed if SHARED in f.as_posix() and f.suffix == ".toml"]
+    return sorted(path for f in mine if (path := Path(str(f.locate())).resolve()).exists())
+
+
+def title(path: Path) -> str:
+    """Description that a scene file gives of itself.
+
+    Examples
+    --------
+    >>> title(shipped()["shaft_hollow"])
+    'Hollow shaft on two bearings'
+    """
+    return str(tomllib.loads(path.read_text("utf-8")).get("title", ""))
+
+
+def needed(path: Path) -> list[Path]:
+    """A scene file and the files it refers to, beside it.
+
+    Examples
+    --------
+    >>> [file.name for file in needed(shipped()["axle_overhung"])]
+    ['axle_overhung.toml', 'pinion_overhung.toml', 'gear_shaft.toml']
+    """
+    beside = [path.parent / name for name in _referred(tomllib.loads(path.read_text("utf-8")))]
+    return [path, *(file for file in beside if file.is_file())]
+
+
+def _referred(entry: Any) -> Iterator[str]:
+    """Names of files in a table and in those that it holds."""
+    if isinstance(entry, list):
+        for one in entry:
+            yield from _referred(one)
+    elif isinstance(entry, dict):
+        yield from (entry[key] for key in REFERRING if isinstance(entry.get(key), str))
+        for one in entry.values():
+            yield from _referred(one)

@@ -1,0 +1,161 @@
+"""Command ``modes``: natural frequencies of one scene."""
+
+from __future__ import annotations
+
+import json
+from typing import Annotated
+
+import typer
+
+from solidgear.core.body import as_supports
+from solidgear.show.command import caution, command, say
+from solidgear.bearings.life_command import speed_of
+from solidgear.show.arguments import load
+from solidgear.app.settled import (
+    SECOND_MESH,
+    bar_lines,
+    beyond,
+    ended,
+    heading,
+    unjudged,
+    without_bar,
+)
+from solidgear.show.options import Run, SceneFile, Solved, options
+from solidgear.core.errors import SolidgearError, listed, show
+from solidgear.core.judge.at_rest import spin_caution
+from solidgear.core.judge.coarser_mesh import coarser_bars
+from solidgear.core.judge.completeness import completeness, cut_short, split_apart
+from solidgear.core.judge.hidden import complete_list, less_widest
+from solidgear.core.judge.settle import bars_of_modes
+from solidgear.core.ladder.registry import LADDER
+from solidgear.core.quantity import Quantity
+from solidgear.show.terminal import modes_table
+from solidgear.show.words import by_plane
+from solidgear.core.scene.rules import MOST_MODES
+from solidgear.core.solve.mixtures import mixtures
+from solidgear.core.solve.modes import modes as solve
+from solidgear.variants.budget.budget import beside
+from solidgear.guards.check import cautions
+
+#: rows of a list whose beginning has left the terminal
+MANY = 30
+
+
+@command
+def modes(
+    scene: SceneFile,
+    *,
+    model: Solved,
+    n: Annotated[
+        int | None, typer.Option("-n", help="Number of elastic shapes; twins count twice.")
+    ] = None,
+    max_frequency: Annotated[float | None, typer.Option(help="Hz; leave out modes above.")] = None,
+    count: Annotated[
+        bool,
+        typer.Option(
+            "--count", help="Prove by the inertia of a second factor that no mode was missed."
+        ),
+    ] = False,
+    speed: Annotated[
+        str | None,
+        typer.Option(
+            help='Of the shaft, such as "3000 rpm": says which frequencies spin moves, and how far.'
+        ),
+    ] = None,
+    run: Run,
+) -> None:
+    turns = speed_of(speed)
+    if max_frequency is not None and not max_frequency > 0:
+        raise SolidgearError(f"--max-frequency {max_frequency:g}: must be greater than zero, in Hz")
+    if n is not None and not 1 <= n <= MOST_MODES:
+        raise SolidgearError(
+            f"-n {show(n)} is not a number of modes that can be asked for; give 1 to {MOST_MODES}"
+        )
+    loaded = load(scene)
+    body, settled = model.body(loaded, "modes")
+    found = solve(
+        body,
+        loaded,
+        loaded.ask.modes if n is None else n,
+        max_frequency=max_frequency or loaded.ask.max_frequency,
+        count=count,
+    )
+    bounded = LADDER[body.fidelity].bounded
+    if settled is not None and bounded:
+        found = complete_list(loaded, body, as_supports(loaded), found)
+    every = found.whole if count and not bounded else found
+    bars = bars_of_modes(loaded, body, every, settled)
+    if settled is None and model.on_two_meshes:
+        bars = coarser_bars(loaded, body, every, options(model.pairs))
+    evidence = less_widest(found.evidence, bars.values())
+    bars = {name: bar for name, bar in bars.items() if name in found.names}
+    bare = without_bar(found, bars)
+    why = model.without_bars(bars, settled, loaded, body)
+    why = why or unjudged(bare, body.fidelity, second=settled is None)
+    said = cautions(loaded, body)
+    open_ = beside(loaded)
+    asked = n or loaded.ask.modes, max_frequency or loaded.ask.max_frequency
+    said += cut_short(found.modes, *asked, option="-n")
+    said += spin_caution(loaded, body, found.modes, bars, turns)
+    rows = [
+        {
+            "name": m.name,
+            "family": m.family,
+            "frequency_hz": m.frequency_hz,
+            "multiplicity": m.multiplicity,
+            "error": m.error,
+            "bar": bars.get(m.name),
+            "split": m.split,
+        }
+        for m in found.modes
+    ]
+    if run.as_json:
+        record = {
+            "scene": loaded.name,
+            "fidelity": body.fidelity,
+            "dofs": body.size,
+            "modes": rows,
+            "evidence": evidence,
+            "cautions": said,
+            "open": open_.model_dump(mode="json"),
+        }
+        record |= {} if settled is None else settled.as_dict()
+        record |= {"without_bar": bare, "why_without_bar": why}
+        print(json.dumps(record, default=float))
+        ended(settled)
+        return
+
+    say(heading(loaded, body, settled), modes_table(found.modes, bars, open_), soft_wrap=False)
+    if len(rows) > MANY:
+        shapes = sum(m.multiplicity for m in found.modes)
+        say(f"{shapes} shapes up to {found.frequency_hz[-1]:.6g} Hz.")
+    planes = by_plane(found.names)
+    if planes:
+        say(planes.strip())
+    e = found.evidence
+    say(*(f"caution: {sentence}" for sentence in split_apart(e)), soft_wrap=False)
+    say(*(f"caution: {mixture.sentence}." for mixture in mixtures(found)))
+    if e["error"] > 1e-6:
+        say(
+            f"caution: rounding leaves frequencies good to {e['error']:.0e} only: the smallest "
+            "cells are that stiff beside the shaft; a coarser mesh has less of it.",
+            soft_wrap=False,
+        )
+    if count:
+        say(
+            f"Residual {e['residual']:.1e}, orthogonality {e['orthogonality']:.1e}, rigid modes "
+            f"{e['rigid_modes']}, {e['method']} on {e['backend']}.",
+            soft_wrap=False,
+        )
+        say(completeness(evidence, body.fidelity), soft_wrap=False)
+    lines = bar_lines(settled, {Quantity(name): bar for name, bar in bars.items()})
+    if bars and settled is None:
+        lines.append(SECOND_MESH)
+    if not bars and why:
+        lines.append(f"No bars: {why}.")
+    elif why:
+        lines.append(f"No bar of their own: {listed(bare, most=3)}; {why}.")
+    lines += beyond(bars, settled)
+    say(*lines)
+    say(*map(caution, said), soft_wrap=False)
+    ended(settled)

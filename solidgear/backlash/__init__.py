@@ -1,0 +1,1 @@
+"""Teeth with backlash."""

@@ -1,0 +1,209 @@
+"""The command nonlinear: a train whose teeth have backlash, over speed."""
+
+from __future__ import annotations
+
+import json
+from contextlib import nullcontext
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from solidgear.show.command import caution, command, say
+from solidgear.show.options import Shown
+from solidgear.trains.options import Mix, Reduced, TrainFile, mix
+from solidgear.core.errors import SceneError, SolidgearError, show
+from solidgear.show.folder import held
+from solidgear.backlash.files import lead, mixes, over_force, write_nonlinear
+from solidgear.show.units import units_named
+from solidgear.trains.file.gears import Pair
+from solidgear.trains.file.planetary import named_pair
+from solidgear.core.scene.units import quantity
+from solidgear.backlash import train as study
+from solidgear.trains.judge.comparison import train_data
+from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.modes.modes import unpublished_lines
+from solidgear.backlash.results import BacklashStudy
+from solidgear.trains.assembly.slips import unit_slips
+from solidgear.trains.response.speed_run import ramp_of, speed_run
+
+#: speeds of a sweep in time, and mean forces of a map: each takes seconds
+MOST_RUNS = 200
+#: at which branches apart are looked for
+SPEEDS = 32
+
+
+@command
+def nonlinear(
+    train: TrainFile,
+    *,
+    models: Mix,
+    backlash: Annotated[
+        str | None,
+        typer.Option(
+            help='Along the line of action, such as "100 um"; that of the file without it.'
+        ),
+    ] = None,
+    mean_force: Annotated[
+        str | None,
+        typer.Option(
+            "--mean-force",
+            help='Of the teeth, such as "5 kN"; that of the operating point in the file without it.',
+        ),
+    ] = None,
+    error: Annotated[
+        str | None,
+        typer.Option(help='Transmission error, such as "10 um"; that of the file without it.'),
+    ] = None,
+    mesh: Annotated[
+        str | None,
+        typer.Option(
+            "--mesh",
+            help="Whose transmission error drives the train, of several, and whose --backlash, "
+            "--mean-force and --error are given; the first.",
+        ),
+    ] = None,
+    min_frequency: Annotated[
+        float | None,
+        typer.Option("--min-frequency", help="Hz; a hundredth of the highest by default."),
+    ] = None,
+    against: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--against",
+            help="Further models to judge, as PINION+GEAR, one for each shaft; lumped and Timoshenko shafts by default.",
+        ),
+    ] = None,
+    apart: Annotated[
+        int,
+        typer.Option(
+            "--apart", help="Speeds at which branches apart are looked for; 0 leaves them out."
+        ),
+    ] = SPEEDS,
+    in_time: Annotated[
+        int,
+        typer.Option("--in-time", help="Speeds at which to hold it against integration in time."),
+    ] = 0,
+    run_up: Annotated[
+        list[float] | None,
+        typer.Option(
+            "--run-up",
+            help="Run through the range in time at so many rpm/s of the engine's shaft; below 0 down.",
+        ),
+    ] = None,
+    contact_loss: Annotated[
+        float | None,
+        typer.Option(
+            "--contact-loss",
+            help="Hz at which a damper in contact alone has the loss factor of the mesh.",
+        ),
+    ] = None,
+    forces: Annotated[
+        int,
+        typer.Option("--forces", help="Mean forces for a map of jumps over speed and torque."),
+    ] = 0,
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", "-o", help="Folder for the branch, its chart and a page."),
+    ] = None,
+    reduced: Reduced,
+    run: Shown,
+) -> None:
+    shop = models.workshop(reduced, train)
+    first, driver = tuple(models.by_shaft(shop.train).values()), named_pair(shop.train, mesh)
+    others = _usual(shop) if against is None else [_mix(shop, text) for text in against]
+    shop = _with_teeth(shop, driver, backlash, error)
+    if contact_loss is not None and not contact_loss > 0:
+        raise SolidgearError(f"--contact-loss {contact_loss:g}: give a frequency above 0 Hz")
+    teeth = study.teeth_of(
+        shop, _read("--mean-force", mean_force, "load"), contact_loss, driver.name
+    )
+    for option, count in (("--apart", apart), ("--in-time", in_time), ("--forces", forces)):
+        if not 0 <= count <= MOST_RUNS:
+            raise SolidgearError(f"{option} {count}: give 0 to {MOST_RUNS}")
+    low, high = study.ends(shop, reduced.max_frequency, min_frequency)
+    passing = shop.train.per_turn(driver)
+    ramps = [ramp_of(rpm, passing, low, high) for rpm in run_up or []]
+    with held(out) if out else nullcontext(), run.progress() as progress:
+        found = tuple(
+            study.with_backlash(
+                shop, mix, teeth, reduced.max_frequency, min_frequency, progress, apart
+            )
+            for mix in [first, *(mix for mix in others if mix != first)]
+        )
+        swept = study.in_time(found[0], in_time, progress) if in_time else ()
+        mapped = study.over_force(found[0], forces, progress) if forces else ()
+        runs = tuple(speed_run(found[0], rate, progress) for rate in ramps)
+        lever = study.torque_of(shop, driver.name, 1.0).torque
+        told = BacklashStudy(shop.train, found, lever, swept, mapped, runs)
+        title = f"{shop.train.called}: teeth with backlash"
+        if teeth.others:
+            title += f", driven by the {driver.name}"
+        cautions = [*unit_slips(shop), *shop.cautions]
+        if shop.train.planetary:
+            cautions.append("teeth of planets are springs that never part")
+        cautions += _beside_torque(shop, mean_force)
+        files = []
+        if out:
+            files = write_nonlinear(out, told, title, train_data(shop), run.units, cautions)
+    if run.as_json:
+        print(json.dumps(told.as_dict() | {"cautions": cautions}, allow_nan=False))
+        return
+    shown = units_named(run.units)
+    say(f"{title}.", lead(told, shown), *told.sentences(), *map(caution, cautions))
+    say(mixes(told, shown), soft_wrap=False)
+    say(*unpublished_lines(shop.train.unpublished()))
+    if mapped:
+        say(over_force(told, shown), soft_wrap=False)
+    if files:
+        say(f"Written: {', '.join(map(str, files))}")
+
+
+def _beside_torque(shop: Workshop, mean_force: str | None) -> list[str]:
+    """Caution on what loads a loop of meshes beside the torque, by which its teeth share it."""
+    point, looped = shop.train.point, None in shop.train.flows.values()
+    if not looped or mean_force is not None or point is None or not (point.weight or point.force):
+        return []
+    return [
+        "weight and forces on shafts, which move the share of each mesh of a loop, are left out here; "
+        "solidgear deflect has them"
+    ]
+
+
+def _mix(shop: Workshop, text: str) -> tuple[str, ...]:
+    """Models of all shafts, from a text such as ``euler+euler``."""
+    return tuple(shop.models_by_shaft(mix(text)).values())
+
+
+def _usual(shop: Workshop) -> list[tuple[str, ...]]:
+    """Models that the first are held against; shafts in a housing are no lumped ones."""
+    usual = ("timoshenko",) if shop.train.housed else ("lumped", "timoshenko")
+    return [(model,) * len(shop.train.shafts) for model in usual]
+
+
+def _with_teeth(shop: Workshop, driver: Pair, backlash: str | None, error: str | None) -> Workshop:
+    """The same train, one of its meshes with teeth as given."""
+    width, size = _read("--backlash", backlash, "length"), _read("--error", error, "length")
+    if width is None and size is None:
+        return shop
+    for option, value, text in (("--backlash", width, backlash), ("--error", size, error)):
+        if value is not None and value < 0:
+            raise SolidgearError(f"{option} {show(text, 40)}: it must not be negative")
+    changes: dict[str, Any] = {} if width is None else {"backlash": width}
+    if size is not None:
+        changes["transmission_error"] = size
+    meshes = [
+        pair.mesh.with_changes(**changes) if pair.name == driver.name else pair.mesh
+        for pair in shop.train.pairs
+    ]
+    return shop.with_train(shop.train.with_changes(meshes=tuple(meshes)))
+
+
+def _read(option: str, text: str | None, dimension: str) -> float | None:
+    """A quantity of an option in SI."""
+    if text is None:
+        return None
+    try:
+        return quantity(text, dimension)
+    except SceneError as error:
+        raise SolidgearError(f"{option} {show(text, 40)}: {error}") from None

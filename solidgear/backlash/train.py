@@ -1,0 +1,436 @@
+r"""A train whose teeth have backlash, over speed: where they lose contact, where the motion jumps, and
+how far off the linear answer is.
+
+With the half gap b along the line of action and the unloaded transmission error e, the teeth carry
+(Hua 2010, equation 14)
+
+    k (s - b)  for s > b,   none between,   k (s + b)  for s < -b,      s = dte - e,
+
+around the mean force of an operating point.  Everything else is linear: the modes of the train with
+the teeth in contact, each with the damping ratio that the loss factors make.
+
+The line of action may vary over the mesh cycle, as rows between the ports of both shafts.  Each
+place of the table is a mesh vector on both shafts (Hua 2010, equation 21).  That the gear turns about
+its shaft enters through the ratio of the mean line (3.2.2): a pair that turns evenly does not stretch
+its teeth, wherever they touch.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from time import process_time
+
+import numpy as np
+
+from solidgear.core.errors import SceneError, SolidgearError
+from solidgear.backlash.solver.continuation import follow
+from solidgear.backlash.solver.model import Remainder, remainder
+from solidgear.backlash.solver.motion import Steady, sweep
+from solidgear.trains.file.gears import Pair
+from solidgear.trains.file.operation import OperatingPoint
+from solidgear.trains.file.planetary import error_of, named_pair
+from solidgear.backlash.apart import largest_multipliers, search_branches
+from solidgear.backlash.torque import AtForce, Backlash, Teeth
+from solidgear.trains.load.contact import LEVER_REFUSED, axes_of
+from solidgear.trains.assembly.layout import mesh_forces
+from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.modes.modes import refuse_unresolved
+from solidgear.trains.load.operation import SHAFT, loop_forces, rotor_loads
+from solidgear.core.system.gear_mesh import MeshVector, to_gear_frame
+from solidgear.core.system.law import Gap
+from solidgear.core.system.links import RowSpring
+from solidgear.core.system.system import System
+
+#: the first frequency of a branch by default, over the highest
+BEGIN = 0.01
+#: longest step of a branch, of the range of speeds
+STEP = 0.02
+#: share of a transient in time that may be left: torsion against engine and load fades over thousands of
+#: mesh periods
+FADED = 1e-4
+#: orders of the mesh that are kept of a table over the cycle, and places at which it is read
+CYCLE_ORDERS, CYCLE_PLACES = 8, 4096
+#: a row that turns by less than this of the mean one is rounding
+STILL = 1e-12
+#: rotation about the shaft, of six components
+AXIAL = 4
+
+
+def teeth_of(
+    workshop: Workshop,
+    mean_force: float | None = None,
+    contact_loss_hz: float | None = None,
+    mesh: str | None = None,
+) -> Teeth:
+    """Return the teeth of a train by its file, with a mean force, N, in place of that of the
+    operating point, those of other meshes in the ratio of the torques. Without
+    `contact_loss_hz`, at which a damper in contact alone has the loss factor of the mesh, the
+    mesh takes part in the damping ratios of the modes. Refused without backlash or mean force,
+    with an error table over frequency, with teeth of a loop that would have to pull, and with
+    another mesh that varies over another cycle.
+    """
+    train = workshop.train
+    pair, point = named_pair(train, mesh), train.point
+    if not any(driven.mesh.backlash is not None for driven in train.pairs):
+        raise SolidgearError(
+            'no backlash is given; write backlash = "100 um" under [mesh], or give --backlash'
+        )
+    _refuse_several(workshop, pair)
+    source = "given"
+    if mean_force is None:
+        if point is None:
+            raise SolidgearError(
+                'no mean force is given; write [[operation]] with torque = "115 N*m", or give '
+                '--mean-force, such as "5 kN"'
+            )
+        forces, source = _by_torque(workshop, point), point.label
+    else:
+        unit = _by_torque(workshop, torque_of(workshop, pair.name, 1.0))
+        forces = {name: mean_force * force for name, force in unit.items()}
+    gaps = {driven.name: driven.mesh.backlash for driven in train.pairs if driven.mesh.backlash}
+    for name in (pair.name, *gaps):
+        if not forces[name] > 0:
+            suffix = f" of the {name}" if len(forces) > 1 else ""
+            raise SolidgearError(
+                f"a mean force of {forces[name]:g} N holds no teeth{suffix}; give more than 0"
+            )
+    error, table = error_of(pair), pair.mesh.stiffness_cycle
+    if error.frequency:
+        raise SolidgearError(
+            "the transmission error is a table over frequency, which has no cycle in time; give it "
+            'by orders in the file, or --error "10 um"'
+        )
+    cycle: tuple[tuple[float, float], ...] = ()
+    if table is not None:
+        mean, orders = orders_of(np.array(table.angle), np.array(table.stiffness)[:, None])
+        cycle = tuple((float(c.real), float(-c.imag)) for c in orders[:, 0] / mean[0])
+    others = [
+        Teeth(gaps.get(name, 0.0) / 2, float(force), (), source, mesh=name)
+        for name, force in forces.items()
+        if name != pair.name and name in workshop.contacts
+    ]
+    return Teeth(
+        half_gap=(pair.mesh.backlash or 0.0) / 2,
+        mean_force=float(forces[pair.name]),
+        errors=error.orders,
+        source=source,
+        cycle=cycle,
+        phases=error.phases,
+        turns=pair.mesh.line_cycle is not None,
+        contact_loss_hz=contact_loss_hz,
+        mesh=pair.name,
+        others=tuple(others),
+    )
+
+
+def _refuse_several(workshop: Workshop, driver: Pair) -> None:
+    """Refuse cycles of two meshes at once."""
+    for pair in workshop.train.pairs:
+        varies = pair.mesh.stiffness_cycle or pair.mesh.line_cycle
+        if varies is not None and pair.name != driver.name:
+            raise SolidgearError(
+                f"the {pair.name} varies over its own cycle, and the train is driven at that of the "
+                f"{driver.name}: give --mesh {pair.label.strip()}, or leave its table out"
+            )
+
+
+def parting(system: System, teeth: Teeth, loss: float = 0.0) -> System:
+    """Return the system with a law on each mesh that has teeth, whose stiffness stays, and the mean
+    force positive; that of the driven mesh comes first, and `loss` is the loss factor of a
+    damper in contact alone.
+    """
+    links = dict(system.links)
+    for k, teeth_of_mesh in enumerate(teeth.meshes):
+        mesh = mesh_of(system, teeth_of_mesh.mesh)
+        omega = 2 * np.pi * (teeth.contact_loss_hz or np.inf)
+        law = Gap(mesh.stiffness, teeth_of_mesh.half_gap, damper=loss * mesh.stiffness / omega)
+        row, to_row = -np.asarray(mesh.row), -np.asarray(mesh.to_row)
+        if k:
+            del links[teeth_of_mesh.mesh]
+        links[teeth_of_mesh.mesh] = replace(mesh, row=row, to_row=to_row, law=law)
+    return System(system.parts, links)
+
+
+def backlash_model(
+    workshop: Workshop, models: Sequence[str], teeth: Teeth, highest_hz: float
+) -> Remainder:
+    """Return the remainder of a train with backlash, by models of the shafts; modes above the
+    highest frequency give way like springs.
+    """
+    pair, loss, damped = named_pair(workshop.train, teeth.mesh), workshop.loss_factors(), 0.0
+    if teeth.contact_loss_hz:
+        damped = [loss.pop(meshed.mesh) for meshed in teeth.meshes][0]
+    system, turning, name = workshop.system(*models), turning_line(workshop, pair), pair.name
+    force = teeth.mean_force
+    if turning is not None:
+        links = {**system.links, name: turning.mean_of(mesh_of(system, name))}
+        system = System(system.parts, links)
+        force *= float(turning.mean[AXIAL] / workshop.contacts[name].pinion.vector[AXIAL])
+    load = rotor_loads(workshop, torque_of(workshop, name, force))
+    system = parting(system, teeth, damped)
+    refuse_unresolved(workshop, system, highest_hz)
+    sways = {}
+    if turning is not None and len(turning.further):
+        # both rows turned as that of the mean line is
+        sways[name] = turning.further_of(mesh_of(system, name)), -turning.orders
+    return remainder(
+        system,
+        loss=loss,
+        load=system.load(load),
+        errors={name: teeth.harmonics},
+        cycles={name: [complex(c, -s) for c, s in teeth.cycle]},
+        sways=sways,
+        highest_hz=highest_hz,
+    )
+
+
+def _by_torque(workshop: Workshop, point: OperatingPoint) -> dict[str, float]:
+    """Return the forces of all meshes by a torque alone, N; those of a loop as Timoshenko shafts
+    divide them.
+    """
+    forces = mesh_forces(workshop.train, workshop.contacts, point)
+    if None in workshop.train.flows.values():
+        system = workshop.system(SHAFT)
+        motion = system.static(system.load(rotor_loads(workshop, point)))
+        forces |= loop_forces(workshop, system, motion, point.label)
+    return {pair.name: forces[pair.name] for pair in workshop.train.pairs}
+
+
+def torque_of(workshop: Workshop, mesh: str, force: float) -> OperatingPoint:
+    """Return the torque of the engine's shaft that brings a force to a mesh, N."""
+    unit = OperatingPoint(torque=1.0, of=workshop.train.reference)
+    unit_force = _by_torque(workshop, unit)[mesh]
+    if not unit_force:
+        raise SolidgearError(f"no torque passes the {mesh} between engine and load")
+    return unit.with_changes(torque=force / unit_force)
+
+
+def mesh_of(system: System, name: str) -> RowSpring:
+    """Return the link of a mesh."""
+    mesh = system.links[name]
+    assert isinstance(mesh, RowSpring)
+    return mesh
+
+
+def ends(
+    workshop: Workshop, highest_hz: float | None, lowest_hz: float | None
+) -> tuple[float, float]:
+    """Return the lowest and the highest frequency of the mesh, those of the file where they are not
+    given; a range that holds zero is refused.
+    """
+    highest = highest_hz or workshop.train.ask.max_frequency
+    lowest = BEGIN * highest if lowest_hz is None else lowest_hz
+    if not 0 < lowest < highest:
+        raise SolidgearError(
+            f"mesh frequencies from {lowest:g} to {highest:g} Hz; give ascending ends above 0"
+        )
+    return lowest, highest
+
+
+def with_backlash(
+    workshop: Workshop,
+    models: Sequence[str],
+    teeth: Teeth,
+    highest_hz: float | None = None,
+    lowest_hz: float | None = None,
+    progress: Callable[[str], None] | None = None,
+    search_speeds: int = 0,
+) -> Backlash:
+    """Compute the periodic motion of a train whose teeth have backlash, by models of the shafts,
+    between frequencies of the driven mesh (the highest is by default that of the file, the
+    lowest a hundredth of it), and search branches apart at so many speeds.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> train = sg.load_train("geometry/axle_overhung.toml")
+    >>> mesh = train.mesh.with_changes(backlash="100 um", transmission_error="10 um")
+    >>> shop = Workshop(train.with_changes(mesh=mesh))
+    >>> teeth = teeth_of(shop, mean_force=5000.0)
+    >>> found = with_backlash(shop, ["lumped/timoshenko"], teeth, 1000.0, 500.0)
+    >>> [jump.rising for jump in found.jumps][:2]
+    [True, False]
+    """
+    lowest, highest = ends(workshop, highest_hz, lowest_hz)
+    begin = process_time()
+    most = max(workshop.train.ask.max_frequency, highest)
+    mix = workshop.models_by_shaft(models)
+    model = backlash_model(workshop, models, teeth, most)
+    if progress:
+        progress(f"branch of {' + '.join(mix.values())}")
+    branch = follow(model, 2 * np.pi * lowest, 2 * np.pi * highest, step=STEP)
+    backlash = Backlash(
+        models=mix,
+        teeth=teeth,
+        remainder=model,
+        branch=branch,
+        multiplier=largest_multipliers(branch),
+        seconds=process_time() - begin,
+    )
+    if not search_speeds:
+        return backlash
+    if progress:
+        progress(f"branches apart of {' + '.join(mix.values())}")
+    with_branches = search_branches(backlash, search_speeds, STEP)
+    return replace(with_branches, seconds=process_time() - begin)
+
+
+def over_force(
+    backlash: Backlash, count: int, progress: Callable[[str], None] | None = None
+) -> tuple[AtForce, ...]:
+    """Return the jumps at so many mean forces of the driven teeth, equally apart, up to that above
+    which none part.
+    """
+    most = backlash.holding[1].max()
+    out = []
+    for share in np.arange(1, count + 1) / count:
+        force = float(share * most)
+        if progress:
+            progress(f"mean force {force:.0f} N")
+        mean = backlash.remainder.mean * (force / backlash.teeth.mean_force)
+        ends = backlash.branch.omega[0], backlash.branch.omega[-1]
+        branch = follow(replace(backlash.remainder, mean=mean), *map(float, ends), step=STEP)
+        solved = replace(backlash, branch=branch)
+        jumps = tuple((jump.frequency_hz, jump.rising) for jump in solved.jumps)
+        out.append(AtForce(force, jumps, float(solved.force.max())))
+    return tuple(out)
+
+
+@dataclass(frozen=True)
+class InTime:
+    """A motion found in time, compared with the nearest of the branch."""
+
+    frequency_hz: float
+    rising: bool  #: whether the speed rose to it
+    cycle: int  #: periods of the mesh after which it repeats itself; 0 where it never did
+    force: float
+    branch_force: float  #: N, of the stable motion nearest to it
+
+    @property
+    def error(self) -> float:
+        """Difference of the forces, relative."""
+        return self.force / self.branch_force - 1
+
+
+def in_time(
+    backlash: Backlash, count: int, progress: Callable[[str], None] | None = None
+) -> tuple[InTime, ...]:
+    """Sweep up and down by integration in time, over so many speeds at which the teeth part, from
+    the motions of the branch at both ends.
+    """
+    spans = [span for mesh in backlash.meshes for span in mesh.lost]
+    if not spans:
+        return ()
+    low = max(min(span.low for span in spans) * 0.97, backlash.frequency_hz.min())
+    high = min(max(span.high for span in spans) * 1.03, backlash.frequency_hz.max())
+    rising_hz = np.linspace(low, high, count)
+    out: list[InTime] = []
+    for rising, hz in ((True, rising_hz), (False, rising_hz[::-1])):
+        if progress:
+            progress(f"in time, speed {'rising' if rising else 'falling'}")
+        begin = backlash.branch.at(2 * np.pi * float(hz[0]))[0 if rising else -1].state()
+        steady = sweep(backlash.remainder, (2 * np.pi * hz).tolist(), state=begin, steady=FADED)
+        out += [_nearest_motion(backlash, motion, rising) for motion in steady]
+    return tuple(out)
+
+
+def _nearest_motion(backlash: Backlash, steady: Steady, rising: bool) -> InTime:
+    force = float(np.ptp(steady.force[:, 0]) / 2)
+    sizes = [float(np.ptp(p.forces()[:, 0]) / 2) for p in backlash.motions_at(steady.omega)]
+    nearest = min(sizes, key=lambda size: abs(size - force))
+    return InTime(steady.omega / (2 * np.pi), rising, steady.cycle, force, nearest)
+
+
+@dataclass(frozen=True, eq=False)
+class TurningLine:
+    """A line of action over the mesh cycle."""
+
+    mean: np.ndarray  #: (12,) row of the mean line on the pinion, and on the gear
+    further: np.ndarray  #: (r, 12) rows by which it turns
+    orders: np.ndarray  #: (o, r) how much of each, by orders of the mesh
+
+    def mean_of(self, mesh: RowSpring) -> RowSpring:
+        """Return the teeth along the mean line."""
+        return replace(mesh, row=self.mean[:6], to_row=self.mean[6:])
+
+    def further_of(self, mesh: RowSpring) -> RowSpring:
+        """Return rows by which it turns, between the same ports."""
+        return replace(mesh, row=self.further[:, :6], to_row=self.further[:, 6:], law=None)
+
+
+def orders_of(angle: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the mean (c,) of a table (n, c) over a mesh cycle, linear between the angles, and
+    complex orders (o, c) from 1.
+    """
+    angles = np.linspace(angle[0], angle[-1], CYCLE_PLACES, endpoint=False)
+    values_at = np.column_stack(
+        [np.interp(angles, angle, column) for column in np.transpose(values)]
+    )
+    parts = np.fft.rfft(values_at, axis=0) / CYCLE_PLACES
+    return parts[0].real, 2 * parts[1 : CYCLE_ORDERS + 1]
+
+
+def turning_line(workshop: Workshop, pair: Pair) -> TurningLine | None:
+    """Return the mean row of the teeth of a mesh, and how it turns; None where the line stays.
+    Refused for teeth that hold their mesh point or act on the other flank, and for lever arms
+    that are not in the ratio of the teeth.
+    """
+    table, path = pair.mesh.line_cycle, (*pair.paths["mesh"], "line_cycle")
+    if table is None:
+        return None
+    if pair.mesh.local_harmonics:
+        raise SceneError(
+            "moves the mesh point, and local_harmonics hold it where it is on the rim; leave one out",
+            path=path,
+        )
+    if pair.point is not None and pair.point.coast:
+        raise SceneError(
+            "is that of one flank; a torque on the other one (coast, below zero) needs a file with "
+            "its own",
+            path=path,
+        )
+    rows = [
+        _row(workshop, pair, np.array(normal), np.array(point), path)
+        for normal, point in zip(table.normal, table.point)
+    ]
+    mean, orders = orders_of(np.array(table.angle), np.array(rows))
+    left_vectors, size, right = np.linalg.svd(
+        np.vstack([orders.real, orders.imag]), full_matrices=False
+    )
+    notable = size > STILL * np.abs(mean).max()
+    shares = (left_vectors * size)[:, notable]
+    shares = shares[: len(orders)] + 1j * shares[len(orders) :]
+    scale = np.abs(shares).sum(axis=0)  # so that shares are one at most
+    return TurningLine(mean, scale[:, None] * right[notable], shares / scale)
+
+
+def _row(
+    workshop: Workshop, pair: Pair, normal: np.ndarray, point: np.ndarray, path: tuple
+) -> np.ndarray:
+    """Return the (12,) row of the teeth on both shafts while they touch at a point."""
+    contact = workshop.contacts[pair.name]
+    normal = normal / np.linalg.norm(normal)
+    angle = pair.mesh.shaft_angle
+    vectors = (
+        MeshVector(normal, point),
+        MeshVector(to_gear_frame(normal, angle), to_gear_frame(point - contact.origin, angle)),
+    )
+    turns = [axes_of(pair, side) for side in pair.members]
+    in_scenes = [
+        MeshVector(turn @ vector.normal, turn @ vector.point)
+        for turn, vector in zip(turns, vectors)
+    ]
+    ratio = contact.gear.lever / contact.pinion.lever
+    levers = in_scenes[1].lever / in_scenes[0].lever if in_scenes[0].lever else np.inf
+    if not abs(levers / ratio - 1) < LEVER_REFUSED or in_scenes[0].lever * contact.pinion.lever < 0:
+        place = ", ".join(f"{1e3 * v:.2f}" for v in point)
+        raise SceneError(
+            f"has lever arms of {1e3 * in_scenes[0].lever:.2f} mm on the pinion and "
+            f"{1e3 * in_scenes[1].lever:.2f} mm on the gear where the mesh point is ({place}) mm; those of "
+            f"the mesh are {1e3 * contact.pinion.lever:.2f} and {1e3 * contact.gear.lever:.2f} mm",
+            path=path,
+        )
+    gear = in_scenes[1].vector.copy()
+    gear[AXIAL] = ratio * in_scenes[0].vector[AXIAL]
+    return np.concatenate([in_scenes[0].vector, gear])

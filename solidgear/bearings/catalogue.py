@@ -1,0 +1,449 @@
+"""Catalogue data of a bearing, checked, and the rules that they have to keep.
+
+:mod:`solidgear.bearings` computes the 6x6 at a load from these data.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field, model_validator
+
+from solidgear.core.errors import SceneError, show
+from solidgear.bearings.designation import boundary
+from solidgear.core.scene.typed import Model
+from solidgear.core.scene.units import (
+    Angle,
+    AxialSpring,
+    Length,
+    Newtons,
+    PositiveLength,
+    PositiveLoad,
+    RatingFactor,
+    SignedAngle,
+    Speed,
+    TemperatureRise,
+    Torque,
+    quantity,
+)
+
+Kind = Literal[
+    "deep_groove",
+    "angular_contact",
+    "cylindrical",
+    "tapered",
+    "needle",
+    "spherical",
+    "thrust_ball",
+]
+Arrangement = Literal["single", "double_row", "tandem", "back_to_back", "face_to_face"]
+#: clearance classes of ISO 5753-1
+ClearanceClass = Literal["C2", "CN", "C3", "C4"]
+CLASSES = ("C2", "CN", "C3", "C4")
+BALLS = ("deep_groove", "angular_contact", "thrust_ball")
+#: kinds with a contact angle
+ANGLED = ("angular_contact", "tapered", "spherical")
+#: kinds whose rows hold the shaft in one direction along y
+ONE_SIDED = ("angular_contact", "tapered", "thrust_ball")
+#: kinds whose rows carry nothing along y
+FLOATING = ("cylindrical", "needle")
+PAIRED = ("tandem", "back_to_back", "face_to_face")
+#: direction along y in which the lower and the upper row of two hold the shaft
+WAYS = {"back_to_back": ("+y", "-y"), "face_to_face": ("-y", "+y")}
+#: other words of the field for arrangements
+_CALLED = {"o": "back_to_back", "db": "back_to_back", "x": "face_to_face", "df": "face_to_face"}
+#: names that people give a moment about the axis
+ABOUT_AXIS = ("thy", "my", "ty", "torque", "torsion", "moment")
+#: rolling elements of a row
+FEWEST, MOST = 3, 300
+
+
+class BearingLoad(Model):
+    """Load of the shaft on a bearing, or on the port: forces in N, moments in N m."""
+
+    x: Newtons = 0.0
+    y: Newtons = 0.0
+    z: Newtons = 0.0
+    #: thx, thz: moments; where none is given a bearing's ring is held against tilting
+    thx: Torque | None = None
+    thz: Torque | None = None
+
+    def __init__(self, /, **data: Any):
+        about = [key for key in data if key.lower() in ABOUT_AXIS]
+        if about:
+            raise SceneError(
+                "no bearing carries a moment about the axis of the shaft, which turns freely: write "
+                "forces x, y, z and tilting moments thx, thz alone; a torque is that of an "
+                '[operation] of a train, or of solidgear stress --drive "A=115 N*m"',
+                path=(about[0],),
+                value=show(data[about[0]]),
+            )
+        super().__init__(**data)
+
+    @property
+    def six(self) -> list[float]:
+        """(6,) load in the order (x, y, z, thx, thy, thz), N and N m."""
+        return [self.x, self.y, self.z, self.thx or 0.0, 0.0, self.thz or 0.0]
+
+    @property
+    def held_tilts(self) -> tuple[int, ...]:
+        """Tilts without a given moment, by their place among the six."""
+        return tuple(k for k, moment in ((3, self.thx), (5, self.thz)) if moment is None)
+
+
+class BearingDisplacement(Model):
+    """Displacement of the inner ring against the outer one, m and rad."""
+
+    x: Length = 0.0
+    y: Length = 0.0
+    z: Length = 0.0
+    thx: SignedAngle = 0.0
+    thz: SignedAngle = 0.0
+
+    @property
+    def six(self) -> list[float]:
+        """(6,) displacement in the order (x, y, z, thx, thy, thz), m and rad."""
+        return [self.x, self.y, self.z, self.thx, 0.0, self.thz]
+
+
+class Preload(Model):
+    """Preload of a bearing: by a force or by a displacement."""
+
+    force: float | None = None  #: N along y, felt by every row while the shaft carries nothing else
+    #: m along y by which the rings are pushed together from where they just touch; of a pair, by
+    #: which both rows together are
+    displacement: float | None = None
+
+
+def _preload(value: Any) -> Any:
+    if isinstance(value, (Preload, dict)) or value is None:
+        return value
+    if not isinstance(value, str):
+        raise SceneError(
+            'write a force such as "500 N" or a displacement such as "10 um"', value=show(value)
+        )
+    for key, dimension in (("force", "load"), ("displacement", "length")):
+        try:
+            number = quantity(value, dimension)
+        except SceneError:
+            continue
+        if number <= 0:
+            raise SceneError("must be greater than zero; leave it out for none", value=show(value))
+        return {key: number}
+    raise SceneError(
+        'is neither a force such as "500 N" nor a displacement such as "10 um"', value=show(value)
+    )
+
+
+def arrangement_word(value: Any) -> Any:
+    """Return the word of a catalogue for an arrangement as people write it."""
+    if not isinstance(value, str):
+        return value
+    plain = re.sub(r"[\s-]+", "_", value.strip().lower())
+    return _CALLED.get(plain, plain if plain in WAYS else value)
+
+
+def _clearance(value: Any) -> Any:
+    if value in CLASSES:
+        return value
+    if isinstance(value, str) and value[:1].upper() == "C":
+        raise SceneError(
+            f'must be one of the classes {", ".join(CLASSES)} or a length such as "10 um"',
+            value=show(value),
+        )
+    return quantity(value, "length")
+
+
+def _conformity(value: Any) -> Any:
+    pair = value if isinstance(value, (list, tuple)) else [value, value]
+    if len(pair) != 2:
+        raise SceneError("write one number, or two: inner and outer ring", value=show(value))
+    for ratio in (quantity(v, "dimensionless") for v in pair):
+        if not 0.5 < ratio <= 0.6:
+            raise SceneError(
+                "is groove radius over ball diameter: above 0.5, or the ball would not fit its "
+                "groove, and at most 0.6; usual is 0.52",
+                value=show(value),
+            )
+    return tuple(pair)
+
+
+class Catalogue(Model):
+    """A bearing by its catalogue data; numbers in SI, or texts with units.
+
+    Examples
+    --------
+    >>> data = Catalogue(designation="6208", load={"z": "2 kN"})
+    >>> data.kind, data.bore, data.estimated
+    ('deep_groove', 0.04, ('elements', 'element_diameter', 'pitch_diameter', 'conformity'))
+    """
+
+    kind: Kind
+    #: such as ``6208-2RS1/C3``: gives kind, bore, outer_diameter, width and a class of clearance
+    #: where these are left out; seals, cages and tolerances are read and ignored
+    designation: str = ""
+    #: bore, outer_diameter, width: m; the bore of a drawn cup is the diameter under the rollers
+    bore: PositiveLength
+    outer_diameter: PositiveLength
+    width: PositiveLength
+    #: load_rating, static_rating: basic dynamic and static radial load rating, N; of a pair those of
+    #: one bearing, of a thrust bearing the axial ones
+    load_rating: PositiveLoad | None = None
+    static_rating: PositiveLoad | None = None
+    fatigue_limit: PositiveLoad | None = None  #: fatigue load limit C_u, N, of the same
+    rating_factor: RatingFactor | None = None  #: b_m of ISO 281; by default that of the kind
+    #: rolling elements of one row
+    elements: Annotated[int, Field(strict=True, ge=FEWEST, le=MOST)] | None = None
+    #: element_diameter, element_length, pitch_diameter: of the rolling elements and their circle, m;
+    #: of tapered rollers the mean diameter
+    element_diameter: PositiveLength | None = None
+    element_length: PositiveLength | None = None
+    pitch_diameter: PositiveLength | None = None
+    contact_angle: Angle | None = None  #: from the radial plane, rad
+    #: groove radius over ball diameter, inner and outer; of spherical rollers over twice the radius
+    #: of their contour
+    conformity: Annotated[tuple[float, float], BeforeValidator(_conformity)] | None = None
+    #: of rollers that are no barrels, by ISO/TS 16281
+    profile: Literal["logarithmic", "straight"] = "logarithmic"
+    #: double_row is of bearings that hold no shaft along y, or both ways; two rows in this one
+    #: bearing are tandem, back_to_back (or "O") or face_to_face (or "X")
+    arrangement: Annotated[Arrangement, BeforeValidator(arrangement_word)] = "single"
+    row_distance: PositiveLength | None = None  #: of the rows' middles, m; by default the width
+    #: direction in which single rows and tandems with a contact angle keep the shaft from moving;
+    #: their mounting decides it, so that they need it, or `arrangement` of the scene
+    holds: Literal["+y", "-y"] | None = None
+    #: radial internal clearance, m, or a class of ISO 5753-1, taken in the middle
+    clearance: Annotated[float | ClearanceClass, BeforeValidator(_clearance)] = 0.0
+    #: shaft_interference, housing_interference: of the fits, on the diameter, m
+    shaft_interference: Length = 0.0
+    housing_interference: Length = 0.0
+    inner_ring_warmer: TemperatureRise = 0.0  #: K above the outer ring
+    #: along y; a text with a unit in a file: ``"500 N"`` or ``"10 um"``
+    preload: Annotated[Preload | None, BeforeValidator(_preload)] = None
+    preload_spring: AxialSpring | None = None  #: N/m, on the upper row of a pair
+    speed: Speed = 0.0  #: of the inner ring, rad/s; of balls, whose inertia it brings in
+    #: load, displacement: at which the stiffness is taken
+    load: BearingLoad | None = None
+    displacement: BearingDisplacement | None = None
+
+    def __init__(self, /, **data: Any):
+        if "support" in data:
+            reason = "stands beside the catalogue data, as a key of the bearing, and not among them"
+            raise SceneError(reason, path=("support",), value=show(data["support"]))
+        if isinstance(data.get("designation"), str) and data["designation"]:
+            data = _with_boundary(data)
+        super().__init__(**data)
+
+    @property
+    def one_sided(self) -> bool:
+        """True where the bearing holds the shaft in one direction along y only."""
+        return self.kind in ONE_SIDED and self.arrangement in ("single", "tandem")
+
+    @property
+    def angled(self) -> bool:
+        """True for kinds with a contact angle."""
+        return self.kind in ANGLED
+
+    @property
+    def own_rows(self) -> int:
+        """Rows of a single bearing of this kind."""
+        return 2 if self.kind == "spherical" else 1
+
+    @property
+    def grooved(self) -> bool:
+        """True for kinds whose contacts depend on the conformity of grooves."""
+        return self.balls or self.kind == "spherical"
+
+    @property
+    def floats(self) -> bool:
+        """True for kinds that carry nothing along y."""
+        return self.kind in FLOATING
+
+    @property
+    def balls(self) -> bool:
+        """True for kinds with balls."""
+        return self.kind in BALLS
+
+    @property
+    def paired(self) -> bool:
+        """True for two bearings side by side."""
+        return self.arrangement in PAIRED
+
+    @property
+    def opposed(self) -> bool:
+        """True where two rows hold the shaft against each other."""
+        return self.own_rows > 1 or (self.paired and self.arrangement != "tandem")
+
+    @property
+    def both_ways(self) -> bool:
+        """True where the bearing holds the shaft along y in both directions."""
+        return not (self.floats or self.one_sided)
+
+    @property
+    def rated_rows(self) -> int:
+        """Rows that the load ratings are given for."""
+        return 2 if self.arrangement == "double_row" else self.own_rows
+
+    @property
+    def estimated(self) -> tuple[str, ...]:
+        """Inner dimensions that are not given, by field name."""
+        inner = ["elements", "element_diameter", "pitch_diameter"]
+        inner += ["conformity"] * self.grooved + ["element_length"] * (not self.balls)
+        if self.angled:
+            inner.append("contact_angle")
+        return tuple(name for name in inner if getattr(self, name) is None)
+
+    @model_validator(mode="after")
+    def _hangs_together(self) -> Catalogue:
+        if problems := [*catalogue_problems(self)]:
+            raise SceneError.of(problems)
+        return self
+
+
+def _with_boundary(data: dict[str, Any]) -> dict[str, Any]:
+    """Return catalogue data completed by the standard dimensions of the designation."""
+    try:
+        standard = boundary(data["designation"])
+    except SceneError as error:
+        raise SceneError(error.reason, path=("designation",), value=error.value) from None
+    fields = {key: value for key, value in standard._asdict().items() if value is not None}
+    del fields["ignored"]
+    if "kind" in data and data["kind"] != standard.kind:
+        raise SceneError(
+            f"does not fit the designation {show(data['designation'])}, which is {standard.kind}",
+            path=("kind",),
+            value=show(data["kind"]),
+        )
+    return {key: value for key, value in fields.items() if data.get(key) is None} | {
+        key: value for key, value in data.items() if value is not None or key not in fields
+    }
+
+
+def catalogue_problems(data: Catalogue) -> Iterator[SceneError]:
+    """Yield all problems of catalogue data, one sentence each."""
+    if data.outer_diameter <= data.bore:
+        yield SceneError(
+            f"must be larger than the bore ({data.bore:.6g} m)", path=("outer_diameter",)
+        )
+        return
+    yield from _belongs(data)
+    yield from _fits(data)
+    if data.load is not None and data.displacement is not None:
+        yield SceneError("give either load or displacement, not both", path=("displacement",))
+
+
+def _belongs(data: Catalogue) -> Iterator[SceneError]:
+    """Yield problems of keys that the kind or the arrangement does not have."""
+    kind = data.kind.replace("_", " ")
+    if data.kind in ("spherical", "thrust_ball"):
+        yield from _by_nature(data, kind)
+    elif not data.angled:
+        if data.contact_angle is not None:
+            yield SceneError(
+                f"a {kind} bearing has no contact angle of its own: leave it out, or write "
+                f'kind = "{"angular_contact" if data.balls else "tapered"}"',
+                path=("contact_angle",),
+            )
+        if data.arrangement not in ("single", "double_row"):
+            yield SceneError(
+                f"{kind} bearings have no contact angle to pair: write single or double_row",
+                path=("arrangement",),
+            )
+        if data.preload is not None:
+            yield SceneError(
+                f"a {kind} bearing is not preloaded along y: write a negative clearance",
+                path=("preload",),
+            )
+    elif data.arrangement == "double_row":
+        yield SceneError(
+            f"two rows of {kind} bearings are back_to_back, face_to_face or tandem",
+            path=("arrangement",),
+        )
+    if data.one_sided and data.holds is None:
+        yield SceneError(
+            f"{data.arrangement} {kind} bearings hold the shaft in one direction only: "
+            'write holds = "+y" if this one keeps the shaft from moving towards +y, else "-y", or '
+            'for a pair arrangement = "O" or "X" above all tables',
+            path=("holds",),
+        )
+    for key, allowed, owner in (
+        ("conformity", data.grooved, "balls and spherical rollers"),
+        ("element_length", not data.balls, "rollers"),
+        ("speed", data.balls, "balls"),
+    ):
+        if getattr(data, key) and not allowed:
+            yield SceneError(
+                f"belongs to {owner}; a {kind} bearing has none: leave it out", path=(key,)
+            )
+    if data.preload_spring is not None and data.speed:
+        yield SceneError(
+            "a pair on a preload spring is solved at rest only: leave out speed, or the spring",
+            path=("speed",),
+        )
+    if data.preload_spring is not None and (
+        data.arrangement not in ("back_to_back", "face_to_face")
+        or data.preload is None
+        or data.preload.force is None
+    ):
+        yield SceneError(
+            'presses one row of a pair with a force: it needs arrangement = "back_to_back" or '
+            '"face_to_face" and a preload such as "500 N"',
+            path=("preload_spring",),
+        )
+
+
+def _by_nature(data: Catalogue, kind: str) -> Iterator[SceneError]:
+    """Yield problems of keys that spherical and thrust bearings do not have."""
+    if data.kind == "spherical":
+        kind = "spherical roller"
+        refused = {
+            "arrangement": "has two rows of its own",
+            "preload": "is preloaded by a negative clearance and not along y",
+            "profile": "has barrels, whose profile is their conformity",
+        }
+    else:
+        refused = {
+            "arrangement": "has one row and holds one way (of two, write holds at each)",
+            "contact_angle": "stands at 90 degrees",
+            "clearance": "has no clearance across the shaft",
+            "shaft_interference": "is not made tighter by its fit",
+            "housing_interference": "is not made tighter by its fit",
+            "inner_ring_warmer": "is not made tighter by a warm shaft",
+            "speed": "is computed at rest only, without what speed does to its balls",
+        }
+    for key, reason in refused.items():
+        if getattr(data, key) != type(data).model_fields[key].get_default():
+            yield SceneError(f"a {kind} bearing {reason}: leave it out", path=(key,))
+
+
+def _fits(data: Catalogue) -> Iterator[SceneError]:
+    """Yield problems of sizes that leave no room for each other."""
+    room = (data.outer_diameter - data.bore) / 2
+    if data.element_diameter is not None and data.element_diameter >= room:
+        yield SceneError(
+            f"does not fit between bore and outer_diameter, {room:.6g} m apart",
+            path=("element_diameter",),
+        )
+        return
+    if data.element_length is not None and data.element_length > data.width:
+        yield SceneError(
+            f"must not be longer than the width ({data.width:.6g} m)", path=("element_length",)
+        )
+    pitch = data.pitch_diameter or (data.bore + data.outer_diameter) / 2
+    if not data.bore < pitch < data.outer_diameter:
+        yield SceneError(
+            f"must lie between bore and outer_diameter ({data.bore:.6g} and "
+            f"{data.outer_diameter:.6g} m)",
+            path=("pitch_diameter",),
+        )
+    elif data.elements is not None and data.element_diameter is not None:
+        most = int(math.pi / math.asin(min(data.element_diameter / pitch, 1.0)) + 1e-9)
+        if data.elements > most:
+            yield SceneError(
+                f"more than fit on the pitch circle of {pitch:.6g} m: at most {most} elements of "
+                f"{data.element_diameter:.6g} m",
+                path=("elements",),
+            )

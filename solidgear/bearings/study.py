@@ -1,0 +1,195 @@
+"""Catalogue bearings of a scene: stiffness and contacts at their load, and stiffness over load."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from solidgear.bearings.catalogued import Catalogued
+from solidgear.bearings.row import Contacts
+from solidgear.bearings.solved import Choice, Solved, solved
+from solidgear.core.body import Body
+from solidgear.core.errors import SolidgearError
+from solidgear.core.scene import Bearing, BearingLoad, Scene
+from solidgear.bearings.catalogue import Catalogue
+
+#: why one row of a pair carries nothing
+LOST = "any more: the pair has lost its preload"
+#: factors on the load of the scene
+FACTORS = tuple(float(f) for f in np.geomspace(0.05, 2.0, 21))
+
+
+@dataclass(frozen=True)
+class BearingFacts:
+    """One catalogue bearing at its load."""
+
+    bearing: Bearing  #: with its stiffness there
+    made: Catalogued  #: rows made from its data
+    motion: np.ndarray  #: (6,) motion of its inner ring
+    #: least and largest diagonal (6,) of the stiffness over the range of estimated dimensions
+    spread: tuple[np.ndarray, np.ndarray] | None
+
+    @property
+    def name(self) -> str:
+        """Name of the bearing."""
+        return self.bearing.name
+
+    @property
+    def data(self) -> Catalogue:
+        """Catalogue data of the bearing."""
+        assert self.bearing.catalogue is not None
+        return self.bearing.catalogue
+
+    @property
+    def called(self) -> str:
+        """Designation, or else its kind in words."""
+        return self.data.designation or self.data.kind.replace("_", " ")
+
+    @property
+    def stiffness(self) -> np.ndarray:
+        """Tangent stiffness (6, 6) at the load."""
+        return np.array(self.bearing.matrix)
+
+    @property
+    def load(self) -> np.ndarray:
+        """Load (6,) of the shaft on the bearing, N and N m."""
+        return self.made.bearing.load(self.motion)
+
+    @property
+    def rows(self) -> tuple[Contacts, ...]:
+        """Contacts of its rolling elements, row by row."""
+        return self.made.bearing.contacts(self.motion)
+
+    @property
+    def inside(self) -> dict[str, float]:
+        """Inner dimensions that it was solved with, SI."""
+        inner = self.made.inside
+        out = {
+            "elements": inner.elements,
+            "element_diameter": inner.diameter,
+            "pitch_diameter": inner.pitch,
+            "contact_angle": inner.angle,
+        }
+        if self.data.grooved:
+            out |= dict(zip(("conformity_inner", "conformity_outer"), inner.conformity))
+        if not self.data.balls:
+            out["element_length"] = inner.length
+        return out
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Sentences on rows that carry nothing."""
+        bare = [k for k, row in enumerate(self.rows) if not row.load.any()]
+        if len(bare) == len(self.rows):
+            return ("it carries nothing: it has lost its load, and has no stiffness",)
+        why = "under this thrust" if self.data.own_rows > 1 else LOST
+        return tuple(
+            f"the row at the {'upper' if k else 'lower'} end of y carries nothing {why}"
+            for k in bare
+        )
+
+
+def bearing_facts(scene: Scene, body: Body | None = None) -> list[BearingFacts]:
+    """Compute every catalogue bearing of a scene at its load; `body` is the shaft, needed where
+    bearings settle under its load.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> scene = sg.load("geometry/gearbox_catalogue.toml")
+    >>> facts = bearing_facts(scene, sg.build(scene, "timoshenko"))
+    >>> [(fact.name, fact.data.kind, len(fact.rows)) for fact in facts]
+    [('A', 'cylindrical', 1), ('B', 'angular_contact', 2)]
+    """
+    bearings = [b for b in scene.bearings if b.catalogue is not None]
+    if not bearings:
+        raise SolidgearError(
+            f"{scene.name}: no bearing is described by catalogue data; write [bearing.catalogue] "
+            "in place of [bearing.stiffness], as in geometry/gearbox_catalogue.toml"
+        )
+    middle = solved(scene, body)
+    ends: dict[str, Solved] = {}
+    if any(made.estimated for made in middle.made.values()):
+        ends = {end: solved(scene, body, Choice(end=end)) for end in ("softer", "stiffer")}
+    return [_facts(bearing.name, middle, ends) for bearing in bearings]
+
+
+def _facts(name: str, middle: Solved, ends: dict[str, Solved]) -> BearingFacts:
+    rows, spread = middle.made[name], None
+    if rows.estimated:
+        # an even number of elements under the load is another bearing than an odd one: the middle
+        # need not lie between
+        solutions = (middle, *ends.values())
+        diagonals = [np.diag(np.array(_named(s, name).matrix)) for s in solutions]
+        spread = (np.min(diagonals, axis=0), np.max(diagonals, axis=0))
+    return BearingFacts(_named(middle, name), rows, middle.motion[name], spread)
+
+
+def _named(solution: Solved, name: str) -> Bearing:
+    return next(b for b in solution.scene.bearings if b.name == name)
+
+
+@dataclass(frozen=True)
+class OverLoad:
+    """Stiffness of a bearing over the load."""
+
+    factors: np.ndarray  #: (n,) on the load of the scene
+    load: np.ndarray  #: (n, 6) load on the bearing
+    middle: np.ndarray  #: (n, 6) diagonal of its stiffness
+    low: np.ndarray  #: its least value over the range of estimated dimensions
+    high: np.ndarray  #: its largest
+
+
+def over_load(
+    scene: Scene, body: Body | None = None, factors: Sequence[float] = FACTORS
+) -> dict[str, OverLoad]:
+    """Compute the stiffness of every catalogue bearing at multiples of the load of the scene;
+    `body` is the shaft, needed where bearings settle under its load.
+    """
+    names = [b.name for b in scene.bearings if b.catalogue is not None]
+    loads: dict[str, list] = {name: [] for name in names}
+    diagonals: dict[tuple[str, str], list] = {}
+    for end in ("middle", "softer", "stiffer"):
+        start = None
+        for factor in factors:
+            state = solved(scene, body, Choice(end=end, load=factor), start)
+            start = state.equilibrium
+            for name in names:
+                bearing, motion = state.made[name].bearing, state.motion[name]
+                diagonals.setdefault((name, end), []).append(np.diag(bearing.tangent(motion)))
+                if end == "middle":
+                    loads[name].append(bearing.load(motion))
+    curves = {}
+    for name in names:
+        ends = np.array([diagonals[name, end] for end in ("middle", "softer", "stiffer")])
+        at_load = np.array(loads[name])
+        curves[name] = OverLoad(
+            np.array(factors), at_load, ends[0], ends.min(axis=0), ends.max(axis=0)
+        )
+    return curves
+
+
+def with_load(scene: Scene, load: dict[str, str | float], bearing: str | None) -> Scene:
+    """Return the scene with the components `load` as its load, on its port or on the bearing of a
+    name.
+    """
+    new = BearingLoad(**load)
+    if bearing is None:
+        free = tuple(
+            b
+            if b.catalogue is None
+            else b.with_changes(catalogue=b.catalogue.with_changes(load=None))
+            for b in scene.bearings
+        )
+        return scene.with_changes(load=new, bearings=free)
+    catalogues = {b.name: b.catalogue for b in scene.bearings if b.catalogue is not None}
+    if bearing not in catalogues:
+        raise SolidgearError(
+            f"--bearing {bearing}: no bearing of catalogue data has this name; known here: "
+            f"{', '.join(catalogues) or 'none'}"
+        )
+    data = catalogues[bearing].with_changes(load=new, displacement=None)
+    changed = (b.with_changes(catalogue=data) if b.name == bearing else b for b in scene.bearings)
+    return scene.with_changes(bearings=tuple(changed))

@@ -1,5 +1,0 @@
-"""``python -m solidgear.cli``."""
-
-from solidgear.cli import main
-
-main()

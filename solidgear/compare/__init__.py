@@ -1,0 +1,1 @@
+"""All models of a scene side by side, and which to trust."""

@@ -1,0 +1,314 @@
+"""Comparison of one scene by every model, with one verdict."""
+
+from __future__ import annotations
+
+import functools
+import logging
+import os
+from collections.abc import Callable, Collection
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, ClassVar, overload
+
+from solidgear.core.display import Displayed
+from solidgear.core.errors import SolidgearError
+from solidgear.core.judge.causes import SHOWN, attachment_causes, beam_causes, shoulder_cause
+from solidgear.core.judge.lumped import synthesise_all
+from solidgear.core.judge.open_record import OpenNumbers
+from solidgear.core.judge.quantities import change
+from solidgear.core.judge.record import CauseRecord, GuardRecord, LumpedRecord, Record, WhereRecord
+from solidgear.compare.recording import recorded
+from solidgear.core.judge.solution import Solution
+from solidgear.core.judge.study import study
+from solidgear.core.judge.ties import SECTION
+from solidgear.core.judge.where import recorded_places
+from solidgear.core.ladder.meshes import FREE, HARMONIC
+from solidgear.core.ladder.model import LUMPED, SOLID
+from solidgear.core.ladder.registry import LADDER
+from solidgear.core.machine.memory import one_run
+from solidgear.core.machine.meter import Meter
+from solidgear.core.machine.threads import pinned
+from solidgear.show.units import units_named
+from solidgear.compare.page.write import write_all
+from solidgear.core.scene import Scene
+from solidgear.core.scene.shaft import without_axis
+from solidgear.trains.file.train import Train
+from solidgear.variants.budget.budget import opened
+from solidgear.guards.check import notices
+from solidgear.guards.models import cells_around
+from solidgear.compare.two.two_shafts import two_shafts
+
+if TYPE_CHECKING:
+    from solidgear.compare.two.two_shafts import TwoShafts
+
+log = logging.getLogger(__name__)
+Progress = Callable[[str], None]
+
+
+@dataclass(repr=False)
+class Comparison(Displayed):
+    """Result of a comparison."""
+
+    shown: ClassVar[str] = "comparison"
+
+    scene: Scene
+    record: Record  #: contents of ``results.json``
+    solutions: dict[str, Solution]  #: bodies and mode shapes behind the record, by model
+
+    @property
+    def results(self) -> dict:
+        """The record as plain data."""
+        return self.record.as_dict()
+
+    def write_report(
+        self,
+        out: str | os.PathLike,
+        *,
+        renders: bool = True,
+        units: str = "engineering",
+        progress: Progress = lambda _: None,
+    ) -> Path:
+        """Write results.json, report.html, mode_*.png and files for other programs into a folder.
+
+        Parameters
+        ----------
+        out : path
+            The folder.
+        renders : bool
+            Draw mode shapes.
+        units : {'engineering', 'si', 'us'}
+            Units of the page; results.json is SI always.
+        progress : callable
+            Called with a sentence at every step.
+
+        Returns
+        -------
+        pathlib.Path
+            The folder.
+
+        Raises
+        ------
+        SolidgearError
+            If the folder cannot be written, or units are unknown.
+        """
+        self.record.shown_in = units_named(units).name
+        return write_all(self, out, renders=renders, progress=progress)
+
+
+@overload
+def compare(scene: Scene, other: Scene, /, *, progress: Progress = ...) -> TwoShafts: ...
+
+
+@overload
+def compare(
+    scene: Scene,
+    models: tuple[str, ...] | None = None,
+    *,
+    settings: dict[str, dict] | None = None,
+    progress: Progress = ...,
+) -> Comparison: ...
+
+
+@pinned
+def compare(
+    scene: Scene,
+    models: Scene | tuple[str, ...] | None = None,
+    *,
+    settings: dict[str, dict] | None = None,
+    progress: Progress = lambda _: None,
+) -> Comparison | TwoShafts:
+    """Solve a scene with several models and compare them; or two scenes beside each other.
+
+    Solids are solved on ever finer meshes until their error bars are small enough: a tenth of the
+    tolerance of the scene for the harmonic solid, which judges, all of it for the 3D solid.
+
+    Parameters
+    ----------
+    scene : Scene
+    models : tuple of str, optional
+        Models of the ladder (lumped, euler, timoshenko, harmonic, solid); all by default. The
+        lumped model rests on one of the others. Another scene in their place is compared with the
+        first, each solved by the model that the judge chooses.
+    settings : dict, optional
+        Builder options per model, such as ``{"harmonic": {"order": 8}}``.  Options that concern the
+        mesh fix it: that mesh and two coarser ones are solved.
+    progress : callable
+        Called with a sentence at every step.
+
+    Returns
+    -------
+    Comparison
+        After Ctrl-C with the models solved so far, ``record.complete`` False.
+    TwoShafts
+        Of two scenes: ``inputs`` that differ, ``changes`` of numbers with both bars, ``modes`` in
+        pairs, ``sentences``, ``write_report(out)``.
+
+    Raises
+    ------
+    SolidgearError
+        For an unknown model, a train, or settings of two scenes.  A model that fails is reported
+        as not valid, and the others go on.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> rod = sg.Segment.cylinder("rod", length=0.6, diameter=0.02)
+    >>> comparison = sg.compare(sg.Scene.from_parts([rod]), models=("euler",))
+    >>> comparison.record.verdict.sentences
+    ['Not judged: no solid was run, and a beam cannot judge itself.']
+    >>> thicker = sg.Segment.cylinder("rod", length=0.6, diameter=0.022)
+    >>> shafts = sg.compare(sg.Scene.from_parts([rod]), sg.Scene.from_parts([thicker]))
+    >>> shafts["mass"].verdict, round(shafts["mass"].relative, 4)
+    ('resolved', 0.21)
+    """
+    if isinstance(scene, Train) or isinstance(models, Train):
+        raise SolidgearError(
+            "compare takes scenes of one shaft; trains are compared by the command: "
+            "solidgear compare A.toml B.toml"
+        )
+    if without_axis(scene) or without_axis(models):
+        raise SolidgearError(
+            "compare: a body without an axis has one model, the 3D solid; solidgear modes and "
+            "stiffness tell its numbers and bars"
+        )
+    if isinstance(models, Scene):
+        if settings:
+            raise SolidgearError("settings are of models of one scene; of two the judge chooses")
+        return two_shafts((scene, models), progress=progress)
+    models = LADDER.names if models is None else models
+    check_models(models)
+    options = {m: dict((settings or {}).get(m, {})) for m in LADDER.bodies}
+    findings = _Findings()
+    complete = True
+    open_ = OpenNumbers()
+    overall = Meter()
+    with overall.stage("all"), one_run() as run:
+        try:
+            _run(scene, models, options, findings, progress)
+            progress("what the data leave open")
+            open_ = opened(scene)
+        except KeyboardInterrupt:
+            complete = False
+            progress("interrupted; keeping what is there")
+    record = recorded(
+        scene,
+        findings.solutions,
+        findings.failed,
+        findings.causes,
+        findings.lumped,
+        findings.guards,
+        complete,
+    )
+    record.where = findings.where
+    record.open = open_
+    record.seconds_total = overall.seconds["all"]
+    record.peak_mb = overall.peak_mb
+    record.expected_peak_mb = run.expected_mb
+    return Comparison(scene, record, findings.solutions)
+
+
+@dataclass
+class _Findings:
+    """Findings of a comparison so far; an interrupt leaves them whole."""
+
+    solutions: dict[str, Solution] = field(default_factory=dict)
+    failed: dict[str, str] = field(default_factory=dict)
+    causes: list[CauseRecord] = field(default_factory=list)
+    lumped: dict[str, LumpedRecord] = field(default_factory=dict)
+    guards: list[GuardRecord] = field(default_factory=list)
+    where: WhereRecord | None = None
+
+
+def _run(scene: Scene, models, options, findings: _Findings, progress: Progress) -> None:
+    lumped = bool(set(LADDER.of(LUMPED)) & set(models))
+    # a model that was named is reported where it does not fit
+    bodies = LADDER.fit(scene) if set(models) >= set(LADDER.names) else LADDER.bodies
+    for model in (m for m in bodies if m in models):
+        try:
+            chosen = _circumference(scene, model, options[model], findings)
+            # A count takes a second factor.  One by a cheaper solid counts for a dearer one, whose
+            # modes are paired with its own.
+            counted = not _after_a_solid(model, findings.solutions)
+            solution = study(
+                scene,
+                model,
+                chosen,
+                counted=counted,
+                progress=progress,
+                keep=functools.partial(findings.solutions.__setitem__, model),
+            )
+        except (SolidgearError, MemoryError) as error:
+            findings.failed[model] = str(error) or "not enough memory"
+            log.warning("%s failed: %s", model, findings.failed[model])
+            continue
+        findings.solutions[model] = solution
+        # A dearer solid's lumped models are those of the cheaper one within error bars, at ten times
+        # the price.
+        if lumped and not _after_a_solid(model, findings.lumped):
+            progress(f"lumped: synthesis from {model}")
+            findings.lumped |= synthesise_all(scene, {model: solution}, log.info)
+        # Factors are the largest thing a body holds, and no further solution is needed.
+        solution.body.cache.clear()
+    if findings.solutions:
+        progress("guards")
+        findings.guards = notices(scene, findings.solutions)
+    if "harmonic" in findings.solutions:
+        progress("where the error sits")
+        findings.where = recorded_places(scene, findings.solutions["harmonic"])
+    findings.causes = _causes(scene, findings.solutions, options, progress)
+
+
+def _after_a_solid(model: str, done: Collection[str]) -> bool:
+    """Return True where a model is a solid and another solid is done."""
+    solids = LADDER.of(SOLID)
+    return model in solids and any(s in done for s in solids if s != model)
+
+
+def _circumference(scene: Scene, model: str, options: dict, findings: _Findings) -> dict:
+    """Return the options of a model that divides the circumference into cells, with as many cells
+    as the modes need that the harmonic solid found in the range asked for.
+    """
+    harmonic = findings.solutions.get("harmonic")
+    if "around" not in LADDER[model].options or harmonic is None or "around" in options:
+        return options
+    families = harmonic.modes.evidence.get("families", [])
+    ovalising = [row["n"] for row in families if (row["n"] or 0) > 1 and row["modes_below"]]
+    waves = max(ovalising, default=1)
+    if waves < 2:
+        return options
+    return {**options, "around": cells_around(scene, waves)}
+
+
+def check_models(models: tuple[str, ...]) -> None:
+    """Refuse unknown models, and the lumped model alone, in one sentence."""
+    unknown = [m for m in models if m not in LADDER]
+    if unknown or not set(models) & set(LADDER.bodies):
+        raise SolidgearError(
+            f"models: {', '.join(unknown or models) or 'none given'}; choose from "
+            f"{', '.join(LADDER.names)}, lumped not alone"
+        )
+
+
+def _causes(scene: Scene, solutions: dict[str, Solution], options, progress: Progress) -> list:
+    out = []
+    progress("causes: switching assumptions one at a time")
+    try:
+        if "timoshenko" in solutions:
+            out += beam_causes(scene)
+        for model in LADDER.of(SOLID):
+            if model in solutions:
+                variants = solutions[model].variants.items()
+                out += attachment_causes({a: v.quantities for a, v in variants}, model)
+        harmonic, beam = solutions.get("harmonic"), solutions.get("timoshenko")
+        if harmonic and beam and SECTION in harmonic.ties and SECTION in beam.ties:
+            solid, timoshenko = harmonic.ties[SECTION].quantities, beam.ties[SECTION].quantities
+            gap = {name: change(timoshenko, solid, name) for name in SHOWN}
+            mesh = HARMONIC
+            if options["harmonic"]:
+                mesh = {k: v for k, v in harmonic.options.items() if k not in FREE}
+            cause = shoulder_cause(scene, gap, mesh, progress)
+            if cause:
+                out.append(cause)
+    except SolidgearError as error:
+        log.warning("causes left out: %s", error)
+    return out

@@ -1,0 +1,168 @@
+"""Picture of the mesh of a meridian, every cell in the colour of its share of the error."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from solidgear.show.panel import GREY, PERCENT, Axis, Panel, readout
+from solidgear.show.plot import BETWEEN, WIDE, Chart
+from solidgear.show.words import percent
+
+if TYPE_CHECKING:
+    from solidgear.core.judge.record import Record, WhereRecord
+
+#: shares below this are all of one colour
+LEAST = 1e-4
+#: a shaft that is more slender than this is drawn with its radius stretched
+SLENDEREST = 7.0
+#: px; the most that a half section gets, and of paper that the number of a place takes
+HIGHEST, DIGIT = 330.0, 20.0
+#: px, least and most; a picture from close by of cells at a place whose corners are nearer than this share of the length
+CLOSE, LARGEST, SMALL = 170.0, 200.0, 0.02
+#: places that are named, and the share from which on they are
+MOST_PLACES, WORTH_NAMING = 5, 5e-4
+
+
+def draw_where(file: Path, where: WhereRecord, title: str = "") -> None:
+    """Write the picture.
+
+    Parameters
+    ----------
+    file : Path
+        Its ending, ``.png`` or ``.svg``, says what it becomes.
+    where : WhereRecord
+        Cells with their shares, whose magnitudes are drawn; places worth it are named.
+
+    Raises
+    ------
+    SolidgearError
+        For another ending, or a file that cannot be written.
+    """
+    _chart(where, title, WIDE).write(file)
+
+
+def _chart(where: WhereRecord, title: str, width: float) -> Chart:
+    points, cells, shares = map(np.array, (where.points, where.cells, where.shares))
+    places = [p for p in worth_naming(where.rows) if p.y is not None and p.r is not None]
+    r, y = 1e3 * points
+    length, radius = np.ptp(y), r.max()
+    stretch = max(1.0, length / (SLENDEREST * radius))
+    corners = np.stack([y[cells], r[cells]], axis=-1).transpose(1, 0, 2)
+    room = width - 80.0
+    scale = min(room / (1.04 * length), HIGHEST / (1.1 * stretch * radius))  # px of a millimetre
+    spots = [(1e3 * scale * p.y, 1e3 * scale * stretch * p.r) for p in places]
+    heights = [height / scale / stretch for height in _raised(spots)]
+    top = max([1.05 * radius, *(height + DIGIT / scale / stretch for height in heights)])
+    panel = Panel(
+        Axis("y, mm", (y.min() - 0.02 * length, y.max() + 0.02 * length), grid=False),
+        Axis("r, mm", (0.0, top), grid=False),
+        scale * stretch * top,
+        right=12 + room - 1.04 * scale * length,
+    )
+    legend: dict[str, Any] = {"orient": "top", "title": "share of the cell", "labelExpr": PERCENT}
+    legend["values"] = np.geomspace(LEAST, 1.0, 5).tolist()
+    _draw(panel, corners, shares, legend | {"gradientLength": min(room, 300.0)})
+    numbers = [
+        {"x": 1e3 * place.y, "y": 1e3 * place.r, "y2": height, "text": str(number)}
+        for number, (place, height) in enumerate(zip(places, heights), 1)
+    ]
+    panel.draw("rule", [{key: row[key] for key in ("x", "y", "y2")} for row in numbers])
+    over = [{"x": row["x"], "y": row["y2"], "text": row["text"]} for row in numbers]
+    panel.draw({"type": "point", "size": 300, "fill": "#ffffff", "stroke": GREY}, over)
+    panel.draw({"type": "text", "baseline": "middle", "fontWeight": "bold"}, over)
+    names = [
+        f"{number}: {place.what}, y = {1e3 * place.y:.4g} mm, {100 * place.share:.2g} %"
+        for number, place in enumerate(places, 1)
+    ]
+    drawn_as = "" if stretch == 1.0 else f"radius drawn {stretch:.2g} times as large"
+    close = _close(points, places)[: int(width / CLOSE)]
+    insets = [_inset(corners, shares, places[n - 1], n, half) for n, half in close]
+    one = (width - BETWEEN * (len(insets) - 1)) / max(len(insets), 1)
+    for inset in insets:  # as wide as high, beside axes as wide as those above
+        inset.height = min(one - panel.beside - inset.right, LARGEST)
+        inset.right = one - panel.beside - inset.height
+    rows_of = [[panel], insets] if insets else [[panel]]
+    return Chart(rows_of, width, "; ".join(filter(None, (title, drawn_as))), "\n".join(names))
+
+
+def _inset(corners, shares, place: Any, number: int, half: float) -> Panel:
+    """Cells at a place from close by, so many metres to either side."""
+    centre = 1e3 * np.array([place.y, place.r])
+    low, high = centre - 1e3 * half, centre + 1e3 * half
+    seen = np.all((corners.min(axis=1) < high) & (corners.max(axis=1) > low), axis=1)
+    across, up = (Axis("", ends, grid=False) for ends in zip(low.tolist(), high.tolist()))
+    panel = Panel(across, up, CLOSE, f"{number}, {2e3 * half:.2g} mm wide", least=CLOSE)
+    _draw(panel, corners[seen], shares[seen], None)
+    return panel
+
+
+def _draw(panel: Panel, corners, shares, legend: Any) -> None:
+    """Draw cells in the colours of their shares, which can be read off."""
+    scale = {"type": "log", "domain": [LEAST, 1.0], "scheme": "yelloworangered", "clamp": True}
+    shade = {"field": "share", "type": "quantitative", "scale": scale, "legend": legend}
+    sizes = np.abs(shares).clip(LEAST, None).tolist()
+    rows = [
+        {"x": x, "y": y, "detail": k, "share": sizes[k]}
+        for k, cell in enumerate(corners.tolist())
+        for x, y in cell
+    ]
+    mark = {"type": "line", "interpolate": "linear-closed", "stroke": "#808080"}
+    panel.draw(mark | {"strokeWidth": 0.5}, rows, fill=shade)
+    places = [
+        {"x": x, "y": y, "readout": _words(x, y, share)}
+        for (x, y), share in zip(corners.mean(axis=1).tolist(), shares)
+    ]
+    panel.read(places, "#444444")
+
+
+def _words(y: float, r: float, share: float) -> str:
+    size = percent(abs(share), signed=False)
+    places = ("y", f"{y:.4g}", "mm"), ("r", f"{r:.4g}", "mm")
+    return readout("cell", ("share of the error", size, ""), *places)
+
+
+def _close(points: np.ndarray, places: Sequence[Any]) -> list[tuple[int, float]]:
+    """Numbers of the places towards which cells are too small to be seen, and half the width (m) of
+    what shows them: between the smallest of them and the wall.
+    """
+    out = []
+    for number, place in enumerate(places, 1):
+        away = np.hypot(points[0] - place.r, points[1] - place.y)
+        near = away[away > 1e-9 * np.ptp(points[1])].min()
+        if place.reach is not None and near < SMALL * np.ptp(points[1]):
+            out.append((number, float(np.sqrt(near * max(place.reach, near)))))
+    return out
+
+
+def _raised(spots: Sequence[tuple[float, float]]) -> list[float]:
+    """Heights (px) of the numbers of places, over them and none on another."""
+    taken: list[tuple[float, float]] = []
+    for x, y in spots:
+        y += DIGIT
+        while any(abs(x - a) < DIGIT and abs(y - b) < DIGIT for a, b in taken):
+            y += 1.01 * DIGIT
+        taken.append((x, y))
+    return [y for _, y in taken]
+
+
+def where_chart(record: Record, width: float = WIDE) -> Chart | None:
+    """Places of the error of the judge; None without a record of them."""
+    where = record.where
+    if where is None or not where.cells:
+        return None
+    return _chart(where, "", width)
+
+
+def worth_naming(rows: Sequence[Any]) -> list[Any]:
+    """The first few places whose share is worth a word.
+
+    Parameters
+    ----------
+    rows : sequence of PlaceRecord
+        Places with a ``share``, the largest first.
+    """
+    return [r for r in rows[:MOST_PLACES] if r.share is not None and abs(r.share) >= WORTH_NAMING]

@@ -1,0 +1,238 @@
+"""A race as a figure: error against cost, one line of panels a quantity."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from solidgear.compare.race.pareto import AUTOMATIC, Race, Row
+from solidgear.show.panel import (
+    COUNT,
+    GREY,
+    NUMBER,
+    PERCENT,
+    SHAPES,
+    Axis,
+    Panel,
+    readout,
+    tolerance_line,
+)
+from solidgear.show.plot import WIDE, Chart
+from solidgear.compare.race.legend import FRONT, footer, legend
+from solidgear.compare.race.rows import COSTS, error_text, options_text
+from solidgear.compare.race.style import REFERENCE, Look
+from solidgear.show.words import grouped, is_number, percent, seconds
+
+QUANTITY = {"C_zz": "port compliance C_zz", "bending 1": "first bending frequency"}
+#: the series whose orders are written beside its points
+ORDERS = "harmonic p graded"
+
+
+def draw(race: Race, path) -> Path:
+    """Draw a race as a PNG."""
+    return race_chart(race).write(Path(path))
+
+
+def race_chart(race: Race, width: float = WIDE) -> Chart:
+    """Panels of error over seconds and over unknowns, one line of panels a quantity, log-log."""
+    panels = [[_panel(race, q, cost) for cost in COSTS] for q in race.reference["values"]]
+    title = race.scene.get("title") or race.scene.get("name", "")
+    words = f"{title}: error against cost" + ("" if race.complete else " (interrupted)")
+    return Chart([*panels, [legend(race, width)]], width, words, footer(race))
+
+
+def _panel(race: Race, quantity: str, cost: str) -> Panel:
+    low, top = _heights(race, quantity)
+    bar, setup = race.reference["bands"][quantity], sum(race.setup.values())
+    panel = Panel(
+        Axis(
+            COSTS[cost], _reach(race, cost), log=True, label=COUNT if cost == "unknowns" else NUMBER
+        ),
+        Axis(f"error of {QUANTITY.get(quantity, quantity)}", (low, top), log=True, label=PERCENT),
+        290.0,
+        left=72.0,
+    )
+    left, right = panel.x.ends
+    _bar(panel, bar, low)
+    tolerance = (race.scene.get("ask") or {}).get("tolerance")
+    if is_number(tolerance) and low < tolerance < top:
+        tolerance_line(panel, tolerance)
+    _front(panel, race, quantity, cost)
+    for name in dict.fromkeys(row.series for row in race.rows):
+        rows = [row for row in race.rows if row.series == name]
+        _series(panel, race, rows, quantity, cost)
+        _crosses(panel, rows, quantity, cost, top / 1.5)
+    if cost in race.reference:
+        _reference(panel, race, quantity, cost, max(bar, low))
+    if cost == "seconds" and left < setup < right:
+        _setup(panel, setup)
+    return panel
+
+
+def _reach(race: Race, cost: str) -> tuple[float, float]:
+    """Both ends of the axis of a cost."""
+    costs = [getattr(row, cost) for row in race.rows if row.status in ("ok", "failed")]
+    known = [value for value in costs if value] or [1.0]
+    return min(known) / 2.2, max(max(known) * 2.2, 1.5 * race.reference.get(cost, 0.0))
+
+
+def _heights(race: Race, quantity: str) -> tuple[float, float]:
+    """Both ends of the axis of errors.
+
+    An error bar far below every error is named at the bottom, so that it does not squeeze what there is
+    to see.
+    """
+    bar = race.reference["bands"][quantity]
+    errors = []
+    for row in race.rows:
+        error = race.error(row, quantity)
+        if error is None:
+            continue
+        like = row.like_for_like.get(quantity) if error else None
+        errors += [error, like or bar]
+    known = [error for error in errors if error > 0] or [1e-3]
+    return max(bar / 2.5, min(known) / 40), max(known) * 4
+
+
+def _bar(panel: Panel, bar: float, low: float) -> None:
+    """Shade the errors that the reference does not resolve, and name its bar."""
+    floor = max(bar, low)
+    if bar > 0:
+        panel.draw({"type": "rect", "color": "#00805e", "opacity": 0.13}, [{"y": low, "y2": floor}])
+    below = "" if bar > low else ", below this axis"
+    words = f"error bar of the reference {percent(bar, signed=False)}{below}"
+    look = {"type": "text", "color": REFERENCE, "align": "left", "dx": 4, "dy": -7, "fontSize": 10}
+    panel.draw(look, [{"y": floor, "text": words}], x={"value": 0})
+
+
+def _reference(panel: Panel, race: Race, quantity: str, cost: str, floor: float) -> None:
+    """The reference itself, at its own error bar."""
+    words = readout(
+        f"reference, {race.reference['model']}",
+        ("own error bar", percent(race.reference["bands"][quantity], signed=False), ""),
+        ("time", seconds(race.reference["seconds"]), "s"),
+        ("unknowns", grouped(race.reference["unknowns"]), ""),
+    )
+    star = {"type": "point", "shape": SHAPES["*"], "size": 110, "stroke": REFERENCE}
+    place = {"x": race.reference[cost], "y": floor, "readout": words}
+    panel.draw(star | {"fill": "#ffffff", "strokeWidth": 1}, [place])
+
+
+def _front(panel: Panel, race: Race, quantity: str, cost: str) -> None:
+    """The Pareto front as steps, from the top of the panel to its right end."""
+    steps = race.front(quantity, cost)
+    if not steps:
+        return
+    xs = [getattr(row, cost) for row in steps]
+    ys = [race.sure_error(row, quantity) for row in steps]
+    places = zip([xs[0], *xs, panel.x.ends[1]], [panel.y.ends[1], *ys, ys[-1]])
+    look = {"type": "line", "interpolate": "step-after", "color": FRONT}
+    panel.draw(look | {"strokeWidth": 5, "opacity": 0.45}, [{"x": x, "y": y} for x, y in places])
+
+
+def _setup(panel: Panel, spent: float) -> None:
+    """Time that a process pays once, as an upright line."""
+    panel.draw({"type": "rule", "color": GREY, "strokeDash": [1, 2]}, [{"x": spent}])
+    name = {"type": "text", "angle": -90, "align": "right", "dy": -6, "fontSize": 10, "color": GREY}
+    panel.draw(name, [{"x": spent, "text": "set-up, once a process"}], y={"value": 4})
+
+
+def _series(panel: Panel, race: Race, rows: list[Row], quantity: str, cost: str) -> None:
+    """A line through the levels of a series, and their points."""
+    look = Look(rows[0].series, rows[0].family)
+    spots = []
+    for row in rows:
+        error = race.error(row, quantity)
+        if error is not None and getattr(row, cost):
+            place = {"x": getattr(row, cost), "y": error}
+            spots.append((row, {**place, "readout": _words(race, row, look.series, quantity)}))
+    line = {"type": "line", "color": look.colour, "strokeWidth": look.width}
+    line |= {"strokeDash": look.dash, "opacity": 0.75 if look.uniform else 1.0}
+    panel.draw(line, [{"x": at["x"], "y": at["y"]} for _, at in spots])
+    if cost == "seconds":
+        panel.draw(
+            {"type": "rule", "color": look.colour, "opacity": 0.45},
+            [
+                {"x": min(row.samples), "x2": max(row.samples), "y": at["y"]}
+                for row, at in spots
+                if len(row.samples) > 1
+            ],
+        )
+    panel.draw(look.marks, [at for _, at in spots])
+    unresolved = [at for row, at in spots if not race.resolved(row, quantity)]
+    _arrows(panel, unresolved, look.colour)
+    beside = [(at, _beside(look, row)) for row, at in spots]
+    text = {"type": "text", "color": look.colour, "fontSize": 10}
+    names = [{"x": at["x"], "y": at["y"], "text": words} for at, words in beside if words]
+    panel.draw(text | {"align": "right", "dx": -6, "dy": 9}, names)
+    if spots and not look.converges:
+        _like_for_like(panel, race, look, spots, quantity)
+        # levels that do not converge to the reference coincide: one name will do, and that of a
+        # lumped model, which lies close to that of a beam, below it
+        place = {"align": "left", "dx": 8, "dy": -8}
+        if look.family == "lumped":
+            place = {"align": "center", "dy": 16}
+        at = spots[-1][1]
+        panel.draw(text | place, [{"x": at["x"], "y": at["y"], "text": look.series}])
+
+
+def _words(race: Race, row: Row, name: str, quantity: str) -> str:
+    """Words shown at the point of one level of a series."""
+    return readout(
+        name,
+        (f"error of {quantity}", error_text(race, row, quantity), ""),
+        ("time", seconds(row.seconds), "s"),
+        ("unknowns", grouped(row.unknowns), ""),
+        ("setting", options_text(row), ""),
+    )
+
+
+def _beside(look: Look, row: Row) -> str:
+    """The order or the tolerance of a level, written beside it."""
+    if look.series == ORDERS:
+        return f"p{row.options['order']}"
+    return f"{100 * row.options['tol']:g} %" if look.family == AUTOMATIC else ""
+
+
+def _arrows(panel: Panel, spots: list[dict[str, Any]], colour: str) -> None:
+    """Draw arrows below points on the bar: the error may be smaller."""
+    head = {"type": "point", "shape": "triangle-down", "color": colour, "filled": True, "size": 30}
+    for size, dy in ((head, 13), ({**head, "shape": "stroke", "angle": 90, "size": 60}, 8)):
+        panel.draw({**size, "yOffset": dy}, [{"x": at["x"], "y": at["y"]} for at in spots])
+
+
+def _like_for_like(panel: Panel, race: Race, look: Look, spots: list, quantity: str) -> None:
+    """Errors against the solid with the same ties, hollow at the other end of a dotted line."""
+    rows = [
+        {
+            "x": at["x"],
+            "y": at["y"],
+            "y2": row.like_for_like.get(quantity),
+            "readout": at["readout"],
+        }
+        for row, at in spots
+    ]
+    known = [row for row in rows if row["y2"]]
+    dots = {"type": "rule", "color": look.colour, "strokeDash": [2, 2]}
+    panel.draw(dots, [{key: row[key] for key in ("x", "y", "y2")} for row in known])
+    hollow = [
+        {
+            "x": row["x"],
+            "y": row["y2"],
+            "readout": row["readout"].replace("\n", ", like for like\n", 1),
+        }
+        for row in known
+    ]
+    panel.draw({**look.marks, "fill": "#ffffff"}, hollow)
+
+
+def _crosses(panel: Panel, rows: list[Row], quantity: str, cost: str, height: float) -> None:
+    """Rows that failed, or have no such number, at the top."""
+    colour = Look(rows[0].series, rows[0].family).colour
+    missing = [
+        {"x": getattr(row, cost), "y": height}
+        for row in rows
+        if row.status == "failed" or (row.status == "ok" and quantity not in row.errors)
+    ]
+    cross = {"type": "point", "shape": SHAPES["x"], "stroke": colour, "strokeWidth": 2, "size": 60}
+    panel.draw(cross, missing)

@@ -1,0 +1,317 @@
+"""Record of a comparison, built from the solutions."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import TYPE_CHECKING
+
+from solidgear.core.frames import DOF_NAMES
+from solidgear.core.judge.at_rest import spin_caution
+from solidgear.core.judge.bars import ErrorBar
+from solidgear.core.judge.completeness import completeness, cut_short, split_apart
+from solidgear.core.judge.correlation import correlate
+from solidgear.core.judge.deviations import Deviation, deviations
+from solidgear.core.judge.hidden import COMPLETE, less_widest
+from solidgear.core.judge.lumped import model_facts, model_record
+from solidgear.core.judge.quantities import usual
+from solidgear.core.judge.record import (
+    BarRecord,
+    BarSummary,
+    CauseRecord,
+    ConvergenceRecord,
+    CoupledRecord,
+    DeviationRecord,
+    EvidenceRecord,
+    GuardRecord,
+    LumpedRecord,
+    MacRecord,
+    ModelRecord,
+    ModeRecord,
+    PointRecord,
+    PortRecord,
+    Record,
+    VariantRecord,
+)
+from solidgear.core.judge.solution import Solution
+from solidgear.core.judge.solving import ENOUGH, Answer, Statics
+from solidgear.core.judge.ties import SCENE
+from solidgear.compare.verdict import Judgement, judge, percent, trusted
+from solidgear.core.ladder.model import LUMPED, SOLID
+from solidgear.core.ladder.registry import LADDER
+from solidgear.core.machine.environment import environment
+from solidgear.core.quantity import COMPLIANCE, FIRST_BENDING
+from solidgear.core.solve.mixtures import mixtures
+
+if TYPE_CHECKING:
+    from solidgear.core.scene import Scene
+
+
+def recorded(
+    scene: Scene,
+    solutions: dict[str, Solution],
+    failed: dict[str, str],
+    causes: list[CauseRecord],
+    lumped: dict[str, LumpedRecord],
+    guards: list[GuardRecord],
+    complete: bool,
+) -> Record:
+    """Build the record of a comparison; `failed` holds the reasons of models that could not be
+    solved, and `complete` is False after an interrupt.
+    """
+    trust, _ = trusted(solutions, scene.ask.tolerance, usual(scene))
+    # Where nothing may judge, the distances are still reported; they are no judgement.
+    reference = trust or next((m for m in LADDER.judges if m in solutions), None)
+    gaps = deviations(solutions, reference) if reference else []
+    verdict, validity = judge(scene, solutions, gaps, guards)
+    verdict.reference = reference
+    models: dict[str, ModelRecord] = {}
+    for model in LADDER.bodies:
+        if model in solutions:
+            models[model] = _model_record(solutions[model], validity[model])
+        elif model in failed:
+            models[model] = ModelRecord(**model_facts(model), valid=False, why_not=failed[model])
+    out = Record(
+        complete=complete,
+        scene=scene.as_dict(),
+        port=_port_record(scene, solutions, 0),
+        further_ports=[
+            _port_record(scene, solutions, k) for k in range(1, len(scene.ports)) if solutions
+        ],
+        attachments=_attachments(solutions),
+        mac=_mac(solutions, reference),
+        deviations=[_deviation_record(gap) for gap in gaps],
+        causes=causes,
+        lumped=lumped,
+        verdict=verdict,
+        guards=guards,
+        environment=environment(),
+        models=models,
+        missing=[LADDER[model].title for model in LADDER.fit(scene) if model not in models],
+    )
+    if lumped and reference:
+        _add_lumped(out, solutions[reference], guards, scene.ask.tolerance, scene.ask.lumped)
+    out.warnings = _warnings(solutions, guards, out.models)
+    if listed := solutions.get(reference or next(reversed(solutions), "")):
+        error_bars = {str(q): bar.width for q, bar in listed.error_bars.get(SCENE, {}).items()}
+        out.warnings += spin_caution(scene, listed.body, listed.modes.modes, error_bars)
+        n = max(scene.ask.modes, ENOUGH)
+        out.warnings += cut_short(listed.modes.modes, n, scene.ask.max_frequency)
+    return out
+
+
+def _port_record(scene: Scene, solutions: dict[str, Solution], k: int) -> PortRecord:
+    port, first = scene.ports[k], next(iter(solutions.values()), None)
+    statics = None if first is None else first.ties[SCENE].statics
+    condensed = None if statics is None else [statics.main, *statics.further.values()][k]
+    return PortRecord(
+        name=port.name,
+        y=port.y,
+        attachment=port.attachment,
+        order=list(DOF_NAMES),
+        free=list(condensed.free_names) if condensed else [],
+    )
+
+
+def _deviation_record(gap: Deviation) -> DeviationRecord:
+    facts = asdict(gap)
+    return DeviationRecord(
+        band=facts.pop("bar"), **facts, unit=gap.quantity.unit, verdict=gap.verdict
+    )
+
+
+def _attachments(solutions: dict[str, Solution]) -> dict[str, dict[str, VariantRecord]]:
+    return {
+        model: {name: _variant_record(answer) for name, answer in solution.variants.items()}
+        for model, solution in solutions.items()
+        if solution.variants
+    }
+
+
+def _warnings(
+    solutions: dict[str, Solution], guards: list[GuardRecord], models: dict[str, ModelRecord]
+) -> list[str]:
+    out = []
+    for notice in guards:
+        # What speaks against a model that is out anyway is in the record, and nobody's concern.
+        about = [m for m in notice.models if m in models and models[m].valid]
+        if about or not notice.models:
+            titles = ", ".join(models[m].title for m in about)
+            out.append(f"{titles}: {notice.sentence}" if about else notice.sentence)
+    out += [
+        f"{LADDER[m].title}: {part}: {reason}"
+        for m, r in solutions.items()
+        for part, reason in r.failed.items()
+    ]
+    for model, solution in solutions.items():
+        out += [f"{LADDER[model].title}: {text}" for text in split_apart(solution.modes.evidence)]
+        out += [
+            f"{LADDER[model].title}: {mixture.sentence}" for mixture in mixtures(solution.modes)
+        ]
+    return out
+
+
+def _add_lumped(
+    record: Record, base: Solution, guards: list[GuardRecord], tolerance: float, synthesis: bool
+) -> None:
+    """Add the lumped model to the models, and the errors of every synthesis only where they are
+    asked for.
+    """
+    bar = base.error_bars.get(SCENE, {}).get(FIRST_BENDING)
+    lumped_model = model_record(
+        record.lumped,
+        record.models,
+        base.quantities.get(FIRST_BENDING),
+        tolerance,
+        bar.width if bar else None,
+        guards,
+    )
+    if lumped_model is None:
+        return
+    (name,) = LADDER.of(LUMPED)
+    record.models = {name: lumped_model, **record.models}
+    verdict = record.verdict
+    source = LADDER[lumped_model.source or name]
+    masses = f"{lumped_model.variant} masses on the stiffness of the {source.title}"
+    if lumped_model.valid and source.family == SOLID:
+        verdict.sentences.append(
+            f"A {LADDER[name].title} ({masses}) is within {percent(tolerance)} too, for first "
+            "bending and below only, and costs as much as what it rests on."
+        )
+    elif lumped_model.valid:
+        verdict.cheapest = name
+        verdict.sentences = [s for s in verdict.sentences if not s.startswith("Cheapest model")]
+        verdict.sentences.append(
+            f"Cheapest model within {percent(tolerance)}: {LADDER[name].title} "
+            f"({masses}), for first bending and below only."
+        )
+    variants = record.lumped[base.model].variants if base.model in record.lumped else {}
+    if not variants or verdict.trust is None or not synthesis:
+        return
+    errors = [
+        f"{n} {_error(v.frequency_error)}"
+        for n, v in variants.items()
+        if v.feasible and v.frequency_error is not None
+    ]
+    verdict.sentences.append(
+        f"First bending of lumped models made from the {LADDER[base.model].title}: "
+        f"{', '.join(errors)}."
+    )
+    if not variants["thesis"].feasible:
+        verdict.sentences.append(
+            "The thesis's equations 52 and 53 have no usable solution here: "
+            f"{variants['thesis'].verdict}."
+        )
+
+
+def _error(relative: float) -> str:
+    return "exact" if abs(relative) < 1e-9 else f"{100 * relative:+.2g} %"
+
+
+def _model_record(solution: Solution, judgement: Judgement) -> ModelRecord:
+    return ModelRecord(
+        **model_facts(solution.model),
+        valid=judgement.valid,
+        open=judgement.open,
+        why_not=judgement.why_not,
+        compliance=solution.condensed.compliance,
+        stiffness=solution.condensed.stiffness,
+        points={
+            name: PointRecord.model_validate(condensed)
+            for name, condensed in solution.ties[SCENE].statics.further.items()
+        },
+        coupled=_coupled(solution.ties[SCENE].statics),
+        modes=[ModeRecord.model_validate(m) for m in solution.modes.modes],
+        band=_bar_summary(solution),
+        convergence=_convergence(solution),
+        dofs=solution.body.size,
+        seconds=solution.meter.total(),
+        peak_mb=solution.meter.peak_mb,
+        backend=solution.condensed.evidence["backend"],
+        mesh=solution.body.mesh,
+        evidence=_evidence(solution),
+    )
+
+
+def _coupled(statics: Statics) -> CoupledRecord | None:
+    coupled = statics.coupled
+    if coupled is None:
+        return None
+    return CoupledRecord(
+        ports=list(coupled.ports),
+        stiffness=coupled.stiffness,
+        compliance=coupled.compliance,
+        stiffness_error=coupled.evidence["stiffness_error"],
+    )
+
+
+def _bar_summary(solution: Solution) -> BarSummary | None:
+    error_bars = solution.error_bars.get(SCENE, {})
+    if not error_bars:
+        return None
+    method = next(iter(error_bars.values())).method
+    return BarSummary(
+        compliance=max(
+            (b.width for q, b in error_bars.items() if q.kind == COMPLIANCE), default=None
+        ),
+        method=f"{method}, {len(solution.levels)} meshes",
+        each={name: bar.width for name, bar in error_bars.items()},
+    )
+
+
+def _convergence(solution: Solution) -> ConvergenceRecord | None:
+    error_bars = solution.error_bars.get(SCENE, {})
+    if not error_bars:
+        return None
+    return ConvergenceRecord(
+        levels=solution.levels,
+        quantities={name: _bar_record(bar) for name, bar in error_bars.items()},
+    )
+
+
+def _bar_record(bar: ErrorBar) -> BarRecord:
+    facts = asdict(bar)
+    return BarRecord(gci=facts.pop("width"), **facts)
+
+
+def _evidence(solution: Solution) -> EvidenceRecord:
+    statics = solution.condensed.evidence
+    error_bars = solution.error_bars.get(SCENE, {})
+    evidence = less_widest(
+        solution.modes.evidence, [bar.width for q, bar in error_bars.items() if q.is_frequency]
+    )
+    return EvidenceRecord(
+        asymmetry=statics["asymmetry"],
+        refinement_residual=statics["residual"],
+        rigid_residual=solution.body.rigid_residual(),
+        modal_residual=evidence["residual"],
+        orthogonality=evidence["orthogonality"],
+        eigensolver=evidence["method"],
+        mode_count=evidence.get("count", []),
+        complete_below_hz=evidence.get(COMPLETE),
+        families=evidence.get("families", []),
+        complete=completeness(evidence, solution.model) if "count" in evidence else "",
+        rigid_modes=evidence["rigid_modes"],
+        coupling_bound=evidence["coupling_bound"],
+        shift_rad2=float(evidence["shift_rad2"]),
+    )
+
+
+def _variant_record(answer: Answer) -> VariantRecord:
+    return VariantRecord(
+        quantities=answer.quantities,
+        stiffness=answer.statics.main.stiffness,
+        compliance=answer.statics.main.compliance,
+        modes=[ModeRecord.model_validate(m) for m in answer.modes.modes],
+    )
+
+
+def _mac(solutions: dict[str, Solution], reference: str | None) -> MacRecord | None:
+    if reference is None:
+        return None
+    base = solutions[reference].modes
+    tables = {
+        model: correlate(solution.modes, base)
+        for model, solution in solutions.items()
+        if model != reference
+    }
+    return MacRecord(reference=reference, stations=base.stations.tolist(), models=tables)

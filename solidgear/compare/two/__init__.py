@@ -1,0 +1,1 @@
+"""Two shafts or two trains beside each other."""

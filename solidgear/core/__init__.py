@@ -1,0 +1,1 @@
+"""Core: one shaft, its models, solvers and error bars."""

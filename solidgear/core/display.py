@@ -1,0 +1,79 @@
+"""Display of results: in a few lines, as a table of a notebook, as a picture.
+
+Tables and pictures are made by :mod:`solidgear.show.shown`, above all rooms of results; it is
+imported by name when first needed, so that nothing below imports the report.
+"""
+
+from __future__ import annotations
+
+import importlib
+import math
+from collections.abc import Mapping
+from dataclasses import fields, is_dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from solidgear.show.table import Table
+
+TABLES = "solidgear.show.shown"
+
+
+class Displayed:
+    """Base of results with a table and a picture."""
+
+    #: function of :mod:`solidgear.show.shown` that makes the table; the one of the picture has
+    #: ``_figure`` behind that name
+    shown: ClassVar[str] = ""
+
+    def table(self, *args: Any, **kwargs: Any) -> Table:
+        """Return a table of the main numbers."""
+        return getattr(importlib.import_module(TABLES), self.shown)(self, *args, **kwargs)
+
+    def plot(self, *args: Any, **kwargs: Any) -> Any:
+        """Return a picture, a matplotlib Figure.
+
+        Raises
+        ------
+        TypeError
+            Where there is nothing to draw.
+        """
+        draw = getattr(importlib.import_module(TABLES), f"{self.shown}_figure", None)
+        if draw is None:
+            raise TypeError(f"a {type(self).__name__} has no picture; table() tells its numbers")
+        return draw(self, *args, **kwargs)
+
+    def to_dataframe(self, *args: Any, **kwargs: Any) -> Any:
+        """Return :meth:`table` as a data frame of pandas, which must be installed."""
+        return self.table(*args, **kwargs).to_dataframe()
+
+    def __repr__(self) -> str:
+        return repr(self.table())
+
+    __str__ = __repr__
+
+    def _repr_html_(self) -> str:
+        return self.table()._repr_html_()
+
+
+def plain(value: Any) -> Any:
+    """Return a result as data that JSON can hold: dataclasses by the fields that `repr` shows, arrays
+    as lists, infinite numbers as None.
+
+    Examples
+    --------
+    >>> plain({"load": np.array([1.0, 2.0]), "life": math.inf})
+    {'load': [1.0, 2.0], 'life': None}
+    """
+    if is_dataclass(value):
+        return {f.name: plain(getattr(value, f.name)) for f in fields(value) if f.repr}
+    if hasattr(value, "_asdict"):  # a named tuple
+        return plain(value._asdict())
+    if isinstance(value, Mapping):
+        return {key: plain(entry) for key, entry in value.items()}
+    if isinstance(value, np.ndarray):
+        return plain(value.tolist())
+    if isinstance(value, (list, tuple)):
+        return [plain(entry) for entry in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -1,0 +1,159 @@
+"""Two trains or two shafts beside each other: numbers, sentences and plain data that both share."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any, Generic, TypeVar
+
+import numpy as np
+
+from solidgear.show.words import hertz, percent
+from solidgear.compare.two.differences import Difference
+from solidgear.core.judge.change import BarredMode, Change, ModePair
+
+#: entries of the input that are named in a sentence
+NAMED = 3
+
+
+@dataclass(frozen=True, eq=False)
+class Side:
+    """A train or shaft of a comparison of two."""
+
+    letter: str  #: ``A`` or ``B``
+    name: str
+    cautions: tuple[str, ...]
+
+    @property
+    def label(self) -> str:
+        """Letter and name, as in legends."""
+        return f"{self.letter}: {self.name}"
+
+
+S = TypeVar("S", bound=Side)
+M = TypeVar("M", bound=BarredMode)
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Beside(Generic[S, M]):
+    """Two of a kind beside each other."""
+
+    a: S
+    b: S
+    inputs: tuple[Difference, ...]  #: differences of their files, or fields
+    modes: tuple[ModePair[M], ...]  #: by frequency
+    pairing: str  #: how modes are paired, in words
+    seconds: float
+
+    @property
+    def both(self) -> tuple[S, S]:
+        """Both sides."""
+        return self.a, self.b
+
+    @property
+    def cautions(self) -> list[str]:
+        """Cautions of both; one that is not shared begins with the letter of its side."""
+        shared = [text for text in self.a.cautions if text in self.b.cautions]
+        single = [
+            f"{side.letter}: {text}"
+            for side in self.both
+            for text in side.cautions
+            if text not in shared
+        ]
+        return [*shared, *single]
+
+
+def all_pairs(
+    same_shape: Sequence[ModePair[M]],
+    first: Sequence[M],
+    second: Sequence[M],
+    label: Callable[[M], str],
+    highest: float = math.inf,
+) -> list[ModePair[M]]:
+    """Return all modes of two lists, both by ascending frequency, paired by shape, else by `label`
+    up to a frequency `highest`, Hz, or alone.
+    """
+    waiting: dict[str, list[M]] = {}
+    for mode in second:
+        if mode.frequency_hz <= highest and mode not in [p.b for p in same_shape]:
+            waiting.setdefault(label(mode), []).append(mode)
+    out = [*same_shape]
+    for mode in first:
+        if mode not in [p.a for p in same_shape]:
+            named = waiting.get(label(mode)) if mode.frequency_hz <= highest else None
+            out.append(ModePair(mode, named.pop(0) if named else None))
+    out += [ModePair(None, mode) for mode in second if mode not in [p.b for p in out]]
+    return sorted(out, key=lambda p: (p.a or p.b).frequency_hz)  # type: ignore[union-attr]  # never both
+
+
+def decibels(a: float, b: float) -> float | None:
+    """Return the level of an amplitude b over another, dB; None where either is zero."""
+    return float(20 * np.log10(b / a)) if a > 0 and b > 0 else None
+
+
+def inputs(differences: Sequence[Difference]) -> str:
+    """Return a sentence on the entries in which two inputs differ."""
+    numbers = [d for d in differences if not d.in_words]
+    if not differences:
+        return "Nothing differs in the input."
+    if not numbers:
+        return "The input differs in words alone (titles, sources): no number can."
+    paths = [d.path for d in numbers[:NAMED]]
+    more = f" and {len(numbers) - NAMED} more" if len(numbers) > NAMED else ""
+    differ = "1 entry of the input differs"
+    if len(numbers) > 1:
+        differ = f"{len(numbers)} entries of the input differ"
+    return f"{differ}: {', '.join(paths)}{more}."
+
+
+def resolved(changes: Sequence[Change], plural: str) -> Iterator[str]:
+    """Yield a sentence on how many changes of numbers called ``plural``, such as ``pairs of
+    modes``, exceed their error bars; none where a change has no error bar.
+    """
+    verdicts = [change.verdict for change in changes]
+    count, sure = len(verdicts), verdicts.count("resolved")
+    if not verdicts or "no band" in verdicts:
+        return
+    how_many = {0: "none", count: "all"}.get(sure, str(sure))
+    differ = "differs" if sure == 1 else "differ"
+    rest = ", the rest do not" if 0 < sure < count else ""
+    yield f"Of {count} {plural} {how_many} {differ} by more than both bars (resolved){rest}."
+
+
+def modes(mode_pairs: Sequence[ModePair[Any]], place: str) -> Iterator[str]:
+    """Yield sentences on pairs of modes: which are resolved, which moves most, and which are alone;
+    ``place`` says where partners are missing, such as ``in the other train``.
+    """
+    pairs = [(p, p.change) for p in mode_pairs if p.change is not None]
+    yield from resolved([change for _, change in pairs], "pairs of modes")
+    # a name alone does not make two shapes one, where shapes can be compared
+    by_shape = [pair for pair in pairs if pair[0].mac is not None] or pairs
+    moved = max(by_shape, key=lambda pair: abs(pair[1].relative or 0.0), default=None)
+    if moved is not None and moved[1].verdict != "not resolved":
+        yield f"Moves most: {_moved(*moved)}."
+    for letter, alone in (
+        ("A", [p.a for p in mode_pairs if p.b is None]),
+        ("B", [p.b for p in mode_pairs if p.a is None]),
+    ):
+        labels = [f"{m.name} ({hertz(m.frequency_hz)} Hz)" for m in alone if m is not None]
+        if labels:
+            yield f"Without a partner {place}, of {letter}: {', '.join(labels)}."
+
+
+def both_names(a: str, b: str) -> str:
+    """Return the name of a mode, or both of its names where they differ."""
+    return a if a == b else f"{a} (in B {b})"
+
+
+def _moved(pair: ModePair[Any], change: Change) -> str:
+    assert pair.a is not None and pair.b is not None
+    name = both_names(pair.a.name, pair.b.name)
+    return f"{name}, from {hertz(change.a)} to {hertz(change.b)} Hz ({percent(change.relative)})"
+
+
+def plain_pair(pair: ModePair[Any]) -> dict[str, Any]:
+    """Return a pair of modes as plain data that JSON can hold."""
+    sides = {key: None if m is None else asdict(m) for key, m in (("a", pair.a), ("b", pair.b))}
+    change = pair.change
+    return {**sides, "mac": pair.mac, "frequency": None if change is None else change.as_dict()}

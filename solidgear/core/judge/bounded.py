@@ -1,0 +1,248 @@
+"""Numbers of a harmonic solid between two bounds, and the places on the mesh where their
+uncertainty lies.
+
+Compliances lie between that of the body and that of its softest relative, stiffnesses the other way
+round, as quadratic forms; a coupling lies within half the geometric mean of the uncertainties of
+both diagonal entries, about the middle of its own two values. Frequencies lie between the Rayleigh
+quotient and the lower bound of Kato and Temple (:mod:`solidgear.core.bounds.harmonic`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from solidgear.core.body import Body, Supports
+from solidgear.core.bounds.harmonic import HarmonicBounds, harmonic_bounds, with_tail
+from solidgear.core.bounds.safety import LOCAL
+from solidgear.core.judge.bars import LEAST, ErrorBar
+from solidgear.core.judge.quantities import Values, in_order, size
+from solidgear.core.judge.solving import Statics, extended_modes
+from solidgear.core.judge.steps import METHOD
+from solidgear.core.quantity import STIFFNESS, Quantity
+from solidgear.core.scene.coned import coned
+from solidgear.core.solve.modes import ModeSet, modes
+from solidgear.core.solve.statics import flexibility
+
+if TYPE_CHECKING:
+    from solidgear.core.scene import Scene
+
+#: shapes above a list of modes that are looked at for its bars
+ABOVE = 12
+
+
+@dataclass(frozen=True)
+class Bounded:
+    """Error bars of some numbers."""
+
+    error_bars: dict[Quantity, ErrorBar]
+    #: of every number, (ne,) shares of its bar by cells; in sum one
+    scores: dict[Quantity, np.ndarray]
+
+
+def bounded(
+    scene: Scene,
+    body: Body,
+    supports: Supports,
+    statics: Statics | None,
+    modes: ModeSet | None,
+    names: Sequence[Quantity],
+    solver: Values,
+    later: ModeSet | None = None,
+) -> Bounded:
+    """Bound some numbers of a harmonic body by local problems, from the condensed statics and the
+    modes found and the relative error that the solver may have left; `later` are modes in other
+    supports, whose error bars will be asked for.
+    """
+    frequencies = [q for q in names if q.is_frequency]
+    bounds = harmonic_bounds(
+        coned(scene),
+        body,
+        statics=statics is not None,
+        modes=modes,
+        wanted=list(dict.fromkeys(frequencies)),
+        safety=LOCAL,
+        later=later,
+    )
+    bars: dict[Quantity, ErrorBar] = {}
+    scores: dict[Quantity, np.ndarray] = {}
+    if statics is not None:
+        stiff = statics.values()
+        two_orders, one_order = (
+            statics.repeated(bounds.softer(more), supports).values()
+            for more in (bounds.more, bounds.less)
+        )
+        for name in in_order(dict.fromkeys((*stiff, *names))):
+            complete = all(name in end for end in (stiff, two_orders, one_order))
+            if complete and not name.is_frequency:
+                bars[name] = _between(name, stiff, two_orders, one_order, solver.get(name, 0.0))
+        static_names = [q for q in names if q in bars]
+        scores |= _static_scores(body, supports, bounds, statics, static_names)
+    for name in names:
+        mode = modes.named(name) if modes is not None and name.is_frequency else None
+        if mode is None:
+            continue
+        least = bounds.frequency(mode)
+        open_ = 1 - least / mode.frequency_hz
+        bars[name] = _bar(mode.frequency_hz, open_, mode.error, least)
+        scores[name] = bounds.of_modes[mode.name] / bounds.of_modes[mode.name].sum()
+    return Bounded(bars, scores)
+
+
+def mode_bars(
+    scene: Scene, body: Body, supports: Supports, modes_listed: ModeSet
+) -> dict[str, float]:
+    """Compute error bars of the frequencies of a harmonic body, which lie above the exact ones, of
+    all families: relative, by the names of elastic modes; without modes above which none of the
+    same family was found.
+    """
+    names = [m.name for m in modes_listed.modes if m.frequency_hz > 0]
+    if not names:
+        return {}
+    extended = modes_listed
+    if not _all_below(modes_listed):
+        # the gap to the modes above counts, in every family
+        shapes = sum(m.multiplicity for m in modes_listed.modes)
+        extended = extended_modes(
+            modes_listed, modes(body, supports, shapes + ABOVE, ovalising=True)
+        )
+    bounds = harmonic_bounds(
+        coned(scene), body, statics=False, modes=extended, wanted=names, safety=LOCAL
+    )
+    highest = _highest(extended)
+    return {
+        m.name: 1 - bounds.frequency(m) / m.frequency_hz + m.error
+        for m in modes_listed.modes
+        if 0 < m.frequency_hz < highest[m.family]
+    }
+
+
+def _highest(mode_set: ModeSet) -> dict[str, float]:
+    """Return the highest frequency found of every family, Hz."""
+    out: dict[str, float] = {}
+    for mode in mode_set.solved:
+        out[mode.family] = max(mode.frequency_hz, out.get(mode.family, 0.0))
+    return out
+
+
+def _all_below(mode_set: ModeSet) -> bool:
+    """Return whether a mode of the same family was found above each mode of a list."""
+    highest = _highest(mode_set)
+    return all(m.frequency_hz < highest[m.family] for m in mode_set.modes if m.frequency_hz > 0)
+
+
+def _between(
+    name: Quantity, stiff: Values, two_orders: Values, one_order: Values, solver: float
+) -> ErrorBar:
+    """Compute the error bar of a static number from both ends: the number itself, and as soft as
+    two orders more and one order more make it.
+    """
+    scale = size(stiff, name)
+
+    def move(q: Quantity) -> float:
+        return LOCAL * with_tail(abs(two_orders[q] - stiff[q]), abs(one_order[q] - stiff[q]))
+
+    pair = name.diagonals
+    if pair is None or not all(d in end for d in pair for end in (stiff, two_orders, one_order)):
+        far_end = stiff[name] + np.copysign(move(name), two_orders[name] - stiff[name])
+        return _bar(stiff[name], move(name) / scale, solver, far_end, scale=scale)
+    half = float(np.sqrt(move(pair[0]) * move(pair[1]))) / 2
+    reach = float(np.sqrt(abs(np.prod([two_orders[d] - stiff[d] for d in pair]))))
+    most = 2 * half / reach if reach else 1.0
+    far_end = stiff[name] + np.clip(most * (two_orders[name] - stiff[name]), -2 * half, 2 * half)
+    middle = (stiff[name] + far_end) / 2
+    # the number itself stands aside of the middle
+    open_ = (half + abs(middle - stiff[name])) / scale
+    return _bar(stiff[name], open_, solver, far_end, float(middle), scale)
+
+
+def _bar(
+    value: float,
+    open_: float,
+    solver: float,
+    far_end: float,
+    middle: float | None = None,
+    scale: float | None = None,
+) -> ErrorBar:
+    return ErrorBar(
+        values=(float(value),),
+        width=float(open_ + solver + LEAST),
+        change=float(abs(far_end - value) / (scale or abs(value) or 1.0)),
+        reduction=None,
+        factor=LOCAL,
+        solver=float(solver),
+        extrapolated=float(value + (far_end - value) / LOCAL),
+        method=METHOD,
+        middle=middle,
+    )
+
+
+def _static_scores(
+    body: Body,
+    supports: Supports,
+    bounds: HarmonicBounds,
+    statics: Statics,
+    names: Sequence[Quantity],
+) -> dict[Quantity, np.ndarray]:
+    """Return (ne,) shares of error bars of compliances by cells: the energy of the local solutions
+    under the load and the reactions of the bearings.
+    """
+    ports = [(port.name, port.attachment) for port in body.ports]
+    out: dict[Quantity, np.ndarray] = {}
+    forces: dict[int, np.ndarray] = {}
+    attached = {
+        point_name.port: point_name.attachment
+        for point_name in (statics.main, *statics.further.values())
+    }
+    if statics.coupled is not None:
+        attached |= dict(zip(statics.coupled.ports, statics.coupled.attachments))
+    for name in names:
+        point_name = name.points[0] if name.points else statics.main.port
+        total = np.zeros(len(bounds.of_ports))
+        for point, load in set(zip(name.pair or (point_name, point_name), name.loads)):
+            seat = statics.main if point == statics.main.port else statics.further.get(point)
+            first = 6 * ports.index((point, attached[point]))
+            loads = np.array(load)
+            if name.kind == STIFFNESS and seat is not None:
+                loads = np.nan_to_num(seat.stiffness, posinf=0.0, neginf=0.0) @ loads
+            f = np.zeros(6 * len(ports))
+            for c in map(int, np.flatnonzero(loads)):
+                if first + c not in forces:
+                    forces[first + c] = _forces(body, supports, first + c)
+                f += loads[c] * forces[first + c]
+            energy = np.einsum("i,cij,j->c", f, bounds.of_ports, f)
+            if energy.sum() > 0:
+                total = np.maximum(total, energy / energy.sum())
+        out[name] = total / (total.sum() or 1.0)
+    return out
+
+
+def _forces(body: Body, supports: Supports, load: int) -> np.ndarray:
+    """Return (6 p,) forces on all ports under a unit load on one component of one port, bearings
+    included.
+    """
+    f = np.zeros(6 * len(body.ports))
+    f[load] = 1.0
+    if not supports.ports:
+        return f
+
+    rows = supports.rows(body)
+    flex, rigid, root = flexibility(body).matrix, body.rigid_ports, supports.root
+    # springs by their root: stretch s with (1 + L'F L) s = L'(F f + R a), R_b'L s = R'f
+    inner = np.eye(root.shape[1]) + root.T @ flex[np.ix_(rows, rows)] @ root
+    rigid_stretch = root.T @ rigid[rows]
+    scale = np.abs(rigid_stretch).max(axis=0)
+    keep = scale > 0
+    rigid_stretch = rigid_stretch[:, keep] / scale[keep]
+    reach = np.linalg.solve(inner, root.T @ flex[rows, load])
+    through = np.linalg.solve(inner, rigid_stretch)
+    a = np.linalg.lstsq(
+        rigid_stretch.T @ through,
+        rigid[load, keep] / scale[keep] - rigid_stretch.T @ reach,
+        rcond=1e-12,
+    )[0]
+    f[rows] -= root @ (reach + through @ a)
+    return f

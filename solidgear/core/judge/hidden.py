@@ -1,0 +1,82 @@
+"""Modes that a mesh may hide at the end of a list.
+
+A mesh has no mode below the exact one of its number, and may have it far above: a mode just above
+the end of a list may in truth lie within. The k-th eigenvalue of a family lies no lower than the
+k-th lower end of that family, so that the first above the list bounds all that follow.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+from solidgear.core.body import Body, Supports
+from solidgear.core.bounds.harmonic import APART, harmonic_bounds, of_one_problem
+from solidgear.core.bounds.safety import LOCAL
+from solidgear.core.judge.bounded import ABOVE
+from solidgear.core.judge.solving import MOST_SHAPES, extended_modes
+from solidgear.core.scene import Scene
+from solidgear.core.scene.coned import coned
+from solidgear.core.solve.modes import Mode, ModeSet, modes
+
+#: frequency (Hz) that the count of a mesh reaches, in the evidence of modes
+COUNTED = "counted_below_hz"
+#: frequency (Hz) below which the body itself has no further mode
+COMPLETE = "complete_below_hz"
+
+
+def complete_list(scene: Scene, body: Body, supports: Supports, listed: ModeSet) -> ModeSet:
+    """Bound a list of counted modes of a harmonic body: add the frequency below which the body
+    itself has no further mode to the evidence; unchanged where none were counted, or no bound
+    exists.
+    """
+    if COUNTED not in listed.evidence:
+        return listed
+    shapes = sum(mode.multiplicity for mode in listed.modes)
+    extended, count = listed, shapes
+    while (first := _first_above(extended)) is None and count < MOST_SHAPES:
+        count += ABOVE if count == shapes else count - shapes
+        extended = extended_modes(listed, modes(body, supports, count))
+    if first is None:
+        return listed
+    all_modes = replace(extended, beyond=(*extended.beyond, *extended.above), above=())
+    names = [mode.name for mode in (*_elastic(listed), *first)]
+    bounds = harmonic_bounds(
+        coned(scene), body, statics=False, modes=all_modes, wanted=names, safety=LOCAL
+    )
+    least = {mode.name: bounds.frequency(mode) * (1 - mode.error) for mode in first}
+    limit = min([listed.evidence[COUNTED], *least.values()])
+    return replace(extended, evidence=listed.evidence | {COMPLETE: limit})
+
+
+def less_widest(evidence: dict, bars: Iterable[float]) -> dict:
+    """Add to the evidence of counted modes, whose error bars come from several meshes, the
+    frequency below which the body itself has no further one: that of the mesh less the widest error
+    bar.
+    """
+    widest = max(bars, default=None)
+    if widest is None or COUNTED not in evidence or COMPLETE in evidence:
+        return evidence
+    return evidence | {COMPLETE: evidence[COUNTED] * max(1 - widest, 0.0)}
+
+
+def _elastic(listed: ModeSet) -> list[Mode]:
+    return [mode for mode in listed.modes if mode.frequency_hz > 0]
+
+
+def _first_above(modes: ModeSet) -> list[Mode] | None:
+    """Return the lowest mode of every eigenproblem above the end of a list; None where one of them
+    has no other mode clear above it, on whose distance the lower end rests.
+    """
+    names_listed = {mode.name for mode in modes.modes}
+    remaining = [mode for mode in modes.solved if mode.frequency_hz > 0]
+    remaining.sort(key=lambda mode: mode.frequency_hz)
+    out = []
+    while remaining:
+        group = [mode for mode in remaining if of_one_problem(mode, remaining[0])]
+        remaining = [mode for mode in remaining if mode not in group]
+        above = [mode for mode in group if mode.name not in names_listed]
+        if not above or (above[0].frequency_hz / above[-1].frequency_hz) ** 2 > 1 - APART:
+            return None
+        out.append(above[0])
+    return out

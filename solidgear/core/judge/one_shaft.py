@@ -1,0 +1,113 @@
+"""One shaft by the cheapest solid that is sure enough: numbers and modes with their error bars."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from solidgear.core.body import Body, as_supports
+from solidgear.core.judge.quantities import Values, size
+from solidgear.core.judge.settle import Settled, bars_of_modes, settle
+from solidgear.core.judge.solving import answer_of_body
+from solidgear.core.quantity import QUANTITIES, Quantity
+from solidgear.core.scene.closed_form import mass_properties
+from solidgear.compare.two.differences import ROUNDING
+from solidgear.core.solve.modes import Mode, ModeSet
+from solidgear.core.judge.beside import Side
+from solidgear.core.judge.change import BarredMode
+from solidgear.guards.check import cautions
+
+if TYPE_CHECKING:
+    from solidgear.core.scene import Scene
+
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True, eq=False)
+class OneShaft(Side):
+    """A shaft, solved with error bars."""
+
+    scene: Scene
+    settled: Settled
+    values: Values  #: SI
+    modes: ModeSet
+    bars: dict[str, float]  #: relative, of quantities and modes
+    mass: float  #: of the shaft without masses on it, kg
+    mass_bar: float | None  #: relative; rounding for a closed form, else None
+
+    @property
+    def title(self) -> str:
+        """Title of its scene."""
+        return self.scene.title or self.scene.name
+
+    def bar(self, name: Quantity) -> float | None:
+        """Return the error bar of a quantity in its unit; None where nothing is known."""
+        width = self.settled.bars.get(name, math.inf) * size(self.values, name)
+        return width if math.isfinite(width) else None
+
+    def seen(self, mode: Mode) -> BarredMode:
+        """Return a mode with its error bar."""
+        bar = self.bars.get(mode.name, math.inf)
+        return BarredMode(str(mode.name), mode.frequency_hz, bar if math.isfinite(bar) else None)
+
+
+def one_shaft(
+    scene: Scene,
+    tol: float,
+    letter: str = "",
+    name: str = "",
+    points: Sequence[str] = (),
+    before: Settled | None = None,
+    progress: Progress = lambda _: None,
+) -> OneShaft:
+    """Solve a shaft by the cheapest solid whose error bars are within a relative tolerance, with
+    numbers of further lumped points; `before` as in :func:`solidgear.core.judge.settle.settle`.
+    """
+
+    def say(text: str) -> None:
+        progress(f"{letter}: {text}" if letter else text)
+
+    settled = settle(scene, tol, points=points, before=before, progress=say)
+    body = settled.body
+    say("statics and modes")
+    solution = answer_of_body(
+        body,
+        as_supports(scene),
+        [scene.port.name, *points],
+        n=scene.ask.modes,
+        max_frequency=scene.ask.max_frequency,
+        ovalising=True,
+        wanted=[q for q in QUANTITIES if q.is_frequency],
+        spare=True,
+    )
+    say("how sure its frequencies are")
+    bars = bars_of_modes(scene, body, solution.modes.whole, settled)
+    for quantity in (q for q in settled.bars if q.is_frequency):
+        # bending may be called by its plane
+        mode = solution.modes.named(quantity)
+        if mode is not None:
+            bars.setdefault(str(mode.name), settled.bars[quantity])
+    mass, mass_bar = mass_of(scene, body)
+    return OneShaft(
+        letter=letter,
+        name=name,
+        cautions=tuple(cautions(scene, body)),
+        scene=scene,
+        settled=settled,
+        values=solution.quantities,
+        modes=solution.modes,
+        bars=bars,
+        mass=mass,
+        mass_bar=mass_bar,
+    )
+
+
+def mass_of(scene: Scene, body: Body) -> tuple[float, float | None]:
+    """Compute the mass of a shaft without masses on it, kg, and its relative error bar: rounding
+    where the mass has a closed form, None where it is that of a mesh.
+    """
+    if body.mesh.get("round", True):
+        return mass_properties(scene.outline).mass, ROUNDING
+    return float(body.mass_matrix()[0, 0]), None

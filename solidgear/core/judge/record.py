@@ -1,0 +1,338 @@
+"""Content of ``results.json``, typed.
+
+A run is written by dumping a :class:`Record` and read by validating one; tables, charts and tests
+read its attributes. Numbers are SI. A number that does not exist is None: JSON knows neither NaN
+nor infinity. Quantities are called as in :data:`solidgear.core.quantity.QUANTITIES` everywhere.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic import ConfigDict, Field
+
+from solidgear.core.body.mode_names import ModeName
+from solidgear.core.judge.open_record import OpenNumbers
+from solidgear.core.judge.part import Facts, Matrix, Number, Numbers, Part, Quantities
+from solidgear.core.quantity import Quantity
+
+#: version of this layout; it rises when a field is renamed or removed
+SCHEMA = 4
+
+
+class ModeRecord(Part):
+    """A mode; a pair is counted in ``multiplicity``."""
+
+    name: ModeName = ModeName("")
+    family: str = ""
+    frequency_hz: Number = None
+    multiplicity: int = 1
+    captured: Number = None
+    error: Number = 0.0
+
+
+class BarRecord(Part):
+    """Error bar of one quantity; see :class:`solidgear.core.judge.bars.ErrorBar`."""
+
+    values: Numbers = []
+    gci: Number = None
+    change: Number = None
+    reduction: Number = None
+    factor: Number = None
+    solver: Number = None
+    extrapolated: Number = None
+    method: str = ""
+
+
+class BarSummary(Part):
+    """Error bars of a model: relative, of every quantity, and the widest of a compliance."""
+
+    compliance: Number = None
+    method: str = ""
+    each: Quantities = {}
+
+
+class LevelRecord(Part):
+    """One mesh of a sequence."""
+
+    dofs: int | None = None
+    h: Number = None
+    order: int | None = None
+    quantities: Quantities = {}
+    mesh: Facts = {}
+
+
+class ConvergenceRecord(Part):
+    """Meshes from coarse to fine, and the error bar that each quantity has from them."""
+
+    levels: list[LevelRecord] = []
+    quantities: dict[str, BarRecord] = {}
+
+
+class EvidenceRecord(Part):
+    """Evidence for one solution: residuals, symmetry, count of modes."""
+
+    asymmetry: Number = None
+    refinement_residual: Number = None
+    rigid_residual: Number = None
+    modal_residual: Number = None
+    orthogonality: Number = None
+    eigensolver: str = ""
+    mode_count: list[Facts] = []
+    families: list[Facts] = []
+    complete: str = ""
+    complete_below_hz: Number = None
+    rigid_modes: int | None = None
+    coupling_bound: Number = None
+    shift_rad2: Number = None
+
+
+class PointRecord(Part):
+    """Statics at a further lumped point."""
+
+    stiffness: Matrix | None = None
+    compliance: Matrix | None = None
+
+
+class CoupledRecord(Part):
+    """Statics between all lumped points: 6 n square matrices, point by point.
+
+    ``stiffness_error`` is the relative error that inverting the compliance leaves.
+    """
+
+    ports: list[str] = []
+    stiffness: Matrix | None = None
+    compliance: Matrix | None = None
+    stiffness_error: Number = None
+
+
+class ModelRecord(Part):
+    """One model.
+
+    ``title``, ``short``, ``theory``, ``family``, ``colour`` and ``marker`` are those of the ladder
+    (:class:`solidgear.core.ladder.model.Model`), so that a record can be shown without it.
+    """
+
+    title: str = ""
+    short: str = ""
+    theory: str = ""
+    family: str = ""
+    colour: str = "#777777"
+    marker: str = "P"
+    valid: bool | None = None
+    open: bool = False
+    why_not: str | None = None
+    source: str | None = None
+    variant: str | None = None
+    compliance: Matrix | None = None
+    stiffness: Matrix | None = None
+    points: dict[str, PointRecord] = {}
+    coupled: CoupledRecord | None = None
+    modes: list[ModeRecord] = []
+    band: BarSummary | None = None
+    convergence: ConvergenceRecord | None = None
+    dofs: int | None = None
+    seconds: Quantities = {}
+    peak_mb: Number = None
+    backend: str | None = None
+    mesh: Facts = {}
+    evidence: EvidenceRecord = EvidenceRecord()
+
+
+class VariantRecord(Part):
+    """A model with one attachment at every station."""
+
+    quantities: Quantities = {}
+    stiffness: Matrix | None = None
+    compliance: Matrix | None = None
+    modes: list[ModeRecord] = []
+
+
+class DeviationRecord(Part):
+    """A quantity of a model against the reference."""
+
+    model: str = ""
+    reference: str = ""
+    attachment: str = ""
+    quantity: Quantity = Quantity("")
+    unit: str = ""
+    value: Number = None
+    reference_value: Number = None
+    relative: Number = None
+    band: Number = None
+    verdict: str | None = None
+    pairing: str = ""
+
+
+class CauseRecord(Part):
+    """Relative change of quantities when one assumption is switched."""
+
+    cause: str = ""
+    change: str = ""
+    model: str = ""
+    quantities: Quantities = {}
+
+
+class LumpedVariant(Part):
+    """One lumped mass on a stiffness; further numbers by their own names."""
+
+    mass: Matrix | None = None
+    feasible: bool = False
+    first: bool = False
+    frequency_hz: Number = None
+    frequency_error: Number = None
+    slope_error: Number = None
+    kinetic_error: Number = None
+    valid_to_hz: Number = None
+    verdict: str = ""
+
+
+class LumpedRecord(Part):
+    """Lumped models of one body, on z and thx; ``why_not`` where there is nothing to lump."""
+
+    stiffness: Matrix | None = None
+    motion: Numbers = []
+    frequency_hz: Number = None
+    static_share: Number = None
+    total_mass: Number = None
+    seconds: Number = None
+    variants: dict[str, LumpedVariant] = {}
+    why_not: str | None = None
+
+
+class VerdictRecord(Part):
+    """Model to trust, and the cheapest that will do."""
+
+    trust: str | None = None
+    reference: str | None = None
+    cheapest: str | None = None
+    tolerance: Number = None
+    judged: list[Quantity] = []
+    sentences: list[str] = []
+
+
+class GuardRecord(Part):
+    """Sentence of a guard on some models."""
+
+    guard: str = ""
+    level: str = ""
+    models: list[str] = []
+    sentence: str = ""
+
+
+class PartnerRecord(Part):
+    """A mode and the partner in the reference."""
+
+    mode: str = ""
+    partner: str | None = None
+    mac: Number = None
+    frequency_hz: Number = None
+    reference_hz: Number = None
+    relative: Number = None
+
+
+class MacTable(Part):
+    """Modal assurance criterion of a model's modes (rows) against the reference's (columns)."""
+
+    rows: list[str] = []
+    columns: list[str] = []
+    values: Matrix = []
+    pairs: list[PartnerRecord] = []
+
+
+class MacRecord(Part):
+    """Correlation of all models with the reference, on stations along the axis (m)."""
+
+    reference: str | None = None
+    stations: Numbers = []
+    models: dict[str, MacTable] = {}
+
+
+class PortRecord(Part):
+    """The lumped point, the order of the six components, and those that nothing resists."""
+
+    name: str = ""
+    y: Number = None
+    attachment: str = ""
+    order: list[str] = []
+    free: list[str] = []
+
+
+class PlaceRecord(Part):
+    """A place, ``shoulder``, ``seat end of A``, ... or ``elsewhere``, and a share of the error.
+
+    ``y`` and ``r`` (m) of ``elsewhere`` are the middle of the cell with most of it. Cells whose
+    middle lies within ``reach`` (m) count as of the place, where no other is nearer.
+    """
+
+    what: str = ""
+    y: Number = None
+    r: Number = None
+    share: Number = None
+    reach: Number = None
+
+
+class WhereRecord(Part):
+    """Places of the error of a number of a solid, the largest share first.
+
+    ``order`` is that of the elements, ``total`` the relative error bar of the quantity; of a
+    coupling, it is relative to the geometric mean of the diagonal entries. ``points`` are r and y
+    (m) of the corners of the cells, ``shares`` those of every cell, in sum one.
+    """
+
+    model: str = ""
+    quantity: str = ""
+    order: int = 0
+    total: Number = None
+    sentence: str = ""
+    rows: list[PlaceRecord] = []
+    points: list[list[float]] = []
+    cells: list[list[int]] = []
+    shares: list[float] = []
+    seconds: Number = None
+
+
+class Record(Part):
+    """Results of a comparison.
+
+    ``missing`` are titles of models that have a body of their own and no record here. ``shown_in``
+    is the choice of units of the page (:mod:`solidgear.show.units`); the record itself is in SI.
+
+    Examples
+    --------
+    >>> record = Record.model_validate({"verdict": {"trust": "harmonic"}})
+    >>> record.verdict.trust, record.complete
+    ('harmonic', True)
+    """
+
+    model_config = ConfigDict(populate_by_name=True)
+
+    version: int = Field(SCHEMA, alias="schema")
+    complete: bool = True
+    scene: Facts = {}
+    port: PortRecord | None = None
+    further_ports: list[PortRecord] = []
+    models: dict[str, ModelRecord] = {}
+    missing: list[str] = []
+    attachments: dict[str, dict[str, VariantRecord]] = {}
+    mac: MacRecord | None = None
+    deviations: list[DeviationRecord] = []
+    causes: list[CauseRecord] = []
+    lumped: dict[str, LumpedRecord] = {}
+    verdict: VerdictRecord = VerdictRecord()
+    guards: list[GuardRecord] = []
+    where: WhereRecord | None = None
+    open: OpenNumbers = OpenNumbers()
+    environment: Facts = {}
+    images: dict[str, str] = {}
+    warnings: list[str] = []
+    seconds_total: Number = None
+    peak_mb: Number = None
+    expected_peak_mb: Number = None
+    left_out: list[str] = []
+    files: list[str] | None = None
+    shown_in: str = "engineering"
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain data, as in ``results.json``."""
+        return self.model_dump(mode="json", by_alias=True)

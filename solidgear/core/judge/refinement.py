@@ -1,0 +1,418 @@
+"""One solid on ever finer meshes, until the error bars of some numbers are within a tolerance.
+
+:func:`refine` is the loop, :class:`Refinement` the meshes that it has solved and the numbers and
+error bars that they give. A :class:`Solver` says for which numbers the next mesh is solved, and
+solves it: for single numbers or a whole body (:mod:`solidgear.core.judge.question`), or in all ways of
+tying (:mod:`solidgear.core.judge.study`).
+
+The meshes of a harmonic solid follow the error bars (:mod:`solidgear.core.bounds.refining`), which every
+mesh gives by itself (:mod:`solidgear.core.judge.bounded`); of other solids two of a list of meshes make
+an error bar (:mod:`solidgear.core.judge.sequence_bars`).
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+
+from solidgear.core.body import Body
+from solidgear.core.bounds.refining import MOST_MESHES, Meshed, refined
+from solidgear.core.judge.bars import ErrorBar, moves_freely, same_size
+from solidgear.core.judge.bounded import Bounded
+from solidgear.core.judge.effort import HEAVY, cost_text
+from solidgear.core.judge.quantities import Values, in_order, size
+from solidgear.core.judge.sequence_bars import feature_effect, sequence_bars
+from solidgear.core.judge.singular_places import singular_places
+from solidgear.core.judge.solving import Numbers
+from solidgear.core.judge.steps import ABOVE, BELOW, BOTH, Step, Value
+from solidgear.core.ladder.meshes import Sequence as Plan
+from solidgear.core.ladder.model import Model
+from solidgear.core.machine.memory import listening
+from solidgear.core.quantity import COMPLIANCE, FREQUENCY, Quantity
+
+if TYPE_CHECKING:
+    from solidgear.core.scene import Scene
+
+Progress = Callable[[str], None]
+#: reason for no bar
+ONE_MESH = "the mesh is that of the file, and nothing finer tells how good it is"
+#: reasons for no narrower one
+NO_FINER = "no finer mesh is calibrated"
+FINER_FILE = "list a finer mesh beside those of the file"
+
+#: a frequency that rises with a finer mesh of a list, by more than the eigensolver leaves, is
+#: rounding: the bar is this many times the rise
+RISE = 2.0
+#: a bar has one side where the solver has left no more than this share of it
+SOLVER_SHARE = 0.01
+#: ratio of the largest bar to that two meshes before, above which finer meshes do not help
+FUTILE = 0.7
+#: reported options of a mesh, and the words for them
+SETTINGS = {
+    "order": "order",
+    "layers": "layers",
+    "around": "cells around",
+    "refinement": "refinement",
+    "cuts": "cuts",
+}
+#: quantities up to this number are listed by name
+FEW = 3
+
+
+@dataclass(frozen=True)
+class Solved:
+    """Solution of one mesh."""
+
+    body: Body  #: the last one that was built on it
+    numbers: Numbers
+    unknowns: int  #: of all bodies
+    cells: tuple[float, ...]  #: sizes of the cells, m
+    #: (ne,) weights of the cells of a meridian by the error bars that exceed the tolerance
+    score: np.ndarray | None = None
+
+
+class Solver(Protocol):
+    """Solves the meshes of a refinement for the numbers of a question."""
+
+    def asked(self) -> tuple[Quantity, ...]:
+        """Return the quantities that the next mesh is solved for."""
+
+    def solve(self, options: Mapping[str, Any]) -> Solved | None:
+        """Solve a mesh, of a harmonic solid with error bars; None to go on without this mesh."""
+
+    def judge(self) -> float | None:
+        """Update the error bars; return the largest of all numbers asked for, None before there are
+        meshes enough to end with it.
+        """
+
+
+@dataclass(eq=False)
+class Refinement:
+    """Meshes of one solid that were solved, coarse to fine, with the numbers that they give."""
+
+    scene: Scene
+    model: Model  #: a solid
+    wanted: tuple[Quantity, ...]  #: quantities whose error bars are wanted
+    tol: float  #: relative
+    plan: Plan  #: meshes to be solved; of a harmonic solid the first, unless the mesh was set
+    #: whether the body itself is wanted: all static numbers of it are judged, those of the other
+    #: plane and of torsion included
+    whole: bool = False
+    #: whether a coupling is given in the middle of the error bar, and not as the body says it
+    middles: bool = True
+    most: int | None = None  #: largest number of meshes
+    levels: list[Numbers] = field(default_factory=list)  #: of every mesh
+    sizes: list[tuple[float, ...]] = field(default_factory=list)  #: of the cells of every mesh, m
+    steps: list[Step] = field(default_factory=list)
+    #: of every quantity, on the finest mesh that was solved for it
+    error_bars: dict[Quantity, ErrorBar] = field(default_factory=dict)
+    missing: set[Quantity] = field(default_factory=set)  #: do not exist in this scene
+    options: dict[str, Any] = field(default_factory=dict)  #: of the last mesh
+    last: Solved | None = None
+    #: bound on the change by couplings of families that were left out, relative
+    left_out: float = 0.0
+    mesh: Meshed = field(init=False)  #: of a harmonic solid, the first mesh and later the last
+    _changes: list[Values] = field(default_factory=list)  #: by features, on every mesh
+
+    def __post_init__(self):
+        self.mesh = Meshed(fixed=self.plan.levels[0])
+
+    @property
+    def of_files(self) -> bool:
+        """Whether the meshes are those of files."""
+        return self.scene.body is not None and self.scene.body.one_mesh
+
+    @property
+    def body(self) -> Body | None:
+        """The last body that was solved."""
+        return None if self.last is None else self.last.body
+
+    @property
+    def started(self) -> bool:
+        """Whether there are meshes enough for error bars of all quantities."""
+        return len(self.levels) >= (1 if self.model.bounded else 2)
+
+    def add(self, solved: Solved, options: Mapping[str, Any], asked: set[Quantity]) -> None:
+        """Add the solution of a mesh, solved for some quantities."""
+        self.last = solved
+        self.levels.append(solved.numbers)
+        self.sizes.append(solved.cells)
+        self.options = dict(options)
+        self.missing = (self.missing | asked) - set(solved.numbers.quantities)
+
+    def end(self, reason: str) -> None:
+        """Take the last mesh, for a reason."""
+        if self.steps:
+            self.steps[-1] = replace(self.steps[-1], why=reason, chosen=True)
+
+    def existing(self) -> list[Quantity]:
+        """Return the quantities to be judged that exist."""
+        wanted = [q for q in self.wanted if q not in self.missing and self._history(q)]
+        if not self.whole:
+            return wanted
+        return [*wanted, *sorted(self._with_static() - set(self.wanted))]
+
+    def _with_static(self) -> set[Quantity]:
+        """Return the quantities wanted, and all static ones of the same kinds that were solved."""
+        kinds = {q.kind for q in self.wanted} - {FREQUENCY}
+        solved = (q for level in self.levels for q in level.quantities)
+        return set(self.wanted) | {q for q in solved if q.kind in kinds and not q.repeats}
+
+    def _history(self, name: Quantity) -> list[Numbers]:
+        """Return the meshes that a quantity was solved on, coarse to fine."""
+        return [level for level in self.levels if name in level.quantities]
+
+    def unmet(self) -> list[Quantity]:
+        """Return the quantities that exist and are not yet within the tolerance; of a whole body
+        only those that no mesh brings there, if any, for one of them is enough to refuse it.
+        """
+        wide = [q for q in self.existing() if not self.bar(q) <= self.tol]
+        if not self.whole:
+            return wide
+        floors = self.floors()
+        return [q for q in wide if floors.get(q, 0.0) > self.tol] or wide
+
+    def floors(self) -> dict[Quantity, float]:
+        """Return the least error bars that any mesh gives: a share of the change by features, where
+        the model has one.
+        """
+        safety = self.model.safety
+        if safety is None or not safety.share:
+            return {}
+        for level in self.levels[len(self._changes) :]:
+            self._changes.append(feature_effect(self.scene, safety, level.quantities))
+        finest = {name: change for level in self._changes for name, change in level.items()}
+        meshes = len(self.plan.levels)
+        return {q: safety.least_share(moves_freely(q), meshes) * c for q, c in finest.items()}
+
+    def judge(self) -> float | None:
+        """Update the error bars of a list of meshes; return the largest of all quantities to be
+        judged, None before there are meshes enough.
+        """
+        if not self.started:
+            return None
+        if not self.model.bounded:
+            values, solver = [x.quantities for x in self.levels], self.levels[-1].solver
+            shape = self.last.body.mesh.get("straightened", 0.0) if self.last else 0.0
+            self.error_bars |= sequence_bars(
+                self.scene, self.plan, self.model, values, solver, self.sizes, shape=shape
+            )
+        bars = [self.bar(q) for q in self.existing()]
+        return max(bars, default=None) if self.error_bars else None
+
+    def bar(self, name: Quantity) -> float:
+        """Return the relative error bar of a quantity; infinite where nothing is known."""
+        if name not in self.error_bars:
+            return math.inf
+        bar = self.error_bars[name]
+        width = bar.about_middle if self.middles else bar.width
+        return max(width, RISE * self._rise(name)) + self.left_out
+
+    def _rise(self, name: Quantity) -> float:
+        """Return the rise of a frequency at the last step of a list, beyond the solver's error."""
+        history = self._history(name)
+        if self.model.bounded or not name.is_frequency or len(history) < 2:
+            return 0.0
+        before, last = history[-2:]
+        rise = last.quantities[name] / before.quantities[name] - 1
+        allowed = before.solver.get(name, 0.0) + last.solver.get(name, 0.0)
+        return max(0.0, rise - allowed)
+
+    def bars(self) -> dict[Quantity, float]:
+        """Return relative error bars of a whole body, those of the other plane and of torsion
+        included.
+        """
+        names = [q for q in in_order(self.levels[-1].quantities) if q in self._with_static()]
+        return {q: self.bar(q) for q in names}
+
+    def values(self) -> tuple[Value, ...]:
+        """Return the numbers wanted, each from the finest mesh that was solved for it."""
+        return tuple(self._value(name) for name in self.existing())
+
+    def _value(self, name: Quantity) -> Value:
+        history = self._history(name)
+        finest = history[-1].quantities
+        error_bar = self.error_bars.get(name)
+        value, method = finest[name], ""
+        if error_bar is not None:
+            method = error_bar.method
+            if error_bar.middle is not None and self.middles:
+                value = error_bar.middle
+        return Value(
+            name,
+            value,
+            name.unit,
+            self.bar(name),
+            1 if self.model.bounded else len(history),
+            size(finest, name),
+            self._side(name),
+            method,
+        )
+
+    def _side(self, name: Quantity) -> str:
+        """Return the side on which the exact answer lies.
+
+        Of all admissible displacements the exact ones store the least energy under given motions of
+        the ports, and the most under given loads; a Rayleigh quotient is least at the exact mode.
+        """
+        exact = self.model.bounded and not self.scene.outline.corners
+        if not exact or name.diagonals or name not in self.error_bars:
+            return BOTH
+        # errors of the solver, and of couplings that were left out, may go either way
+        if max(self.error_bars[name].solver, self.left_out) > SOLVER_SHARE * self.bar(name):
+            return BOTH
+        return ABOVE if name.kind == COMPLIANCE else BELOW
+
+    def score(self, judged: Bounded, names: Iterable[Quantity]) -> np.ndarray | None:
+        """Return weights of the cells of a meridian by the error bars that exceed the tolerance, if
+        any do.
+        """
+        wide = [q for q in names if q in judged.scores and not self.bar(q) <= self.tol]
+        if not wide:
+            return None
+        return np.max([self.bar(q) * judged.scores[q] for q in wide], axis=0)
+
+    def worst_place(self) -> str:
+        """Return the place that holds most of the error bars that exceed the tolerance, in words."""
+        assert self.last is not None and self.last.score is not None
+        return _place_of_most(self.scene, self.last.body, self.last.score)
+
+    def no_further_mesh(self) -> str:
+        """Return the reason why there is no further mesh."""
+        if not self.model.bounded:
+            if not self.of_files or not self.sizes:
+                return NO_FINER
+            if len(self.plan.levels) == 1:
+                return ONE_MESH
+            return FINER_FILE if self.error_bars else same_size(*self.sizes[-2:])
+        count = len(self.levels)
+        tried = "one mesh" if count == 1 else f"{count} meshes"
+        return f"{tried} did not do; most of the bar comes from {self.worst_place()}"
+
+    def in_vain(self) -> str:
+        """Return the reason why no finer mesh would help; empty if one may."""
+        bars = [step.bar for step in self.steps if step.bar is not None]
+        if self.model.bounded and len(bars) > 3 and bars[-1] > FUTILE * bars[-3]:
+            return f"finer meshes no longer help; most of the bar comes from {self.worst_place()}"
+        floors, wide = self.floors(), self.unmet()
+        if not wide or not all(floors.get(q, 0.0) > self.tol for q in wide):
+            return ""
+        top = max(wide, key=floors.__getitem__)
+        return (
+            f"no mesh makes bars of {few(wide)} as narrow: the {self.model.title} is sure "
+            "of a quantity to a share of what features change of it, here to "
+            f"{100 * floors[top]:.2g} % of {top} at best"
+        )
+
+
+def refine(refinement: Refinement, solver: Solver, progress: Progress, label: str) -> None:
+    """Solve finer and finer meshes until every error bar is within the tolerance, or no finer mesh
+    would help, or there is none; `progress` gets a sentence on every mesh that begins with `label`.
+    """
+
+    def announce(unknowns: int, mb: float) -> None:
+        if unknowns >= HEAVY:
+            progress(f"{label}: {cost_text(unknowns, mb)}")
+
+    wanted, tol, bounded = refinement.wanted, refinement.tol, refinement.model.bounded
+    for options in _meshes(refinement):
+        start = time.perf_counter()
+        asked = set(solver.asked())
+        only: tuple[Quantity, ...] = ()
+        if len(asked) < len(wanted):
+            only = tuple(q for q in wanted if q in asked)
+        setting = mesh_words(options) + (f", for {few(only)}" if only else "")
+        progress(f"{label}: {setting}")
+        with listening(announce):
+            solved = solver.solve(options)
+        if solved is None:
+            continue
+        refinement.add(solved, options, asked)
+        bar = solver.judge()
+        refinement.steps.append(
+            Step(
+                refinement.model.name,
+                setting,
+                valid=True,
+                bar=bar,
+                unknowns=solved.unknowns,
+                seconds=time.perf_counter() - start,
+                only=only,
+                options=refinement.options,
+            )
+        )
+        if (bounded or len(refinement.levels) == 2) and not refinement.existing():
+            refinement.end("nothing that was asked for exists in this scene")
+            return
+        if bar is None:
+            continue
+        if bar <= tol:
+            refinement.end("")
+            return
+        if reason := refinement.in_vain():
+            refinement.end(reason)
+            return
+    refinement.end(refinement.no_further_mesh())
+
+
+def _meshes(refinement: Refinement) -> Iterator[Mapping[str, Any]]:
+    """Yield the options of all meshes, coarse to fine; those of a harmonic solid follow the score of
+    the mesh before.
+    """
+    plan, most = refinement.plan, refinement.most
+    if plan.fixed:
+        yield from plan.levels
+        return
+    if not refinement.model.bounded:
+        yield from plan.levels[:most]
+        return
+    yield refinement.mesh.options()
+    for _ in range((most or MOST_MESHES) - 1):
+        last = refinement.last
+        assert last is not None and last.score is not None
+        refinement.mesh = refined(
+            refinement.scene, last.body, refinement.mesh, last.score, refinement.tol
+        )
+        last.body.cache.clear()  # its factor need not be held beside the next one
+        yield refinement.mesh.options()
+
+
+def mesh_words(options: Mapping[str, Any]) -> str:
+    """Return the options of a mesh in a few words."""
+    out = []
+    for name, word in SETTINGS.items():
+        if name == "layers" and "cuts" in options:
+            continue
+        if name == "cuts" and name in options:
+            cuts, lines = sum(c for *_, c in options[name]), len(options.get("across", ()))
+            if cuts:
+                out.append(f"{cuts} cut{'s' if cuts > 1 else ''} at corners")
+            if lines:
+                out.append(f"{lines} line{'s' if lines > 1 else ''}")
+        elif name in options:
+            out.append(f"{word} {options[name]}")
+    if "coarser" in options:
+        back = options["coarser"]
+        out.append(f"mesh file {back} before the last" if back else "the last mesh file")
+    return ", ".join(out)
+
+
+def few(names: Sequence[str]) -> str:
+    """Return some names, or how many there are."""
+    return ", ".join(names) if len(names) <= FEW else f"{len(names)} numbers"
+
+
+def _place_of_most(scene: Scene, body: Body, score: np.ndarray) -> str:
+    """Return the place of the largest score by cells of a harmonic body, in words."""
+    flat = body.geometry.meridian  # type: ignore[union-attr]
+    r, y = flat.points[:, flat.cells[:, int(score.argmax())]].mean(axis=1)
+    places = singular_places(scene)
+    nearest = min(places, key=lambda p: np.hypot(p.y - y, p.r - r), default=None)
+    if nearest is None or np.hypot(nearest.y - y, nearest.r - r) > nearest.reach:
+        return f"cells at y = {1e3 * y:.4g} mm, r = {1e3 * r:.4g} mm"
+    return f"the {nearest.what} at y = {1e3 * nearest.y:.4g} mm, r = {1e3 * nearest.r:.4g} mm"

@@ -1,0 +1,285 @@
+"""The cheapest body that answers a whole question within a tolerance.
+
+:func:`solidgear.core.judge.answer.answer` gives single numbers and builds no more than they need. Here
+the body itself is wanted, with all families of motion: for the 6x6 at the lumped point, for a list
+of modes, or for a sweep over its bearings.
+
+The error of a compliance matrix of displacement elements is positive semidefinite, and so is that
+of a stiffness matrix, from the other side: no entry errs by more than the geometric mean of its two
+diagonal entries' errors. Error bars of all six diagonal entries therefore hold all of the matrix.
+:data:`~solidgear.core.quantity.QUANTITIES` names one bending plane and axial motion; where bearings
+differ between planes, the other one may rest on the mesh far more than the first, so it is measured
+as well, and torsion with it (:data:`~solidgear.core.quantity.ACROSS`).
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+from solidgear.core.body import Body, as_supports
+from solidgear.core.bounds.refining import Meshed
+from solidgear.core.errors import SolidgearError
+from solidgear.core.judge.answer import read_tolerance, solve_cheapest
+from solidgear.core.judge.bounded import mode_bars
+from solidgear.core.judge.coarser_mesh import coarser_bars, no_bar, static_bars
+from solidgear.core.judge.quantities import at_points, between
+from solidgear.core.judge.question import FamilySolver, build_families
+from solidgear.core.judge.refinement import FINER_FILE, NO_FINER, Progress, Refinement, mesh_words
+from solidgear.core.judge.steps import Step
+from solidgear.core.ladder import build
+from solidgear.core.ladder.registry import LADDER
+from solidgear.core.machine.memory import NoRoom
+from solidgear.core.machine.threads import pinned
+from solidgear.core.quantity import COMPLIANCE, FREQUENCY, QUANTITIES, STIFFNESS, Quantity
+from solidgear.core.scene.shaft import without_axis
+from solidgear.core.solve.modes import ModeSet, modes
+
+if TYPE_CHECKING:
+    from solidgear.core.scene import Scene
+
+#: questions to a body, and the kinds of quantities by which it is judged
+QUESTIONS: dict[str, tuple[str, ...]] = {
+    "stiffness": (COMPLIANCE, STIFFNESS),
+    "modes": (FREQUENCY,),
+    "all": (COMPLIANCE, STIFFNESS, FREQUENCY),
+}
+#: bars closer than this part of themselves are equal
+SAME = 1e-6
+
+
+@dataclass(frozen=True)
+class Settled:
+    """A body on the cheapest mesh that answers a question, with error bars."""
+
+    scene: str
+    tolerance: float
+    rung: str
+    options: dict[str, Any]  #: of the builder: with these, the model gives the same body again
+    body: Body  #: with all families of motion
+    #: relative; of couplings, to the geometric mean of their diagonal entries. Infinite where
+    #: nothing is known.
+    bars: dict[Quantity, float]
+    steps: tuple[Step, ...]  #: models and meshes that were passed over and tried
+    #: whether every bar is within the tolerance. A scene that nothing holds has a stiffness of
+    #: exactly zero, and no bar to meet.
+    reached: bool
+    missing: tuple[Quantity, ...]  #: those that do not exist for this scene
+    judged_on: int = 1  #: number of bearing variants that the error bars are maximal over
+    point: str = ""  #: the main lumped point
+    mesh: Meshed | None = None  #: of a harmonic solid
+
+    @property
+    def setting(self) -> str:
+        """The mesh in words."""
+        return next(step.setting for step in self.steps if step.chosen)
+
+    @property
+    def largest(self) -> tuple[Quantity, float] | None:
+        """Quantity with the largest error bar, and the bar; None where nothing is judged."""
+        return widest(self.bars)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain data, without the body."""
+        return {
+            "rung": self.rung,
+            "setting": self.setting,
+            "options": self.options,
+            "tolerance": self.tolerance,
+            "bars": {q: bar if math.isfinite(bar) else None for q, bar in self.bars.items()},
+            "reached": self.reached,
+            "judged_on": self.judged_on,
+        }
+
+
+def widest(bars: Mapping[Quantity, float]) -> tuple[Quantity, float] | None:
+    """Return the quantity with the largest error bar, and the bar; None without any.
+
+    Twins of the two planes have equal bars but for rounding: the first listed is named.
+    """
+    if not bars:
+        return None
+    top = max(bars.values())
+    return next((q, bar) for q, bar in bars.items() if bar >= top * (1 - SAME))
+
+
+@pinned
+def settle(
+    scene: Scene,
+    tol: float | str | None = None,
+    ask: str = "all",
+    *,
+    points: Sequence[str] = (),
+    before: Settled | None = None,
+    progress: Progress = lambda _: None,
+) -> Settled:
+    """Solve the cheapest body whose error bars of all numbers asked for are within a tolerance;
+    after the last mesh that could be solved, where none is.
+
+    Parameters
+    ----------
+    tol : float or str, optional
+        Relative; by default the tolerance of the scene.
+    ask : {'all', 'stiffness', 'modes'}
+        Compliances and stiffnesses at the lumped point in all six directions, the first frequencies
+        of every family, or both.
+    points : sequence of str
+        Further lumped points at which, and between which, the same is asked.
+    before : Settled, optional
+        Result for the same shaft with other bearings in the same seats: a harmonic solid is judged
+        on that body first, with the data that are kept with it.
+
+    Raises
+    ------
+    SolidgearError
+        For a tolerance that is none or that arithmetic does not allow, or a scene that no model can
+        answer.
+    """
+    tol = read_tolerance(scene.ask.tolerance if tol is None else tol)
+    if without_axis(scene):
+        if ask != "modes" and scene.port.patch is None:
+            raise SolidgearError(
+                f"{scene.name} names no lumped point to be stiff at: give it a [[port]] with a patch, "
+                "or ask for modes"
+            )
+        return _settled_body(scene, tol, ask, (scene.port.name, *points), progress)
+    wanted = tuple(q for q in QUANTITIES if q.kind in QUESTIONS[ask])
+    if points:
+        names = {scene.port.name, *points}
+        crossed = between(wanted, [port.name for port in scene.ports if port.name in names])
+        wanted = (*at_points(wanted, points), *crossed)
+
+    def solver_of(refinement: Refinement) -> FamilySolver:
+        if before is None or before.rung != refinement.model.name:
+            return FamilySolver(refinement)
+        if before.mesh is not None:
+            refinement.mesh = before.mesh
+
+        def build_body(options: Mapping[str, Any], families: tuple[str, ...] | None) -> Body:
+            if dict(options) == before.options:
+                return before.body
+            return build_families(scene, refinement.model, options, families)
+
+        return FamilySolver(refinement, build_body)
+
+    solver, steps = solve_cheapest(scene, tol, wanted, progress, solver_of, whole=True)
+    refinement = solver.refinement
+    assert refinement.body is not None  # a model without a single mesh is passed over
+    bars = refinement.bars()
+    judged = bool(bars) or ask == "stiffness"
+    return Settled(
+        scene=scene.name,
+        tolerance=tol,
+        rung=refinement.model.name,
+        options=refinement.options,
+        body=refinement.body,
+        bars=bars,
+        steps=tuple(steps),
+        reached=judged and all(bar <= tol for bar in bars.values()),
+        missing=tuple(q for q in wanted if q not in bars),
+        point=scene.port.name,
+        mesh=refinement.mesh if refinement.model.bounded else None,
+    )
+
+
+def bars_of_modes(
+    scene: Scene, body: Body, mode_set: ModeSet, settled: Settled | None
+) -> dict[str, float]:
+    """Return relative error bars of frequencies by the names of their modes: of a harmonic solid of
+    all, of others of those that were judged, and none of a mesh that was set, which may be as large
+    as one likes.
+    """
+    if settled is None:
+        return {}
+    if without_axis(scene):
+        return coarser_bars(scene, body, mode_set, settled.options)
+    bars: dict[str, float] = {}
+    if LADDER[body.fidelity].bounded:
+        bars = mode_bars(scene, body, as_supports(scene), mode_set)
+    # frequencies that the mesh was chosen by keep the bar it was chosen with
+    judged = [name for name in map(Quantity, mode_set.names) if name in settled.bars]
+    return bars | {name: settled.bars[name] for name in judged}
+
+
+#: the only model that holds a body without an axis
+MODEL = "solid"
+#: refinements of the nested meshes of a block, each of which gives the error bar of the next
+NESTED = (0.5, 1.0, 2.0, 4.0)
+
+
+def _settled_body(
+    scene: Scene, tol: float, ask: str, points: tuple[str, ...], progress: Progress
+) -> Settled:
+    """Settle a body without an axis on the first mesh whose error bars of the lowest modes, and of
+    statics at some points, are within a tolerance: of a block on nested meshes, else on the last
+    mesh file.
+    """
+    steps: list[Step] = []
+    assert scene.body is not None  # that is without an axis
+    block = scene.body.kind == "block"
+    meshes = [{"refinement": r} for r in NESTED[1:]] if block else [{"coarser": 0}]
+    for mesh in meshes:
+        start = time.perf_counter()
+        level = {**LADDER[MODEL].given(scene, {}), **mesh}
+        progress(f"{LADDER[MODEL].title}: {mesh_words(level)}")
+        try:
+            body, bars = _judged_body(scene, ask, points, level)
+        except (NoRoom, MemoryError) as error:
+            if not steps:
+                raise
+            reason = f"the next mesh could not be solved: {error or 'not enough memory'}"
+            steps[-1] = replace(steps[-1], why=reason, chosen=True)
+            break
+        options = level
+        largest = max(bars.values(), default=math.inf)
+        reached = largest <= tol
+        chosen = reached or mesh is meshes[-1]
+        reason = ""
+        if chosen and not reached:
+            if block:
+                reason = NO_FINER
+            else:
+                reason = FINER_FILE if bars else no_bar(scene, body, options)
+        steps.append(
+            Step(
+                MODEL,
+                mesh_words(options),
+                valid=True,
+                why=reason,
+                bar=largest,
+                unknowns=body.size,
+                seconds=time.perf_counter() - start,
+                chosen=chosen,
+                options=options,
+            )
+        )
+        if chosen:
+            break
+    return Settled(
+        scene=scene.name,
+        tolerance=tol,
+        rung=MODEL,
+        options=options,
+        body=body,
+        bars=bars,
+        steps=tuple(steps),
+        reached=reached,
+        missing=(),
+        point=scene.port.name,
+    )
+
+
+def _judged_body(
+    scene: Scene, ask: str, points: tuple[str, ...], options: dict[str, Any]
+) -> tuple[Body, dict[Quantity, float]]:
+    """Build the body on one mesh, and return the error bars of the numbers asked for."""
+    body = build(scene, MODEL, **options)
+    bars = static_bars(scene, body, points, options) if ask != "modes" else {}
+    if ask != "stiffness":
+        listed = modes(body, scene, scene.ask.modes)
+        mode_bars_by_name = coarser_bars(scene, body, listed, options)
+        bars |= {Quantity(name): bar for name, bar in mode_bars_by_name.items()}
+    return body, bars

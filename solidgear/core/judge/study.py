@@ -1,0 +1,431 @@
+"""Study of one model of a scene for a comparison: a solid on as many meshes as its error bars need,
+every mesh solved with the ties of the scene and like for like.
+"""
+
+from __future__ import annotations
+
+import logging
+import math
+from collections.abc import Callable, Mapping
+from collections.abc import Sequence as Listed
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from solidgear.core.body import Body, Supports, as_supports
+from solidgear.core.errors import SolidgearError
+from solidgear.core.judge.bars import ErrorBar, sizes_of
+from solidgear.core.judge.bounded import Bounded, bounded
+from solidgear.core.judge.hidden import complete_list
+from solidgear.core.judge.quantities import change, judged, usual
+from solidgear.core.judge.record import LevelRecord
+from solidgear.core.judge.refinement import Progress, Refinement, Solved, mesh_words, refine
+from solidgear.core.judge.sequence_bars import sequence_bars
+from solidgear.core.judge.solution import Solution
+from solidgear.core.judge.solving import ENOUGH, Answer, Numbers, Statics, search_modes
+from solidgear.core.judge.ties import SCENE, SECTION, attached
+from solidgear.core.ladder import build
+from solidgear.core.ladder.meshes import HEAVY
+from solidgear.core.ladder.model import SOLID
+from solidgear.core.ladder.registry import LADDER
+from solidgear.core.machine.meter import Meter
+from solidgear.core.models.options import ATTACHMENTS
+from solidgear.core.quantity import C_ZZ, FIRST_BENDING, Quantity
+from solidgear.core.solve.modes import ModeSet
+from solidgear.core.solve.statics import SOLVED, flexibility
+
+if TYPE_CHECKING:
+    from solidgear.core.scene import Scene
+
+log = logging.getLogger(__name__)
+Keep = Callable[[Solution], None]
+
+
+def study(
+    scene: Scene,
+    model: str,
+    options: Mapping[str, Any] | None = None,
+    *,
+    share: float | None = None,
+    most: int | None = None,
+    evidence: bool = True,
+    counted: bool = True,
+    progress: Progress = lambda _: None,
+    keep: Keep = lambda _: None,
+) -> Solution:
+    """Solve one model of a scene, a solid on as many meshes as its error bars need.
+
+    Parameters
+    ----------
+    options : mapping, optional
+        Of the builder; where they concern the mesh, that mesh is solved, and of a solid on a list
+        of meshes two coarser ones.
+    share : float, optional
+        Error bars of the judged quantities are wanted below the tolerance of the scene divided by
+        this; by default the share of the model, 10 for the harmonic solid, which judges.
+    most : int, optional
+        Levels to stop at.
+    evidence : bool
+        Count the modes, unless `counted` is False, and solve the other attachments.
+    keep : callable
+        Called with the solution so far after every mesh, to be kept after an interrupt.
+
+    Raises
+    ------
+    SolidgearError
+        If the first mesh cannot be solved; later ones that cannot are in ``failed``.
+    """
+    options, ladder_model = dict(options or {}), LADDER[model]
+    count_modes = evidence and counted
+    if ladder_model.family != SOLID:
+        meter = Meter()
+        progress(f"{model}: build, statics, modes")
+        ties = solved_ties(scene, model, options, meter, 0 if count_modes else math.inf)
+        solution = Solution(model, ties, meter, options=options)
+        keep(solution)
+    else:
+        refinement = Refinement(
+            scene,
+            ladder_model,
+            wanted=usual(scene),
+            tol=scene.ask.tolerance / (share or ladder_model.share),
+            plan=ladder_model.meshes_of(scene, options),
+            middles=False,
+            most=most,
+        )
+        solution = TiedSolver(refinement, progress, count_modes, keep).study()
+    if evidence:
+        _add_variants(scene, solution, progress)
+    return solution
+
+
+class TiedSolver:
+    """Solves meshes in all ways of tying, a :class:`~solidgear.core.judge.refinement.Solver`."""
+
+    def __init__(self, refinement: Refinement, progress: Progress, count_modes: bool, keep: Keep):
+        self.refinement, self.progress = refinement, progress
+        self.count_modes, self.keep = count_modes, keep
+        self.solution: Solution | None = None  #: of the last mesh
+        self.meter = Meter()
+        self.failed: dict[str, str] = {}  #: part left out -> reason
+        self.numbers: list[dict[str, Numbers]] = []  #: of every mesh, by way of tying
+        self.meshes: list[LevelRecord] = []
+        #: by way of tying, the relative error that the cells around leave in each quantity
+        self.around: dict[str, dict[Quantity, float]] = {}
+
+    def study(self) -> Solution:
+        """Refine, and return the solution of the last mesh that could be solved."""
+        refinement, model = self.refinement, self.refinement.model
+        fixed = refinement.plan.fixed
+        try:
+            refine(refinement, self, self.progress, model.name)
+        except (SolidgearError, MemoryError) as error:
+            if self.solution is None or fixed:
+                raise
+            self.failed["finer mesh"] = _reason(error)
+        assert self.solution is not None
+        if model.bounded:
+            reason = refinement.steps[-1].why
+            if reason and refinement.most is None and not fixed:
+                self.failed["narrower bars"] = reason
+            self._finish(self.solution)
+        elif refinement.of_files and len(refinement.sizes) > 1 and not refinement.error_bars:
+            self.failed["error bar"] = refinement.no_further_mesh()
+        return self.solution
+
+    def asked(self) -> tuple[Quantity, ...]:
+        """Return the quantities that the next mesh is solved for: all."""
+        return self.refinement.wanted
+
+    def solve(self, options: Mapping[str, Any]) -> Solved | None:
+        """Solve a mesh in all ways of tying; of a mesh that was set, coarser ones that cannot be
+        solved are left out.
+        """
+        plan = self.refinement.plan
+        try:
+            return self._solve(options)
+        except (SolidgearError, MemoryError) as error:
+            if not plan.fixed or options is plan.levels[-1]:
+                raise
+            self.failed["error bar"] = _reason(error)
+            return None
+
+    def _solve(self, options: Mapping[str, Any]) -> Solved:
+        refinement, model = self.refinement, self.refinement.model
+        before = dict(self.meter.seconds)
+        if self.solution is not None:
+            self.solution.body.cache.clear()  # its factor need not be held beside the next one
+        counted_from = self._counted_from(len(refinement.levels))
+        ties = solved_ties(
+            refinement.scene, model.name, options, self.meter, counted_from, model.bounded
+        )
+        if self.solution is not None:
+            _book_as_evidence(self.meter, before)
+        answer = ties[SCENE]
+        self.numbers.append({tie: tied.numbers for tie, tied in ties.items()})
+        self.meshes.append(_level_of(answer))
+        self.solution = solution = Solution(model.name, ties, self.meter)
+        solution.levels, solution.failed, solution.options = self.meshes, self.failed, dict(options)
+        score = None
+        with self.meter.stage("band"):
+            if model.bounded:
+                judged = _judged(refinement.scene, answer, refinement.wanted, ties.get(SECTION))
+                solution.error_bars, solution.scores = {SCENE: judged.error_bars}, judged.scores
+                refinement.error_bars = judged.error_bars
+                score = refinement.score(judged, refinement.wanted)
+            else:
+                self._measure_around()
+                solution.error_bars = self._error_bars()
+        self.keep(solution)
+        body = answer.body
+        return Solved(body, answer.numbers, body.size, sizes_of(body.mesh), score)
+
+    def _counted_from(self, k: int) -> float:
+        """Return the unknowns from which on modes of mesh `k` of a list are counted."""
+        plan = self.refinement.plan
+        if not self.count_modes or self.refinement.model.bounded:
+            return math.inf
+        if plan.fixed:
+            return 0 if k == len(plan.levels) - 1 else math.inf
+        if k >= 2:
+            return 0
+        # the second level is counted as well where a third one may be too dear to be solved
+        return HEAVY + 1 if k == 1 else math.inf
+
+    def judge(self) -> float | None:
+        """Return the largest error bar of the quantities wanted, None before there are meshes enough
+        to end with it.
+        """
+        refinement = self.refinement
+        if not refinement.model.bounded:
+            assert self.solution is not None
+            refinement.error_bars = self.solution.error_bars.get(SCENE, {})
+        bars = [
+            bar.width for name, bar in refinement.error_bars.items() if name in refinement.wanted
+        ]
+        return max(bars, default=None) if self._has_enough_meshes() else None
+
+    def _has_enough_meshes(self) -> bool:
+        """Return whether error bars may end the refinement: of a list after three meshes, or two
+        large ones.
+        """
+        refinement = self.refinement
+        k = len(refinement.levels)
+        if refinement.model.bounded:
+            return True
+        if refinement.plan.fixed:
+            return k == len(refinement.plan.levels)
+        return k > 2 or k == 2 and refinement.last is not None and refinement.last.unknowns > HEAVY
+
+    def _measure_around(self) -> None:
+        """Measure the error that the cells around leave, on the first mesh."""
+        refinement = self.refinement
+        turned = refinement.plan.turned
+        if turned is None or self.around:
+            return
+        self.progress(f"{refinement.model.name}: {mesh_words(turned)}")
+        ties = solved_ties(refinement.scene, refinement.model.name, turned, Meter())
+        first, share = self.numbers[0], refinement.plan.left_around
+        for tie in set(first) & set(ties):
+            finer = ties[tie].quantities
+            changes = {q: change(first[tie].quantities, finer, q) for q in finer}
+            self.around[tie] = {q: share * abs(c) for q, c in changes.items() if c is not None}
+
+    def _error_bars(self) -> dict[str, dict[Quantity, ErrorBar]]:
+        """Return error bars of the finest mesh of a list by way of tying, as far as the last meshes
+        have it.
+        """
+        scene, plan, model = self.refinement.scene, self.refinement.plan, self.refinement.model
+        out = {}
+        for tie in (SCENE, SECTION):
+            levels = [numbers[tie] for numbers in self.numbers if tie in numbers]
+            if len(levels) < 2 or tie not in self.numbers[-1]:
+                continue
+            error_bars = sequence_bars(
+                scene if tie == SCENE else scene.with_attachment("section"),
+                plan,
+                model,
+                [level.quantities for level in levels],
+                levels[-1].solver,
+                [sizes_of(level.mesh) for level in self.meshes],
+                self.around.get(tie),
+                self.meshes[-1].mesh.get("straightened", 0.0),
+            )
+            if error_bars:
+                out[tie] = error_bars
+        return out
+
+    def _finish(self, solution: Solution) -> None:
+        """Add error bars with section ties, and count modes."""
+        refinement, scene = self.refinement, self.refinement.scene
+        answer, section_answer = solution.ties[SCENE], solution.ties.get(SECTION)
+        self.progress(f"{refinement.model.name}: section ties")
+        if section_answer is not None:
+            tied_scene = scene.with_attachment("section")
+            with self.meter.stage("band"):
+                error_bars = solution.error_bars[SCENE]
+                if section_answer is not answer:
+                    error_bars = _judged(tied_scene, section_answer, refinement.wanted).error_bars
+            solution.error_bars[SECTION] = error_bars
+        if self.count_modes:
+            assert answer.supports is not None  # of the answer just found
+            with self.meter.stage("count"):
+                answer.modes = _modes(scene, answer.body, answer.supports, count=True)
+                complete = complete_list(scene, answer.body, answer.supports, answer.modes)
+                answer.modes = replace(answer.modes, evidence=complete.evidence)
+
+
+def _reason(error: Exception) -> str:
+    return str(error) or "not enough memory"
+
+
+def _judged(
+    scene: Scene, answer: Answer, names: Listed[Quantity], later: Answer | None = None
+) -> Bounded:
+    """Return error bars of an answer by local problems, and of the modes of another answer of the
+    same body the data that both share.
+    """
+    existing = [q for q in dict.fromkeys((*names, *answer.quantities)) if q in answer.quantities]
+    assert answer.supports is not None  # of the answer just found
+    return bounded(
+        scene,
+        answer.body,
+        answer.supports,
+        answer.statics,
+        answer.modes,
+        existing,
+        answer.numbers.solver,
+        later.modes if later is not None and later.body is answer.body else None,
+    )
+
+
+def solved_ties(
+    scene: Scene,
+    model: str,
+    options: Mapping[str, Any],
+    meter: Meter,
+    counted_from: float = math.inf,
+    spare: bool = False,
+) -> dict[str, Answer]:
+    """Solve one mesh, tied as in the scene and by section means; modes are counted from so many
+    unknowns on.
+    """
+    attachments = {s.attachment for s in scene.stations}
+    # Means over seats and over sections are only rows on the same matrices; a rigid seat is another
+    # matrix.
+    one_matrix = "rigid" not in attachments
+    sections = LADDER[model].section_ties
+    builder_options = dict(options)
+    if one_matrix:
+        kinds = (*sorted(attachments), "section") if sections else sorted(attachments)
+        builder_options["attachments"] = tuple(dict.fromkeys(kinds))
+    body = _built(scene, model, builder_options, meter)
+    supports, count = as_supports(scene), body.size >= counted_from
+    port_attachments: list[str] | None = None
+    if one_matrix:
+        supports = supports.on_stations(scene.stations)
+        port_attachments = [port.attachment for port in scene.ports]
+    ties = {SCENE: _answer(scene, body, supports, port_attachments, meter, count, spare)}
+    if attachments == {"section"}:
+        ties[SECTION] = ties[SCENE]
+    elif not sections:
+        pass  # planes of section ties would have to be graded; another solid judges like for like
+    elif one_matrix:
+        section_supports = supports.with_attachment("section")
+        ties[SECTION] = _answer(scene, body, section_supports, "section", meter)
+    else:
+        tied = scene.with_attachment("section")
+        tied_body = _built(tied, model, options, meter)
+        ties[SECTION] = _answer(tied, tied_body, as_supports(tied), None, meter, spare=spare)
+    return ties
+
+
+def _built(scene: Scene, model: str, options: Mapping[str, Any], meter: Meter) -> Body:
+    with meter.stage("build"):
+        body = build(scene, model, **options)
+    if LADDER[model].bounded:
+        with meter.stage("statics"):
+            flexibility(body, SOLVED)
+    return body
+
+
+def _answer(
+    scene: Scene,
+    body: Body,
+    supports: Supports,
+    attachments: list[str] | str | None,
+    meter: Meter,
+    count: bool = False,
+    spare: bool = False,
+) -> Answer:
+    """Solve statics and modes of a body tied in one way."""
+    with meter.stage("statics"):
+        ports = [port.name for port in scene.ports]
+        statics = Statics.at_points(body, supports, ports, attachments)
+    with meter.stage("modes"):
+        modes = _modes(scene, body, supports, count, spare)
+    # Evidence, not part of the answer: kept apart from what the modes cost.
+    meter.move("modes", "count", modes.evidence.get("count_seconds", 0.0))
+    return Answer.measured(body, supports, statics, modes)
+
+
+def _modes(
+    scene: Scene, body: Body, supports: Supports, count: bool, spare: bool = False
+) -> ModeSet:
+    """Find the modes of a comparison, those that models are judged by among them."""
+    names = dict.fromkeys((*usual(scene), *judged(scene)))
+    return search_modes(
+        body,
+        supports,
+        max(scene.ask.modes, ENOUGH),
+        [q for q in names if q.is_frequency],
+        spare=spare,
+        max_frequency=scene.ask.max_frequency,
+        count=count,
+        # Families of two waves and more are reported for the finest mesh; bearings do not move
+        # them, nor do error bars rest on them.
+        ovalising=count,
+    )
+
+
+def _level_of(answer: Answer) -> LevelRecord:
+    """Build the record of one mesh of a list."""
+    body, values = answer.body, answer.quantities
+    order = body.mesh.get("order")
+    return LevelRecord(
+        dofs=body.size,
+        h=None if order else body.mesh.get("representative_size"),
+        order=order,
+        quantities={name: values[name] for name in (C_ZZ, FIRST_BENDING) if name in values},
+        mesh=body.mesh,
+    )
+
+
+def _book_as_evidence(meter: Meter, before: dict[str, float]) -> None:
+    """Book the cost of coarser levels as evidence; the price of the answer is that of the last
+    level.
+    """
+    earlier = {stage: before.get(stage, 0.0) for stage in ("build", "statics", "modes", "count")}
+    for stage, seconds in earlier.items():
+        meter.move(stage, "band", seconds)
+
+
+def _add_variants(scene: Scene, solution: Solution, progress: Progress) -> None:
+    """Solve the scene with each attachment everywhere, a 3D solid only with those in its mesh."""
+    attachments = {s.attachment for s in scene.stations}
+    unbooked = Meter()
+    progress(f"{solution.model}: attachments")
+    with solution.meter.stage("attachments"):
+        for attachment in ATTACHMENTS:
+            try:
+                if attachments == {attachment}:
+                    solution.variants[attachment] = solution.ties[SCENE]
+                elif attachment == "section" and SECTION in solution.ties:
+                    solution.variants[attachment] = solution.ties[SECTION]
+                elif LADDER[solution.model].section_ties:
+                    variant = attached(scene, attachment)
+                    body = build(variant, solution.model, **solution.options)
+                    solution.variants[attachment] = _answer(
+                        variant, body, as_supports(variant), None, unbooked
+                    )
+            except SolidgearError as error:
+                log.info("%s: attachment %s left out: %s", solution.model, attachment, error)

@@ -1,0 +1,212 @@
+"""The 3D solid, of hexahedra or tetrahedra, coarse to fine."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from solidgear.core.elements import ELEMENTS
+from solidgear.core.ladder.meshes import FREE, Sequence, fixed_refinements, levels
+from solidgear.core.ladder.model import Options, Series, features_of
+from solidgear.parts.volume import PER_TETRAHEDRON, Volume
+from solidgear.core.models.kinds import BODIES, CUTS, CYCLIC, PARTS
+from solidgear.core.models.options import SOLID_OPTIONS
+
+if TYPE_CHECKING:
+    from solidgear.core.body import Body
+    from solidgear.core.models.size import Size
+
+Level = dict[str, Any]
+
+
+def _hexahedra(layers: int, edge_layers: int, relative_size: float) -> Level:
+    return {
+        "layers": layers,
+        "radial_layers": layers,
+        "edge_layers": edge_layers,
+        "relative_size": relative_size,
+    }
+
+
+HEXAHEDRA: tuple[Level, ...] = (
+    _hexahedra(0, 0, 1.5),
+    _hexahedra(1, 1, 1.0),
+    _hexahedra(2, 2, 0.7),
+    _hexahedra(3, 3, 0.5),
+    _hexahedra(4, 4, 0.35),
+)
+TETRAHEDRA: tuple[Level, ...] = tuple({"refinement": r} for r in (0.45, 0.65, 0.95, 1.4, 2.0))
+LINEAR: tuple[Level, ...] = tuple({"refinement": r} for r in (0.6, 0.9, 1.35, 2.0))
+#: cells around of hexahedra that bend as a whole: eight are good to some 6e-4, and the error falls
+#: with the fourth power
+AROUND = 8
+
+
+class _Steps(NamedTuple):
+    """Refinements of a quick chart, and further ones of a full chart."""
+
+    quick: tuple[float, ...]
+    more: tuple[float, ...]
+
+
+#: refinements of uniform and of graded meshes, by element
+_CHARTED = {
+    "tet4": (_Steps((1.0, 1.8, 2.6), (3.4, 4.4)), _Steps((0.5, 0.8, 1.25), (1.8, 2.4))),
+    "tet10": (_Steps((0.7, 1.3, 1.8), (2.4, 3.0)), _Steps((0.4, 0.6, 0.9), (1.2, 1.6))),
+    "hex8": (_Steps((1.0, 1.5, 2.2), (3.0, 3.8)), _Steps((0.65, 1.0, 1.5), (2.0, 2.6))),
+    "hex20": (_Steps((0.5, 1.0, 1.5), (2.0, 2.8)), _Steps((0.35, 0.65, 1.0), (1.4, 1.9))),
+    "hex27": (_Steps((0.5, 1.0, 1.3), (1.6, 2.2)), _Steps((0.35, 0.65, 0.85), (1.0, 1.4))),
+}
+
+
+class Solid(Volume):
+    """Full 3D elasticity on one mesh."""
+
+    name = "solid"
+    title = heading = "3D solid"
+    theory = "full 3D elasticity"
+    colour = "#5a3e8c"
+    marker = "D"
+    options = SOLID_OPTIONS
+    coarser = "lower refinement or the layers, or raise size"
+    holds = (CUTS, CYCLIC, PARTS, BODIES)
+    together = frozenset((CUTS, CYCLIC))
+    _nature = "one mesh of tetrahedra,"
+
+    def builder(self) -> Callable[..., Body]:
+        from solidgear.core.models.solid.body import solid
+
+        return solid
+
+    def _size(self, scene: Any, options: dict[str, Any]) -> Size:
+        from solidgear.core.models.solid.size import solid_size
+
+        return solid_size(scene, **self.split(options)[0])
+
+    def rough_unknowns(self, scene: Any, options: Options) -> float:
+        """Estimate the unknowns of tetrahedra."""
+        from solidgear.core.models.solid.plan import tetrahedra_of, tetrahedra_plan
+
+        full_options = self.defaults() | self.given(scene, options)
+        if not full_options["element"].startswith("tet"):
+            return 0.0
+        sizes = {n: full_options[n] for n in ("size", "graded_size", "refinement", "around")}
+        plan = tetrahedra_plan(scene, self.wanted(scene, full_options), **sizes)
+        return PER_TETRAHEDRON * tetrahedra_of(scene, plan, full_options["refinement"])
+
+    def can_halve(self, scene: Any, options: Options) -> bool:
+        """Return True where all cuts of a shaft have one mirror plane."""
+        from solidgear.cuts.solid.cuts import mirror_plane
+
+        cuts = features_of(scene)
+        return bool(cuts) and all(f.sort == CUTS for f in cuts) and mirror_plane(cuts) is not None
+
+    def concerns(self, scene: Any) -> bool:
+        """Return False where its mesh would be copies of a sector: that is no second opinion, and
+        solved only when named.
+        """
+        return {CYCLIC} != {f.sort for f in features_of(scene)}
+
+    def limits(self, scene: Any) -> str:
+        """Return the reason why features of a scene have no sector, or cannot be cut beside each
+        other; empty if they can.
+        """
+        if CUTS not in {f.sort for f in features_of(scene)}:
+            return super().limits(scene)
+        from solidgear.cuts.sector.body import not_together
+
+        return not_together(scene)
+
+    def given(self, scene: Any, options: Options) -> dict[str, Any]:
+        """Return options with tetrahedra for features, fillets, chamfers or a part from a file,
+        beside which layered hexahedra converge too slowly for error bars; and hexahedra for a
+        block.
+        """
+        features = features_of(scene)
+        if "block" in {getattr(f, "kind", "") for f in features}:
+            return {"element": "hex27", **options}
+        if features or scene.outline.corners:
+            return {"element": "tet10", **options}
+        return dict(options)
+
+    def meshes_of(self, scene: Any, options: Options) -> Sequence:
+        """Return the meshes of files, or the usual list."""
+        full_options = {**self.preset, **self.given(scene, options)}
+        body = getattr(scene, "body", None)
+        if body is not None and body.one_mesh:
+            if not body.coarser:
+                return Sequence((full_options,), True, False)
+            levels = ({**full_options, "coarser": k} for k in range(len(body.coarser), -1, -1))
+            return Sequence(tuple(levels), True, False)
+        return self.meshes(full_options)
+
+    def meshes(self, options: Options) -> Sequence:
+        """Return meshes with ever more layers towards corners, or plain refinement of tetrahedra."""
+        element = self.checked({"element": options.get("element", "hex20")})["element"]
+        second = ELEMENTS[element].order == 2
+        layered = second and element.startswith("hex")
+        if set(options) - set(FREE):
+            if layered and "refinement" not in options:
+                return _below_hexahedra(dict(options))
+            return fixed_refinements(options)
+        if layered:
+            around = {"around": AROUND, **options}
+            hexahedra = tuple({**level, **around} for level in HEXAHEDRA)
+            return Sequence(hexahedra, False, True, _turned(hexahedra[0]))
+        tetrahedra = TETRAHEDRA if second else LINEAR
+        return Sequence(tuple({**level, **options} for level in tetrahedra), False, False)
+
+    def series(self, scene: Any, full: bool) -> list[Series]:
+        """Return every element type, on uniform and on graded meshes."""
+        from solidgear.core.models.solid.plan import usual_size
+
+        size = usual_size(scene)
+        even_tetrahedra = {"size": size, "graded_size": size}
+        even_hexahedra = {
+            "layers": 0,
+            "edge_layers": 0,
+            "size": 0.6 * scene.outline.least_radius,
+            "radial_layers": 0,
+        }
+        return [
+            *_elements("tetrahedra", "uniform", even_tetrahedra, full),
+            *_elements("tetrahedra", "graded", {}, full),
+            *_elements("hexahedra", "uniform", even_hexahedra, full),
+            *_elements("hexahedra", "graded", {}, full),
+        ]
+
+
+def _elements(family: str, grading: str, extra: dict, full: bool) -> list[Series]:
+    out = []
+    for element, (uniform, graded) in _CHARTED.items():
+        if not element.startswith(family[:3]):
+            continue
+        refinements = levels(*(uniform if grading == "uniform" else graded), full)
+        options = [{"element": element, **extra, "refinement": s} for s in refinements]
+        out.append((family, f"{element.upper()} {grading}", options))
+    return out
+
+
+def _turned(level: Level) -> Level:
+    return {**level, "around": 4 * -(-3 * level["around"] // 8)}
+
+
+def _below_hexahedra(options: Level) -> Sequence:
+    finest = {
+        "layers": 4,
+        "radial_layers": 4,
+        "edge_layers": 1,
+        "relative_size": 0.4,
+        "around": 12,
+        **options,
+    }
+    coarser = []
+    for k in (2, 1):
+        fewer = {
+            name: max(finest[name] - k, 0) for name in ("layers", "radial_layers", "edge_layers")
+        }
+        larger = {"relative_size": finest["relative_size"] * 1.5**k}
+        if finest.get("size"):
+            larger = {"size": finest["size"] * 1.5**k}
+        coarser.append({**finest, **fewer, **larger})
+    return Sequence((*coarser, finest), True, True, _turned(coarser[0]))

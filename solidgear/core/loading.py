@@ -1,0 +1,159 @@
+"""Reading of scene and train files: catalogue bearings get their stiffness at their load.
+
+:mod:`solidgear.core.scene` reads a file as data; here the catalogue data of bearings become a 6x6 once,
+as for any other bearing.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from solidgear.core.errors import SceneError, SolidgearError
+from solidgear.core.scene import file
+from solidgear.core.scene.toml_file import parse, place_of
+
+if TYPE_CHECKING:
+    from solidgear.core.body import Body
+    from solidgear.core.scene import Scene
+    from solidgear.parts.body_file import BodyTable
+    from solidgear.trains.file.operation import OperatingPoint
+    from solidgear.parts.recognised import Recognised
+    from solidgear.trains.file.train import Train
+
+#: model on which bearings and shaft find their equilibrium: loads in a shaft depend little on how
+#: its shoulders are modelled
+SHAFT = "timoshenko"
+
+
+def load(path: str | os.PathLike) -> Scene:
+    """Read and resolve a scene file, and work out the stiffness of its catalogue bearings.
+
+    Parameters
+    ----------
+    path : str or path
+        A TOML file; ``geometry/pinion_overhung.toml`` describes the format, and
+        ``geometry/gearbox_catalogue.toml`` that of catalogue bearings.
+
+    Returns
+    -------
+    Scene
+        Every bearing with a 6x6. Where it came from catalogue data these are kept as its
+        `catalogue`.
+
+    Raises
+    ------
+    SceneError
+        The file, the key (``bearing[2] "2".seat_width``, counted from one), the value as written,
+        what would be right: one line for each problem, in the order of the file.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> scene = sg.load("geometry/pinion_overhung.toml")
+    >>> [bearing.name for bearing in scene.bearings], scene.port.name
+    (['1', '2'], 'pinion')
+    """
+    return scene_of(parse(os.fspath(path)), path)
+
+
+def as_written(path: str | os.PathLike) -> Scene:
+    """Read a scene file as it is written: catalogue bearings without their stiffness, the part of a
+    [body] read; errors as of :func:`load`.
+    """
+    return file.load(path, part_of)
+
+
+def scene_of(tables: Mapping[str, Any], path: str | os.PathLike, alone: bool = True) -> Scene:
+    """Return the scene that tables of a file describe, with names of files relative to its path;
+    errors as of :func:`load`. Catalogue bearings settle at the load of the scene where it is
+    `alone`, and not with a train.
+    """
+    scene = file.scene_of(dict(tables), os.fspath(path), part_of)
+    if not alone or all(bearing.catalogue is None for bearing in scene.bearings):
+        return scene
+    from solidgear.bearings.solved import solved  # start-up: not every file needs it
+
+    with explained(path, tables):
+        return solved(scene, shaft(scene)).scene
+
+
+def load_train(path: str | os.PathLike, point: OperatingPoint | None = None) -> Train:
+    """Read a train file; the shafts it names lie relative to it, and the stiffness of their
+    catalogue bearings is worked out: at the first operating point of the train, or, without any, at
+    the load of each shaft's own file.
+
+    Parameters
+    ----------
+    path : str or path
+        A TOML file; ``geometry/axle_overhung.toml`` describes the format.
+    point : OperatingPoint, optional
+        At which bearings settle, in place of the points of the file.
+
+    Returns
+    -------
+    Train
+
+    Raises
+    ------
+    SceneError
+        The file, the key, the value as written, what would be right: one line for each problem.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> train = sg.load_train("geometry/axle_straddle.toml")
+    >>> [bearing.name for bearing in train.pinion.scene.bearings]
+    ['0', '1', '2']
+    """
+    from solidgear.trains.file import reading as train_file  # start-up: not every file needs it
+
+    def scene(side: str, file: Path, alone: bool) -> Scene:
+        # one that is not settled by itself settles with its train
+        return load(file) if alone and point is None else as_written(file)
+
+    train = train_file.load_train(path, scene)
+    if point is None and not train.operation:
+        return train
+    from solidgear.trains.load.operation import at_point  # start-up: not every file needs it
+
+    with explained(path):
+        return at_point(train if point is None else train.with_changes(operation=(point,)))
+
+
+def part_of(table: BodyTable, folder: Path) -> Recognised:
+    """Read the part that a scene file names."""
+    from solidgear.parts.part import recognise  # start-up: not every file needs it
+
+    return recognise(table, folder)
+
+
+@contextmanager
+def explained(path: str | os.PathLike, tables: Mapping[str, Any] | None = None) -> Iterator[None]:
+    """Raise errors anew with the file, the key and the value they come from; tables are those of
+    the file where some of them have been changed.
+    """
+    try:
+        yield
+    except SceneError as error:
+        written = parse(os.fspath(path)) if tables is None else tables
+        raise error.located(written, where=place_of(os.fspath(path))) from None
+    except SolidgearError as error:
+        raise SceneError(str(error), where=place_of(os.fspath(path))) from None
+
+
+def shaft(scene: Scene) -> Body | None:
+    """Return the body on which bearings settle, or None where no bearing waits for the load of the
+    shaft.
+    """
+    from solidgear.bearings.solved import wants_equilibrium  # start-up: not every file needs it
+
+    if not wants_equilibrium(scene):
+        return None
+    from solidgear.core.ladder import build  # start-up: not every file needs it
+
+    # what is cut out moves the load of a bearing by a small part of a small part
+    return build(scene.plain, SHAFT)

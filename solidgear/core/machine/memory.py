@@ -1,0 +1,218 @@
+"""Memory that this process may still take: of the machine, of its control groups, and by the limit of
+the user.
+"""
+
+from __future__ import annotations
+
+import mmap
+import os
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass
+from pathlib import Path
+
+from solidgear.core.errors import SolidgearError
+from solidgear.core.machine.control_groups import control_groups, text_of
+
+
+class NoRoom(SolidgearError):
+    """Refusal of a mesh, matrix or factor that does not fit into memory, or cannot be numbered.
+
+    Attributes
+    ----------
+    reason : str
+        Request, need and free memory, in words.
+    need_mb, free_mb : float
+        Infinite for a need beyond any memory, and where the system does not show the free memory.
+    """
+
+    def __init__(
+        self, reason: str, need_mb: float, free_mb: float, instead: str = "use a coarser mesh"
+    ):
+        self.reason, self.need_mb, self.free_mb = reason, need_mb, free_mb
+        super().__init__(f"{reason}; {instead}")
+
+    def of_model(self, model: str, instead: str) -> NoRoom:
+        """Return the same refusal of a model, with advice."""
+        return NoRoom(f"{model}: {self.reason}", self.need_mb, self.free_mb, instead)
+
+
+def megabytes(amount: float) -> str:
+    """Return a number of megabytes in words, to two digits below ten."""
+    return f"{amount:.0f}" if amount >= 10 else f"{amount:.2g}"
+
+
+def require(need_mb: float, unknowns: str, backend: str = "", free: float | None = None) -> None:
+    """Refuse (:class:`NoRoom`) a need beyond the memory that is free now, or was before a part of
+    it was taken, unless it is small; ``unknowns``, such as ``120 unknowns``, and the back end that
+    factors them are named in the refusal.
+    """
+    free = available_mb() if free is None else free
+    if free is not None and need_mb > max(free, SMALL_MB):
+        by = f" to factor by {backend}" if backend else ""
+        needs = f"{unknowns} need about {megabytes(need_mb)} MB{by}"
+        raise NoRoom(f"{needs}, {megabytes(free)} MB are free", need_mb, free)
+
+
+@dataclass
+class Run:
+    """Memory of one run."""
+
+    #: memory of the process when it began; None before that, and where the system does not show it
+    base_mb: float | None = None
+    #: the largest peak that was expected (see :func:`expect`)
+    expected_mb: float | None = None
+
+
+_run: ContextVar[Run | None] = ContextVar("the run that this is part of", default=None)
+
+#: needs below this are not refused, MB: a beam, or a coarse solid
+SMALL_MB = 25.0
+#: called with unknowns, and with memory in MB
+Listener = Callable[[int, float], None]
+_listener: ContextVar[Listener | None] = ContextVar("who is told what factors take", default=None)
+
+# cgroup v1 writes "no limit" as the largest multiple of a page; anything above an exabyte is none.
+UNLIMITED = 2**60
+
+
+def available_mb(root: str | Path = "/") -> float | None:
+    """Return the memory that can still be taken, MB of 2**20 bytes; None where the system does not show it.
+
+    The least of ``MemAvailable``, the room below the limit of every control group (v1 and v2) this
+    process is in, the rest of a limit of address space (``ulimit -v``), and the environment variable
+    ``SOLIDGEAR_MEMORY_MB``, a number above zero, which can only lower it (see :func:`one_run`).
+    ``proc`` and ``sys`` are looked for below ``root``.
+    """
+    root = Path(root)
+    limits = [*_machine(root), *_groups(root), *_address_space(root)]
+    text = os.environ.get("SOLIDGEAR_MEMORY_MB", "").strip()
+    if text:
+        try:
+            allowed = float(text)
+        except ValueError:
+            allowed = 0.0
+        if not 0 < allowed < float("inf"):
+            raise SolidgearError(
+                f"SOLIDGEAR_MEMORY_MB = {text!r}: must be a number of megabytes above zero"
+            )
+        run = _run.get()
+        base = None if run is None else run.base_mb
+        taken = 0.0 if base is None else max(0.0, (resident_mb() or base) - base)
+        limits.append(max(0.0, allowed - taken))
+    return min(limits, default=None)
+
+
+@contextmanager
+def one_run() -> Iterator[Run]:
+    """Begin a run, in which ``SOLIDGEAR_MEMORY_MB`` limits the memory taken in all, not by each
+    body; a run within a run is part of it.
+    """
+    with one_command() as run:
+        begin()
+        yield run
+
+
+@contextmanager
+def one_command() -> Iterator[Run]:
+    """Open a run that begins with its first body (:func:`begin`): memory of large libraries is not
+    counted.
+    """
+    run = _run.get() or Run()
+    token = _run.set(run)
+    try:
+        yield run
+    finally:
+        _run.reset(token)
+
+
+@contextmanager
+def fresh_run() -> Iterator[None]:
+    """Count memory from zero within it: for models in place of the one that has taken memory so
+    far.
+    """
+    token = _run.set(Run(resident_mb()))
+    try:
+        yield
+    finally:
+        _run.reset(token)
+
+
+def begin() -> None:
+    """Count the memory of the run from here on, if it has not begun."""
+    run = _run.get()
+    if run is not None and run.base_mb is None:
+        run.base_mb = resident_mb()
+
+
+@contextmanager
+def listening(listener: Listener) -> Iterator[None]:
+    """Call ``listener(unknowns, mb)`` before every factor that is made within it."""
+    token = _listener.set(listener)
+    try:
+        yield
+    finally:
+        _listener.reset(token)
+
+
+def announce(unknowns: int, more_mb: float) -> None:
+    """Announce a factor that will be made to the listener."""
+    listener = _listener.get()
+    if listener is not None:
+        listener(unknowns, more_mb)
+
+
+def expect(more_mb: float) -> None:
+    """Note that so much memory (MB) will be taken beyond the resident memory."""
+    run, resident = _run.get(), resident_mb()
+    if run is not None and resident is not None:
+        run.expected_mb = max(run.expected_mb or 0.0, resident + more_mb)
+
+
+def resident_mb() -> float | None:
+    """Return the resident memory of this process, MB of 2**20 bytes; None where the system does not
+    show it.
+    """
+    try:
+        pages = int(Path("/proc/self/statm").read_text().split()[1])
+    except OSError:
+        return None
+    return pages * mmap.PAGESIZE / 2**20
+
+
+def _machine(root: Path) -> Iterator[float]:
+    for line in text_of(root / "proc/meminfo").splitlines():
+        if line.startswith("MemAvailable:"):
+            yield int(line.split()[1]) / 1024
+
+
+def _groups(root: Path) -> Iterator[float]:
+    for place, unified in control_groups(root, "memory"):
+        limit, usage, cache = (
+            "memory.limit_in_bytes",
+            "memory.usage_in_bytes",
+            "total_inactive_file",
+        )
+        if unified:
+            limit, usage, cache = "memory.max", "memory.current", "inactive_file"
+        ceiling, taken = (text_of(place / name).strip() for name in (limit, usage))
+        if ceiling.isdigit() and taken.isdigit() and int(ceiling) < UNLIMITED:
+            # Cached files count as used but are given back on demand.
+            cached = _field(text_of(place / "memory.stat"), cache)
+            yield max(0, int(ceiling) - int(taken) + cached) / 2**20
+
+
+def _address_space(root: Path) -> Iterator[float]:
+    """Yield the rest of a limit of address space, of which a process takes more than it holds."""
+    rows = text_of(root / "proc/self/limits").splitlines()
+    soft = next((row.split()[3] for row in rows if row.startswith("Max address space")), "")
+    taken = text_of(root / "proc/self/statm").split()
+    if soft.isdigit() and taken:
+        yield max(0, int(soft) - int(taken[0]) * mmap.PAGESIZE) / 2**20
+
+
+def _field(text: str, name: str) -> int:
+    return next(
+        (int(line.split()[1]) for line in text.splitlines() if line.startswith(name + " ")), 0
+    )

@@ -1,0 +1,50 @@
+"""Files that appear whole or not at all."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from solidgear.core.errors import SolidgearError
+
+
+@contextmanager
+def whole(path: Path) -> Iterator[Path]:
+    """Yield another name in the same folder to write under; it takes the place of ``path`` at the end, or
+    is gone if something was raised, for a rename within a folder is all or nothing.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     target = Path(folder) / "rows.csv"
+    ...     with whole(target) as partial:
+    ...         _ = partial.write_text("1,2,3")
+    ...         early = target.exists()
+    ...     early, target.read_text()
+    (False, '1,2,3')
+    """
+    partial = path.with_name(f".{path.name}.{os.getpid()}.part")
+    try:
+        yield partial
+        os.replace(partial, path)
+    finally:
+        partial.unlink(missing_ok=True)
+
+
+def write_page(path: str | os.PathLike, text: str) -> Path:
+    """Write a file that a user named, and the folders above it, whole or not at all; refuse one
+    that cannot be written.
+    """
+    path = Path(path)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with whole(path) as partial:
+            partial.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise SolidgearError(
+            f"{path}: cannot be written ({error.strerror or error}); name a file you may write"
+        ) from error
+    return path

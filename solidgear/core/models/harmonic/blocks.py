@@ -1,0 +1,229 @@
+"""Blocks of an axisymmetric-harmonic solid: stiffness, mass and port motions of one harmonic.
+
+With y the axis and ``z = r cos t, x = r sin t``, harmonic n >= 1 of the displacement is
+``u_r = U cos nt, u_t = -V sin nt, u_y = W cos nt`` (n = 0: ``u_r = U, u_y = W``; torsion apart).
+The unknowns are ``p = (U + V)/2, q = (U - V)/2, w = W``, for which the conditions on the axis are
+plain zeros; p is the mean lateral displacement of a ring.  For torsion the unknown is ``u_t / r``.
+See e.g. Zienkiewicz and Taylor, The Finite Element Method, 5th ed., vol. 2, sec. 9.6, for the
+semi-analytical idea; the choice of unknowns is ours.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+import scipy.sparse as sp
+from skfem import ElementQuad1
+
+from solidgear.core.body import Block
+from solidgear.core.body.sections import Sections, through
+from solidgear.core.errors import SolidgearError
+from solidgear.core.kernel.assembly import Pattern, Tabulated, batches, tabulate
+from solidgear.core.kernel.attachment import Attached, reduced, with_ports
+from solidgear.core.kernel.cell_shapes import Shapes
+from solidgear.core.kernel.lobatto import gauss, gauss_box
+from solidgear.core.models.harmonic.families import TORSION, Family, family_of
+from solidgear.core.models.harmonic.mesh import HarmonicMesh
+from solidgear.core.models.harmonic.sections import PARTS, from_cells
+
+if TYPE_CHECKING:
+    from solidgear.core.scene.shaft import Shaft
+
+#: element of the mapping of straight cells
+CORNERS = ElementQuad1()
+#: corners at the ends of the local edge where a coordinate has a value
+_ENDS = {(0, 1.0): (1, 2), (1, 1.0): (3, 2), (1, 0.0): (0, 1)}
+
+
+def _functions(t: Tabulated, weight: np.ndarray, around: bool) -> np.ndarray:
+    """Return the values (ne, k, nb, nq) of phi / r, where asked for, phi,r and phi,y, times the
+    root of the weights.
+    """
+    root = np.sqrt(weight)
+    if not around:
+        return t.gradient(root)
+    return np.concatenate([(t.value * (root / t.x[0])[:, None])[:, None], t.gradient(root)], axis=1)
+
+
+def _products(t: Tabulated) -> np.ndarray:
+    """Return the products (nq, nb nb) of basis functions, of which every mass is a weighted sum."""
+    nq = t.value.shape[1]
+    return (t.value[:, None] * t.value).reshape(-1, nq).T
+
+
+class Work:
+    """Tabulated basis, materials and surface integrals shared by the blocks of one body."""
+
+    def __init__(self, scene: Shaft, geometry: HarmonicMesh):
+        self.scene, self.geometry, self.order = scene, geometry, geometry.order
+        self.flat, self.dofs, self.element = geometry.meridian, geometry.dofs, geometry.element
+        self.g, self.gw = gauss(self.order + 2)
+        self.points, self.weights = gauss_box(self.order + 2, 2)
+        self.pattern = Pattern(self.dofs)
+        self.n = self.pattern.n
+        self.shapes = Shapes(self.flat, self.element)
+        self.bases = [self.shapes.tabulation(kind, self.points) for kind in self.shapes.kinds]
+        # Vertex functions carry all rigid motions; higher ones are zero there in a hierarchical
+        # basis, but where a side is curved.
+        self.place = self.shapes.places(self.dofs)
+        self.point = np.ones(self.n, bool)
+        if self.order > 2:
+            self.point[:] = False
+            self.point[self.dofs[:4]] = True
+        self.y = np.where(self.point, self.place[1], np.nan)
+        self.area = 0.0
+
+    def batches(self):
+        """Yield (cells, material, tabulated basis, area weights (m, nq)), one material and one
+        shape of cells at a time.
+        """
+        bytes_each = 8 * (3 * self.dofs.shape[0] * len(self.weights) + 30 * self.dofs.shape[0] ** 2)
+        for index, segment in enumerate(self.scene.segments):
+            for kind, basis in zip(self.shapes.kinds, self.bases):
+                cells = kind.cells[self.flat.segment[kind.cells] == index]
+                for part in batches(cells, bytes_each):
+                    t = basis.on(self.shapes.nodes(kind, part))
+                    yield part, segment.material, t, t.det * self.weights
+
+    def block(self, name: str, components: tuple[int, ...], wanted) -> Block:
+        """Build the block of a family of motion, by its name, with the ports of stations and their
+        attachments.
+        """
+        family, nb = family_of(name), self.dofs.shape[0]
+        c = family.count
+        stiffness, heavy = self.pattern.sum(c), self.pattern.sum()
+        area = 0.0
+        # Strains are linear in (phi / r, phi,r, phi,y) of each unknown, in torsion in the last two;
+        # one Gram matrix of those functions per element holds every product that occurs.
+        used = slice(1 if family.waves == TORSION else 0, 3)
+        for part, material, t, dv in self.batches():
+            area += dv.sum()
+            w = family.weight(t.x[0], dv)
+            f = _functions(t, w, used.start == 0)
+            k = f.shape[1]
+            f = f.reshape(len(part), k * nb, -1)
+            gram = (
+                (f @ f.transpose(0, 2, 1))
+                .reshape(-1, k, nb, k, nb)
+                .transpose(1, 3, 0, 2, 4)
+                .reshape(k * k, -1)
+            )
+            law = family.stiffness(material)[used][:, :, used].transpose(1, 3, 0, 2)
+            stiffness.add(part, law.reshape(c * c, k * k) @ gram)
+            heavy.add(part, material.density * w @ _products(t))
+        self.area = area
+        # the product is written in dense blocks, whose zeros couple directions that mass does not
+        mass = sp.kron(heavy.matrix(), sp.diags(family.share)).tocsr()
+        mass.eliminate_zeros()
+        keep = family.free(self.geometry.on_axis).ravel()
+        r, y = self.place
+        rigid = family.rigid(r, y, self.point.astype(float)).reshape(self.n * c, -1)
+        heavy_left, turns = mass[keep][:, keep], np.tile(family.turns, self.n)[keep, None]
+        block = Block(
+            name,
+            components,
+            stiffness.matrix()[keep][:, keep],
+            heavy_left,
+            rigid[keep],
+            np.repeat(self.y, c)[keep],
+            # the mass couples no two unknowns of a point
+            swirl=(lambda v: heavy_left @ (turns * v)) if turns.any() else None,
+        )
+        seats = [
+            self._seat_unknowns(station, c)[keep] if attachment == "rigid" else None
+            for station, attachment in wanted
+        ]
+        if not components:
+            return self._clamped(with_ports(block, ()), seats)
+        ports = []
+        for seat, (station, attachment) in zip(seats, wanted):
+            if seat is not None:
+                ports.append(Attached(station.y, held=seat))
+            else:
+                mean = self.mean(family, station, attachment)[:, keep]
+                ports.append(Attached(station.y, mean))
+        return with_ports(replace(block, sections=self._sections(family, keep)), ports)
+
+    def _seat_unknowns(self, station, c: int) -> np.ndarray:
+        """Return the mask of the unknowns on a seat, so many at each node."""
+        seat = np.zeros((self.n, c), bool)
+        seat[self.geometry.edge_unknowns(self.seat_cells(station), 0, 1.0)] = True
+        return seat.ravel()
+
+    def _clamped(self, block: Block, seats) -> Block:
+        """Return a block of waves, which move no port, with rigid seats at rest in it."""
+        still = np.zeros(block.size, bool)
+        for seat in seats:
+            if seat is not None:
+                still |= seat
+        free = np.flatnonzero(~still)
+        if len(free) == block.size:
+            return block
+        to = sp.identity(block.size, format="csc")[:, free].tocsr()
+        return replace(
+            block,
+            stiffness=(to.T @ block.stiffness @ to).tocsr(),
+            mass=(to.T @ block.mass @ to).tocsr(),
+            rigid=block.rigid[free],
+            y=block.y[free],
+            ports=block.ports[:, free],
+            expand=to,
+            swirl=reduced(block.swirl, to),
+        )
+
+    def _sections(self, family: Family, keep: np.ndarray) -> Sections:
+        """Return the section motions of a block with the unknowns of a mask left."""
+        density = np.array([s.material.density for s in self.scene.segments])[self.flat.segment]
+        full = from_cells(
+            self.shapes, self.dofs, self.order, density, PARTS[family.waves], family.count
+        )
+        return through(full, sp.identity(len(keep), format="csc")[:, keep].tocsr())
+
+    def seat_cells(self, station):
+        """Return the cells with their outer edge on the seat."""
+        y = self.flat.points[1][self.flat.cells[:, self.flat.outer]]
+        tol = 1e-9 * self.scene.length
+        return self.flat.outer[
+            (y.min(axis=0) >= station.lo - tol) & (y.max(axis=0) <= station.hi + tol)
+        ]
+
+    def on_edge(self, cells, direction: int, value: float):
+        """Tabulate the basis on a local edge of straight cells: where a coordinate has a value."""
+        points = np.empty((2, len(self.g)))
+        points[direction], points[1 - direction] = value, self.g
+        nodes = self.flat.points[:, self.flat.cells[:, cells]]
+        return tabulate(CORNERS, nodes, self.element, points)
+
+    def surface(self, station, attachment):
+        """Return basis values (nb, q), r, y - y0, length weights (e, q) and unknowns on a seat or a
+        section; its cells, and their corners at both ends of it.
+        """
+        if attachment == "average":
+            cells, direction, value = self.seat_cells(station), 0, 1.0
+        elif attachment == "section":
+            distance = np.abs(self.flat.points[1][self.flat.cells] - station.y)
+            tol = 1e-9 * self.scene.length
+            # of cells beside a fillet a single corner may lie in the plane
+            cells, direction, value = np.flatnonzero((distance[2:] < tol).all(axis=0)), 1, 1.0
+            if not len(cells):  # a section at the very start
+                cells, value = np.flatnonzero((distance[:2] < tol).all(axis=0)), 0.0
+        else:
+            raise SolidgearError(
+                f"attachment {attachment!r} is unknown; use 'average', 'rigid' or 'section'"
+            )
+        t = self.on_edge(cells, direction, value)
+        weight = np.linalg.norm(t.tangent[:, :, :, 1 - direction], axis=2) * self.gw
+        ends = _ENDS[direction, value]
+        return t.value, t.x[0], t.x[1] - station.y, weight, self.dofs[:, cells], cells, ends
+
+    def mean(self, family: Family, station, attachment) -> np.ndarray:
+        """Return the least-squares rigid motion (m, n c) of a surface, as rows on the unknowns of a
+        family.
+        """
+        value, r, h, w, dofs, *_ = self.surface(station, attachment)
+        density = family.means(r, h, w)
+        rows = np.zeros((self.n, *density.shape[2:]))
+        np.add.at(rows, dofs.T, np.einsum("bq,eqcm->ebcm", value, density))
+        return rows.reshape(-1, rows.shape[2]).T

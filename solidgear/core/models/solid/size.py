@@ -1,0 +1,86 @@
+"""Size of the 3D solid of a scene, counted on its mesh."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from solidgear.core.elements import SOLVED_AS
+from solidgear.core.kernel.room import assemblable
+from solidgear.cuts.solid.meshing import FeaturedMesh, submesh
+from solidgear.core.meshing.hexahedra import straight_hexahedra
+from solidgear.core.models.kinds import BODIES, CUTS, CYCLIC
+from solidgear.core.models.size import Size, coupled, size_of_mesh
+from solidgear.core.models.solid.body import _tets
+from solidgear.cuts.solid.featured import meshed
+from solidgear.core.models.solid.mesh import basis_of
+from solidgear.core.models.solid.plan import hexahedra_layout, tetrahedra_plan
+from solidgear.parts.rectangular import block_mesh
+from solidgear.core.scene.attached import attached_stations
+from solidgear.core.scene.shaft import resolved
+
+
+def solid_size(
+    scene: Any,
+    *,
+    element: str,
+    size: float | None,
+    graded_size: float | None,
+    refinement: float,
+    around: int,
+    half: bool,
+    coarser: int,
+    attachments: tuple[str, ...] | None,
+    **grading: Any,
+) -> Size:
+    """Mesh the 3D solid of a scene and count; parameters as for
+    :func:`solidgear.core.models.solid.body.solid`.
+
+    In place of a part from a STEP file its round part is meshed, at the same sizes; a mesh file is
+    counted as it is.
+    """
+    wanted = [*attached_stations(scene.stations, attachments)]
+    sorts = {f.sort for f in resolved(scene)}
+    sizes = {"size": size, "graded_size": graded_size, "refinement": refinement}
+    file = getattr(scene, "body", None)
+    if file is not None and file.counts is not None:
+        return _of_file(file)
+    if BODIES in sorts:
+        mesh = block_mesh(scene, wanted, element, size, refinement)
+        return size_of_mesh(mesh, basis_of(element))
+    if sorts == {CYCLIC}:
+        from solidgear.cuts.sector.body import whole_mesh  # slow to import, and seldom needed
+
+        mesh, _, _ = whole_mesh(scene, wanted, **sizes)
+        return size_of_mesh(mesh, basis_of("tet10"))
+    if CUTS in sorts:
+        plan = tetrahedra_plan(scene, wanted, around=around, **sizes)
+        return cut_size(meshed(scene, plan, refinement, half))
+    if element.startswith("tet"):
+        mesh, _, _ = _tets(scene, wanted, element, around=around, **sizes)
+        return size_of_mesh(mesh, basis_of(element))
+    grading |= {"around": around, "size": size, "refinement": refinement}
+    plan, turns = hexahedra_layout(scene, tuple(dict.fromkeys(a for _, a in wanted)), **grading)
+    assemblable(plan.cells * turns, 20)
+    mesh, _, _ = straight_hexahedra(scene, plan, turns)
+    rigid = any(a == "rigid" for _, a in wanted)
+    return size_of_mesh(mesh, basis_of(element), mirrors=not rigid)
+
+
+def cut_size(meshed: FeaturedMesh) -> Size:
+    """Count a mesh without its cuts."""
+    mesh = submesh(meshed.mesh, ~meshed.cut)
+    if meshed.plane is None:
+        return size_of_mesh(mesh, basis_of("tet10"))
+    halves = size_of_mesh(mesh, basis_of("tet10"), parts=2)
+    # of a node on the mirror plane one half has one component and the other two
+    on_plane = int((np.abs(mesh.doflocs[meshed.plane]) < 1e-9).sum())
+    return replace(halves, unknowns=halves.unknowns - 3 * on_plane)
+
+
+def _of_file(file: Any) -> Size:
+    kind = basis_of(SOLVED_AS.get(file.element, file.element))
+    nodes, pairs = coupled(kind, file.counts)
+    return Size(3 * nodes, ((3 * nodes, 9 * pairs),), 9 * pairs)

@@ -1,0 +1,68 @@
+"""Questions of a scene."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from pydantic import BeforeValidator, Field
+
+from solidgear.core.errors import SceneError
+from solidgear.core.quantity import AT, QUANTITIES, Quantity
+from solidgear.core.scene.rules import MOST_MODES
+from solidgear.core.scene.typed import Model
+from solidgear.core.scene.units import Frequency, Tolerance
+
+_KNOWN = ", ".join(f"'{name}'" for name in QUANTITIES[:-1]) + f" or '{QUANTITIES[-1]}'"
+
+
+def _read_quantity(value: Any) -> Quantity:
+    """Return a quantity, at a further lumped point as ``quantity@name``."""
+    quantity = Quantity(value) if isinstance(value, str) else None
+    if quantity is None or quantity.symbol not in QUANTITIES:
+        raise SceneError(f"must be {_KNOWN}")
+    if quantity.points and quantity.is_frequency:
+        raise SceneError(
+            f"only compliances and stiffnesses are of a point; write {quantity.symbol} without {AT}"
+        )
+    if quantity.points == ("",):
+        raise SceneError(f"names no point behind {AT}; write for example {quantity.at('gear')}")
+    return quantity
+
+
+Asked = Annotated[Quantity, BeforeValidator(_read_quantity)]
+
+
+class Ask(Model):
+    """Questions: number of modes, frequency range, tolerance, and quantities that judge models.
+
+    Attributes
+    ----------
+    modes : int
+        Elastic modes, 1 to `MOST_MODES`.
+    max_frequency : float or None
+        Hz; None is no limit.
+    tolerance : float
+        Relative, between 0 and 1.
+    quantities : tuple of Quantity
+        Those that judge models, from `QUANTITIES`, at a further lumped point as
+        ``C_zz@name``; empty is the usual set, compliances at every point with first bending and
+        first axial mode.
+
+    Raises
+    ------
+    SceneError
+        A field out of its range.
+
+    Examples
+    --------
+    >>> from solidgear import Ask
+    >>> ask = Ask(max_frequency="10 kHz", tolerance=0.02)
+    >>> ask.modes, ask.max_frequency, ask.tolerance
+    (10, 10000.0, 0.02)
+    """
+
+    modes: Annotated[int, Field(strict=True, ge=1, le=MOST_MODES)] = 10
+    max_frequency: Frequency | None = None
+    tolerance: Tolerance = 0.05
+    quantities: tuple[Asked, ...] = ()
+    lumped: Annotated[bool, Field(strict=True)] = False

@@ -1,0 +1,280 @@
+"""Fillets and chamfers at the edges of a shaft: it stays a body of revolution.
+
+An edge is a corner of the meridian (r, y).  At the root of a step material is added in the corner,
+at a rim it is taken away; either way the outline runs from a point on the plane face to a point on
+the cylinder beside it, along an arc or straight.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, TypeAlias
+
+from pydantic import BeforeValidator
+
+from solidgear.core.errors import SceneError
+from solidgear.core.scene.outline import TOUCH, Surface, radii_of
+from solidgear.core.scene.parts import Segment
+from solidgear.core.scene.places import Placed, Places
+from solidgear.core.scene.typed import Model
+from solidgear.core.scene.units import Position, PositiveLength, quantity
+
+Edge = Literal["root", "rim"]
+
+
+@dataclass(frozen=True)
+class Corner:
+    """An edge of a shaft with a fillet or chamfer, in plain floats."""
+
+    #: name, kind: kind is fillet or chamfer
+    name: str
+    kind: str
+    #: y, r: of the sharp edge, m
+    y: float
+    r: float
+    surface: Surface
+    root: bool  #: material is added; at a rim it is taken away
+    owner: int  #: segment whose cylinder the outline runs into
+    side: int  #: +1 if that segment lies at larger y than the edge, -1 otherwise
+    out: int  #: +1 if the plane face beside the edge lies at larger radius, -1 otherwise
+    #: axial, radial: extent along the shaft and across it, m
+    axial: float
+    radial: float
+
+    @property
+    def joint(self) -> int:
+        """Segment that begins at the edge, or would behind the last one."""
+        return self.owner if self.side > 0 else self.owner + 1
+
+    @property
+    def face_side(self) -> int:
+        """Side of the joint on which the segment lies whose plane face the outline leaves."""
+        return -self.side if self.root else self.side
+
+    @property
+    def face_owner(self) -> int:
+        """Segment whose plane face the outline leaves."""
+        return self.joint if self.face_side > 0 else self.joint - 1
+
+    @property
+    def on_face(self) -> tuple[float, float]:
+        """(r, y) where the outline leaves the plane face, m."""
+        return self.r + self.out * self.radial, self.y
+
+    @property
+    def on_cylinder(self) -> tuple[float, float]:
+        """(r, y) where the outline meets the cylinder, m."""
+        return self.r, self.y + self.side * self.axial
+
+    @property
+    def centre(self) -> tuple[float, float] | None:
+        """(r, y) of the middle of the arc, m; None for a chamfer."""
+        return (self.on_face[0], self.on_cylinder[1]) if self.kind == "fillet" else None
+
+    @property
+    def middle(self) -> tuple[float, float]:
+        """(r, y) halfway along the outline, m."""
+        if self.centre is None:
+            (a, b), (c, d) = self.on_face, self.on_cylinder
+            return (a + c) / 2, (b + d) / 2
+        reach = self.radial / math.sqrt(2)
+        return self.centre[0] - self.out * reach, self.centre[1] - self.side * reach
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """First and last y, m."""
+        ends = (self.y, self.on_cylinder[1])
+        return min(ends), max(ends)
+
+    def point_at(self, share: float) -> tuple[float, float]:
+        """Return (r, y) at a share of the outline from the face to the cylinder, m."""
+        if self.centre is None:
+            (a, b), (c, d) = self.on_face, self.on_cylinder
+            return a + share * (c - a), b + share * (d - b)
+        # from the face (straight along the axis from the centre) to the cylinder (straight across)
+        turn = math.pi / 2 * share
+        (r, y), f = self.centre, self.radial
+        return r - self.out * f * math.sin(turn), y - self.side * f * math.cos(turn)
+
+    def points(self, count: int = 9) -> list[tuple[float, float]]:
+        """Return (r, y) along the outline from the face to the cylinder, m."""
+        if self.centre is None:
+            return [self.on_face, self.on_cylinder]
+        between = [self.point_at(k / (count - 1)) for k in range(1, count - 1)]
+        return [self.on_face, *between, self.on_cylinder]
+
+
+class _At(Model):
+    """Words for the place of an edge: a datum."""
+
+    at: str
+
+
+class _Blend(Placed):
+    """Base of fillets and chamfers."""
+
+    Words: ClassVar = _At
+    sources: ClassVar = {"y": ("at",)}
+
+    if TYPE_CHECKING:
+        kind: str  # a field of every subclass, in its own order
+
+    name: str
+    y: Position
+    surface: Surface = "outer"
+    edge: Edge | None = None
+
+    @classmethod
+    def place(cls, words: Any, table: Mapping[str, Any], places: Places) -> dict[str, Any]:
+        return {"y": places.datum(words.at, "at")}
+
+    @property
+    def what(self) -> str:
+        """Kind in words."""
+        return self.kind
+
+    @property
+    def extents(self) -> tuple[float, float]:
+        """Extents along the shaft and across, m."""
+        raise NotImplementedError
+
+    @property
+    def size_key(self) -> str:
+        """Field that gives the size."""
+        raise NotImplementedError
+
+    def corner(self, segments: Sequence[Segment]) -> Corner:
+        """Return the edge on a shaft; refuse a missing edge, and one that cannot be rounded."""
+        outer = self.surface == "outer"
+        i, low, high = self._place(segments)
+        before = radii_of(low, self.surface)[1] if low else None
+        after = radii_of(high, self.surface)[0] if high else None
+        edge = self.edge
+        if before is None or after is None:
+            if edge == "root":
+                raise SceneError(
+                    "an end face has no root, only a rim; the root is that of a step",
+                    path=("edge",),
+                )
+            edge = "rim"
+            owner = i if low is None else i - 1
+        else:
+            if abs(before - after) <= 1e-9 * max(before, after):
+                surface_name = "outer radius" if outer else "bore"
+                raise SceneError(
+                    f"the {surface_name} does not jump at y = {self.y:.6g} m; a {self.what} sits at a step "
+                    "or at the edge of an end face",
+                    path=("y",),
+                )
+            edge = edge or "root"
+            # the root is on the surface that lies deeper in the material, the rim on the other
+            deeper_first = (before < after) == outer
+            owner = i - 1 if deeper_first == (edge == "root") else i
+        owner_segment = segments[owner]
+        start, end = radii_of(owner_segment, self.surface)
+        radius = start if owner == i else end
+        if not radius:
+            raise SceneError(f'"{owner_segment.name}" has no bore there', path=("surface",))
+        if start != end:
+            raise SceneError(
+                f'"{owner_segment.name}" is a cone there; a {self.what} runs into a cylinder',
+                path=("y",),
+            )
+        if edge == "root" and low and high and low.material != high.material:
+            raise SceneError(
+                f'"{low.name}" and "{high.name}" are of two materials; a {self.what} at their '
+                "root would be of neither",
+                path=("y",),
+            )
+        axial, radial = self.extents
+        return Corner(
+            name=self.name,
+            kind=self.what,
+            y=owner_segment.y0 if owner == i else owner_segment.y1,
+            r=radius,
+            surface=self.surface,
+            root=edge == "root",
+            owner=owner,
+            side=1 if owner == i else -1,
+            out=1 if (edge == "root") == outer else -1,
+            axial=axial,
+            radial=radial,
+        )
+
+    def _place(self, segments):
+        """Return the number of the segment that begins at the edge, and the segments on both sides."""
+        ends = [0.0, *(s.y1 for s in segments)]
+        near = [k for k, y in enumerate(ends) if abs(y - self.y) <= TOUCH]
+        if not near:
+            raise SceneError(
+                f"no segment begins or ends at y = {self.y:.6g} m; a {self.what} sits at a step "
+                'or at the edge of an end face, such as "<segment>.end"',
+                path=("y",),
+            )
+        k = near[0]
+        low = segments[k - 1] if k else None
+        return k, low, segments[k] if k < len(segments) else None
+
+
+class Fillet(_Blend):
+    """A quarter of a circle at an edge.
+
+    `y` is the place of the edge, m: a step, or an end face. The edge 'root' adds material in the
+    corner of a step, 'rim' rounds off the edge; by default the root, and the rim at an end face.
+
+    Examples
+    --------
+    >>> from solidgear.core.scene import Fillet
+    >>> Fillet(name="head fillet", y="68 mm", radius="4 mm").extents
+    (0.004, 0.004)
+    """
+
+    kind: Literal["fillet"] = "fillet"
+    radius: PositiveLength  #: m
+
+    @property
+    def extents(self) -> tuple[float, float]:
+        return self.radius, self.radius
+
+    @property
+    def size_key(self) -> str:
+        return "radius"
+
+
+def slope(value: Any) -> float:
+    """Return the angle of a chamfer to the axis, rad."""
+    angle = quantity(value, "angle")
+    if not math.radians(5) <= angle <= math.radians(85):
+        raise SceneError("the angle of a chamfer to the axis lies between 5 and 85 deg")
+    return angle
+
+
+class Chamfer(_Blend):
+    """A straight cut across an edge, with the fields of :class:`Fillet`; at a root it fills the corner.
+
+    Examples
+    --------
+    >>> from solidgear.core.scene import Chamfer
+    >>> [round(x, 6) for x in Chamfer(name="end", y=0.2, length="2 mm", angle="30 deg").extents]
+    [0.002, 0.001155]
+    """
+
+    kind: Literal["chamfer"] = "chamfer"
+    length: PositiveLength  #: along the shaft, m
+    #: to the axis, rad; 45 degrees by default
+    angle: Annotated[float, BeforeValidator(slope)] = math.pi / 4
+
+    @property
+    def extents(self) -> tuple[float, float]:
+        tangent = 1.0 if self.angle == math.pi / 4 else math.tan(self.angle)
+        return self.length, self.length * tangent
+
+    @property
+    def size_key(self) -> str:
+        return "length"
+
+
+Blend: TypeAlias = Fillet | Chamfer
+BLENDS: dict[str, type[_Blend]] = {"fillet": Fillet, "chamfer": Chamfer}

@@ -1,0 +1,85 @@
+"""Ends of seats: moved onto a face or step that they miss by a hair, and away from steps under masses.
+
+Positions that are rounded in the last digit leave gaps of nanometres, which no workshop makes: a
+cell in such a gap is 1e7 times shorter than its neighbours, drowns soft modes in rounding, and is no
+line to a CAD kernel.  A hub has one bore: the seat of a mass that a step divides is its longest
+piece, and the mass stays in place.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from solidgear.core.errors import SceneError
+from solidgear.core.scene.outline import TOUCH, Outline
+
+if TYPE_CHECKING:
+    from solidgear.core.scene import Bearing, PointMass, Port, Segment
+    from solidgear.core.scene.places import Along
+
+#: largest gap that is closed, m, or over the length of the shaft if that is more: the CAD kernel
+#: has no lines of 1e-7 m, and the least seat is a millionth of the length
+HAIR, HAIR_OF_LENGTH = 1.5e-7, 5e-7
+#: largest such gap over the seat
+SHARE = 0.25
+
+Station = TypeVar("Station", "Bearing", "Port", "PointMass")
+
+
+def snap_seats(stations: Sequence[Station], segments: Sequence[Segment]) -> tuple[Station, ...]:
+    """Return stations with ends of seats moved onto the faces and joints that they miss by a hair."""
+    marks = [segments[0].y0, *(s.y1 for s in segments)]
+    return tuple(_snapped(station, marks) for station in stations)
+
+
+def seat_masses(masses: Sequence[PointMass], segments: Sequence[Segment]) -> tuple[PointMass, ...]:
+    """Return masses with names, each on the longest piece of its seat between steps."""
+    steps = Outline(segments).steps if masses else ()
+    return tuple(_seated(mass, steps, k) for k, mass in enumerate(masses, 1))
+
+
+def _seated(mass: PointMass, steps: Sequence[float], number: int) -> PointMass:
+    if not mass.name:
+        mass = mass.model_copy(update={"name": f"mass {number}"})
+    if mass.seat_width is None:
+        return mass
+    between = [y for y in steps if mass.lo + TOUCH < y < mass.hi - TOUCH]
+    if not between:
+        return mass
+    lo, hi = max(pairwise([mass.lo, *between, mass.hi]), key=lambda piece: piece[1] - piece[0])
+    y, (x, along, z) = (lo + hi) / 2, mass.offset
+    moved = {"y": y, "seat_width": hi - lo, "offset": (x, along + mass.y - y, z)}
+    return mass.model_copy(update=moved)
+
+
+def check_face_words(words: Along, table: Mapping[str, Any]) -> None:
+    """Refuse a bearing on a face with a position as well, or without a width."""
+    words.refuse("give either face, or position with from, not both", "position", "from_")
+    if "seat_width" not in table:
+        raise SceneError(
+            'this key is missing; face stands for the position alone: write seat_width = "10 mm" or so '
+            "as well, the rim beside the face that no other seat may lie on",
+            path=("seat_width",),
+        )
+
+
+def _snapped(station: Station, marks: Sequence[float]) -> Station:
+    # a mass on another's seat, or faces of a body without an axis
+    if getattr(station, "seat_width", 0.0) is None or getattr(station, "patch", None):
+        return station
+    hair = min(
+        max(HAIR, HAIR_OF_LENGTH * (marks[-1] - marks[0])), SHARE * (station.hi - station.lo)
+    )
+    ends = []
+    for y in (station.lo, station.hi):
+        nearest = min(marks, key=lambda mark: abs(mark - y))
+        ends.append(nearest if abs(nearest - y) <= hair else y)
+    lo, hi = ends
+    if (lo, hi) == (station.lo, station.hi):
+        return station
+    if "lo" in type(station).model_fields:
+        return station.model_copy(update={"lo": lo, "hi": hi})
+    y = station.y if getattr(station, "face", None) else (lo + hi) / 2
+    return station.model_copy(update={"y": y, "seat_width": hi - lo})

@@ -1,0 +1,362 @@
+"""From a TOML file to a `Scene`, errors named by the keys of the file.
+
+The format is documented by the files in ``geometry``. Every problem of a file is reported at once:
+each table by itself, the names by which tables refer to each other, and the places of all parts
+that are sound by themselves.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Annotated, Any, NamedTuple
+
+from pydantic import BeforeValidator, model_validator
+
+from solidgear.core.errors import SceneError
+from solidgear.core.scene import rules
+from solidgear.bearings.arrangement import Arrangement, Pair, read_pairs, readable_tables
+from solidgear.core.scene.ask import Ask
+from solidgear.core.scene.blends import BLENDS
+from solidgear.parts.body_file import BodyTable, with_port
+from solidgear.bearings.catalogue import BearingLoad
+from solidgear.core.scene.ends import seat_masses
+from solidgear.cuts.features import FEATURES
+from solidgear.core.scene.housing import Housing, read_housing
+from solidgear.bearings.lubrication import Lubrication
+from solidgear.core.scene.materials import by_name
+from solidgear.core.scene.model import Scene
+from solidgear.core.scene.parts import STEEL, Material, Segment
+from solidgear.core.scene.places import Placed, Places
+from solidgear.core.scene.point_mass import PointMass
+from solidgear.parts.recognised import Reader, Recognised, refuse_parts, with_seats
+from solidgear.core.scene.shapes import SHAPES, Cylinder, Shape, lay_out
+from solidgear.core.scene.stations import Attachment, Bearing, Port
+from solidgear.core.scene.toml_file import (
+    FileOrder,
+    describes_train,
+    name_of,
+    parse,
+    place_of,
+    with_table_paths,
+)
+from solidgear.core.scene.typed import Holds, Model, Problems
+from solidgear.core.scene.uncertain import with_ranges
+
+Table = dict[str, Any]
+#: entries of the lists of a file
+MOST = {"segment": rules.MOST_SEGMENTS, "bearing": rules.MOST_BEARINGS, "mass": rules.MOST_MASSES}
+
+
+class _Ask(Ask):
+    """The [ask] of a file, which also names the main lumped point."""
+
+    port: str | None = None
+
+
+def _several(ports: Any) -> Any:
+    """Return a single [port] as a list of one."""
+    return [ports] if isinstance(ports, Mapping) else ports
+
+
+class SceneFile(Model):
+    """A scene file; tables of stations and features are read later, once the shaft is known."""
+
+    title: str = ""
+    source: str = ""
+    attachment: Attachment = "average"
+    material: Annotated[Material, BeforeValidator(by_name)]
+    arrangement: Arrangement = ()
+    body: BodyTable | None = None
+    segment: list[Shape]
+    # read once the shaft is known
+    bearing: Annotated[list[Table], Holds(Bearing)] = []
+    mass: Annotated[list[Table], Holds(PointMass)] = []
+    feature: list[Table] = []
+    housing: Annotated[Table | None, Holds(Housing)] = None
+    port: Annotated[list[Table], BeforeValidator(_several), Holds(Port)]
+    load: BearingLoad | None = None
+    lubrication: Lubrication | None = None
+    uncertain: Table = {}
+    ask: _Ask = _Ask()
+
+
+#: keys and tables of a file
+KEYS = tuple(SceneFile.model_fields)
+
+
+class ScenePartFile(SceneFile):
+    """A scene file with a part from another file in place of segments."""
+
+    # not needed where the groups of the part have all their own
+    material: Annotated[Material | None, BeforeValidator(by_name)] = None  # type: ignore[assignment]
+    body: BodyTable
+    segment: list[Shape] = []
+
+    @model_validator(mode="after")
+    def _one_shaft(self) -> ScenePartFile:
+        if self.material is None and not self.body.materials:
+            raise SceneError("this key is missing", path=("material",))
+        for key, verb in (("segment", "describes the shaft"), ("feature", "is cut into segments")):
+            if getattr(self, key):
+                raise SceneError(
+                    f"a [[{key}]] {verb}, which a [body] does itself; leave one of both out",
+                    path=(key,),
+                )
+        return self
+
+
+def load(path: str | os.PathLike, part_of: Reader = refuse_parts) -> Scene:
+    """Read a scene file, bearings of catalogue data without stiffness; `part_of` reads the part that
+    a [body] names.
+    """
+    file_path = os.fspath(path)
+    return scene_of(parse(file_path), file_path, part_of)
+
+
+def scene_of(raw: Table, file_path: str, part_of: Reader = refuse_parts) -> Scene:
+    """Resolve the tables of a scene file; files that it names lie relative to `file_path`."""
+    if describes_train(raw):
+        raise SceneError(
+            "describes a train of shafts and not a shaft; run solidgear compare, check, "
+            "system-modes, response or receptance on it, or read it with solidgear.load_train"
+        ).located(raw, where=place_of(file_path))
+    try:
+        return _Reading(dict(raw), file_path, part_of).scene()
+    except SceneError as error:
+        # both ends of a cylinder are one diameter
+        problems = {(p.path, p.reason): p for p in with_table_paths(error, raw).problems}
+        order = FileOrder(raw)
+        ordered = sorted(problems.values(), key=lambda problem: order.positions(problem.path))
+        raise SceneError.of(ordered).located(raw, where=place_of(file_path)) from None
+
+
+def _drop_tag(path: tuple) -> tuple:
+    """Return a path without the kind of a segment, which pydantic puts in and no file has."""
+    tagged = path[:1] == ("segment",) and path[2:3] and path[2] in SHAPES
+    return (*path[:2], *path[3:]) if tagged else path
+
+
+class _Row(NamedTuple):
+    """A thing that was read, None without a place, and the table that it was read from."""
+
+    thing: Any
+    kind: type[Placed]
+    path: tuple
+    table: Table
+
+
+class _Reading:
+    """A file on its way to a scene; problems are gathered until the end."""
+
+    def __init__(self, raw: Table, file_path: str, part_of: Reader):
+        self.raw, self.where = raw, file_path
+        self.problems = Problems()
+        self.file, self.spoilt = self._tables()
+        self.part: Recognised | None = None
+        if (body := self.file.body) is not None:
+            self.part = self.problems.read(lambda: part_of(body, Path(file_path).parent))
+            self.spoilt |= set() if self.part else {"body"}
+        self.places = Places(self.file.attachment, of_body="body" in raw, part=self.part)
+        self._name_datums()
+        sound = not {"segment", "material", "body"} & self.spoilt
+        self.segments = (self.problems.read(self._shaft) if sound else None) or []
+        if not self.segments:
+            self.places.forget()
+
+    def scene(self) -> Scene:
+        """Return the scene, or raise all problems."""
+        file, place = self.file, self.places
+        paired = None
+        if "arrangement" not in self.spoilt:
+            paired = self.problems.read(lambda: read_pairs(file.arrangement, file.bearing))
+        if paired is None:
+            self.spoilt.add("arrangement")
+        bearings = [
+            self._bearing(k, table) for k, table in enumerate(readable_tables(file.bearing, paired))
+        ]
+        housing = None
+        if (table := file.housing) is not None:
+            housing = self.problems.read(lambda: read_housing(table, place), ("housing",))
+        if not (file.port or {"port", "body"} & self.spoilt):
+            self.problems.append(SceneError("a scene needs a [port]", path=("port",)))
+        ports = [self._row(Port, ("port", k), table) for k, table in enumerate(file.port)]
+        masses = [self._row(PointMass, ("mass", k), table) for k, table in enumerate(file.mass)]
+        features = [row for k, t in enumerate(file.feature) for row in self._feature(k, t)]
+        rows = {
+            "bearings": self._turned(bearings, paired or []),
+            "ports": self._main_first(ports),
+            "masses": masses,
+            "features": [row for row in features if row.kind in FEATURES.values()],
+            "blends": [row for row in features if row.kind in BLENDS.values()],
+        }
+        if self.segments:
+            self._judge(rows)
+        self.problems.raise_any()
+        things = {key: tuple(row.thing for row in kind_rows) for key, kind_rows in rows.items()}
+        main, *further = things.pop("ports")
+        stations = [main, *further, *things["bearings"], *things["masses"]]
+        scene = Scene.from_parts(
+            self.segments,
+            self._material(),
+            port=main,
+            further_ports=tuple(further),
+            **things,
+            title=file.title,
+            name=name_of(self.where),
+            source=file.source,
+            body=with_seats(self.part, stations, self.segments) if self.part else None,
+            housing_axial=housing if isinstance(housing, float) else None,
+            housing=None if isinstance(housing, float) else housing,
+            load=file.load,
+            lubrication=file.lubrication,
+            ask=Ask(**{key: getattr(file.ask, key) for key in Ask.model_fields}),
+        )
+        return with_ranges(scene, file.uncertain, file.bearing)
+
+    def _tables(self) -> tuple[SceneFile, set[str]]:
+        """Return the file without spoilt keys, and these keys."""
+        raw, kind = self.raw, ScenePartFile if "body" in self.raw else SceneFile
+        for key, most in MOST.items():
+            if isinstance(raw.get(key), list) and len(raw[key]) > most:
+                plural = "masses" if key == "mass" else f"{key}s"
+                raise SceneError(rules.too_many(plural, len(raw[key]), most), path=(key,))
+        try:
+            return kind(**with_port(raw)), set()
+        except SceneError as error:
+            problems = [
+                problem.located(raw, path=_drop_tag(problem.path)) for problem in error.problems
+            ]
+        self.problems += problems
+        spoilt = {str(problem.path[0]) for problem in problems}
+        sound = {key: value for key, value in raw.items() if key not in spoilt}
+        needed = {"material": STEEL, "segment": [], "port": []}
+        return SceneFile(**{**needed, **with_port(sound)}), spoilt
+
+    def _name_datums(self) -> None:
+        """Name the datums, from the file as it stands: a segment of a wrong length has its name."""
+        places = self.places
+        shapes: Any = self.raw.get("segment")
+        if self.part is not None:
+            places.add("origin")
+            shapes = [{"name": f"s{k}"} for k in range(1, len(self.part.walls) + 1)]
+        tables = isinstance(shapes, list) and all(isinstance(table, Mapping) for table in shapes)
+        if (
+            not tables
+            or "bearing" in self.spoilt
+            or not all(isinstance(table.get("name"), str) for table in shapes)
+        ):
+            places.names = None  # without sound names, what refers to them cannot be judged
+        for k, table in enumerate(shapes if places.names is not None else ()):
+            if table["name"] in places.segments:
+                reason = "another segment has this name; each needs its own"
+                self.problems.append(SceneError(reason, path=("segment", k, "name")))
+            places.segments.append(table["name"])
+            for datum in SHAPES.get(str(table.get("kind")), Cylinder).datums:
+                places.add(f"{table['name']}.{datum}")
+
+    def _shaft(self) -> list[Segment]:
+        """Return segments end to end, or those of the part."""
+        if self.part is None and not self.file.segment:
+            raise SceneError("a scene needs at least one [[segment]]", path=("segment",))
+        if (part := self.part) is not None and (body := self.file.body) is not None:
+            usual = self._material()
+            segments, path_of = part.lay_out(usual, self.places), self._part_path
+            self.problems.read(lambda: part.check_mass(body.mass_check, usual))
+        else:
+            laid = lay_out(self.file.segment, self._material(), self.places)
+            segments, path_of = laid.segments, laid.path
+        problems = rules.shaft_problems(segments)
+        if problems:
+            raise SceneError.of(
+                problem.located(None, path=path_of(problem.path)) for problem in problems
+            )
+        return segments
+
+    def _material(self) -> Material:
+        """Return the material of parts without one."""
+        return self.file.material or self.part.usual_material()  # type: ignore[union-attr]
+
+    def _part_path(self, path: tuple) -> tuple:
+        """Return the key of the file that an entry of a segment of the part comes from."""
+        assert self.file.body is not None  # that the part was read from
+        return ("material", *path[3:]) if "material" in path else ("body", self.file.body.key)
+
+    def _row(self, kind: type[Placed], path: tuple, table: Table, **usual: Any) -> _Row:
+        thing = self.problems.read(lambda: kind.read(table, self.places, **usual), path)
+        return _Row(thing, kind, path, table)
+
+    def _bearing(self, index: int, table: Table) -> _Row:
+        """Read a bearing, whose middle is a datum for tables that follow."""
+        row = self._row(Bearing, ("bearing", index), table)
+        if isinstance(name := table.get("name"), str):
+            self.places.add(f"bearing.{name}", row.thing.y if row.thing else None)
+        return row
+
+    @staticmethod
+    def _turned(rows: list[_Row], paired: list[Pair]) -> list[_Row]:
+        """Turn bearings of pairs as their arrangement says, once their places are known."""
+        for pair in paired:
+            if all(rows[k].thing for k in pair.bearings):
+                for k, way in pair.ways(rows[k].thing.y for k in pair.bearings):
+                    rows[k] = rows[k]._replace(thing=rows[k].thing.held_towards(way))
+        return rows
+
+    def _feature(self, index: int, table: Table) -> list[_Row]:
+        """Read a feature, which may have no name; no row for an unknown kind."""
+        path, kinds = ("feature", index), {**FEATURES, **BLENDS}
+        kind = table.get("kind")
+        if isinstance(kind, str) and kind in kinds:
+            return [
+                self._row(kinds[kind], path, table, name=f"{kind.replace('_', ' ')} {index + 1}")
+            ]
+        reason = f"unknown kind; write one of {', '.join(map(repr, kinds))}"
+        if "kind" not in table:
+            reason = 'this key is missing; it says what the feature is, such as kind = "keyway"'
+        self.problems.append(SceneError(reason, path=(*path, "kind")))
+        return []
+
+    def _main_first(self, ports: list[_Row]) -> list[_Row]:
+        """Return the lumped points, the main one of the file first."""
+        main_name = self.file.ask.port
+        names = [row.table.get("name", Port.model_fields["name"].default) for row in ports]
+        sound = not any(problem.path[0] == "port" for problem in self.problems)
+        if ports and sound and main_name is not None and main_name not in names:
+            reason = rules.no_such_point(main_name, names)
+            self.problems.append(SceneError(reason, path=("ask", "port")))
+        main = [row for row, name in zip(ports, names) if name == main_name][:1]
+        return main + [row for row in ports if row not in main]
+
+    def _judge(self, rows: dict[str, list[_Row]]) -> None:
+        """Gather problems between things that are sound by themselves."""
+        # names are judged where all are known
+        complete = not {"bearing", "port", "arrangement"} & self.spoilt
+        complete &= all(row.thing for key in ("bearings", "ports") for row in rows[key])
+        sound = {key: [row for row in kind_rows if row.thing] for key, kind_rows in rows.items()}
+        things = {key: [row.thing for row in kind_rows] for key, kind_rows in sound.items()}
+        things["masses"] = [*seat_masses(things["masses"], self.segments)]
+        problems = [*rules.problems_between(self.segments, **things, complete=complete)]
+        if complete and things["ports"]:
+            problems += rules.question_problems(things["ports"], self.file.ask.quantities)
+        self.problems += [
+            problem.located(None, path=_in_file(problem.path, sound)) for problem in problems
+        ]
+
+
+#: lists of a scene by those of a file
+LISTS = {"bearings": "bearing", "ports": "port", "masses": "mass"}
+
+
+def _in_file(path: tuple, rows: Mapping[str, Sequence[_Row]]) -> tuple:
+    """Return the path in the file that an entry of a scene came from."""
+    if path[0] == "port":
+        path = ("ports", 0, *path[1:])
+    elif path[0] == "further_ports":
+        path = ("ports", path[1] + 1, *path[2:]) if path[1:] else ("ports",)
+    if path[0] not in rows:
+        return path
+    if len(path) == 1:
+        return (LISTS.get(path[0], "feature"),)
+    row = rows[path[0]][path[1]]
+    return (*row.path, *row.kind.key_path(path[2:], row.table))

@@ -1,0 +1,73 @@
+"""Interface of a scene for builders and meshers, and features of a scene."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any, Protocol
+
+if TYPE_CHECKING:
+    from solidgear.core.scene import Bearing, PointMass, Port, Segment
+    from solidgear.core.scene.outline import Outline
+
+
+class Shaft(Protocol):
+    """Segments end to end with their stations: a `Scene`, or a class with the same properties."""
+
+    @property
+    def segments(self) -> tuple[Segment, ...]:
+        """Segments from y = 0 on."""
+
+    @property
+    def stations(self) -> tuple[Port | Bearing | PointMass, ...]:
+        """Things attached, the port first; each has name, y, lo, hi (m) and attachment."""
+
+    @property
+    def outline(self) -> Outline[Segment]:
+        """Lines and arcs of the meridian, fillets and chamfers among them."""
+
+    @property
+    def length(self) -> float:
+        """Overall length, m."""
+
+
+def resolved(scene: Any) -> tuple[Any, ...]:
+    """Return the features of a scene that models of revolution cannot hold, and its part from a file;
+    teeth that are smeared into a cone do not count.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> scene = sg.load("geometry/pinion_keyed.toml")
+    >>> [feature.name for feature in resolved(scene)]
+    ['key']
+    """
+    body = getattr(scene, "body", None)
+    parts = () if body is None else (body,)
+    return (*(f for f in getattr(scene, "features", ()) if not f.smeared), *parts)
+
+
+def without_axis(scene: Any) -> bool:
+    """Return True for a block or another body that is no shaft, whose segments only give places."""
+    body = getattr(scene, "body", None)
+    return body is not None and body.edges is not None
+
+
+def turning_speed(scene: Any) -> float | None:
+    """Return the speed of a shaft, rad/s: of its fastest bearing, else of its lubrication; None where
+    neither has one.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> turning_speed(sg.load("geometry/shaft_stepped.toml")) is None
+    True
+    """
+    data = [b.catalogue for b in getattr(scene, "bearings", ()) if b.catalogue is not None]
+    fastest = max((catalogue.speed for catalogue in data), default=0.0)
+    oil = getattr(scene, "lubrication", None)
+    return fastest or (oil.speed if oil is not None else None) or None
+
+
+def feature_labels(features: Iterable[Any]) -> str:
+    """Return features in a sentence, such as ``keyway "key"``."""
+    return ", ".join(f'{f.what} "{f.name}"' for f in features)

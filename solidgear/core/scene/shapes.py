@@ -1,0 +1,224 @@
+"""Shapes by which a file describes a shaft, and the segments that they make end to end."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Annotated, ClassVar, Literal, NamedTuple, TypeAlias
+
+from pydantic import AfterValidator, BeforeValidator, Field, model_validator
+
+from solidgear.core.errors import SceneError
+from solidgear.core.scene.materials import by_name
+from solidgear.core.scene.parts import Material, Segment
+from solidgear.core.scene.places import Places, plain_name
+from solidgear.core.scene.typed import Model
+from solidgear.core.scene.units import Angle, Density, Modulus, Poisson, PositiveLength, Thickness
+
+NANOMETRE = 1e-9
+_WORDS = ("start", "end", "bearing")  # first words of datums, so no segment may be called that
+
+
+def _segment_name(name: str) -> str:
+    if name in _WORDS:
+        raise SceneError("this name is kept for datums; choose another")
+    return plain_name(name)
+
+
+class Frustum(NamedTuple):
+    """A part of a shape, by the radii at both ends, m."""
+
+    part: Literal["shaft", "frustum", "backcone"]
+    length: float
+    outer0: float
+    outer1: float
+
+    def turned(self) -> Frustum:
+        """Return the frustum turned end for end."""
+        return self._replace(outer0=self.outer1, outer1=self.outer0)
+
+
+class OtherMaterial(Model):
+    """Constants of a segment that are not those of the scene."""
+
+    E: Modulus | None = None
+    nu: Poisson | None = None
+    density: Density | None = None
+    name: str | None = None
+
+
+class _Shape(Model):
+    """A [[segment]] of a file, which makes one segment or several."""
+
+    keys: ClassVar[Mapping[str, str]]  #: keys of the file, by the fields of segments they give
+    #: places on it that others can be counted from
+    datums: ClassVar[tuple[str, ...]] = ("start", "end", "middle")
+
+    name: Annotated[str, AfterValidator(_segment_name)]
+    bore: Thickness = 0.0
+    material: Annotated[OtherMaterial, BeforeValidator(by_name)] = OtherMaterial()
+
+    def _check_bore(self, *keys: str) -> None:
+        for key in keys:
+            if self.bore >= getattr(self, key):
+                raise SceneError(
+                    f"must be smaller than {key} ({getattr(self, key):.6g} m)", path=("bore",)
+                )
+
+    def frusta(self) -> list[Frustum]:
+        """Return the frusta that make up the shape, in the order of the shaft."""
+        raise NotImplementedError
+
+    def key_of(self, field: str) -> str:
+        """Return the key of the file that a field of a segment came from."""
+        return {"inner0": "bore", "inner1": "bore", **self.keys}.get(field, field)
+
+
+class Cylinder(_Shape):
+    """A cylinder."""
+
+    keys: ClassVar = {"outer0": "diameter", "outer1": "diameter", "y1": "length"}
+
+    kind: Literal["cylinder"]
+    length: PositiveLength
+    diameter: PositiveLength
+
+    @model_validator(mode="after")
+    def _wall(self) -> Cylinder:
+        self._check_bore("diameter")
+        return self
+
+    def frusta(self) -> list[Frustum]:
+        return [Frustum("shaft", self.length, self.diameter / 2, self.diameter / 2)]
+
+
+class Cone(_Shape):
+    """A cone."""
+
+    keys: ClassVar = {"outer0": "start_diameter", "outer1": "end_diameter", "y1": "length"}
+
+    kind: Literal["cone"]
+    length: PositiveLength
+    start_diameter: PositiveLength
+    end_diameter: PositiveLength
+
+    @model_validator(mode="after")
+    def _wall(self) -> Cone:
+        self._check_bore("start_diameter", "end_diameter")
+        return self
+
+    def frusta(self) -> list[Frustum]:
+        return [Frustum("shaft", self.length, self.start_diameter / 2, self.end_diameter / 2)]
+
+
+class BevelHead(_Shape):
+    """The pitch cone of a bevel gear with the cylinder behind it."""
+
+    keys: ClassVar = {"outer0": "pitch_radius", "outer1": "pitch_radius", "y1": "face_width"}
+    datums: ClassVar = ("start", "end", "middle", "mid_face")
+
+    kind: Literal["bevel_head"]
+    pitch_radius: PositiveLength
+    pitch_angle: Angle
+    face_width: PositiveLength
+    backcone: Thickness = 0.0
+    toe: Literal["start", "end"] = "start"
+
+    @property
+    def small_radius(self) -> float:
+        """Radius at the toe, m."""
+        return self.pitch_radius - self.face_width * math.sin(self.pitch_angle)
+
+    @model_validator(mode="after")
+    def _wall(self) -> BevelHead:
+        if self.small_radius <= 0:
+            longest = self.pitch_radius / math.sin(self.pitch_angle)
+            raise SceneError(
+                "passes the apex of the pitch cone; "
+                f"it must be shorter than the cone distance {longest:.6g} m",
+                path=("face_width",),
+            )
+        narrow = 2 * self.small_radius
+        if self.bore >= narrow:
+            raise SceneError(
+                f"must be smaller than the small end of the head (diameter {narrow:.6g} m)",
+                path=("bore",),
+            )
+        return self
+
+    def frusta(self) -> list[Frustum]:
+        axial = self.face_width * math.cos(self.pitch_angle)
+        large = self.pitch_radius
+        frusta = [Frustum("frustum", axial, self.small_radius, large)]
+        if self.backcone > 0:
+            frusta.append(Frustum("backcone", self.backcone, large, large))
+        return [frustum.turned() for frustum in reversed(frusta)] if self.toe == "end" else frusta
+
+
+Shape: TypeAlias = Annotated[Cylinder | Cone | BevelHead, Field(discriminator="kind")]
+SHAPES: dict[str, type[_Shape]] = {"cylinder": Cylinder, "cone": Cone, "bevel_head": BevelHead}
+
+
+class Laid(NamedTuple):
+    """Shapes laid end to end."""
+
+    segments: list[Segment]
+    shapes: list[tuple[int, Shape]]  #: of each segment, with its place in the file
+
+    def path(self, path: tuple) -> tuple:
+        """Return the path in the file that an entry of the segments came from."""
+        if not path[1:]:
+            return ("segment",)
+        _, place, key, *further = path
+        index, shape = self.shapes[place]
+        if key == "material" and getattr(shape.material, further[0]) is None:
+            return ("material", *further)
+        return ("segment", index, shape.key_of(key), *further)
+
+
+def lay_out(shapes: Sequence[Shape], usual: Material, places: Places) -> Laid:
+    """Lay shapes end to end from y = 0 and enter their datums; problems have paths of the file."""
+    laid, problems, y = Laid([], []), [], 0.0
+    places.datums["start"] = 0.0
+    for index, shape in enumerate(shapes):
+        start = y
+        material = usual.with_changes(**shape.material.model_dump(exclude_none=True))
+        for frustum in shape.frusta():
+            try:
+                segment = _segment(shape, frustum, y, material)
+            except SceneError as error:
+                problems += [
+                    problem.located(None, path=("segment", index, shape.key_of(problem.path[0])))
+                    for problem in error.problems
+                ]
+                continue
+            laid.segments.append(segment)
+            laid.shapes.append((index, shape))
+            y = segment.y1
+            if frustum.part != "backcone":
+                places.surface[shape.name] = (segment.y0, y)
+        lo, hi = places.surface.get(shape.name, (start, y))
+        datums = {"start": start, "end": y, "middle": (start + y) / 2, "mid_face": (lo + hi) / 2}
+        places.datums |= {f"{shape.name}.{datum}": datums[datum] for datum in shape.datums}
+    places.datums["end"] = y
+    if problems:
+        raise SceneError.of(problems)
+    return laid
+
+
+def _segment(shape: Shape, frustum: Frustum, y: float, material: Material) -> Segment:
+    if frustum.length <= NANOMETRE:
+        key = "backcone" if frustum.part == "backcone" else "y1"
+        reason = "is less than a nanometre along the shaft: probably wrong units"
+        raise SceneError(reason, path=(key,))
+    return Segment(
+        name=f"{shape.name}.backcone" if frustum.part == "backcone" else shape.name,
+        y0=y,
+        y1=y + frustum.length,
+        outer0=frustum.outer0,
+        outer1=frustum.outer1,
+        inner0=shape.bore / 2,
+        inner1=shape.bore / 2,
+        material=material,
+        part=frustum.part,
+    )

@@ -1,0 +1,395 @@
+"""Stations of a shaft, each frozen and validated: bearing and port."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Any, ClassVar, Literal
+
+import numpy as np
+from pydantic import BeforeValidator, Field, model_validator
+
+from solidgear.core.errors import SceneError, show
+from solidgear.core.frames import DOF_NAMES
+from solidgear.core.scene.bearing_stiffness import Matrix, refuse_two_stiffnesses
+from solidgear.bearings.catalogue import Catalogue
+from solidgear.core.scene.ends import check_face_words
+from solidgear.core.scene.housing import Elastic, elastic
+from solidgear.core.scene.patches import Patch, Point, fields_on_patch, patch_problems
+from solidgear.core.scene.places import Along, Placed, Places
+from solidgear.parts.recognised import Seat
+from solidgear.core.scene.support import (
+    HOLDS,
+    Hold,
+    Support,
+    few_springs,
+    held_matrix,
+    sliding,
+    support_problems,
+)
+from solidgear.core.scene.typed import Problems
+from solidgear.core.scene.units import (
+    POSITION_DECIMALS,
+    SOFTEST,
+    AxialSpring,
+    Factor,
+    Length,
+    Position,
+    PositiveLength,
+)
+
+Attachment = Literal["average", "rigid", "section"]
+Status = Literal["published", "identified", "assumed", "measured", "calculated", "estimated"]
+Face = Literal["start", "end"]
+
+
+class Bearing(Placed):
+    """A bearing: a 6x6 stiffness between ground and the seat it sits on.
+
+    Attributes
+    ----------
+    name : str
+        By which results, loads and sweeps call it.
+    y : float
+        Middle of the seat, m; `position`, as in a file, is the same.
+    seat_width : float
+        Along the shaft, m.
+    matrix : tuple of tuple of float, or None
+        6x6 of the bearing alone, SI, order (x, y, z, thx, thy, thz). The constructor also takes it
+        as `stiffness`: six rows, or named entries. None as long as catalogue data are not solved.
+    catalogue : Catalogue or None
+        Data that the stiffness comes from, where it was not given.
+    axial_series : tuple of float
+        Springs in series with the axial stiffness, N/m.
+    housing : Elastic or None
+        Support of the outer ring, in series with all of the bearing.
+    scale : float
+        Factor on the stiffness of all that; loads under which it settles are found without it.
+    attachment : {'average', 'rigid', 'section'}
+        How the seat follows the bearing.
+    status : str
+        Source of the numbers: published, identified, assumed, measured, or of catalogue data
+        calculated (inner geometry given) or estimated.
+    note : str
+        Free text.
+    support : {'locating', 'floating'} or None
+        A floating bearing slides in its seat and carries nothing along y; without a word cylindrical
+        and needle rollers float, and all others locate.
+    hold : {'clamped', 'pinned'} or None
+        In place of a stiffness: nothing moves, or nothing moves but turns.
+    face : {'start', 'end'} or None
+        The end face whose middle it holds, as a section; the seat is then the rim beside that face.
+    patch : Patch or None
+        Of a body without an axis, the faces that it holds, at their point.
+
+    Raises
+    ------
+    SceneError
+        A matrix that is not symmetric, is indefinite, or holds springs too soft to be any; a face
+        attached in another way than as a section.
+
+    Examples
+    --------
+    >>> from solidgear import Bearing
+    >>> front = Bearing(name="front", y=0.1, seat_width="40 mm", axial_series=[4e8],
+    ...                 stiffness={"kxx": 8e8, "kyy": "4e8 N/m", "kzz": 8e8})
+    >>> round(float(front.stiffness[1, 1]) / 1e8, 6)  # two equal springs in series
+    2.0
+    >>> front.lo, front.hi
+    (0.08, 0.12)
+    """
+
+    class Words(Along):
+        """Words for the seat: along the shaft, on a cylinder of a part, or on faces of a body."""
+
+        seat: Seat | None = None
+        patch: str | None = None
+        point: Point = None
+
+    sources: ClassVar = {
+        "y": ("seat", "face", "position"),
+        "seat_width": ("seat", "seat_width"),
+        "matrix": ("matrix", "stiffness"),
+    }
+
+    name: str
+    y: Position
+    seat_width: PositiveLength
+    matrix: Matrix | None = None
+    catalogue: Catalogue | None = None
+    axial_series: Annotated[tuple[AxialSpring, ...], BeforeValidator(few_springs)] = ()
+    housing: Annotated[Elastic | None, BeforeValidator(elastic)] = None
+    scale: Factor = 1.0
+    attachment: Attachment = "average"
+    status: Status = "assumed"
+    note: str = ""
+    support: Support | None = None
+    hold: Hold | None = None
+    face: Face | None = None
+    patch: Patch | None = None
+
+    def __init__(self, /, **data: Any):
+        if "stiffness" in data:
+            data["matrix"] = data.pop("stiffness")
+        if data.get("hold") in tuple(HOLDS) and "matrix" not in data:
+            data["matrix"] = held_matrix(data["hold"])
+        if data.get("face") is not None:
+            data.setdefault("attachment", "section")
+        super().__init__(**data)
+
+    @classmethod
+    def place(cls, words: Any, table: Mapping[str, Any], places: Places) -> dict[str, Any]:
+        refuse_two_stiffnesses(table)
+        face = table.get("face")
+        if words.patch is not None:
+            return fields_on_patch(words, table, places, "seat_width")
+        if words.seat is not None:
+            reason = "a seat has its place and width in seat; leave one of both out"
+            words.refuse(reason, "position", "from_", "face", "seat_width", table=table)
+            lo, hi = places.span_of_seat(words.seat, "position and seat_width") or (None, None)
+            if lo is None or hi is None:
+                return {"y": None, "seat_width": None}
+            return {"y": (lo + hi) / 2, "seat_width": hi - lo}
+        if face is None:
+            words.require("position", 'write position = "28 mm" with from, or face = "start"')
+            return {"y": words.y(places)}
+        check_face_words(words, table)
+        return {"y": places.datums.get(face) if face in ("start", "end") else None}
+
+    @classmethod
+    def usually_attached(cls, table: Mapping[str, Any], places: Places) -> str:
+        """Return the usual attachment, a section for the middle of an end face."""
+        return "section" if "face" in table else super().usually_attached(table, places)
+
+    @model_validator(mode="after")
+    def _status_of_data(self) -> Bearing:
+        if self.catalogue is not None and "status" not in self.model_fields_set:
+            status = "estimated" if self.catalogue.estimated else "calculated"
+            object.__setattr__(self, "status", status)
+        return self
+
+    @model_validator(mode="after")
+    def _springs_or_none(self) -> Bearing:
+        if self.matrix is None:
+            if self.catalogue is None:
+                raise SceneError(
+                    "this key is missing; write stiffness = {kxx = ...}, matrix = 6 rows of 6 "
+                    'numbers, catalogue = {...}, or hold = "clamped"',
+                    path=("matrix",),
+                )
+            return self
+        for name, k in zip(DOF_NAMES, np.diag(self.matrix)):
+            if 0 < k < SOFTEST:
+                raise SceneError(
+                    f"the stiffness in {name} is {k:.6g}, below {SOFTEST:g} in SI, "
+                    "which is no spring: write 0",
+                    path=("matrix",),
+                )
+        return self
+
+    @model_validator(mode="after")
+    def _a_face_is_a_section(self) -> Bearing:
+        if self.face is not None and self.attachment != "section":
+            raise SceneError(
+                "a face is held in its middle, as a section: leave attachment out, or for the rim "
+                "beside the face write position and from in place of face",
+                path=("attachment",),
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _supports(self) -> Bearing:
+        if problems := [*support_problems(self), *patch_problems(self)]:
+            raise SceneError.of(problems)
+        return self
+
+    @property
+    def floats(self) -> bool:
+        """True where the bearing carries nothing along y, by mounting or kind."""
+        by_kind = self.catalogue is not None and self.catalogue.floats
+        return self.support == "floating" or by_kind
+
+    @property
+    def unsettled(self) -> Bearing:
+        """The same bearing without the stiffness that catalogue data have under the load of the shaft;
+        unchanged where the stiffness does not depend on that load.
+        """
+        data = self.catalogue
+        waits = data is not None and data.load is None and data.displacement is None
+        return self.with_changes(matrix=None) if waits else self
+
+    def held_towards(self, way: str) -> Bearing:
+        """Return the bearing turned to hold the shaft towards '+y' or '-y', with catalogue data."""
+        data = self.catalogue
+        return self.with_changes(catalogue=data and data.with_changes(holds=way))
+
+    def attached(self, attachment: str) -> Bearing:
+        """Return the bearing with another attachment of its seat; one on a face unchanged."""
+        return self if self.face else self.with_changes(attachment=attachment)
+
+    @property
+    def lo(self) -> float:
+        """Seat end towards y = 0, in m."""
+        inward = {"start": 0.0, "end": 1.0}.get(self.face or "", 0.5)
+        return round(self.y - self.seat_width * inward, POSITION_DECIMALS)
+
+    @property
+    def hi(self) -> float:
+        """Seat end away from y = 0, in m."""
+        outward = {"start": 1.0, "end": 0.0}.get(self.face or "", 0.5)
+        return round(self.y + self.seat_width * outward, POSITION_DECIMALS)
+
+    @property
+    def stiffness(self) -> np.ndarray:
+        """(6, 6) read-only, SI, order x y z thx thy thz: the bearing with its axial series springs
+        and the housing at its seat condensed in.
+
+        Raises
+        ------
+        SceneError
+            If it is to come from catalogue data that are not solved yet.
+        """
+        K = np.array(self._solved_matrix())
+        if (spring := self.spring) is not None:
+            # the ring between bearing and spring carries no load of its own: condense its y out,
+            # couplings included
+            K -= np.outer(K[:, 1], K[1, :]) / (K[1, 1] + spring)
+        if self.support == "floating":
+            K = sliding(K)
+        if self.housing is not None:
+            K = self.housing.beneath_one(K, f"the housing of bearing {show(self.name)}")
+        K *= self.scale
+        K.flags.writeable = False
+        return K
+
+    @property
+    def spring(self) -> float | None:
+        """Springs in series as one, N/m."""
+        return 1 / sum(1 / k for k in self.axial_series) if self.axial_series else None
+
+    def _solved_matrix(self) -> tuple[tuple[float, ...], ...]:
+        if self.matrix is None:
+            raise SceneError(
+                f"bearing {show(self.name)} is described by catalogue data whose stiffness is not "
+                "worked out yet: read the scene with solidgear.load, which does"
+            )
+        return self.matrix
+
+    def scaled(self, factor: float) -> Bearing:
+        """The same bearing with every stiffness, series springs and housing included, multiplied.
+
+        Parameters
+        ----------
+        factor : float
+            Above zero.
+
+        Returns
+        -------
+        Bearing
+
+        Raises
+        ------
+        SceneError
+            A factor that is not above zero.
+        """
+        if not factor > 0:
+            raise SceneError("must be greater than zero", field="factor", value=show(factor))
+        if self.hold:  # there is nothing stiffer; what it stands in may be
+            return (
+                self
+                if self.housing is None
+                else self.with_changes(housing=self.housing.scaled(factor))
+            )
+        return self.with_changes(
+            matrix=np.array(self._solved_matrix()) * factor,
+            axial_series=tuple(k * factor for k in self.axial_series),
+            housing=None if self.housing is None else self.housing.scaled(factor),
+        )
+
+
+class Port(Placed):
+    """The lumped point on the axis, attached to a span of the outer surface.
+
+    Attributes
+    ----------
+    name : str
+    y : float
+        Place, m; it need not lie within the span. `position`, as in a file, is the same.
+    lo, hi : float
+        Span of the surface that carries it, m.
+    attachment : {'average', 'rigid', 'section'}
+    patch : Patch or None
+        Of a body without an axis, the faces that carry it, and the point itself.
+
+    Raises
+    ------
+    SceneError
+        A field that is missing or of another dimension.
+
+    Examples
+    --------
+    >>> from solidgear import Port
+    >>> Port(y="29 mm", lo=0.0, hi="58 mm").hi
+    0.058
+    """
+
+    class Words(Along):
+        """Words for the place of the point, and for the surface that carries it."""
+
+        at: str | None = None
+        attach_to: str | None = None
+        span: Annotated[list[Length], Field(min_length=2, max_length=2)] | None = None
+        seat: Seat | None = None
+        patch: str | None = None
+        point: Point = None
+
+    sources: ClassVar = {
+        "y": ("at", "position"),
+        "lo": ("seat", "span", "attach_to"),
+        "hi": ("seat", "span", "attach_to"),
+    }
+
+    name: str = "port"
+    y: Position
+    lo: Position
+    hi: Position
+    attachment: Attachment = "average"
+    patch: Patch | None = None
+
+    @model_validator(mode="after")
+    def _on_a_patch(self) -> Port:
+        if problems := list(patch_problems(self)):
+            raise SceneError.of(problems)
+        return self
+
+    @classmethod
+    def place(cls, words: Any, table: Mapping[str, Any], places: Places) -> dict[str, Any]:
+        if words.patch is not None:
+            return fields_on_patch(words, table, places, "lo", "hi")
+        problems = Problems()
+        y = problems.read(lambda: cls._y(words, places))
+        lo, hi = problems.read(lambda: cls._span(words, places)) or (None, None)
+        problems.raise_any()
+        if words.at is None and words.position is None and lo is not None and hi is not None:
+            y = (lo + hi) / 2
+        return {"y": y, "lo": lo, "hi": hi}
+
+    @staticmethod
+    def _y(words: Any, places: Places) -> float | None:
+        """Return the place, m."""
+        if words.at is not None:
+            words.refuse("give either at, or position with from, not both", "position", "from_")
+            return places.datum(words.at, "at")
+        if words.seat is None:
+            words.require("position", 'write at = "<segment>.middle", or position with from', "at")
+        return words.y(places)
+
+    @staticmethod
+    def _span(words: Any, places: Places) -> tuple[float, float] | None:
+        """Return the ends of the surface that carries the point, m."""
+        if words.seat is not None:
+            for key in ("attach_to", "span"):
+                words.refuse(f"give either seat or {key}, not both", key)
+            return places.span_of_seat(words.seat, "span, or attach_to with the name of a segment")
+        hint = 'name the segment whose surface carries the port, or write span = ["0 mm", "58 mm"]'
+        words.require_one("attach_to", "span", hint)
+        return words.span or places.span_of(words.attach_to, "attach_to")

@@ -1,0 +1,98 @@
+"""Support of a seat by its bearing: held ends, and rings that slide along y."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from solidgear.core.errors import SceneError
+from solidgear.core.scene.rules import MOST_SPRINGS
+from solidgear.core.springs import in_series
+
+if TYPE_CHECKING:
+    from solidgear.core.scene.stations import Bearing
+
+Hold = Literal["clamped", "pinned"]
+Support = Literal["locating", "floating"]
+
+#: stiffness of a held station, N/m and N m/rad: E r and E r^3 of a steel shaft are 1e-11 of it at a
+#: radius of 0.1 m and 1e-9 at 1 m. With 1e24 in both statics are as good, but modes drown in
+#: rounding: measured 1e-3 to 0.5 of a frequency.
+HELD, HELD_TURN = 1e22, 1e20
+#: components that each way of holding stops
+HOLDS: dict[str, tuple[int, ...]] = {"clamped": (0, 1, 2, 3, 4, 5), "pinned": (0, 1, 2)}
+
+
+def held_matrix(hold: str) -> np.ndarray:
+    """Return the (6, 6) stiffness that stands for a way of holding, N/m and N m/rad.
+
+    Examples
+    --------
+    >>> [float(k) for k in np.diag(held_matrix("pinned"))]
+    [1e+22, 1e+22, 1e+22, 0.0, 0.0, 0.0]
+    """
+    size = 3 * [HELD] + 3 * [HELD_TURN]
+    return np.diag([size[c] if c in HOLDS[hold] else 0.0 for c in range(6)])
+
+
+def sliding(stiffness: np.ndarray) -> np.ndarray:
+    """Return the (6, 6) stiffness of a bearing with a ring that slides along y in its seat: nothing is
+    held along y, and couplings with y are condensed out.
+    """
+    matrix = np.array(stiffness)
+    if matrix[1, 1]:
+        matrix = in_series(matrix, np.eye(6)[:, [1]], np.zeros((1, 1)))
+    matrix[1] = matrix[:, 1] = 0.0
+    return matrix
+
+
+def support_problems(bearing: Bearing) -> Iterator[SceneError]:
+    """Yield contradictions in the support of a bearing."""
+    data = bearing.catalogue
+    if bearing.support is None:
+        return
+    if bearing.hold is not None:
+        yield SceneError(
+            f"a {bearing.hold} bearing holds y as well: leave support out", path=("support",)
+        )
+        return
+    kind = "" if data is None else data.kind.replace("_", " ")
+    if bearing.support == "locating":
+        if data is not None and data.floats:
+            yield SceneError(
+                f"a {kind} bearing carries nothing along y, ribs being left out: leave support out, "
+                'or write "floating"',
+                path=("support",),
+            )
+        elif data is None and bearing.matrix is not None and not bearing.matrix[1][1]:
+            yield SceneError(
+                'its stiffness holds nothing along y: write kyy, or support = "floating"',
+                path=("support",),
+            )
+        return
+    if data is not None and data.one_sided:
+        yield SceneError(
+            f"a {data.arrangement} {kind} bearing that slides is pressed by nothing: two rows float "
+            'together as one bearing with arrangement = "O" or "X" and row_distance',
+            path=("support",),
+        )
+    if bearing.axial_series:
+        yield SceneError("a floating bearing presses no spring along y", path=("axial_series",))
+    for key in ("load", "displacement"):
+        state = None if data is None else getattr(data, key)
+        if state is not None and state.y:
+            yield SceneError(
+                "a floating bearing carries nothing along y", path=("catalogue", key, "y")
+            )
+
+
+def few_springs(springs: Any) -> Any:
+    """Return springs in series; refuse too many."""
+    if isinstance(springs, (list, tuple)) and len(springs) > MOST_SPRINGS:
+        raise SceneError(
+            f"{len(springs)} springs in series are more than the {MOST_SPRINGS} there may be; "
+            "write their sum: 1/k = 1/k1 + 1/k2 + ..."
+        )
+    return springs

@@ -1,0 +1,68 @@
+"""Keys of scene and train files whose values are words, never numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import lru_cache
+from typing import Any, Literal, get_args, get_origin
+
+from pydantic.fields import FieldInfo
+
+from solidgear.core.scene.blends import BLENDS
+from solidgear.cuts.features import FEATURES
+from solidgear.core.scene.file import SceneFile, ScenePartFile
+from solidgear.core.scene.paths import Keys
+from solidgear.trains.file.reading import LongFile, ShortFile
+from solidgear.core.scene.typed import Holds, Model
+
+#: models that files are read into
+FILES = (SceneFile, ScenePartFile, ShortFile, LongFile)
+#: names of files and of materials, whatever they are read into
+NAMES = ("scene", "material")
+
+
+def is_text(keys: Keys) -> bool:
+    """Return True for an entry whose value is a word by the format of files.
+
+    Examples
+    --------
+    >>> is_text(("bearing", 0, "catalogue", "designation")), is_text(("bearing", 0, "position"))
+    (True, False)
+    >>> is_text(("bearing", 0, "from")), is_text(("bearing", 0, "seat", "from"))
+    (True, False)
+    """
+    names = tuple(key for key in keys if isinstance(key, str))
+    return names[-1:] != () and (names[-1] in NAMES or _is_text(names))
+
+
+@lru_cache(maxsize=512)
+def _is_text(names: tuple[str, ...]) -> bool:
+    kinds: list[type[Model]] = [*FILES]
+    fields: list[FieldInfo] = []
+    for name in names:
+        fields = [field for kind in kinds if (field := kind.table_keys().get(name)) is not None]
+        # a name that is no key of a table names one of several
+        kinds = [kind for field in fields for kind in _tables(field)] or kinds
+        if name == "feature":
+            kinds = [*FEATURES.values(), *BLENDS.values()]
+    return any(_of_words(field.annotation) for field in fields)
+
+
+def _tables(field: FieldInfo) -> Iterator[type[Model]]:
+    """Yield the models that a field holds."""
+    yield from (mark.kind for mark in field.metadata if isinstance(mark, Holds))
+    annotations = [field.annotation]
+    while annotations:
+        kind: Any = annotations.pop()
+        if isinstance(kind, type) and issubclass(kind, Model):
+            yield kind
+        annotations += get_args(kind) if get_origin(kind) is not Literal else ()
+
+
+def _of_words(kind: Any) -> bool:
+    """Return True for a type of words alone, or of words and None."""
+    if get_origin(kind) is Literal:
+        return all(isinstance(word, str) for word in get_args(kind))
+    parts = [part for part in get_args(kind) if isinstance(part, type) or get_args(part)]
+    parts = [part for part in parts if part is not type(None)]
+    return kind is str or (bool(parts) and all(map(_of_words, parts)))

@@ -1,0 +1,54 @@
+"""Parts with ports and links between them, gear meshes and planetary stages."""
+
+from solidgear.core.scene.planetary_teeth import PlanetaryTeeth
+from solidgear.trains.system.carrier_turn import (
+    CarrierTurn,
+    FixedSupport,
+    PlanetError,
+    carrier_turn,
+)
+from solidgear.core.system.gear_mesh import MeshVector
+from solidgear.core.system.links import (
+    BearingSpring,
+    HousedSprings,
+    Link,
+    PortInertia,
+    RowSpring,
+    grounded,
+    mesh_spring,
+    torsion_spring,
+)
+from solidgear.core.system.modes import SystemModes
+from solidgear.core.system.parts import Inertia, Part, Placed, PlanarBody, RigidBody
+from solidgear.trains.system.planetary import PlanetaryStage
+from solidgear.trains.system.planetary_members import CentralMember, Planet
+from solidgear.trains.system.planetary_modes import PlanetaryMode
+from solidgear.core.system.system import System
+
+__all__ = [
+    "CarrierTurn",
+    "FixedSupport",
+    "PlanetError",
+    "PlanetaryTeeth",
+    "carrier_turn",
+    "BearingSpring",
+    "HousedSprings",
+    "Inertia",
+    "Link",
+    "MeshVector",
+    "Part",
+    "CentralMember",
+    "PlanarBody",
+    "Planet",
+    "PlanetaryMode",
+    "PlanetaryStage",
+    "Placed",
+    "PortInertia",
+    "RigidBody",
+    "RowSpring",
+    "System",
+    "SystemModes",
+    "grounded",
+    "mesh_spring",
+    "torsion_spring",
+]

@@ -1,0 +1,1 @@
+"""Cuts into a shaft: keyways, holes, flats, teeth."""

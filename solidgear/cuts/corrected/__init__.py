@@ -1,0 +1,1 @@
+"""The harmonic solid corrected by a coarse 3D difference."""

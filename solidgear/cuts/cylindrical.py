@@ -1,0 +1,204 @@
+r"""Cylindrical gears by module, helix, profile shift and centre distance (ISO 21771).
+
+With the normal module m, teeth z, helix angle beta and normal pressure angle alpha at the reference
+cylinder ``r = m z / (2 cos beta)``, the transverse pressure angle is ``tan alpha_t = tan alpha / cos
+beta``.  At the centre distance a both wheels roll on cylinders in the ratio of their teeth, ``r_w =
+a / (1 + u)``, where
+
+    cos alpha_wt = (r1 + r2) cos alpha_t / a,      tan beta_w = tan beta r_w / r
+
+(ISO 21771:2007, 5.3 and 5.4).  Without a centre distance it is that without backlash: inv alpha_wt =
+inv alpha_t + 2 tan alpha (x1 + x2) / (z1 + z2), inv being tan minus angle.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from math import acos, atan, cos, isclose, pi, tan
+from typing import TYPE_CHECKING, Any
+
+from solidgear.core.errors import SceneError
+from solidgear.core.scene.units import TYPED
+
+if TYPE_CHECKING:
+    from solidgear.trains.file.gears import Member
+    from solidgear.trains.file.tables import Mesh
+
+#: relative difference of a pitch radius that is typed with three digits
+RADIUS = 5e-3
+#: keys of cylindrical gears, by table
+WORDS = {
+    "pinion": ("module", "helix_angle", "profile_shift"),
+    "gear": ("module", "helix_angle", "profile_shift"),
+    "mesh": ("centre_distance",),
+}
+
+
+@dataclass(frozen=True)
+class Working:
+    """Working pitch cylinders of two cylindrical gears."""
+
+    radii: tuple[float, float]  #: of pinion and gear, m
+    #: helix_angle, pressure_angle: at these cylinders, the latter normal to the tooth, rad
+    helix_angle: float
+    pressure_angle: float
+    without_backlash: float  #: centre distance without backlash, m
+
+
+def working_cylinders(
+    teeth: Sequence[int],
+    module: float,
+    helix_angle: float,
+    pressure_angle: float,
+    shift: Sequence[float] = (0.0, 0.0),
+    centre_distance: float | None = None,
+) -> Working:
+    """Compute the working cylinders of a pair of cylindrical gears.
+
+    Parameters
+    ----------
+    teeth : (int, int)
+    module : float
+        Normal, m.
+    helix_angle, pressure_angle : float
+        At the reference cylinder, the latter normal to the tooth, rad.
+    shift : (float, float)
+        Profile shifts x, in modules.
+    centre_distance : float, optional
+        m; by default that without backlash.
+
+    Raises
+    ------
+    SceneError
+        For a centre distance below that at which the base circles leave no pressure angle, or
+        profile shifts that no pressure angle has.
+
+    Examples
+    --------
+    The spur gears of the Gear Technical Reference of Kohara (2015), table 4.3: 26.0886 degrees at
+    56.4999 mm.
+
+    >>> from math import degrees, radians
+    >>> wheels = working_cylinders((12, 24), 3e-3, 0.0, radians(20), shift=(0.6, 0.36))
+    >>> round(degrees(wheels.pressure_angle), 4), round(1e3 * sum(wheels.radii), 4)
+    (26.0886, 56.4999)
+    """
+    ratio, tooth_sum = teeth[1] / teeth[0], sum(teeth)
+    reference = module * tooth_sum / (2 * cos(helix_angle))
+    transverse = atan(tan(pressure_angle) / cos(helix_angle))
+    wanted = tan(transverse) - transverse + 2 * tan(pressure_angle) * sum(shift) / tooth_sum
+    loose = reference * cos(transverse) / cos(_of_involute(wanted))
+    centre = loose if centre_distance is None else centre_distance
+    least = reference * cos(transverse)
+    if centre <= least:
+        raise SceneError(
+            f"is below {1e3 * least:.6g} mm, the sum of the base radii of these gears, which have "
+            f"no backlash at {1e3 * loose:.6g} mm",
+            path=("mesh", "centre_distance"),
+        )
+    at_work = acos(least / centre)
+    grown = centre / reference
+    helix = atan(tan(helix_angle) * grown)
+    radii = centre / (1 + ratio), centre * ratio / (1 + ratio)
+    return Working(radii, helix, atan(tan(at_work) * cos(helix)), loose)
+
+
+def _of_involute(value: float) -> float:
+    """Compute the angle, rad, of an involute function tan minus angle."""
+    from scipy.optimize import brentq  # slow to import, and seldom needed
+
+    if not 0 < value < tan(0.4 * pi) - 0.4 * pi:
+        raise SceneError(
+            "is so large, with that of the other wheel, that no pressure angle meets it",
+            path=("pinion", "profile_shift"),
+        )
+    return float(brentq(lambda angle: tan(angle) - angle - value, 0.0, 0.4 * pi, xtol=1e-15))
+
+
+def cylindrical_problems(pinion: Member, gear: Member, mesh: Mesh) -> Iterator[SceneError]:
+    """Yield problems between keys of cylindrical gears, and with those of bevel gears."""
+    tables = {"pinion": pinion, "gear": gear, "mesh": mesh}
+    if mesh.shaft_angle:
+        for table, keys in WORDS.items():
+            for key in keys:
+                if getattr(tables[table], key):
+                    yield SceneError(
+                        "is a word of parallel shafts; write shaft_angle = 0 under [mesh], or the "
+                        "pitch_radius and spiral_angle of a bevel gear",
+                        path=(table, key),
+                    )
+        return
+    for side, member in (("pinion", pinion), ("gear", gear)):
+        for key, bevel_key in (("helix_angle", "spiral_angle"), ("module", "pitch_radius")):
+            if getattr(member, key) is not None and getattr(member, bevel_key) is not None:
+                reason = f"and {bevel_key} say the same; of a cylindrical gear write {key} alone"
+                yield SceneError(reason, path=(side, key))
+    for key in ("module", "helix_angle"):
+        first, second = getattr(pinion, key), getattr(gear, key)
+        if None not in (first, second) and not isclose(first, second, rel_tol=TYPED, abs_tol=1e-9):
+            reason = f"is {second:.6g} and that of the pinion {first:.6g} (SI); wheels that mesh share it"
+            yield SceneError(reason, path=("gear", key))
+    distance = mesh.centre_distance
+    for side, member in (("pinion", pinion), ("gear", gear)):
+        due = (distance or 0.0) * member.teeth / (pinion.teeth + gear.teeth)
+        if (
+            distance
+            and member.pitch_radius
+            and not isclose(member.pitch_radius, due, rel_tol=RADIUS)
+        ):
+            reason = (
+                f"and centre_distance contradict: wheels of {pinion.teeth} and {gear.teeth} teeth "
+                f"{1e3 * distance:.6g} mm apart roll at {1e3 * due:.6g} mm; correct or leave out one"
+            )
+            yield SceneError(reason, path=(side, "pitch_radius"))
+    shifted = [
+        side for side, member in (("pinion", pinion), ("gear", gear)) if member.profile_shift
+    ]
+    if shifted and pinion.module is None and gear.module is None:
+        yield SceneError("counts in modules; give the module", path=(shifted[0], "profile_shift"))
+
+
+def rolling_fields(pinion: Member, gear: Member, mesh: Mesh) -> dict[str, Any]:
+    """Return `pinion`, `gear` and `mesh` of parallel shafts with pitch radii and angles as bevel gears
+    have them, where the wheels roll on each other; nothing for other shafts.
+    """
+    if mesh.shaft_angle:
+        return {}
+    wheels = pinion, gear
+    helix = _first(*(w.helix_angle for w in wheels), *(w.spiral_angle for w in wheels))
+    if helix is None and not any(w.hand for w in wheels):
+        helix = 0.0  # straight teeth have no hand
+    angle, radii = helix, (pinion.pitch_radius, gear.pitch_radius)
+    pressure, module = mesh.pressure_angle, _first(pinion.module, gear.module)
+    if module is not None and pressure is not None:
+        shift = pinion.profile_shift, gear.profile_shift
+        teeth = pinion.teeth, gear.teeth
+        cylinders = working_cylinders(
+            teeth, module, helix or 0.0, pressure, shift, mesh.centre_distance
+        )
+        radii, pressure = cylinders.radii, cylinders.pressure_angle
+        angle = None if helix is None else cylinders.helix_angle
+    elif mesh.centre_distance is not None:
+        share = mesh.centre_distance / (pinion.teeth + gear.teeth)
+        radii = radii[0] or share * pinion.teeth, radii[1] or share * gear.teeth
+    cones = [w.pitch_angle for w in wheels]
+    if cones == [None, None]:
+        cones = [0.0, 0.0]
+    plain = {"module": None, "helix_angle": None, "profile_shift": 0.0}
+    changed = [
+        w.with_changes(
+            **plain,
+            pitch_radius=radius,
+            spiral_angle=angle if w.spiral_angle is None else w.spiral_angle,
+            pitch_angle=cone,
+        )
+        for w, radius, cone in zip(wheels, radii, cones)
+    ]
+    working_mesh = mesh.with_changes(pressure_angle=pressure, centre_distance=None)
+    return {"pinion": changed[0], "gear": changed[1], "mesh": working_mesh}
+
+
+def _first(*values: float | None) -> float | None:
+    """Return the first value that is given."""
+    return next((value for value in values if value is not None), None)

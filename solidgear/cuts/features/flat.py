@@ -1,0 +1,50 @@
+"""A flat."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any, Literal
+
+from solidgear.core.errors import SceneError
+from solidgear.cuts.features.cut import Frame, Long
+from solidgear.core.scene.parts import Segment
+from solidgear.core.scene.units import PositiveLength
+
+
+class Flat(Long):
+    """A flat cut across a cylinder, with place, length and angle as of :class:`Keyway`."""
+
+    kind: Literal["flat"] = "flat"
+    depth: PositiveLength  #: below the crown of the cylinder, m
+
+    def _sized(self, segment: Segment) -> Iterator[SceneError]:
+        yield from self._deep(segment)
+
+    def half_width(self, radius: float) -> float:
+        return math.sqrt(radius**2 - self.floor(radius) ** 2)
+
+    def tool(self, occ: Any, radius: float, top: float) -> int:
+        (lo, hi), wide, floor = self.reach(radius), 2 * (radius + top), self.floor(radius)
+        return occ.addBox(-wide / 2, lo, floor, wide, hi - lo, radius + top - floor)
+
+    def volume(self, outer: float, inner: float) -> float | None:
+        from scipy.integrate import quad
+
+        floor = self.floor(outer)
+        if floor < inner:
+            return None
+
+        def height(x: float) -> float:
+            return math.sqrt(outer**2 - x * x) - floor
+
+        half = self.half_width(outer)
+        return 2 * quad(height, 0, half, epsabs=0, epsrel=1e-12)[0] * self.length
+
+    def edges(self, radius: float) -> tuple[float, float]:
+        return self.half_width(radius) / 2, math.inf
+
+    def beside_edges(self, radius: float, frame: Frame) -> str:
+        (lo, hi), half = self.reach(radius), frame.num(self.half_width(radius))
+        ends = f"Min(Sqrt((y-{frame.num(lo)})^2),Sqrt((y-{frame.num(hi)})^2))"
+        return f"Sqrt({ends}^2+Max(0,{frame.across}-{half})^2)"

@@ -1,0 +1,123 @@
+"""A keyway."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any, Literal
+
+from solidgear.core.errors import SceneError
+from solidgear.cuts.features.base import SMALLEST
+from solidgear.cuts.features.cut import Frame, Long
+from solidgear.core.scene.outline import TOUCH
+from solidgear.core.scene.parts import Segment
+from solidgear.core.scene.units import PositiveLength
+
+
+class Keyway(Long):
+    """A slot with a flat floor along a cylinder.
+
+    It begins at y (m) with a length that includes round ends, at an angle around the shaft, rad: 0 is
+    +z, a quarter turn is +x.
+
+    Examples
+    --------
+    >>> from solidgear.core.scene import Keyway
+    >>> key = Keyway(name="key", segment="shaft", y="120 mm", length="100 mm", width="25 mm",
+    ...              depth="9 mm")
+    >>> key.reach(0.045)
+    (0.12, 0.22)
+    """
+
+    kind: Literal["keyway"] = "keyway"
+    #: width, depth: m; the depth is that below the crown of the cylinder (t1 of DIN 6885)
+    width: PositiveLength
+    depth: PositiveLength
+    ends: Literal["round", "square"] = "round"
+
+    def _sized(self, segment: Segment) -> Iterator[SceneError]:
+        yield from self._deep(segment)
+        if self.width >= segment.outer0:
+            yield SceneError(
+                f"a keyway wider than the radius, {segment.outer0:.6g} m, is no keyway",
+                path=("width",),
+            )
+        elif self.width < SMALLEST * segment.outer0:
+            yield SceneError(
+                f"is under a hundredth of the radius, {segment.outer0:.6g} m", path=("width",)
+            )
+        # at the edges of the slot the surface lies lower than at its crown
+        elif segment.outer0 - math.sqrt(segment.outer0**2 - self.width**2 / 4) >= self.depth:
+            yield SceneError(
+                "the surface at the sides of the keyway lies below its floor: it is too wide, or "
+                "not deep enough",
+                path=("depth",),
+            )
+        elif self.ends == "round" and self.length <= self.width + TOUCH:
+            yield SceneError(
+                f"with round ends a keyway is longer than it is wide ({self.width:.6g} m)",
+                path=("length",),
+            )
+
+    def half_width(self, radius: float) -> float:
+        return self.width / 2
+
+    @property
+    def rounded(self) -> bool:
+        return self.ends == "round"
+
+    def tool(self, occ: Any, radius: float, top: float) -> int:
+        lo, hi = self.reach(radius)
+        floor, half = self.floor(radius), self.width / 2
+        a, b = (lo + half, hi - half) if self.rounded else (lo, hi)
+        places = ((-half, a), (half, a), (half, b), (-half, b))
+        points = [occ.addPoint(x, y, floor) for x, y in places]
+        sides = [occ.addLine(points[1], points[2]), occ.addLine(points[3], points[0])]
+        if self.rounded:
+            start = _half_circle(occ, points[0], points[1], (a, lo), floor)
+            end = _half_circle(occ, points[2], points[3], (b, hi), floor)
+        else:
+            start = [occ.addLine(points[0], points[1])]
+            end = [occ.addLine(points[2], points[3])]
+        loop = occ.addCurveLoop([*start, sides[0], *end, sides[1]])
+        drawn = occ.extrude([(2, occ.addPlaneSurface([loop]))], 0, 0, self.depth + top)
+        return next(tag for dim, tag in drawn if dim == 3)
+
+    def volume(self, outer: float, inner: float) -> float | None:
+        from scipy.integrate import quad
+
+        floor, half = self.floor(outer), self.width / 2
+        if floor < inner:
+            return None
+
+        def section(x: float) -> float:
+            along = self.length
+            if self.rounded:
+                along = along - 2 * half + 2 * math.sqrt(half**2 - x * x)
+            return (math.sqrt(outer**2 - x * x) - floor) * along
+
+        return 2 * quad(section, 0, half, epsabs=0, epsrel=1e-12)[0]
+
+    def edges(self, radius: float) -> tuple[float, float]:
+        # half a circle of fewer than four edges is no end of a keyway: five leave room for them
+        curved = math.pi * self.width / 10 if self.rounded else math.inf
+        return min(self.depth, self.width / 2), curved
+
+    def beside_edges(self, radius: float, frame: Frame) -> str:
+        (lo, hi), half, num = self.reach(radius), self.width / 2, frame.num
+        if self.rounded:
+            along = frame.outside(lo + half, hi - half)
+            return f"(Sqrt({frame.across}^2+{along}^2)-{num(half)})"
+        aside, along = f"({frame.across}-{num(half)})", f"Max({num(lo)}-y,y-{num(hi)})"
+        outside = f"Sqrt(Max(0,{aside})^2+Max(0,{along})^2)"
+        return f"({outside}+Min(0,Max({aside},{along})))"
+
+
+def _half_circle(
+    occ: Any, first: int, last: int, y: tuple[float, float], floor: float
+) -> list[int]:
+    """Draw the end of a slot between two points by way of its tip, with middle and tip at `y`, and
+    return the tags of both arcs.
+    """
+    middle, tip = (occ.addPoint(0, place, floor) for place in y)
+    return [occ.addCircleArc(first, middle, tip), occ.addCircleArc(tip, middle, last)]

@@ -1,0 +1,279 @@
+r"""A part of equal sectors from half of one: where a sector is even about its middle plane, its
+matrices are real.
+
+With ``v_k = Re(e^{i k h alpha} V)`` as in :mod:`solidgear.cuts.sector.cyclic` and the mirror S of the
+middle plane, ``conj(S V(S x))`` meets the same conditions on the cut faces as V does. So every
+eigenspace has a basis of motions that equal their image: ``V = a + i b`` with a symmetric and b
+antisymmetric. On the middle plane a stays in the plane and b moves across it. On the cut face, at
+half the angle of the sector,
+
+    V = e^{i h alpha / 2} (w_r r + w_y y + i w_t t),    w real,
+
+with the directions r along the radius and t around: both conditions of the whole sector in one.
+Inside a and b do not meet. On the axis h = 0 leaves y to a, and h = 1 one number, ``z + i x``.
+
+There are as many real unknowns as the whole sector has complex ones, and one of every pair of
+twins: the other one is ``-i V``. With h = 0 a (axial) and b (torsion) are separate blocks; with h = 1 the unknowns are bending in the plane of y and z, and the block in the plane of x and y
+mirrors it (Thomas 1979 solves the pair at once).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+
+from solidgear.core.body import Block
+from solidgear.core.body.surface import Surface
+from solidgear.core.frames import rotation
+from solidgear.core.kernel.attachment import Attached, with_ports
+from solidgear.cuts.sector.meshing import MATCH, SectorMesh
+from solidgear.cuts.sector.cyclic import ROUNDING
+from solidgear.cuts.sector.mesh import PieceSolid
+from solidgear.core.models.solid.block import rigid_motions
+from solidgear.core.models.solid.drawing import copied, solid_surface
+from solidgear.core.models.solid.matrices import _matrices, weighed
+from solidgear.core.models.solid.mesh import SolidMesh, _isoparametric
+
+#: blocks that ports move in: harmonic index and components
+PORTED: dict[str, tuple[int, tuple[int, ...]]] = {
+    "axial": (0, (1,)),
+    "torsion": (0, (4,)),
+    "bending_z": (1, (2, 3)),
+}
+_MIRROR = np.array([-1.0, 1.0, 1.0])
+#: the mirror on a motion of three displacements and three rotations
+_MIRROR6 = np.diag([-1.0, 1.0, 1.0, 1.0, -1.0, -1.0])
+
+
+@dataclass(frozen=True)
+class HalfSector:
+    """Places of the nodes of half a sector."""
+
+    count: int  #: sectors around, at least 3
+    middle: np.ndarray  #: nodes on the middle plane without the axis
+    cut: np.ndarray  #: nodes on the cut face without the axis
+    axis: np.ndarray  #: nodes on the axis
+    turn: float = 0.0  #: angle of the middle of the sector, rad
+
+    @property
+    def angle(self) -> float:
+        """Angle of the whole sector, rad."""
+        return 2 * np.pi / self.count
+
+
+def basis(half: HalfSector, nodes: int, h: int) -> tuple[sp.csr_matrix, np.ndarray]:
+    """Return the basis (6 nodes, m) of motions of half a sector with harmonic index h, below half the
+    number of sectors, and the node (m,) of each unknown.
+
+    Rows are a, then b; columns are orthonormal. With h = 0 each column is in one of both.
+
+    Examples
+    --------
+    Three real unknowns on the cut face, as on the middle plane; on the axis one or none:
+
+    >>> none, node = np.zeros(0, int), np.array([0])
+    >>> cut = HalfSector(5, middle=none, cut=node, axis=none)
+    >>> middle = HalfSector(5, middle=node, cut=none, axis=none)
+    >>> axis = HalfSector(5, middle=none, cut=none, axis=node)
+    >>> [[basis(half, 1, h)[0].shape[1] for h in (0, 1, 2)] for half in (cut, middle, axis)]
+    [[3, 3, 3], [3, 3, 3], [1, 1, 0]]
+    """
+    inside = np.setdiff1d(np.arange(nodes), np.r_[half.middle, half.cut, half.axis])
+    real, imaginary = np.eye(6)[:, :3], np.eye(6)[:, 3:]
+    s, c = np.sin(half.angle / 2), np.cos(half.angle / 2)
+    radial, along, around = np.array([[s, 0.0, c], [0.0, 1.0, 0.0], [c, 0.0, -s]])
+    cos, sin = np.cos(h * half.angle / 2), np.sin(h * half.angle / 2)
+    on_cut = np.array(
+        [
+            np.r_[cos * radial, sin * radial],
+            np.r_[cos * along, sin * along],
+            np.r_[-sin * around, cos * around],
+        ]
+    ).T
+    on_axis = {0: real[:, [1]], 1: (real[:, [2]] + imaginary[:, [0]]) / np.sqrt(2)}
+    kinds = (
+        (inside, np.eye(6)),
+        (half.middle, np.column_stack([real[:, 1:], imaginary[:, 0]])),
+        (half.cut, on_cut),
+        (half.axis, on_axis.get(h, np.zeros((6, 0)))),
+    )
+    rows, columns, values, node, size = [], [], [], [], 0
+    for members, motions in kinds:
+        wide = motions.shape[1]
+        place = 3 * nodes * (np.arange(6) // 3) + np.arange(6) % 3
+        i = 3 * members[:, None, None] + place[:, None]
+        j = size + wide * np.arange(len(members))[:, None, None] + np.arange(wide)
+        i, j, v = np.broadcast_arrays(i, j, motions)
+        nonzero = v != 0.0
+        rows.append(i[nonzero])
+        columns.append(j[nonzero])
+        values.append(v[nonzero])
+        node.append(np.repeat(members, wide))
+        size += wide * len(members)
+    entries = np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))
+    return sp.csr_matrix(entries, shape=(6 * nodes, size)), np.concatenate(node)
+
+
+def half_sector_blocks(
+    mesh: HalfSectorSolid,
+    scene: Any,
+    wanted: Sequence[tuple[Any, str]],
+    parts_of: Callable[[Any, str], Any],
+    harmonics: Sequence[int] = (),
+) -> tuple[Block, ...]:
+    """Return the blocks of a whole part from the mesh of half a sector, as by
+    :func:`solidgear.cuts.sector.cyclic.cyclic_blocks`: ``axial``, ``torsion``, ``bending_z`` and
+    its mirror image ``bending_x``, and ``ovalising_h`` without ports, which stands for its twin as
+    well.
+    """
+    k, m = _matrices(mesh, [segment.material for segment in scene.segments])
+    m, n, half = m.tocsr(), mesh.nodes.shape[1], mesh.sector
+    rigid = rigid_motions(mesh.nodes)
+    seats = []
+    for station, attachment in wanted:
+        pieces, rigid_nodes = parts_of(station, attachment)
+        gram, loads = weighed(pieces, station.y, n)
+        seats.append((station, rigid_nodes, _around(gram, half), loads))
+    doubled = [sp.block_diag([x, x], format="csr") for x in (k, m)]
+    blocks: list[Block] = []
+    still, node = basis(half, n, 0)
+    # a holds axial motion, b torsion: the columns of each
+    turning = np.asarray(abs(still[3 * n :]).sum(axis=0)).ravel() > 0
+    for name, columns, part in (("axial", ~turning, 0), ("torsion", turning, 1)):
+        t = still[3 * n * part : 3 * n * (part + 1)][:, columns]
+        blocks.append(_block(name, (k, m), t, node[columns], mesh, rigid, seats))
+    t, node = basis(half, n, 1)
+    bending = _block("bending_z", doubled, t, node, mesh, rigid, seats)
+    blocks += [bending, bending.mirrored("bending_x", (0, 5), len(blocks), (1.0, -1.0))]
+    for h in harmonics:
+        t, node = basis(half, n, h)
+        blocks.append(_block(f"ovalising_{h}", doubled, t, node, mesh, rigid, ()))
+    return tuple(blocks)
+
+
+def _around(gram: np.ndarray, half: HalfSector) -> np.ndarray:
+    """Return the Gram matrix of a whole seat from that of its part on the half."""
+    gram = gram + _MIRROR6 @ gram @ _MIRROR6
+    turns = [rotation(1, k * half.angle) for k in range(half.count)]
+    return sum(turn @ gram @ turn.T for turn in turns)
+
+
+def _block(name, matrices, t, node, mesh: HalfSectorSolid, rigid, seats) -> Block:
+    h, components = PORTED.get(name, (2, ()))
+    # both halves of all sectors; cos^2 and sin^2 of the phases are one half on the mean
+    energy = 2 * mesh.sector.count if h == 0 else mesh.sector.count
+    stiffness, mass = (energy * (t.T @ x @ t) for x in matrices)
+    ports = []
+    for station, rigid_nodes, gram, loads in seats:
+        if rigid_nodes is not None:
+            ports.append(Attached(station.y, held=np.isin(node, rigid_nodes)))
+            continue
+        block_gram = gram[np.ix_(components, components)]
+        motion = np.linalg.solve(block_gram, energy * (t.T @ _in_parts(loads, components)).T)
+        motion[np.abs(motion) < ROUNDING * np.abs(motion).max(axis=1, keepdims=True)] = 0.0
+        ports.append(Attached(station.y, motion))
+    block = Block(
+        name,
+        components,
+        stiffness.tocsr(),
+        mass.tocsr(),
+        t.T @ _in_parts(rigid, components) if components else np.zeros((t.shape[1], 0)),
+        mesh.nodes[1, node],
+        planar=False,
+        expand=t.tocsr(),
+    )
+    return with_ports(block, ports)
+
+
+def _in_parts(six: np.ndarray, components: tuple[int, ...]) -> np.ndarray:
+    """Return rigid motions, or loads on them, of a whole part as a, and with waves b below it.
+
+    Seen in turned axes a translation along z becomes ``e^{i k alpha} (z + i x)``, and the axis of a
+    tilt about x turns the other way, from x to -z.
+    """
+    block_columns = six[:, list(components)]
+    return (
+        np.vstack([block_columns, six[:, [0, 5]] * (1.0, -1.0)])
+        if components == (2, 3)
+        else block_columns
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class HalfSectorSolid(PieceSolid):
+    """The mesh of half a sector, which draws the whole part."""
+
+    sector: HalfSector
+
+    def surface(self, moved: Mapping[str, np.ndarray]) -> Surface:
+        """Return all copies of the half and of its image, each with its phase."""
+        half, parts = self.sector, []
+        for name, vector in moved.items():
+            a, b = (
+                solid_surface(self, part).displacement for part in _even_and_odd(self, name, vector)
+            )
+            parts.append((name, a, b))
+        undeformed = solid_surface(self, None)
+        copies = []
+        for k in range(half.count):
+            angle = k * half.angle + half.turn
+            turn = rotation(1, angle)[:3, :3]
+            for side, image in ((1.0, np.eye(3)), (-1.0, np.diag(_MIRROR))):
+                local = np.zeros(undeformed.points.shape)
+                for name, a, b in parts:
+                    of_a, of_b = _phases(name, angle)
+                    local += of_a * a + side * of_b * b
+                copies.append((turn @ image, local))
+        return copied(undeformed, copies)
+
+
+def _even_and_odd(mesh: SolidMesh, name: str, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return a and b of the vector of a block."""
+    size = 3 * mesh.nodes.shape[1]
+    zero = np.zeros(size)
+    if name == "axial":
+        return vector, zero
+    return (zero, vector) if name == "torsion" else (vector[:size], vector[size:])
+
+
+def _phases(name: str, angle: float) -> tuple[float, float]:
+    """Return the factors of a and b in a copy at an angle: the real part of ``e^{i h angle} (a + i
+    b)``, times -i in the plane of x.
+    """
+    if name in ("axial", "torsion"):
+        return 1.0, 1.0
+    if name == "bending_x":
+        return np.sin(angle), np.cos(angle)
+    h = 1 if name == "bending_z" else int(name.rsplit("_", 1)[1])
+    return np.cos(h * angle), -np.sin(h * angle)
+
+
+def half_sector_solid(meshed: SectorMesh) -> HalfSectorSolid:
+    """Return the isoparametric mesh of half a sector, with the nodes of its planes."""
+    plain = _isoparametric(meshed.mesh, "tet10", meshed.segment)
+    outside = meshed.mesh.boundary_facets()
+    x, _, z = meshed.mesh.p[:, meshed.mesh.facets[:, outside]]
+    tolerance = MATCH * np.ptp(meshed.mesh.p[1])
+    c, s = np.cos(np.pi / meshed.count), np.sin(np.pi / meshed.count)
+    planes = [
+        outside[(np.abs(distance) < tolerance).all(axis=0)] for distance in (x, x * c - z * s)
+    ]
+    middle, cut = (plain.facet_unknowns(facets) for facets in planes)
+    axis = np.intersect1d(middle, cut)
+    half = HalfSector(
+        meshed.count, np.setdiff1d(middle, axis), np.setdiff1d(cut, axis), axis, meshed.turn
+    )
+    return HalfSectorSolid(
+        plain.mesh,
+        plain.name,
+        plain.element,
+        plain.dofs,
+        plain.nodes,
+        plain.segment,
+        np.concatenate(planes),
+        half,
+    )

@@ -1,0 +1,1 @@
+"""Cuts in the full 3D solid."""

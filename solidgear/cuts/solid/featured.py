@@ -1,0 +1,78 @@
+"""3D solid of a shaft with features: curved tetrahedra, in two half models where there is a mirror
+plane.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from solidgear.core.body import Block, Body
+from solidgear.core.kernel.room import assemblable
+from solidgear.cuts.solid.meshing import FeaturedMesh, featured_mesh, submesh
+from solidgear.core.meshing.quality import check_mesh
+from solidgear.core.models.kinds import CYCLIC
+from solidgear.core.models.solid.block import Facets, body_of, free_block, mesh_facts
+from solidgear.cuts.solid.halves import HalfDrawing, half_blocks
+from solidgear.core.models.solid.mesh import SolidMesh, _isoparametric
+from solidgear.core.models.solid.plan import tetrahedra_of
+from solidgear.core.models.solid.seat_faces import Seats
+from solidgear.core.scene.shaft import resolved
+
+
+def meshed(scene, plan: dict, refinement: float, half: bool, edges: bool = False) -> FeaturedMesh:
+    """Mesh a scene with features; ``plan`` holds planes, circles and sizes, and ``edges`` asks for
+    smaller elements at the re-entrant edges of features.
+    """
+    assemblable(tetrahedra_of(scene, plan, refinement, edges=edges), 10)
+    return featured_mesh(
+        scene.outline,
+        resolved(scene),
+        **plan,
+        refinement=refinement,
+        half=half,
+        edges=edges,
+    )
+
+
+def featured_body(
+    scene: Any, wanted: Sequence, cut_mesh: FeaturedMesh, refinement: float, *, plain: bool = False
+) -> Body:
+    """Build the free body of a meshed scene with its features cut out or, `plain`, left in: two
+    blocks where there is a mirror plane, one where there is none; refuse a seat without faces and
+    inverted elements.
+    """
+    keep = np.ones(len(cut_mesh.cut), bool) if plain else ~cut_mesh.cut
+    mesh = cut_mesh.mesh if plain else submesh(cut_mesh.mesh, keep)
+    quality = replace(check_mesh(mesh), straightened=cut_mesh.quality.straightened)
+    solid = _isoparametric(mesh, "tet10", cut_mesh.segment[keep])
+    facets = _facets(solid, scene)
+    if cut_mesh.plane is None:
+        blocks: tuple[Block, ...] = (free_block(solid, scene, wanted, facets),)
+        drawing: SolidMesh | HalfDrawing = solid
+    else:
+        blocks = half_blocks(solid, scene, wanted, facets, cut_mesh.plane)
+        drawing = HalfDrawing(solid, cut_mesh.plane)
+    facts = {
+        **mesh_facts(solid, quality, copies=1 if cut_mesh.plane is None else 2),
+        "refinement": refinement,
+        "features": [f.name for f in resolved(scene)],
+        "mirror_plane": "none" if cut_mesh.plane is None else f"{'xyz'[cut_mesh.plane]} = 0",
+        # no symmetry promises twins
+        "round": False,
+        "pair_tolerance": 0.0,
+    }
+    return body_of(scene, wanted, blocks, facts, drawing)
+
+
+def _facets(solid: SolidMesh, scene: Any) -> Facets:
+    """Return the facets of seats on the rest of surfaces of revolution, and on teeth."""
+    cyclic = [f for f in resolved(scene) if f.sort == CYCLIC]
+    if not cyclic:
+        return Seats(solid, scene.segments, clipped=False)
+    from solidgear.cuts.sector.mesh import seats  # slow to import, and seldom needed
+
+    return seats(solid, solid.mesh.p, scene, cyclic)

@@ -1,0 +1,114 @@
+"""Guards on lumped models."""
+
+from __future__ import annotations
+
+from solidgear.core.errors import SolidgearError
+from solidgear.core.judge import deviations
+from solidgear.core.judge.deviations import gap_verdict
+from solidgear.core.judge.lumped import preferred
+from solidgear.core.judge.ties import SCENE
+from solidgear.core.ladder.model import BEAM
+from solidgear.core.ladder.registry import LADDER
+from solidgear.core.quantity import FIRST_BENDING
+from solidgear.guards.notice import Notice, Notices, against, beams, beyond, sure
+from solidgear.guards.probe import Probe
+
+BEAM_OR_SOLID = "a beam or a solid"
+# effective_mass_limits.py: held along the head of the overhung pinion; at 7 % the receptance is
+# right to 0.24 of first bending only
+ENERGY = 0.95
+
+
+def effective_mass(probe: Probe) -> Notices:
+    """Yield a notice where there is no lumped model, or where the first mode is not nearly the
+    static shape it rests on.
+    """
+    try:
+        point, variants = probe.lumped
+    except SolidgearError as error:
+        yield Notice("avoid", ("lumped",), f"there is no lumped model: {error}")
+        return
+    thesis = variants["thesis"]
+    if not thesis.feasible and probe.scene.ask.lumped:
+        yield Notice(
+            "fact",
+            ("lumped",),
+            f"the published equations of effective mass have no solution here ({thesis.verdict})",
+        )
+    better = probe.instead("the beam", *LADDER.of(BEAM))
+    beam = "its beam" if probe.beam_fits else "the beam of the plain part"
+    matched, reasons, level = variants["mode-matched"], [], "caution"
+    if not (matched.feasible and matched.first):
+        deviation = variants["guyan"].frequency_error
+        assert deviation is not None  # its mass is always positive definite
+        level = beyond(deviation, probe.scene.ask.tolerance)
+        lacks = "holds the mode as its second one" if matched.feasible else "has a negative entry"
+        reasons.append(
+            f"the mode-matched pair of masses {lacks}: Guyan's stands in, whose first bending is "
+            f"{against(deviation, 'higher', 'lower')} that of {beam}"
+        )
+    if point.static_share < ENERGY:
+        reasons.append(
+            f"the static shape of {probe.scene.port.name!r} holds {100 * point.static_share:.3g} "
+            f"% of the energy of first bending, less than {100 * ENERGY:g} %: the mode lives "
+            "elsewhere, and a lumped model is good for stiffness only"
+        )
+    if reasons:
+        yield Notice(level, ("lumped",), f"{'; '.join(reasons)}; use {better}")
+
+
+def lumped_against_solid(probe: Probe) -> Notices:
+    """Yield a notice on first bending of the lumped model, with the errors of its beam and of
+    lumping, against a light harmonic solid.
+    """
+    try:
+        _, variants = probe.lumped
+    except SolidgearError:
+        return  # `effective_mass` says so
+    variant, solid = preferred(variants), probe.solution("harmonic")
+    frequency = None if variant is None else variants[variant].frequency_hz
+    truth, tolerance = solid.quantities.get(FIRST_BENDING), probe.scene.ask.tolerance
+    if not truth or frequency is None:
+        return
+    gap = frequency / truth - 1
+    bars = solid.error_bars.get(SCENE, {})
+    bar = bars[FIRST_BENDING].width if FIRST_BENDING in bars else 0.0
+    kind = gap_verdict(gap, bar, tolerance)
+    text = (
+        f"first bending of the lumped model is {against(gap, 'higher', 'lower')} "
+        f"that of a light harmonic solid{sure(bar)}"
+    )
+    if kind == deviations.BEYOND:
+        yield Notice(
+            "avoid",
+            ("lumped",),
+            f"{text}, more than the {100 * tolerance:g} % asked for; use {probe.instead(BEAM_OR_SOLID, *beams())}",
+        )
+    elif kind == deviations.OPEN:
+        yield Notice(
+            "open",
+            ("lumped",),
+            f"{text}, and the light solid is too coarse to tell whether that is within the "
+            f"{100 * tolerance:g} % asked for; run compare to find out",
+        )
+
+
+# guyan_in_frequency.py: off by 1 % and 10 % of the static stiffness, over the first frequency with
+# the lumped point held
+HOLDS, DRIFTS = 0.39, 0.63
+
+
+def frequency_range(probe: Probe) -> Notices:
+    """Yield a notice where the range asked for reaches towards the first mode that a condensed
+    model cannot have.
+    """
+    highest = probe.scene.ask.max_frequency
+    if highest and (pole := probe.fixed_interface) and highest > HOLDS * pole:
+        yield Notice(
+            "avoid" if highest > pole else "caution",
+            ("lumped",),
+            f"{highest:g} Hz are asked for, and with the lumped point held the shaft has a mode at "
+            f"{pole:.4g} Hz that no condensed model has: Guyan's is off by 1 % of the "
+            f"stiffness from {HOLDS * pole:.4g} Hz, by 10 % from {DRIFTS * pole:.4g} Hz; use "
+            f"{probe.instead(BEAM_OR_SOLID, *beams())} above",
+        )

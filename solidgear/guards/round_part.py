@@ -1,0 +1,146 @@
+"""Body of revolution inside a part: whether it will do in its place, with the numbers of both."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from solidgear.core.errors import listed
+from solidgear.core.judge.deviations import BEYOND, WITHIN, gap_verdict
+from solidgear.core.judge.quantities import change, judged
+from solidgear.core.judge.solution import Solution
+from solidgear.core.judge.ties import SCENE
+from solidgear.compare.verdict import percent
+from solidgear.core.ladder.model import SOLID
+from solidgear.core.ladder.registry import LADDER
+from solidgear.core.models.kinds import PARTS
+from solidgear.guards import Notice, Probe
+
+if TYPE_CHECKING:
+    from solidgear.core.scene import Scene
+
+#: model of revolution that is held against the part
+ROUND_MODEL = "harmonic"
+
+
+def described(scene: Scene) -> Iterator[Notice]:
+    """Yield notices on the body of revolution inside the part of a scene."""
+    body = scene.body
+    if body is None:
+        return
+    off = 100 * (body.round_volume - 1)
+    same = "that of the part" if abs(off) < 1e-6 else f"{off:+.2g} % from that of the part"
+    if body.round and abs(off) > 1e-4:
+        same += ", as facets of its mesh explain"
+        if abs(off) > 0.1:
+            # of a polygon on the circle, n sin(t) / 2 and n sin(t) (2 + cos t) / 24 with t = 2 pi / n
+            same += (
+                ": models of its segments are of the round part; a solid of the mesh is so much "
+                f"{'lighter' if off > 0 else 'heavier'}, and the second moment of its sections is "
+                f"{'lower' if off > 0 else 'higher'} by about twice that; how it bends rests on its "
+                "elements too"
+            )
+    if body.beside_arcs:
+        same += (
+            "; arcs such as fillets are cones of the same volume, which lie up to "
+            f"{1e3 * body.beside_arcs:.2g} mm beside them"
+        )
+    several = len(scene.segments) > 1
+    segments = f"{len(scene.segments)} segments are" if several else "1 segment is"
+    noun = "segments" if several else "segment"
+    yield Notice(
+        "fact",
+        (),
+        f"{body.name}: {1e6 * body.volume:.6g} cm^3, of which {segments} the round part: "
+        f"{100 * body.round_share:.3g} % of its surface beside end faces and shoulders "
+        f"is of revolution, and the volume of the {noun} is {same}",
+    )
+    yield from of_files(scene)
+
+
+def of_files(scene: Scene) -> Iterator[Notice]:
+    """Yield notices on the materials of a part, doubts about its files, and a single mesh, which is
+    not judged.
+    """
+    body = scene.body
+    assert body is not None  # asked of parts
+    yield from _of_materials(scene)
+    for sentence in body.doubts(scene.material):
+        yield Notice("caution", (), sentence)
+    if body.one_mesh and not body.coarser:
+        finer = "" if body.edges else "; a STEP file would be meshed coarse to fine"
+        yield Notice(
+            "caution",
+            tuple(model.name for model in LADDER if PARTS in model.holds),
+            f"the mesh of {body.name} is the only one there is: how good its numbers are is not "
+            f'judged{finer}; mesh = ["coarser", "finer"] of the [body] judges two',
+        )
+
+
+def _of_materials(scene: Scene) -> Iterator[Notice]:
+    """Yield notices on the materials of a part, and on the mean material of its round part."""
+    body = scene.body
+    assert body is not None  # asked of parts
+    if not body.groups:
+        return
+    labels = [
+        f"{group.label} {1e6 * group.volume:.6g} cm^3, {material.density * group.volume:.6g} kg, "
+        f"E {material.E / 1e9:.6g} GPa"
+        for group, material in zip(body.groups, body.materials(scene.material))
+    ]
+    yield Notice(
+        "fact",
+        (),
+        f"{body.name} by materials: {'; '.join(labels)}; {body.mass(scene.material):.6g} kg in all",
+    )
+    if body.mixed:
+        yield Notice(
+            "caution",
+            (),
+            f"across {listed(body.mixed, 12)} of the round part several materials lie side by side, "
+            "which no segment can hold: there it is told with one of their mean E and density, as "
+            "stiff and as heavy in tension only",
+        )
+
+
+def against_the_part(
+    scene: Scene, solutions: dict[str, Solution], probe: Probe
+) -> Iterator[Notice]:
+    """Yield notices that compare the light harmonic solid of the round part, which is that of the
+    probe, with the solids of the part itself.
+    """
+    if scene.body is None or scene.body.round:
+        return
+    names, tolerance = judged(scene), scene.ask.tolerance
+    mean_material = ", with one mean material across," if scene.body.mixed else ""
+    for model in (m for m in LADDER.of(SOLID) if m in solutions and PARTS in LADDER[m].holds):
+        round_solution, solution = probe.solution(ROUND_MODEL), solutions[model]
+        labels, verdicts = [], []
+        for name in names:
+            gap = change(round_solution.quantities, solution.quantities, name)
+            if gap is None:
+                continue
+            bars = [r.error_bars.get(SCENE, {}).get(name) for r in (round_solution, solution)]
+            bar = sum(b.width for b in bars if b is not None)
+            labels.append(
+                f"{name} {round_solution.quantities[name]:.5g} {name.unit} ({'+' if gap > 0 else ''}{percent(gap)}"
+                + (f" +- {percent(bar)})" if all(bars) else ", part without an error bar)")
+            )
+            verdicts.append(gap_verdict(gap, bar, tolerance))
+        if not labels:
+            continue
+        if all(v == WITHIN for v in verdicts):
+            words = (
+                f"within the {percent(tolerance)} asked for, the {LADDER[ROUND_MODEL].title} of "
+                "its segments would do"
+            )
+        elif BEYOND in verdicts:
+            words = f"more than the {percent(tolerance)} asked for: the part is needed"
+        else:
+            words = f"whether that is within the {percent(tolerance)} asked for is open"
+        yield Notice(
+            "caution",
+            (model,),
+            f"the round part of {scene.body.name} alone{mean_material}, as {LADDER[ROUND_MODEL].title}, has "
+            f"{', '.join(labels)} against the {LADDER[model].title} of the part; {words}",
+        )

@@ -1,0 +1,332 @@
+"""Measured resonances from a file: frequencies, their uncertainty, and known properties.
+
+A TOML file holds a list ``mode``; a CSV file has a head such as ``frequency [kHz], multiplicity``;
+a universal file has shapes as well, which a TOML file may join to its resonances, or frequency
+responses; a CSV file of those has the head ``frequency [Hz], real, imaginary``. A TOML file with
+``file = "tap.uff"`` in place of a list states where the points of that file lie, and in which unit.
+
+    title = "Tap test, hung on two cords"
+    uncertainty = "0.1 %"           # of all modes that say nothing else
+    mode = [
+        { frequency = "98.459 kHz", multiplicity = 2 },
+        { frequency = "121.2 kHz", uncertainty = "0.2 kHz", name = "torsion 1", shape = 2 },
+    ]
+    shapes = "tap.unv"              # shape 2: its second mode by frequency
+    points = { unit = "mm", axis = "x", origin = "-80 mm" }     # of its points
+    noise = "5 %"                   # of a component of a shape
+    damping = "0.1 %"               # ratio: how near two modes are heard as one
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+from pydantic import AfterValidator, BeforeValidator, Field, PrivateAttr, model_validator
+
+from solidgear.core.body.surface import Surface
+from solidgear.core.errors import SceneError, show
+from solidgear.core.scene.toml_file import parse
+from solidgear.core.scene.typed import Model
+from solidgear.core.scene.units import Frequency, quantity
+from solidgear.core.loading import explained
+from solidgear.measured.alignment import BANDWIDTH
+from solidgear.measured.axis_labels import response
+from solidgear.measured.csv_file import read_csv
+from solidgear.measured.placement import Places, PointsTable
+from solidgear.measured.responses import ResponseFit
+from solidgear.measured.universal import ENDINGS, Responses, Shapes, read_universal
+
+#: resonances of a file
+MOST = 2000
+#: standard deviation of a component of a shape of which nothing is said, relative to the root mean
+#: square of the shape: of careful modal tests
+NOISE = (0.05, "relative")
+
+
+def _uncertainty(value: Any) -> tuple[float, str]:
+    """Return a share such as ``0.1 %`` or 0.001, or a frequency such as ``2 Hz``; and which of the
+    two.
+    """
+    if isinstance(value, tuple):  # read already
+        return value
+    try:
+        return quantity(value, "dimensionless"), "relative"
+    except SceneError:
+        return quantity(value, "frequency"), "Hz"
+
+
+def _above_zero(value: tuple[float, str]) -> tuple[float, str]:
+    if not value[0] > 0:
+        raise SceneError(
+            'must be greater than zero: no frequency is known exactly; write for example "0.1 %"'
+        )
+    if value[1] == "relative" and value[0] >= 1:
+        raise SceneError('is more than all of the frequency; a number is a share, "0.1 %" is 0.001')
+    return value
+
+
+def _share(value: tuple[float, str]) -> tuple[float, str]:
+    if value[1] != "relative":
+        raise SceneError('must be a share and no frequency, such as "5 %"')
+    return value
+
+
+Uncertainty = Annotated[
+    tuple[float, str], BeforeValidator(_uncertainty), AfterValidator(_above_zero)
+]
+
+
+def _response_unit(value: Any) -> tuple[float, int] | None:
+    """Return a motion over a force such as ``m/s^2/N``: SI units in one, and derivatives of
+    displacement.
+    """
+    if not value:
+        return None
+    unit = response(value) if isinstance(value, str) else None
+    if unit is None:
+        raise SceneError(
+            'must be a motion over a force, such as "m/s^2/N" or "g/N"', value=show(value)
+        )
+    return unit
+
+
+ResponseUnit = Annotated[tuple[float, int] | None, BeforeValidator(_response_unit)]
+
+
+class MeasuredMode(Model):
+    """A measured resonance."""
+
+    frequency: Frequency  #: Hz
+    uncertainty: Uncertainty | None = None  #: one standard deviation
+    #: 1 for a single resonance, 2 for a pair at one frequency; None where nobody looked
+    multiplicity: Annotated[int, Field(strict=True, ge=1, le=2)] | None = None
+    #: of the mode where it is known, such as ``bending 1``, or only its family: ``bending``
+    name: str = ""
+    #: number of its shape among those of the file of shapes, by ascending frequency, from one
+    shape: Annotated[int, Field(strict=True, ge=1)] | None = None
+
+    @property
+    def width_hz(self) -> float | None:
+        """Standard deviation, Hz."""
+        if self.uncertainty is None:
+            return None
+        value, kind = self.uncertainty
+        return value * self.frequency if kind == "relative" else value
+
+
+class Measured(Model):
+    """Measured resonances of a body."""
+
+    title: str = ""
+    source: str = ""
+    uncertainty: Uncertainty | None = None  #: of all that say nothing else
+    shapes: str = ""  #: universal file of shapes, beside this one
+    file: str = ""  #: universal file whose resonances are taken in place of a list
+    #: of the responses of that file, ``m/s^2/N``: SI units in one, and derivatives of displacement
+    response_unit: ResponseUnit = None
+    points: PointsTable = PointsTable()  #: where the points of that file lie in the scene
+    #: standard deviation of a component of a shape, relative to the root mean square of the shape
+    noise: Annotated[Uncertainty, AfterValidator(_share)] = NOISE
+    #: ratio; modes nearer to each other than twice that are heard as one peak
+    damping: Annotated[Uncertainty, AfterValidator(_share)] = (BANDWIDTH / 2, "relative")
+    mode: tuple[MeasuredMode, ...] = ()  #: by ascending frequency
+    _on_points: Shapes | None = PrivateAttr(None)
+    _responses: ResponseFit | None = PrivateAttr(None)
+    _remarks: tuple[str, ...] = PrivateAttr(())
+
+    @property
+    def on_points(self) -> Shapes | None:
+        """Shapes on measuring points, zero of a resonance without one; None where none has."""
+        return self._on_points
+
+    @property
+    def responses(self) -> ResponseFit | None:
+        """Responses that the resonances were found in; None for a list of them."""
+        return self._responses
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """Sentences on how the file was read."""
+        return self._remarks
+
+    def placed(self, still: Surface, revolved: bool) -> Measured:
+        """Return the same data with points in the frame of a scene, on the surface of its body."""
+        shapes = self._on_points
+        if shapes is None:
+            return self
+        frame, away = Places(shapes.points, shapes.length, still, revolved).frame(self.points)
+        placing = frame.placing
+        out = self.unjudged(points=PointsTable())
+        out._on_points = shapes.placed(placing)
+        out._responses = self._responses and self._responses.placed(placing)
+        if not self.points.states(frame, shapes.length):
+            out._remarks = (
+                *self._remarks,
+                f"Measuring points were placed on the surface, within {max(1e3 * away, 0.01):.2g} mm, by "
+                f"{frame.table}.",
+            )
+        return out
+
+    @model_validator(mode="after")
+    def _ascending(self) -> Measured:
+        if self.file and (self.mode or self.shapes):
+            raise SceneError(
+                "give either the file of all resonances, or a list mode with shapes", path=("file",)
+            )
+        if self.file:
+            return self
+        if self.response_unit:
+            raise SceneError(
+                'responses of what file? write file = "tap.uff"', path=("response_unit",)
+            )
+        if not 1 <= len(self.mode) <= MOST:
+            raise SceneError(
+                f"holds {len(self.mode)} resonances; give 1 to {MOST}, or the file of them, file =",
+                path=("mode",),
+            )
+        for k, (mode, following) in enumerate(zip(self.mode, self.mode[1:]), start=1):
+            if following.frequency < mode.frequency:
+                raise SceneError(
+                    f"is below the one before it, {mode.frequency:g} Hz: frequencies ascend",
+                    path=("mode", k, "frequency"),
+                    value=f"{following.frequency:g} Hz",
+                )
+        return self
+
+    @property
+    def modes(self) -> tuple[MeasuredMode, ...]:
+        """Resonances, each with the uncertainty of all where it has none."""
+        return tuple(
+            mode
+            if mode.uncertainty is not None
+            else mode.model_copy(update={"uncertainty": self.uncertainty})
+            for mode in self.mode
+        )
+
+
+def load_measured(path: str | os.PathLike) -> Measured:
+    """Return measured resonances of a ``.toml`` or ``.csv`` file, or of a universal file ``.unv``,
+    ``.uff`` of mode shapes, or of frequency responses, in which resonances are then found; an error
+    names the file, the entry, its value and the right form.
+    """
+    name = os.fspath(path)
+    if name.lower().endswith(ENDINGS):
+        content = read_universal(name)
+        if isinstance(content, Responses):
+            return measured_from_responses(content, name)
+        return _from_shapes(*content, name)
+    tables: Mapping[str, Any] | Responses
+    if name.lower().endswith(".csv"):
+        with explained(name, {}):
+            tables = read_csv(Path(path), tuple(MeasuredMode.model_fields))
+    else:
+        tables = parse(name)
+    if isinstance(tables, Responses):
+        return measured_from_responses(tables, name)
+    try:
+        out = Measured(**tables)
+        if out.file:
+            return _from_universal(out, Path(name).parent)
+        if out.shapes or any(mode.shape for mode in out.mode):
+            out._on_points = _joined_shapes(out, Path(name).parent)
+    except SceneError as error:
+        # what is wrong in the file of shapes is told with that
+        raise error if error.where else error.located(tables, where=name) from None
+    return out
+
+
+def _from_universal(table: Measured, folder: Path) -> Measured:
+    """Return resonances of the universal file that a table names, with the entries of the table."""
+    path = folder / table.file
+    if not table.file.lower().endswith(ENDINGS):
+        raise SceneError(
+            "must be a universal file, .unv or .uff", path=("file",), value=show(table.file)
+        )
+    content = read_universal(path, table.response_unit)
+    if isinstance(content, Responses):
+        out = measured_from_responses(content, str(path))
+    elif table.response_unit:
+        raise SceneError(f"{table.file} holds no responses", path=("response_unit",))
+    else:
+        out = _from_shapes(*content, str(path))
+    listed = out.mode
+    if table.uncertainty is not None:
+        listed = tuple(m.model_copy(update={"uncertainty": table.uncertainty}) for m in listed)
+    return out.unjudged(
+        title=table.title or out.title,
+        source=table.source,
+        noise=table.noise,
+        damping=table.damping,
+        points=table.points,
+        mode=listed,
+    )
+
+
+def _joined_shapes(measured: Measured, folder: Path) -> Shapes:
+    """Return shapes of all resonances, from the file that is named; zero of those without."""
+    if not measured.shapes:
+        raise SceneError('shapes of what file? write shapes = "test.unv"', path=("shapes",))
+    content = read_universal(folder / measured.shapes)
+    if isinstance(content, Responses):
+        raise SceneError(
+            f"{measured.shapes} holds responses: give it in place of this file", path=("shapes",)
+        )
+    _, shapes = content
+    if shapes is None:
+        raise SceneError(
+            f"{measured.shapes} gives no places of its points (dataset 15 or 2411)",
+            path=("shapes",),
+        )
+    values = np.zeros((len(measured.mode), *shapes.values.shape[1:]), shapes.values.dtype)
+    for k, mode in enumerate(measured.mode):
+        if mode.shape is not None and mode.shape > len(shapes.values):
+            raise SceneError(
+                f"{measured.shapes} holds {len(shapes.values)} shapes",
+                path=("mode", k, "shape"),
+                value=str(mode.shape),
+            )
+        if mode.shape is not None:
+            values[k] = shapes.values[mode.shape - 1]
+    if not values.any():
+        raise SceneError(
+            "no mode names one of its shapes; write for example shape = 1", path=("shapes",)
+        )
+    return replace(shapes, values=values)
+
+
+def measured_from_responses(responses: Responses, name: str = "responses") -> Measured:
+    """Return resonances that are found in responses of a file; refused where none stands out of the
+    noise.
+    """
+    with explained(name, {}):
+        fit = ResponseFit.of(responses)
+    pairs = zip(fit.fit.frequencies.tolist(), fit.widths_hz.tolist())
+    modes = [{"frequency": f, "uncertainty": f"{d} Hz"} for f, d in pairs]
+    out = _from_modes(modes, name, fit.shapes, fit)
+    out._remarks = tuple(fit.remarks)
+    return out
+
+
+def _from_shapes(frequencies: Sequence[float], shapes: Shapes | None, name: str) -> Measured:
+    """Return resonances of a file of shapes."""
+    out = _from_modes([{"frequency": hertz} for hertz in frequencies], name, shapes)
+    if shapes is None:
+        out._remarks = (
+            "The file gives no places of its points (dataset 15 or 2411), so its shapes take no part.",
+        )
+    return out
+
+
+def _from_modes(
+    modes: list[dict[str, Any]], name: str, shapes: Shapes | None, fit: ResponseFit | None = None
+) -> Measured:
+    """Return resonances of a file that is no table of them."""
+    with explained(name, {"mode": modes}):
+        out = Measured(title=Path(name).stem, mode=modes)
+    out._on_points, out._responses = shapes, fit
+    return out

@@ -1,0 +1,243 @@
+"""Linear fit of the logarithms of entries to those of measured frequencies, about one scene."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+from scipy.optimize import lsq_linear
+from scipy.special import stdtrit
+
+from solidgear.core.errors import SolidgearError
+from solidgear.measured.computed import Computed
+from solidgear.measured.correlate import DEVIATIONS, on_points_of, peaks_of
+from solidgear.measured.data import Measured
+from solidgear.measured.same_part import Likeness, alignment_of
+from solidgear.measured.varied import Varied
+
+#: standard deviation of a logarithm from which on nothing is known of an entry: a factor of two
+UNDETERMINED = math.log(2.0)
+#: share of the direction that is not determined from which on an entry belongs to it
+SHARE = 0.3
+#: two modes may have changed places where that leaves less than this of what is between them; so
+#: many exchanges are tried; what is found is the same within a deviation
+EXCHANGED, STARTS, SAME = 0.5, 4, 1.0
+#: other values fit alike up to this misfit more: odds of one in ninety; and that of a resonance
+#: without a sure mode
+ALIKE, DOUBT = 9.0, 4.0
+#: a variance that is none
+TINY = 1e-24
+
+
+class Fit:
+    """Linear fit about one scene."""
+
+    def __init__(
+        self,
+        measured: Measured,
+        varied: Sequence[Varied],
+        x: np.ndarray,
+        computed: Computed,
+        all_rows: np.ndarray,
+        sure: float,
+    ):
+        """Pair and weigh; `all_rows` are derivatives of all modes, at logarithms `x`, and `sure` is
+        the least probability of a pair.
+        """
+        self.measured, self.computed, self.labels = measured, computed, [v.label for v in varied]
+        self.low = np.array([entry.low for entry in varied]) - x
+        self.high = np.array([entry.high for entry in varied]) - x
+        on_points = on_points_of(measured, computed)
+        likeness = on_points.likeness if on_points else None
+        alignment = alignment_of(*peaks_of(measured, computed), likeness)
+        self.likeness = Likeness.of(alignment)
+        likely = alignment.pairs.argmax(axis=1)
+        #: resonance and mode of each pair that is sure enough to be fitted
+        self.pairs = [(i, int(j)) for i, j in enumerate(likely) if alignment.pairs[i, j] >= sure]
+        #: one over the deviations of what is known beforehand, and how far off it is
+        self.prior_weight = 1 / np.array([entry.deviation for entry in varied])
+        self.prior = np.array([entry.middle for entry in varied]) - x
+        unknowns = int(np.count_nonzero(self.prior_weight == 0))
+        if len(self.pairs) < max(unknowns, 1):
+            bare = not np.isfinite(computed.bars).any()
+            raise SolidgearError(
+                f"identify: resonances with a sure mode: {len(self.pairs)}, fewer than the {unknowns} "
+                "entries that are to be found; "
+                + (
+                    "nothing tells how good the one mesh is: list a coarser one before it"
+                    if bare
+                    else "vary fewer, or measure more"
+                )
+            )
+        modes = [measured.modes[i] for i, _ in self.pairs]
+        mode_numbers = [j for _, j in self.pairs]
+        self.all_rows, self.rows = all_rows, all_rows[mode_numbers]
+        #: (pairs,) measured, Hz
+        self.frequencies = np.array([m.frequency for m in modes])
+        self.residual = np.log(
+            self.frequencies / [computed.modes[j].frequency_hz for j in mode_numbers]
+        )
+        widths = np.array([(m.width_hz or 0.0) / m.frequency for m in measured.modes])
+        mesh = np.minimum(computed.bars, 1.0) / DEVIATIONS
+        #: of every resonance, were it any of the modes
+        self.variances = widths[:, None] ** 2 + mesh**2
+        self.variance = self.variances[tuple(np.transpose(self.pairs))]
+        # the remaining scatter counts for all resonances; prior values leave more of it
+        stated = float(self.variance.mean())
+        size = math.sqrt(stated + TINY)
+        system = np.vstack([self.rows / size, np.diag(self.prior_weight)])
+        left_vectors, sizes, _ = np.linalg.svd(system, full_matrices=False)
+        left_vectors = left_vectors[:, sizes > 1e-9 * sizes[0]]
+        target = np.concatenate([self.residual / size, self.prior_weight * self.prior])
+        misfit = size * (target - left_vectors @ (left_vectors.T @ target))[: len(mode_numbers)]
+        spare = max(len(mode_numbers) - float(np.sum(left_vectors[: len(mode_numbers)] ** 2)), 1.0)
+        variance = float(misfit @ misfit) / spare
+        self.scatter = math.sqrt(max(variance - stated, 0.0))
+        # degrees of freedom of a variance stated in part, estimated in part (Welch, Satterthwaite)
+        freedom = spare * (max(variance, stated) / max(self.scatter**2, 1e-6 * stated, TINY)) ** 2
+        #: deviations on either side that hold 95 %
+        self.students = float(stdtrit(min(freedom, 1e6), 0.975))
+        self.weight = 1 / np.sqrt(self.variance + self.scatter**2 + TINY)
+        self.linear = self._weighed(self.rows, self.weight)
+        _, self.sizes, self.right = np.linalg.svd(self.linear, full_matrices=False)
+        sizes, right = self.sizes, self.right
+        stable_sizes = np.maximum(sizes, 1e-30)
+        #: of the logarithms of entries
+        self.covariance = (right.T / stable_sizes**2) @ right
+
+    def step(
+        self,
+        residual: np.ndarray | None = None,
+        rows: np.ndarray | None = None,
+        moved: np.ndarray | float = 0.0,
+        weight: np.ndarray | None = None,
+    ) -> np.ndarray:
+        """Return the change of the logarithms of entries within their bounds; none along directions
+        that the data leave open. Other residuals and derivatives are those at logarithms `moved`
+        from here, or of other pairs with their weights.
+        """
+        residual = self.residual if residual is None else residual
+        weight = self.weight if weight is None else weight
+        target = np.concatenate([residual * weight, self.prior_weight * (self.prior - moved)])
+        low, high = self.low - moved, self.high - moved
+        linear = self.linear if rows is None else self._weighed(rows, weight)
+        left_vectors, sizes, right = np.linalg.svd(linear, full_matrices=False)
+        determined = sizes > 1 / UNDETERMINED
+        step = ((left_vectors.T @ target)[determined] / sizes[determined]) @ right[determined]
+        if np.all((low <= step) & (step <= high)):
+            return step
+        return lsq_linear(linear, target, (low, high)).x
+
+    def _weighed(self, rows: np.ndarray, weight: np.ndarray) -> np.ndarray:
+        """Return derivatives of frequencies over their deviations, and of prior values."""
+        return np.vstack([rows * weight[:, None], np.diag(self.prior_weight)])
+
+    def exchanges(self, farthest: float) -> list[np.ndarray]:
+        """Return changes of the logarithms of entries, at most `farthest`, by which two modes of a
+        family change places, as two similar bearings do, or a mode takes a resonance that was left
+        out in place of the present one; best fits first.
+        """
+        logs = np.log([mode.frequency for mode in self.measured.modes])
+        modes, pairs = self.computed.modes, {j: i for i, j in self.pairs}
+        left_out = set(range(len(logs))) - set(pairs.values())
+        moves = [
+            {a: pairs[b], b: pairs[a]}
+            for a, b in combinations(pairs, 2)
+            if modes[a].name.family == modes[b].name.family
+        ] + [{j: i} for j in range(len(modes)) for i in left_out]
+        computed_logs = np.log([mode.frequency_hz for mode in modes])
+        begun = computed_logs.copy()
+        begun[list(pairs)] = logs[list(pairs.values())]
+        out = []
+        for move in moves:
+            j, i = (np.array(list(part)) for part in zip(*(pairs | move).items()))
+            target, weight = (
+                logs[i] - computed_logs[j],
+                1 / np.sqrt(self.variances[i, j] + self.scatter**2 + TINY),
+            )
+            change = self.step(target, self.all_rows[j], weight=weight)
+            residual = target - self.all_rows[j] @ change
+            moved = np.isin(j, list(move))
+            reached = abs(residual[moved]) < EXCHANGED * abs(logs[i] - begun[j])[moved]
+            distance = float(np.linalg.norm(self._weighed(self.all_rows[j], weight) @ change))
+            if reached.all() and distance > SAME and abs(change).max() <= farthest:
+                misfit = float(np.sum((residual * weight) ** 2)) + DOUBT * (len(logs) - len(j))
+                out.append((misfit, change))
+        return [change for _, change in sorted(out, key=lambda fit: fit[0])][:STARTS]
+
+    def distance(self, change: np.ndarray) -> float:
+        """Return the size of a change of logarithms, in deviations."""
+        return float(np.linalg.norm(self.sizes * (self.right @ change)))
+
+    def deviations(self) -> np.ndarray:
+        """Return standard deviations (entries,) of logarithms."""
+        return np.sqrt(np.diag(self.covariance))
+
+    def correlations(self) -> np.ndarray:
+        """Return correlations (entries, entries)."""
+        size = self.deviations()
+        return self.covariance / np.outer(size, size)
+
+    @property
+    def determined(self) -> bool:
+        """Return whether no direction is left open."""
+        return bool(self.sizes[-1] * UNDETERMINED >= 1)
+
+    def refuse_undetermined(self) -> None:
+        """Refuse entries that have a direction which the data leave open."""
+        if self.determined:
+            return
+        deviation = 1 / max(float(self.sizes[-1]), 1e-30)
+        direction = self.right[-1]
+        parts = [
+            f"{label} {'up' if part > 0 else 'down'}"
+            for label, part in zip(
+                self.labels, direction * np.sign(direction[abs(direction).argmax()])
+            )
+            if abs(part) >= SHARE * abs(direction).max()
+        ]
+        problem, advice = f"leave {parts[0]} open", "leave it out"
+        if len(parts) > 1:
+            problem, advice = f"cannot separate {' and '.join(parts)}", "leave one of them out"
+        raise SolidgearError(
+            f"identify: these resonances {problem}: {_factor(deviation)}; {advice}, or measure a mode that "
+            "it moves"
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class End:
+    """Logarithms at which a search ended, and the last step."""
+
+    x: np.ndarray
+    fit: Fit
+    step: np.ndarray
+
+    def misfit(self, scatter: float) -> float:
+        """Return the missing logarithm of the likelihood times two, at a scatter of all
+        frequencies.
+        """
+        fit = self.fit
+        residual = fit.residual - fit.rows @ self.step
+        unpaired = len(fit.measured.modes) - len(fit.pairs)
+        prior_misfit = fit.prior_weight * (fit.prior - self.step)
+        terms = residual**2 / (fit.variance + scatter**2 + TINY)
+        return float(terms.sum() + prior_misfit @ prior_misfit + DOUBT * unpaired)
+
+
+def best_of(ends: Sequence[End]) -> End:
+    """Return the end that fits best, at the least scatter of all."""
+    scatter = min(end.fit.scatter for end in ends)
+    return min(ends, key=lambda end: end.misfit(scatter))
+
+
+def _factor(deviation: float) -> str:
+    """Return the standard deviation of a logarithm in words."""
+    return (
+        "however far it is changed that way, they move by less than their scatter"
+        if deviation > 10
+        else f"they leave it open by a factor of {math.exp(deviation):.3g} either way"
+    )

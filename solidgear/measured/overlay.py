@@ -1,0 +1,290 @@
+"""Responses of a scene at the points where it was measured: a sum over the modes, rigid motions
+among them, with the damping that was measured, and the static compliance of all that is stiffer.
+
+The share of stiffer modes is the static compliance less that of the listed modes (the residual term
+of Ewins 2000, Modal Testing, section 4.3).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from solidgear.core.body import FURTHER, SINE, Body, as_supports
+from solidgear.core.scene import Scene
+from solidgear.core.solve.coupling import decoupled, groups
+from solidgear.core.solve.modes import Mode
+from solidgear.core.solve.supported import Supported
+from solidgear.measured.computed import motions_up_to
+from solidgear.measured.correlate import Correlation
+from solidgear.measured.responses import ResponseFit
+from solidgear.measured.shapes import SurfacePoints
+
+#: of the highest measured frequency: modes up to there count
+BEYOND = 2.0
+#: names and units of motions over a force, by derivatives of the displacement
+KINDS = (("receptance", "m/N"), ("mobility", "m/s/N"), ("accelerance", "m/s^2/N"))
+AXES = "xyz"
+
+
+@dataclass(frozen=True, eq=False)
+class Overlay:
+    """Measured and computed responses."""
+
+    hertz: np.ndarray  #: (k,)
+    #: measured, computed: (n, k) SI
+    measured: np.ndarray
+    computed: np.ndarray
+    names: tuple[str, ...]  #: of the responses: point and direction, and where it was driven
+    kind: str
+    unit: str
+    limit: float  #: hz; stiffer modes are left out
+    damping: float  #: ratio of modes that were not measured, the median of those that were
+    #: number of a pair -> computed modal constant over the measured one, of all responses
+    constants: dict[int, float]
+    #: (n, k) how far computed ones may be off by the bars of frequencies and of static compliance;
+    #: None where nothing tells them
+    band: np.ndarray | None
+    #: around the axis, up to which what is stiffer counts; 0 of a 3D mesh, and None where it is
+    #: left out
+    waves: int | None
+
+    @property
+    def description(self) -> str:
+        """Model of the computed ones, in words."""
+        waves = f", up to {self.waves} waves around" if self.waves else ""
+        stiffer = (
+            f"What is stiffer counts with its static compliance{waves}: at the point that is driven "
+            "it rests on how wide the force is, and is sure to its own size only."
+            if self.waves is not None
+            else "What is stiffer is left out, which moves minima more than peaks."
+        )
+        band = (
+            "The band is that of the bars of frequencies, and of static compliance what twice their "
+            "largest makes of it, which is an estimate; shapes and damping have none."
+            if self.band is not None
+            else "The computed response has no bar."
+        )
+        return (
+            f"Computed: the modes up to {self.limit:.0f} Hz and the rigid motions that nothing "
+            "holds, each with the damping measured of it, others with the median, "
+            f"{100 * self.damping:.2g} %. {stiffer} {band}"
+        )
+
+    @property
+    def loudest(self) -> int:
+        """The response that was driven where it was measured, else the largest one."""
+        size = np.mean(np.abs(self.measured) ** 2, axis=1)
+        driving_point = np.array(
+            [name.split(" for ")[0] == name.split(" for ")[1] for name in self.names]
+        )
+        return int(np.where(driving_point | ~driving_point.any(), size, -1.0).argmax())
+
+
+def overlay(correlation: Correlation) -> Overlay | None:
+    """Return responses of the scene beside the measured ones; None where no responses were
+    measured, or their points or kind are unknown.
+    """
+    fitted, computed = correlation.measured.responses, correlation.computed
+    if fitted is None:
+        return None
+    responses, derivatives = fitted.responses, fitted.responses.derivatives
+    if not responses.places or not responses.scaled or derivatives is None:
+        return None
+    ends = list(zip(responses.points, responses.references))
+    usable = [
+        k
+        for k, pair in enumerate(ends)
+        if all(1 <= abs(way) <= 3 and point in responses.places for point, way in pair)
+    ]
+    if not usable:
+        return None
+    places, response_ends = _ends(computed.body, responses.places, [ends[k] for k in usable])
+    limit = BEYOND * correlation.pairs[-1].measured.frequency
+    ahead = responses.frequencies > 0
+    hertz = responses.frequencies[ahead]
+    numbers = {
+        pair.computed.name: pair.number - 1
+        for pair in correlation.pairs
+        if pair.computed is not None
+    }
+    usual = float(np.median(fitted.fit.damping))
+    out = np.zeros((len(usable), len(hertz)), complex)
+    band = np.zeros(out.shape)
+    constants: dict[int, float] = {}
+    omega = 2 * np.pi * hertz
+    motions = motions_up_to(computed, limit)
+    for mode, bar in motions:
+        constant = np.zeros(len(usable))
+        for vector in mode.vectors:
+            along = response_ends.along(places.motion(vector))
+            constant += along[response_ends.first] * along[response_ends.second]
+        number = numbers.get(str(mode.name))
+        ratio = usual if number is None else float(fitted.fit.damping[number])
+        natural = 2 * np.pi * mode.frequency_hz
+        unit = _unit(natural, omega, ratio)
+        out += constant[:, None] * unit
+        if np.isfinite(bar):
+            low, high = natural * (1 - bar), natural * (1 + bar)
+            moved: tuple[float | np.ndarray, ...] = low, high, omega.clip(low, high)
+            error = np.max(
+                [np.abs(_unit(frequency, omega, ratio) - unit) for frequency in moved], axis=0
+            )
+            band += np.abs(constant)[:, None] * error
+        if number is not None:
+            measured = _constants(fitted, number)[usable]
+            constants[number + 1] = float(
+                abs(np.vdot(measured, constant)) / np.sum(np.abs(measured) ** 2)
+            )
+    bars = [bar for mode, bar in motions if mode.frequency_hz > 0]
+    stiffer = stiffer_motions(
+        computed.scene, places, response_ends.ends, [mode for mode, _ in motions]
+    )
+    if stiffer is not None:
+        static_rest = stiffer.remaining[response_ends.first, response_ends.second]
+        out += static_rest[:, None]
+        # a frequency is the root of a stiffness
+        static_error = 2 * max(bars, default=np.inf) * np.diag(stiffer.static)
+        sure = np.sqrt(static_error[response_ends.first] * static_error[response_ends.second])
+        same_point = np.equal(
+            *np.array(response_ends.ends)[[response_ends.first, response_ends.second], 0]
+        )
+        band += np.where(same_point, np.abs(static_rest), sure)[:, None]
+    kind, unit_ = KINDS[derivatives]
+    names = tuple(f"{_end(ends[k][0])} for {_end(ends[k][1])}" for k in usable)
+    return Overlay(
+        hertz,
+        responses.values[usable][:, ahead],
+        out * (1j * omega) ** derivatives,
+        names,
+        kind,
+        unit_,
+        limit,
+        usual,
+        constants,
+        band * omega**derivatives if np.isfinite(bars).all() else None,
+        None if stiffer is None else stiffer.waves,
+    )
+
+
+def _unit(natural: float | np.ndarray, omega: np.ndarray, ratio: float) -> np.ndarray:
+    """Return the receptance of one kilogram on a spring."""
+    return 1 / (natural**2 - omega**2 + 2j * ratio * natural * omega)
+
+
+class _Ends(NamedTuple):
+    """Ends of responses: point by place, and direction -3 to 3.
+
+    ``every`` of them once; ``first`` and ``second``, where each response was measured and driven.
+    """
+
+    ends: list[tuple[int, int]]
+    first: np.ndarray
+    second: np.ndarray
+
+    def along(self, motion: np.ndarray) -> np.ndarray:
+        """Return (e,) motions (p, 3) of points along the directions of all ends."""
+        return np.array([np.sign(way) * motion[point, abs(way) - 1] for point, way in self.ends])
+
+
+def _ends(
+    body: Body, points: Mapping[int, Sequence[float]], pairs: list[tuple[tuple[int, int], ...]]
+) -> tuple[SurfacePoints, _Ends]:
+    """Return points of some responses on the surface, and their ends there."""
+    numbers = sorted({point for pair in pairs for point, _ in pair})
+    places = SurfacePoints(body, numbers, np.array([points[n] for n in numbers]))
+    ends = sorted({end for pair in pairs for end in pair})
+    first, second = ([ends.index(pair[side]) for pair in pairs] for side in (0, 1))
+    places_and_ways = [(numbers.index(point), way) for point, way in ends]
+    return places, _Ends(places_and_ways, np.array(first), np.array(second))
+
+
+def _constants(fitted: ResponseFit, number: int) -> np.ndarray:
+    """Return products of shapes of unit mass at both ends of every response, by residues of
+    accelerances (Ewins 2000, Modal Testing, eq. 4.30).
+    """
+    pole = fitted.fit.poles[number]
+    return 2j * pole.imag * fitted.fit.residues[number] / pole**2
+
+
+def _end(end: tuple[int, int]) -> str:
+    return f"{end[0]}{'-' if end[1] < 0 else ''}{AXES[abs(end[1]) - 1]}"
+
+
+#: waves around of a body of revolution that a force at a point counts with, at least
+WAVES = 8
+#: share of an eigenvalue by which bearing terms between families may be left out
+COUPLING = 1e-9
+
+
+class Stiffer(NamedTuple):
+    """Static motions (e, e) at points under forces at them, m/N, without free motions; those that a
+    list of modes lacks; and the most waves around that count, 0 of a 3D mesh.
+    """
+
+    static: np.ndarray
+    remaining: np.ndarray
+    waves: int
+
+
+def stiffer_motions(
+    scene: Scene, places: SurfacePoints, ends: Sequence[tuple[int, int]], modes: Iterable[Mode]
+) -> Stiffer | None:
+    """Return the static compliance that a list of modes lacks; None for a body whose surface has no
+    forces. The ends are places of points among those of `places`, and directions -3 to 3 along x,
+    y, z.
+    """
+    body = places.body
+    if not hasattr(body.geometry, "rows"):
+        return None
+    elastic = [mode for mode in modes if mode.frequency_hz > 0]
+    waves = max([WAVES, *(mode.waves for mode in elastic)]) if body.further is not None else 0
+    static = np.zeros((len(ends), len(ends)))
+    for supported, forces in _forces(scene, places, ends, waves):
+        free = forces - supported.mass(supported.free) @ (supported.free.T @ forces)
+        static += forces.T @ supported.static(free)
+    remaining = static.copy()
+    for mode in elastic:
+        for vector in mode.vectors:
+            moved = places.motion(vector)
+            along = [np.sign(way) * moved[point, abs(way) - 1] for point, way in ends]
+            remaining -= np.outer(along, along) / (2 * np.pi * mode.frequency_hz) ** 2
+    return Stiffer(static, remaining, waves)
+
+
+def _forces(
+    scene: Scene, places: SurfacePoints, ends: Sequence[tuple[int, int]], waves: int
+) -> Iterator[tuple[Supported, np.ndarray]]:
+    """Yield groups of blocks, and unit forces (n, e) at the ends on each."""
+    body, supports = places.body, as_supports(scene)
+    spring, _ = decoupled(body, supports, COUPLING)
+    for group in groups(body, supports, spring):
+        forces = [_on_block(body, places, ends, b) for b in group]
+        yield Supported(body, supports, spring, group), np.vstack(forces)
+    no_supports = as_supports(())
+    for n in range(2, waves + 1):
+        family = Supported(body.family(n), no_supports, np.zeros((0, 0)), [0])
+        for index in (FURTHER + n, SINE + n):
+            yield family, _on_block(body, places, ends, index)
+
+
+def _on_block(
+    body: Body, places: SurfacePoints, ends: Sequence[tuple[int, int]], index: int
+) -> np.ndarray:
+    """Return (n, e) unit forces at the ends in the unknowns of a block."""
+    block = body.block(index)
+    corners = places.corners[[point for point, _ in ends]]
+    rows = body.geometry.rows(block.name, corners.ravel())  # type: ignore[union-attr]
+    rows = rows.reshape(*corners.shape, 3, -1)
+    way = np.array([abs(way) - 1 for _, way in ends])
+    sign = np.sign([way for _, way in ends])
+    along = np.einsum(
+        "ecn,ec->en",
+        rows[np.arange(len(ends)), :, way],
+        places.weights[[point for point, _ in ends]],
+    )
+    along = sign[:, None] * along
+    return (along if block.expand is None else along @ block.expand).T

@@ -1,0 +1,1 @@
+"""Parts from STEP and mesh files."""

@@ -1,0 +1,77 @@
+"""A solid body from a mesh that is given."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from solidgear.core.body import Body
+from solidgear.core.meshing.quality import check_mesh
+from solidgear.core.models.solid.block import body_of, free_block, mesh_facts
+from solidgear.core.models.solid.mesh import _isoparametric
+from solidgear.core.models.solid.seat_faces import Seats
+
+if TYPE_CHECKING:
+    from skfem import Mesh
+
+    from solidgear.core.scene import Material
+    from solidgear.core.scene.shaft import Shaft
+
+
+def solid_body(
+    mesh: Mesh,
+    shaft: Shaft,
+    *,
+    element: str,
+    wanted: Sequence[tuple[Any, str]] | None = None,
+    clipped: bool = True,
+    facts: Mapping[str, Any] | None = None,
+    owner: np.ndarray | None = None,
+    materials: Sequence[Material] | None = None,
+    patches: Mapping[str, np.ndarray] | None = None,
+) -> Body:
+    """Build the free body of a mesh, with ports on cylinders and cones of its surface, or on patches.
+
+    `mesh` is of tetrahedra or hexahedra, m, with y the axis. Stations of the `shaft` are looked for on
+    the outer surface of its segments; `wanted` are other stations with their attachments. `clipped`:
+    integrals stop at the ends of a seat where faces reach beyond it, else only whole faces within the
+    seat count. `owner` (ne,) is the place of each element's material among `materials`; by default
+    each has that of the segment in which its middle lies. `patches` are facets of the patches that
+    stations without an axis lie on; `facts` are added to ``body.mesh``. A seat without faces, or with
+    faces missing, and inverted elements are refused.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> from solidgear.core.meshing.tetrahedra import tetrahedra
+    >>> rod = sg.Segment.cylinder("rod", length=0.3, diameter=0.06)
+    >>> scene = sg.Scene.from_parts([rod])
+    >>> body = solid_body(tetrahedra(scene.outline, size=0.03).mesh, scene, element="tet10")
+    >>> bool(np.isclose(body.mass_matrix()[0, 0], 7850 * np.pi * 0.03**2 * 0.3, rtol=1e-3))  # kg
+    True
+    """
+    if wanted is None:
+        wanted = [(s, s.attachment) for s in shaft.stations]
+    quality = check_mesh(mesh)
+    if owner is None:
+        y = mesh.p[1][mesh.t].mean(axis=0)
+        owner = np.searchsorted([s.y1 for s in shaft.segments[:-1]], y)
+        materials = None
+    solid = _isoparametric(mesh, element, owner)
+    seats = Seats(solid, shaft.segments, clipped)
+
+    def facets(station, attachment: str) -> np.ndarray:
+        patch = getattr(station, "patch", None)
+        return seats(station, attachment) if patch is None else (patches or {})[patch.name]
+
+    block = free_block(solid, shaft, wanted, facets, clipped=clipped, materials=materials)
+    all_facts = {
+        **mesh_facts(solid, quality),
+        # no symmetry promises twins
+        "round": False,
+        "pair_tolerance": 0.0,
+        **(facts or {}),
+    }
+    return body_of(shaft, wanted, (block,), all_facts, solid)

@@ -1,0 +1,553 @@
+"""A part from a STEP or mesh file: read, turned, and the body of revolution inside it
+recognised.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from solidgear.core.errors import SceneError
+from solidgear.parts.decks import universal
+from solidgear.parts.decks.deck import reader_of
+from solidgear.parts.part_file import PartContent, coarser_meshes, content_of, read, skin
+from solidgear.core.meshing.placing import TURNS, Placing, Triple, turn_of
+from solidgear.core.meshing.quality import MeshError
+from solidgear.parts.round_part import ON_LINE, RoundPart, round_part
+from solidgear.parts.shared_axis import shared_axis
+from solidgear.parts.body_file import NONE, UNITS, BodyFile, BodyTable
+from solidgear.core.scene.closed_form import volume_of
+from solidgear.core.scene.outline import Frustum, Outline
+from solidgear.core.scene.patches import Patch, block_patches
+from solidgear.parts.recognised import Recognised
+
+#: least share of the surface that is round about the axis, for a part to be a shaft
+LEAST_ROUND = 0.2
+#: of a part, m
+LEAST_LENGTH, MOST_LENGTH = 1e-3, 20.0
+#: relative difference between a size and the one in the table
+SIZE_CHECK = 1e-3
+#: distance of an axis from the one that was written, over the largest radius: below, both are the same,
+#: and above, it is another
+SAME_AXIS, NEAR_AXIS = ON_LINE / 10, 1e-3
+#: difference of directions that are one
+AXIS = 1e-9
+#: two places along y nearer than this part of the length are one
+SAME_PLACE = 2e-6
+#: sections of a frustum that shares are taken from, and lines across each
+SECTIONS, SCANS = 3, 200
+#: factors between units that are taken for one another
+SLIPS = {1e3: "mm taken for m", 1e-3: "m taken for mm", 25.4: "mm taken for inch"}
+SLIPS |= {1 / 25.4: "inch taken for mm", 39.37: "m taken for inch", 1 / 39.37: "inch taken for m"}
+#: a representation of a shape: its items and its context
+_SHAPE = re.compile(
+    rb"SHAPE_REPRESENTATION\s*\(\s*'(?:[^']|'')*'\s*,\s*\(([^()]*)\)\s*,\s*(#\d+)\s*\)"
+)
+_SOLID = re.compile(
+    rb"(#\d+)\s*=\s*\(?\s*(?:MANIFOLD_SOLID_BREP|BREP_WITH_VOIDS|FACETED_BREP)\s*\("
+)
+_UNITS = re.compile(rb"GLOBAL_UNIT_ASSIGNED_CONTEXT\s*\(\s*\(([^()]*)\)")
+_NUMBER = re.compile(rb"#\d+")
+_PREFIX = {b"MILLI": "mm", b"CENTI": "cm", b"": "m"}
+
+
+class Share(NamedTuple):
+    """A frustum and the groups of a part that it is made of."""
+
+    wall: Frustum
+    #: groups and their shares of its volume, roughly where there are several
+    groups: tuple[tuple[int, float], ...]
+
+    @property
+    def mixed(self) -> bool:
+        """True where several groups meet inside it."""
+        return len(self.groups) > 1
+
+
+def recognise(table: BodyTable, folder: Path) -> Recognised:
+    """Read a part and recognise the body of revolution inside it, from a file in a folder;
+    SceneError for a file that is no part, another unit or size than the table says, or a part that
+    is not round about the axis.
+    """
+    if table.block is not None:
+        return _block(table.block)
+    *coarse, path = ((folder / file).resolve() for file in table.files)
+    is_shaft = table.axis != NONE
+    try:
+        content = content_of(path)
+        unit, doubt = _unit(table, path, content)
+        foot = _foot(table)
+        place = Placing(unit, turn_of(table.axis if is_shaft else "y"), foot)
+        part = read(table, path, place, content)
+        if is_shaft:
+            place, part = _centred(table, place, part)
+        points, triangles = skin(part)
+        _check_sizes(table, points)
+        coarser = coarser_meshes(table, coarse, place, part)
+        body = round_part(points, triangles) if is_shaft else _rod(points, part.volume)
+        if is_shaft and not body.share >= LEAST_ROUND:
+            raise SceneError(_not_round(table, place, points, triangles, body), path=("axis",))
+    except MeshError as error:
+        raise SceneError(str(error), path=("body", table.key)) from None
+    except SceneError as error:
+        raise error.located(None, prefix=("body",)) from None
+    # the lower end comes to y = 0; the origin of the table is a place like any other
+    start = float(points[1].min())
+    lower = np.array(place.foot) + np.array(place.turn).T @ (0.0, start, 0.0)
+    x, y, z = (float(v) for v in lower)
+    points = points - [[0.0], [start], [0.0]]
+    shares, first_groups = _shares(part, body.walls)
+    walls = tuple(
+        Frustum(_rounded(w.y0 - start), _rounded(w.y1 - start), *map(_rounded, w[2:]))
+        for w in (share.wall for share in shares)
+    )
+    patches: tuple[Patch, ...] = ()
+    if not is_shaft:
+        patches = tuple(
+            p.with_changes(point=(p.point[0], p.point[1] - start, p.point[2])) for p in part.patches
+        )
+    file = BodyFile(
+        kind="step" if table.step is not None else "mesh",
+        name=path.name,
+        path=str(path),
+        sha256=hashlib.sha256(content).hexdigest(),
+        unit=unit,
+        turn=place.turn,
+        foot=(x, y, z),
+        volume=part.volume,
+        round_share=body.share,
+        round_volume=volume_of(Outline(walls)) / part.volume,
+        # the volume of a STEP file is that of its surfaces, and no triangle comes into it
+        facets=0.0 if table.step is not None else body.facets / part.volume,
+        beside_arcs=body.arc_deviation,
+        tori=tuple(t._replace(y0=t.y0 - start, y1=t.y1 - start, y=t.y - start) for t in body.tori),
+        groups=part.groups,
+        told=() if table.materials else part.material_groups,
+        mixed=tuple(f"s{k}" for k, share in enumerate(shares, 1) if share.mixed),
+        remarks=(*doubt, *part.remarks),
+        edges=None if is_shaft else tuple(float(v) for v in np.ptp(points, axis=1)),
+        coarser=coarser,
+        patches=patches,
+        **part.mesh_fields,
+    )
+    cylinders = tuple(
+        (s.r0 + s.r1, s.y0 - start, s.y1 - start) for s in body.surfaces if s.r0 == s.r1
+    )
+    origin = 0.0 if table.origin is None else -start
+    return Recognised(
+        file,
+        walls,
+        origin,
+        cylinders,
+        partial(seat_share, points, triangles),
+        tuple(tuple((first_groups[k], portion) for k, portion in share.groups) for share in shares),
+    )
+
+
+def _rod(points, volume: float) -> RoundPart:
+    """Return a cylinder as long along y as a body without an axis, and of the same volume: places
+    are given along it, and nothing is solved.
+    """
+    low, high = float(points[1].min()), float(points[1].max())
+    radius = math.sqrt(volume / math.pi / (high - low))
+    return RoundPart((Frustum(low, high, radius, radius, 0.0, 0.0),), (), 0.0)
+
+
+def _block(edges: list[float]) -> Recognised:
+    """Return a rectangular block from y = 0 on; the one wall is the largest cylinder inside, along
+    which places are given and nothing is solved.
+    """
+    for k, edge in enumerate(edges):
+        if not LEAST_LENGTH <= edge <= MOST_LENGTH:
+            raise SceneError(
+                f"an edge of {1e3 * edge:.4g} mm is outside 1 mm to 20 m", path=("body", "block", k)
+            )
+    x, y, z = edges
+    radius = min(x, z) / 2
+    wall = Frustum(0.0, y, radius, radius, 0.0, 0.0)
+    body = BodyFile(
+        kind="block",
+        name=f"{' x '.join(f'{1e3 * edge:.6g}' for edge in edges)} mm",
+        path="",
+        sha256="",
+        unit=1.0,
+        turn=TURNS["y"],
+        foot=(0.0, 0.0, 0.0),
+        volume=x * y * z,
+        round_share=0.0,
+        round_volume=volume_of(Outline((wall,))) / (x * y * z),
+        edges=(x, y, z),
+        patches=block_patches((x, y, z)),
+    )
+    return Recognised(body, (wall,), 0.0, (), lambda radius, lo, hi: 0.0)
+
+
+def _rounded(value: float) -> float:
+    return round(float(value), 13) + 0.0
+
+
+def _unit(table: BodyTable, path: Path, content: bytes) -> tuple[float, tuple[str, ...]]:
+    """Return metres for each unit of the file, and a remark where a universal file says another
+    than the table.
+    """
+    if table.step is not None:
+        return _unit_of_step(table, content), ()
+    in_file = None
+    if reader_of(str(path)) == "universal":
+        in_file = universal.unit_of(content.decode("utf-8", "replace"))
+    if table.unit is None:
+        if in_file is None:
+            raise SceneError(
+                f"this key is missing: {path.name} does not say it; one of {', '.join(UNITS)}",
+                path=("unit",),
+            )
+        return in_file, ()
+    unit = UNITS[table.unit]
+    if in_file is None or math.isclose(unit, in_file, rel_tol=1e-6):
+        return unit, ()
+    names = {value: name for name, value in UNITS.items()}
+    unit_name = next(
+        (n for value, n in names.items() if math.isclose(value, in_file, rel_tol=1e-6)), ""
+    )
+    remark = (
+        f"its dataset 164 says that lengths are in {unit_name or f'units of {in_file:g} m'}, and unit = "
+        f'"{table.unit}" of the [body] is taken: one of both is wrong by a factor of '
+        f"{max(unit / in_file, in_file / unit):.4g}"
+    )
+    return unit, (remark,)
+
+
+def _unit_of_step(table: BodyTable, content: bytes) -> float:
+    """Return metres for each unit of a STEP file, and refuse another unit than that of the
+    table.
+    """
+    head = content[:200].lstrip()
+    if not head.startswith(b"ISO-10303-21"):
+        raise MeshError('is no STEP file: it does not begin with "ISO-10303-21;"')
+    if b"END-ISO-10303-21" not in content[-2000:]:
+        raise MeshError('is cut off: it does not end with "END-ISO-10303-21;"')
+    file_unit = length_unit(content)
+    if table.unit is not None and UNITS[table.unit] != UNITS[file_unit]:
+        raise SceneError(f"the file itself says {file_unit}", path=("unit",))
+    return UNITS[file_unit]
+
+
+def length_unit(content: bytes) -> str:
+    """Return the name of the unit of length that a STEP file gives to its solids; MeshError where
+    it gives none that is known here, or several.
+
+    A file has units for much besides: of a density, of tolerances, of drawings. Those of the
+    coordinates are in the context of the representation that holds the solids,
+    ``GLOBAL_UNIT_ASSIGNED_CONTEXT``.
+
+    Examples
+    --------
+    >>> length_unit(
+    ...     b"#1=(GLOBAL_UNIT_ASSIGNED_CONTEXT((#2))REPRESENTATION_CONTEXT('',''));"
+    ...     b"#2=(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MILLI.,.METRE.));"
+    ...     b"#3=(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT($,.METRE.));#4=DERIVED_UNIT_ELEMENT(#3,-3.);"
+    ... )
+    'mm'
+    """
+    texts = {text for context in _contexts(content) for text in _units_of(context, content)}
+    lengths = [text for text in texts if b"LENGTH_UNIT" in text]
+    units = sorted({unit for unit in map(_unit_of, lengths) if unit})
+    if len(units) != 1:
+        fault = f"several units of length ({', '.join(units)})" if units else "no unit of length"
+        raise MeshError(
+            f"names {fault} that is known here for its solids; known are mm, cm, m and inch"
+        )
+    return units[0]
+
+
+def _contexts(content: bytes) -> list[bytes]:
+    """Return the contexts of the representations that hold solids; of all shapes, or all there are,
+    where none does.
+    """
+    shapes = [(_NUMBER.findall(items), context) for items, context in _SHAPE.findall(content)]
+    solids = set(_SOLID.findall(content))
+    names = {context for items, context in shapes if solids & {*items}}
+    names = names or {context for _, context in shapes}
+    chosen = [_text(name, content) for name in names]
+    return [text for text in chosen if _UNITS.search(text)] or [content]
+
+
+def _units_of(context: bytes, content: bytes) -> Iterator[bytes]:
+    """Yield the texts of the units that a context names."""
+    for units in _UNITS.findall(context):
+        for name in _NUMBER.findall(units):
+            yield _text(name, content)
+
+
+def _text(name: bytes, content: bytes) -> bytes:
+    """Return the text of an entity such as ``#12``; empty where the file has none."""
+    match = re.search(rb"(?<![\d#])" + name + rb"\s*=([^;]*);", content)
+    return match[1] if match else b""
+
+
+def _unit_of(text: bytes) -> str | None:
+    converted = re.search(rb"CONVERSION_BASED_UNIT\s*\(\s*'([^']*)'", text)
+    if converted:
+        name = converted[1].strip().upper()
+        return "inch" if name in (b"INCH", b"IN") else None
+    plain = re.search(rb"SI_UNIT\s*\(\s*(?:\.(\w+)\.|\$)\s*,\s*\.METRE\.\s*\)", text)
+    return _PREFIX.get(plain[1] or b"") if plain else None
+
+
+def _foot(table: BodyTable) -> Triple:
+    """Return the point on the axis that comes to y = 0, in the axes of the file, m."""
+    if table.origin is None:
+        return (0.0, 0.0, 0.0)
+    if isinstance(table.origin, tuple):
+        return table.origin
+    # along the axis of the file, whichever way the shaft runs
+    if isinstance(table.axis, str):
+        along = "y" if table.axis == NONE else table.axis[-1]
+        x, y, z = (table.origin if name == along else 0.0 for name in "xyz")
+    else:
+        x, y, z = (table.origin * v for v in table.axis)
+    return (x, y, z)
+
+
+def _centred(table: BodyTable, place: Placing, part: PartContent) -> tuple[Placing, PartContent]:
+    """Turn a part whose axis lies a little beside the one that was written about that axis; return
+    the placing and the part.
+    """
+    points, triangles = skin(part)
+    foot, along = shared_axis(points, triangles)
+    along = along * np.sign(along[1])
+    if not along[1] > 0.5:
+        return place, part
+    foot = foot - foot[1] / along[1] * along
+    heights = np.array([points[1].min(), points[1].max()])
+    distance = np.hypot(*(foot[:, None] + along[:, None] / along[1] * heights)[[0, 2]]).max()
+    largest = float(np.hypot(points[0], points[2]).max())
+    if not SAME_AXIS * largest < distance <= NEAR_AXIS * largest:
+        return place, part
+    turn = np.array(turn_of(tuple(along)))
+    moved = part._replace(points=turn @ (part.points - foot[:, None]))
+    if not round_part(*skin(moved)).share > round_part(points, triangles).share:
+        return place, part
+    x, y, z = (float(v) for v in place.to_file(foot[:, None])[:, 0])
+    rows = (tuple(float(v) for v in row) for row in turn @ np.array(place.turn))
+    remark = f"its axis lies {1e6 * distance:.2g} um beside {table.about} of the file, and is taken"
+    moved = moved._replace(remarks=(*part.remarks, remark))
+    return Placing(place.unit, tuple(rows), (x, y, z)), moved  # type: ignore[arg-type]
+
+
+def _shares(part: PartContent, walls) -> tuple[list[Share], list[int]]:
+    """Return the shares of materials in the frusta, and the first group of each material by number.
+
+    Groups of one material are one; walls stay where they are.
+    """
+    if not part.groups:
+        return [Share(wall, ((0, 1.0),)) for wall in walls], [0]
+    materials: list[Any] = []
+    for group in part.groups:
+        if group.material not in materials:
+            materials.append(group.material)
+    material_of = np.array([materials.index(g.material) for g in part.groups] + [-1])
+    sides = material_of[part.sides]
+    border = sides[0] != sides[1]
+    shares = shared_among_groups(part.points, part.triangles[:, border], sides[:, border], walls)
+    return shares, [int(np.flatnonzero(material_of == k)[0]) for k in range(len(materials))]
+
+
+def shared_among_groups(
+    points: np.ndarray, triangles: np.ndarray, sides: np.ndarray, walls: Sequence[Frustum]
+) -> list[Share]:
+    """Cut the frusta of a part where groups meet in a plane across the axis, and return the groups
+    in each: one group only if no other comes into it anywhere.
+
+    `triangles` (3, t) are the surface of the part and the faces between groups, `sides` (2, t) the
+    groups on both sides of each, -1 outside; y is the axis, m.
+    """
+    y = points[1][triangles]
+    low, high = y.min(axis=0), y.max(axis=0)
+    near = SAME_PLACE * (walls[-1].y1 - walls[0].y0)
+    across = high - low <= near
+    between = (sides >= 0).all(axis=0)
+    out = []
+    for piece in _cut_at(walls, np.unique(low[between & across]), near):
+        # a triangle that only touches the end of a frustum is not in it
+        inside = ~across & (high > piece.y0 + near) & (low < piece.y1 - near)
+        groups = np.unique(sides[:, inside])
+        groups = groups[groups >= 0]
+        if len(groups) == 1:
+            out.append(Share(piece, ((int(groups[0]), 1.0),)))
+            continue
+        areas = np.zeros(len(groups))
+        for place in (np.arange(SECTIONS) + 0.4837) / SECTIONS:
+            y_of_section = piece.y0 + place * (piece.y1 - piece.y0)
+            for k, group in enumerate(groups):
+                of_group = inside & (sides == group).any(axis=0)
+                areas[k] += _section_area(points, triangles[:, of_group], y_of_section)
+        shares = areas / areas.sum()
+        out.append(Share(piece, tuple((int(g), float(s)) for g, s in zip(groups, shares))))
+    return out
+
+
+def _cut_at(walls: Sequence[Frustum], places: Iterable[float], near: float) -> Iterable[Frustum]:
+    for wall in walls:
+        start = wall
+        for place in places:
+            if start.y0 + near < place < start.y1 - near:
+                t = (place - start.y0) / (start.y1 - start.y0)
+                outer = start.outer0 + t * (start.outer1 - start.outer0)
+                inner = start.inner0 + t * (start.inner1 - start.inner0)
+                yield start._replace(y1=float(place), outer1=outer, inner1=inner)
+                start = start._replace(y0=float(place), outer0=outer, inner0=inner)
+        yield start
+
+
+def _section_area(points: np.ndarray, triangles: np.ndarray, y: float) -> float:
+    """Return the area inside a closed surface of (3, t) triangles facing either way at one place y,
+    m^2, within about a hundredth, by lines across it; no node of the surface lies there.
+
+    Examples
+    --------
+    >>> square = np.array([[1, 0, 1], [-1, 0, 1], [-1, 0, -1], [1, 0, -1]], float)
+    >>> points = np.vstack([square, square + [0, 2, 0]]).T
+    >>> k, after = np.arange(4), (np.arange(4) + 1) % 4
+    >>> sides = np.hstack([[k, after, k + 4], [after, after + 4, k + 4]])
+    >>> round(float(_section_area(points, sides, 0.7)), 9)
+    4.0
+    """
+    corners = points[:, triangles]  # (3, corner, t)
+    hits = []
+    for i, j in ((0, 1), (1, 2), (2, 0)):
+        p, q = corners[:, i], corners[:, j]
+        crossed = (p[1] < y) != (q[1] < y)
+        t = np.divide(y - p[1], q[1] - p[1], out=np.zeros(len(crossed)), where=crossed)
+        hits.append((crossed, p + t * (q - p)))
+    # two sides of a triangle are crossed, or none
+    first = np.where(hits[0][0], hits[0][1], hits[1][1])
+    second = np.where(hits[2][0], hits[2][1], hits[1][1])
+    cut = sum(crossed.astype(int) for crossed, _ in hits) == 2
+    (x0, _, z0), (x1, _, z1) = first[:, cut], second[:, cut]
+    if not len(x0):
+        return 0.0
+    lowest, highest = min(z0.min(), z1.min()), max(z0.max(), z1.max())
+    step = (highest - lowest) / SCANS
+    area = 0.0
+    for z in lowest + step * (np.arange(SCANS) + 0.5):
+        meets = (z0 < z) != (z1 < z)
+        t = (z - z0[meets]) / (z1[meets] - z0[meets])
+        x = np.sort(x0[meets] + t * (x1[meets] - x0[meets]))
+        area += step * float((x[1::2] - x[: len(x) // 2 * 2 : 2]).sum())
+    return area
+
+
+def _check_sizes(table: BodyTable, points) -> None:
+    """Refuse a part whose length or largest diameter is not that of the table."""
+    length = float(np.ptp(points[1]))
+    diameter = float(2 * np.hypot(points[0], points[2]).max())
+    for k, (name, size) in enumerate((("length", length), ("largest diameter", diameter))):
+        if table.size_check is None:
+            break
+        ratio = size / table.size_check[k]
+        if not abs(ratio - 1) <= SIZE_CHECK:
+            raise SceneError(
+                f"the {name} of the part about {table.about} is {1e3 * size:.6g} mm{_slip(ratio)}",
+                path=("size_check", k),
+            )
+    about = f" about {table.about}"
+    if table.axis == NONE:
+        length, about = float(np.ptp(points, axis=1).max()), ""
+    if not LEAST_LENGTH <= length <= MOST_LENGTH:
+        raise SceneError(
+            f"the part is {length:.4g} m long{about}, outside 1 mm to 20 m: probably "
+            "drawn in another unit than the file says",
+            path=("unit",) if table.unit else (table.key,),
+        )
+
+
+def _slip(ratio: float) -> str:
+    for factor, words in SLIPS.items():
+        if abs(ratio / factor - 1) < 5e-3:
+            return f", as if {words}"
+    return ""
+
+
+def _not_round(table: BodyTable, place: Placing, points, triangles, body: RoundPart) -> str:
+    """Return the reason why a part is no shaft about the axis, and the axis about which it would
+    be.
+    """
+    words = f"{100 * body.share:.0f} % of the surface is round about this axis"
+    foot, along = shared_axis(points, triangles)
+    turned = np.array(turn_of(tuple(along))) @ (points - foot[:, None])
+    share = round_part(turned, triangles).share
+    if share >= LEAST_ROUND:
+        return words + _other_axis(table, place, points, foot, along, share)
+    # m from here on
+    raw = place.to_file(points)
+    words = f"{words}, at least {100 * LEAST_ROUND:.0f} % makes a shaft"
+    if table.mesh:
+        words += f'; write axis = "{NONE}" for a body that is none'
+    coordinates = raw / place.unit
+    for digits in range(6 if table.mesh else 0):
+        step = 10.0**-digits * 1e3 * place.unit
+        if np.abs(coordinates - np.round(coordinates, digits)).max() < 1e-4 * 10.0**-digits:
+            near = 1e3 * ON_LINE * float(np.hypot(points[0], points[2]).max())
+            if step > near:
+                words += (
+                    f"; coordinates of the file are rounded to {step:.2g} mm, and nodes of a round "
+                    f"surface must lie within {near:.2g} mm of it: write more digits"
+                )
+            break
+    return words
+
+
+def _other_axis(table: BodyTable, place: Placing, points, foot, along, share: float) -> str:
+    """Return a clause on an axis in the scene, a point (3,) and a direction (3,), about which a
+    larger share of the surface is round: how to write it.
+    """
+    direction = np.array(place.turn).T @ along
+    sign = np.sign(direction[np.abs(direction).argmax()])
+    direction, along = sign * direction, sign * along
+    heights = along @ (points - foot[:, None])
+    # where it leaves the lower end, so that places count from there as they do without an origin
+    lowest = float(heights.min()) if table.origin is None else float(-along @ foot)
+    x, y, z = (
+        round(float(v), 9) + 0.0 for v in place.to_file((foot + lowest * along)[:, None])[:, 0]
+    )
+    distance = float(np.linalg.norm(foot - (along @ foot) * along))
+    close = [name for name in TURNS if np.abs(np.array(turn_of(name))[1] - direction).max() < AXIS]
+    axis = f'"{close[0]}"' if close else f"[{', '.join(f'{v:.10g}' for v in direction)}]"
+    if distance <= ON_LINE * float(np.ptp(heights)):
+        return f", and {100 * share:.0f} % about {axis}"
+    foot_in_mm = ", ".join(f"{1e3 * v:.4g}" for v in place.foot)
+    same_axis = bool(close) and close[0] == table.axis
+    return (
+        f", which goes through ({foot_in_mm}) mm of the file, and {100 * share:.0f} % about "
+        f"{'one' if same_axis else axis} through ({', '.join(f'{1e3 * v:.10g}' for v in (x, y, z))}) mm: "
+        f"write that point as origin{', and that axis' if not same_axis else ''}"
+    )
+
+
+def seat_share(
+    points: np.ndarray, triangles: np.ndarray, radius: float, lo: float, hi: float
+) -> float:
+    """Return the area of a surface of (3, t) triangles on a cylinder between two places, over that
+    of the cylinder: a whole turn of chords is a little less than 1.
+    """
+    r = np.hypot(points[0], points[2])[triangles]
+    on_cylinder = (np.abs(r - radius) <= 10 * ON_LINE * radius).all(axis=0)
+    a, b, c = (points[:, corner[on_cylinder]] for corner in triangles)
+    area = np.linalg.norm(np.cross((b - a).T, (c - a).T), axis=1) / 2
+    steps = 16
+    inside = np.zeros(len(area))
+    for i in range(steps):
+        for j in range(steps - i):
+            for third in (1 / 3, 2 / 3) if i + j < steps - 1 else (1 / 3,):
+                s, t = (i + third) / steps, (j + third) / steps
+                y = a[1] + s * (b[1] - a[1]) + t * (c[1] - a[1])
+                inside += (y >= lo) & (y <= hi)
+    return float((area * inside).sum() / steps**2 / (2 * np.pi * radius * (hi - lo)))

@@ -1,0 +1,1 @@
+"""Factors by MUMPS and PETSc."""

@@ -1,0 +1,17 @@
+"""Reading of a scene for commands that print no cautions of their own."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from solidgear.core.scene import Scene
+from solidgear.core.loading import load as read
+
+
+def load(path: Path) -> Scene:
+    """A scene, and to the terminal what is doubtful about the file of its part."""
+    scene = read(path)
+    for sentence in scene.body.doubts(scene.material) if scene.body is not None else ():
+        print(f"caution: {sentence}", file=sys.stderr)
+    return scene

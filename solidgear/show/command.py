@@ -1,0 +1,348 @@
+"""Parts that all commands share: the application, what a command is, printing and progress."""
+
+from __future__ import annotations
+
+import functools
+import inspect
+import sys
+import textwrap
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, nullcontext
+from importlib import import_module
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar, get_type_hints
+
+import typer
+from typer.core import TyperCommand, TyperGroup
+
+from solidgear.show.options_alone import options_alone
+from solidgear.core.machine.memory import one_command
+
+if TYPE_CHECKING:
+    from rich.console import Console, RenderableType
+    from rich.status import Status
+
+R = TypeVar("R")
+HELP = ("-h", "--help")
+#: texts of commands and options that help prints
+HELP_TEXTS = ("help", "epilog", "short_help")
+
+#: commands by what they are for, in the order of the work, each with the line of its help
+GROUPS = {
+    "Start": {
+        "new": ("Write a short, commented scene that runs, or a train, to change into one's own."),
+        "scenes": ("List the scenes that come with solidgear, or copy them into a folder."),
+        "check": (
+            "Say what will be modelled and what will not hold, of a scene or a train; a "
+            "light mesh is the heaviest solved."
+        ),
+        "options": (
+            "List what --set takes: every builder option, its default, its limits and "
+            "what it means."
+        ),
+    },
+    "One shaft": {
+        "answer": (
+            "Numbers within a tolerance, each with its bar, from the cheapest model that "
+            "can show it."
+        ),
+        "stiffness": (
+            "6x6 stiffness and compliance at a lumped point, bearings included; 12x12 between two."
+        ),
+        "modes": ("Natural frequencies on the bearings, with the evidence for them."),
+        "compare": (
+            "Solve a scene with every model and write a report on which to trust; a train "
+            "as well, or two of a kind beside each other."
+        ),
+        "chart": (
+            "Chart error against cost: every model and element, uniform and graded, with "
+            "the Pareto front."
+        ),
+        "render": (
+            "Draw one mode shape off-screen, or all of them in a page where they can be turned."
+        ),
+        "bearing": (
+            "Bearings of catalogue data: stiffness at load, load of every element, "
+            "pressure, life; of a train with an [operation] their lives over its points."
+        ),
+        "stress": (
+            "Stress of shafts at rest: section forces, nominal stress, fillets by the "
+            "solid, DIN 743."
+        ),
+    },
+    "Design": {
+        "sweep": (
+            "Thousands of bearing sets on one body, or variants of a shaft or train, as "
+            "rows of a file."
+        ),
+        "sensitivities": (
+            "What would move a number: its derivatives by every number of the file, from "
+            "one solution."
+        ),
+        "optimise": ("The best design within ranges, as far as error bars tell designs apart."),
+        "budget": (
+            "Which unknown is worth measuring: what every open input of a scene leaves "
+            "open of its numbers."
+        ),
+    },
+    "Measured": {
+        "correlate": (
+            "Measured resonances beside computed modes: which is which, how sure, and how "
+            "far apart."
+        ),
+        "identify": ("Entries of a scene from measured resonances, and how sure they are."),
+    },
+    "Trains": {
+        "system-modes": (
+            "Natural frequencies of a geared rotor system, each with its name and its proven bound."
+        ),
+        "response": (
+            "Steady response to the transmission error: mesh force, reactions, motions, "
+            "and a chart."
+        ),
+        "receptance": (
+            "Receptance between any two ports of a train: table, chart, and peaks with their modes."
+        ),
+        "nonlinear": (
+            "Teeth with backlash: where they part, jumps over speed, and how far off the "
+            "linear answer is."
+        ),
+        "deflect": (
+            "Deflection of shafts under torque: displacements, misalignment of the gears, "
+            "bearing loads."
+        ),
+        "judge-system": (
+            "Comparison of a train with further mixes and reductions, and no folder "
+            "unless asked for."
+        ),
+    },
+}
+COMMANDS = {name: line for group in GROUPS.values() for name, line in group.items()}
+#: modules of commands, where they have another name
+MODULES = {
+    "new": "files",
+    "scenes": "files",
+    "options": "files",
+    "correlate": "measured",
+    "identify": "measured",
+    "system-modes": "train",
+    "response": "train",
+    "judge-system": "train_judge",
+}
+
+
+@contextmanager
+def _brackets(*parts: Any) -> Iterator[None]:
+    """While this lasts, the help of commands and options has its square brackets as typer prints them:
+    it takes them for markup, and leaves out what they hold.
+    """
+    from rich.markup import escape  # start-up: for help alone
+
+    plain = [(part, name, getattr(part, name, None)) for part in parts for name in HELP_TEXTS]
+    for part, name, text in plain:
+        if isinstance(text, str):
+            setattr(part, name, escape(text))
+    try:
+        yield
+    finally:
+        for part, name, text in plain:
+            if isinstance(text, str):
+                setattr(part, name, text)
+
+
+class Told(TyperCommand):
+    """A command whose help is printed as it is written."""
+
+    def format_help(self, ctx, formatter):
+        with _brackets(self, *self.params):
+            super().format_help(ctx, formatter)
+
+
+class Door(TyperGroup):
+    """The commands: a module is imported when one of its commands runs or is asked for its help."""
+
+    def format_help(self, ctx, formatter):
+        with _brackets(self, *self.params, *self.commands.values()):
+            super().format_help(ctx, formatter)
+
+    def resolve_command(self, ctx, args):
+        """The command itself, in place of the one that has only name and help."""
+        name, known, rest = super().resolve_command(ctx, args)
+        if not name:
+            return name, known, rest
+        with options_alone() if rest and rest[-1] in HELP else nullcontext():
+            return name, _imported(name), rest
+
+    def invoke(self, ctx):
+        """Run a command; typer would swallow Ctrl-C without a word."""
+        try:
+            with one_command():
+                return super().invoke(ctx)
+        except KeyboardInterrupt:
+            print("solidgear: interrupted", file=sys.stderr)
+            raise typer.Exit(130) from None
+
+
+def _imported(name: str) -> Any:
+    """A command with its options."""
+    module = import_module(f"solidgear.app.{MODULES.get(name, name)}")
+    alone = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
+    alone.command(name, cls=Told, help=COMMANDS[name])(getattr(module, name.replace("-", "_")))
+    return typer.main.get_command(alone)
+
+
+app = typer.Typer(
+    cls=Door,
+    no_args_is_help=True,
+    help="Shafts on their bearings, and trains of shafts that mesh, as lumped model, beam, "
+    "axisymmetric-harmonic solid and full 3D solid, side by side.",
+    epilog="Exit codes: 0 done; 1 refused or failed, in a sentence on standard error; 2 wrong usage; "
+    "3 the tolerance is not reached, or a part of what was asked has no answer: what is there has its "
+    "bars; 130 interrupted. "
+    "First steps: solidgear new my_shaft, then solidgear check my_shaft.toml.",
+    context_settings={"help_option_names": [*HELP]},
+    pretty_exceptions_enable=False,
+)
+for _group, _commands in GROUPS.items():
+    for _name, _words in _commands.items():
+        app.command(_name, help=_words, rich_help_panel=_group)(lambda: None)
+
+
+def _version(asked: bool) -> None:
+    if asked:
+        from importlib.metadata import version  # start-up: for this option alone
+
+        typer.echo(f"solidgear {version('solidgear')}")
+        raise typer.Exit
+
+
+@app.callback()
+def everywhere(
+    version: Annotated[
+        bool,
+        typer.Option("--version", callback=_version, is_eager=True, help="Print the version."),
+    ] = False,
+    quiet: Annotated[
+        bool, typer.Option("--quiet", "-q", help="No progress; give it before the command.")
+    ] = False,
+) -> None:
+    """Options of every command."""
+    Progress.silent = quiet
+
+
+#: exit code where the tolerance is not reached: the numbers are there, with their bars
+NOT_REACHED = 3
+
+
+def console(stderr: bool = False) -> Console:
+    """The terminal, which prints texts as they are: what stands in square brackets is no markup."""
+    from rich.console import Console  # start-up: not before a command prints
+
+    # Without a terminal rich assumes 80 columns; a pipe can take more, but 80 is what people paste.
+    return Console(highlight=False, markup=False, emoji=False, stderr=stderr)
+
+
+def say(*told: RenderableType, soft_wrap: bool = True) -> None:
+    """Print tables, and texts as they stand: a line of any length each, or broken at the width of
+    the terminal without `soft_wrap`.
+    """
+    terminal = console()
+    for one in told:
+        if isinstance(one, str) and not soft_wrap:
+            # rich breaks lines at the spaces that hold the digits of a number together as well
+            one = "\n".join(_broken(line, terminal.width) for line in one.split("\n"))
+        terminal.print(one, soft_wrap=isinstance(one, str), crop=False)
+
+
+def _broken(line: str, width: int) -> str:
+    """A line broken at plain spaces."""
+    return textwrap.fill(line, width, break_long_words=False, break_on_hyphens=False)
+
+
+def filled(text: str) -> str:
+    """A text in lines as wide as the terminal, all but the first set in."""
+    from rich.console import Console  # start-up: as in `say`
+
+    return textwrap.fill(
+        text,
+        Console().width,
+        subsequent_indent="  ",
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
+
+
+def caution(text: str) -> str:
+    return f"caution: {text}"
+
+
+class Progress:
+    """One line per stage on standard error, a spinner where there is a terminal."""
+
+    #: of the whole run
+    silent = False
+
+    def __init__(self, quiet: bool = False):
+        self.console = console(stderr=True)
+        self.quiet = quiet or self.silent
+        self.start = time.perf_counter()
+        self.status: Status | None = None
+
+    def __enter__(self):
+        if not self.quiet and self.console.is_terminal:
+            self.status = self.console.status("starting")
+            self.status.start()
+        return self
+
+    def __exit__(self, *_):
+        if self.status:
+            self.status.stop()
+
+    def __call__(self, text: str) -> None:
+        if self.quiet:
+            return
+        line = f"{time.perf_counter() - self.start:6.1f} s  {text}"
+        if self.status:
+            from rich.text import Text  # start-up: as in `console`
+
+            self.status.update(Text(line))  # a text alone would be read as markup
+        else:
+            print(line, file=sys.stderr, flush=True)
+
+
+class Group:
+    """Options that several commands take: a frozen dataclass whose fields are annotated as parameters
+    of a command are.
+    """
+
+
+def command(function: Callable[..., R]) -> Callable[..., R]:
+    """A command as typer reads it: the fields of its groups are among its options."""
+    parameters = inspect.signature(function, eval_str=True).parameters
+    groups = {name: p.annotation for name, p in parameters.items() if _is_group(p.annotation)}
+
+    @functools.wraps(function)
+    def flattened(**given: Any) -> R:
+        for name, group in groups.items():
+            given[name] = group(**{key.name: given.pop(key.name) for key in _fields(group)})
+        return function(**given)
+
+    flat = [
+        own
+        for p in parameters.values()
+        for own in (_fields(groups[p.name]) if p.name in groups else [p])
+    ]
+    flattened.__signature__ = inspect.Signature(flat)  # type: ignore[attr-defined]  # what typer reads
+    flattened.__annotations__ = {p.name: p.annotation for p in flat}
+    return flattened
+
+
+def _is_group(annotation: Any) -> bool:
+    return isinstance(annotation, type) and issubclass(annotation, Group)
+
+
+def _fields(group: type[Group]) -> Iterator[inspect.Parameter]:
+    """The options of a group as parameters of a command."""
+    hints = get_type_hints(group, include_extras=True)
+    for name, own in inspect.signature(group).parameters.items():
+        yield own.replace(annotation=hints[name], kind=inspect.Parameter.KEYWORD_ONLY)

@@ -1,0 +1,194 @@
+"""The folder a run writes into: one run at a time, and nothing of an earlier run beside the new
+one.
+
+A run lists its files in ``results.json``, so that the next one removes those and nothing else.  The
+lock is one of the system, which lets go of it when the process dies, however it dies; where there
+is none (Windows, some network drives) two runs are not kept apart.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import IO
+
+from solidgear.core.errors import SolidgearError
+from solidgear.show.outputs import OUTPUTS
+
+try:
+    import fcntl
+except ImportError:  # Windows
+    fcntl = None  # type: ignore[assignment]  # a module, or none
+
+LOCK = ".solidgear.lock"
+#: what is ever listed, and so ever removed: a damaged list can name nothing else
+OWN = re.compile(
+    r"(report\.html|mode_\w+\.png|modes\.html|system_mode_\d+\.png"
+    r"|(response|orders|shares)\.(csv|png|svg|html)|response_[ab]\.csv"
+    rf"|{'|'.join(output.pattern for output in OUTPUTS)})"
+)
+#: what a process that was killed can have left half written, see
+#: :func:`solidgear.core.machine.whole_file.whole`
+HALF = re.compile(
+    rf"\.({OWN.pattern}|results\.json|rows\.csv|machine\.json|speed_accuracy\.png)"
+    r"\.(?P<process>\d+)\.part"
+)
+# Folders this process holds; it may enter them again.
+_held: set[Path] = set()
+
+
+def prepare(out: str | os.PathLike) -> Path:
+    """Make sure a folder can be written, before an hour is spent on what goes into it.
+
+    Raises
+    ------
+    SolidgearError
+        If it cannot.
+    """
+    folder = Path(out)
+    probe = folder / f".probe.{os.getpid()}"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        probe.touch()
+        probe.unlink()
+    except OSError as error:
+        raise _unwritable(out, error) from None
+    return folder
+
+
+def _unwritable(out: str | os.PathLike, error: OSError) -> SolidgearError:
+    return SolidgearError(
+        f"--out {out}: cannot write there ({error.strerror or error}); name a folder you may write"
+    )
+
+
+@contextmanager
+def held(out: str | os.PathLike) -> Iterator[Path]:
+    """A folder that can be written and that no other process takes meanwhile; one that was made for
+    it and stays empty goes again.
+
+    Raises
+    ------
+    SolidgearError
+        If it cannot be written, or another run holds it.
+    """
+    made = not Path(out).exists()
+    folder = prepare(out)
+    place = folder.resolve()
+    if place in _held:
+        yield folder
+        return
+    lock = _locked(folder, out)
+    _held.add(place)
+    try:
+        yield folder
+    finally:
+        _held.discard(place)
+        if lock is not None:
+            # Removed while it is held: whoever waits for this very file sees that it is gone.
+            (folder / LOCK).unlink(missing_ok=True)
+            lock.close()
+        if made and not any(folder.iterdir()):
+            folder.rmdir()
+
+
+@contextmanager
+def begun(out: str | os.PathLike) -> Iterator[Path]:
+    """A folder that is held for a run, without what an earlier one left in it.
+
+    Raises
+    ------
+    SolidgearError
+        As :func:`held`, and if writing stops.
+    """
+    with held(out) as folder:
+        try:
+            # Nothing of an earlier run must stand beside the numbers of this one, should it end
+            # early.
+            clear(folder)
+            (folder / "report.html").unlink(missing_ok=True)
+            yield folder
+        except OSError as error:
+            raise SolidgearError(
+                f"--out {out}: writing stopped ({error.strerror or error}); "
+                "files already there are whole"
+            ) from error
+
+
+def _locked(folder: Path, out) -> IO | None:
+    if fcntl is None:
+        return None
+    while True:
+        try:
+            file = (folder / LOCK).open("a+")
+        except OSError as error:
+            raise _unwritable(out, error) from None
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            file.seek(0)
+            process = file.read().strip()
+            file.close()
+            who = f"process {process}" if process.isdigit() else "another process"
+            raise SolidgearError(
+                f"--out {out}: {who} is writing there; wait for it to end, or name another folder"
+            ) from None
+        except OSError:  # a drive without locks
+            file.close()
+            return None
+        if _is(file, folder / LOCK):
+            file.truncate(0)
+            file.write(str(os.getpid()))
+            file.flush()
+            return file
+        file.close()  # of a run that has just ended
+
+
+def _is(file: IO, path: Path) -> bool:
+    """True where an open file is still the one of that name."""
+    try:
+        return os.path.samestat(os.fstat(file.fileno()), path.stat())
+    except OSError:
+        return False
+
+
+def clear(folder: Path) -> None:
+    """Remove what an earlier run left in a folder: the files it listed, and halves of files."""
+    for name in _listed(folder):
+        if OWN.fullmatch(name) and (folder / name).is_file():
+            (folder / name).unlink()
+    clear_halves(folder)
+
+
+def clear_halves(folder: Path) -> None:
+    """Remove halves of files that processes left which were killed while writing them."""
+    for path in folder.iterdir():
+        half = HALF.fullmatch(path.name)
+        if half and not _alive(int(half["process"])):
+            path.unlink(missing_ok=True)
+
+
+def _listed(folder: Path) -> list[str]:
+    """Files of an earlier run, by its own list."""
+    try:
+        results = json.loads((folder / "results.json").read_text(encoding="utf-8"))
+        return [str(name) for name in results["files"]]
+    except (OSError, ValueError, KeyError, TypeError):
+        return []
+
+
+def _alive(process: int) -> bool:
+    if sys.platform == "win32":  # where signal 0 is Ctrl-C, or the end of that process
+        return True
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except (OSError, OverflowError):  # someone else's, or no number of a process
+        return True
+    return True

@@ -1,0 +1,66 @@
+"""A 6x6 as a table, with a unit over each of its four blocks."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+
+from solidgear.core.frames import DOF_NAMES
+from solidgear.core.quantity import BLOCK_UNITS
+from solidgear.show.reading import entry, is_nothing
+from solidgear.show.table import Cell, Table
+from solidgear.show.units import Units
+from solidgear.show.words import is_number
+
+#: a row of numbers each for six components
+Rows = Sequence[Sequence[float | None]]
+
+
+def block(
+    matrix: Rows,
+    kind: str,
+    units: Units,
+    title: str = "",
+    free: Collection[str] = (),
+    sizes: Sequence[Sequence[float | None]] | None = None,
+    faint_digits: int = 0,
+) -> Table:
+    """A 6x6 of one point or between two.
+
+    Parameters
+    ----------
+    matrix : six rows of six numbers
+        SI, order x y z thx thy thz; a dash for what is None or NaN.
+    kind : {'stiffness', 'compliance'}
+    free : collection of str
+        Components that are shown as a dash.
+    sizes : two lists of six numbers, optional
+        Entries of the diagonal beside which a coupling may be next to nothing, of rows and of
+        columns; by default those of the matrix, whose diagonal is none.
+    faint_digits : int
+        Figures of a coupling that is next to nothing, in units without exponents: there zeros would
+        fill its cell. By default it is a bare zero.
+    """
+    own = [entry(matrix, k, k) for k in range(6)]
+    across, along = sizes or (own, own)
+    same, mixed, turn = BLOCK_UNITS[kind]
+    quarters = ((same, mixed), (mixed, turn))
+
+    def cell(i: int, j: int) -> Cell:
+        value = entry(matrix, i, j)
+        if not is_number(value) or {DOF_NAMES[i], DOF_NAMES[j]} & set(free):
+            return Cell(None, "quiet")
+        coupling = i != j or sizes is not None
+        if not coupling or not is_nothing(value, across[i], along[j]):
+            return Cell(units.number(value, quarters[i // 3][j // 3]))
+        digits = 5 if units.exponents else faint_digits
+        return Cell(
+            units.number(value, quarters[i // 3][j // 3], digits) if digits else "0", "faint"
+        )
+
+    return Table(
+        title,
+        ["", *DOF_NAMES],
+        [[name, *(cell(i, j) for j in range(6))] for i, name in enumerate(DOF_NAMES)],
+        style="matrix",
+        over=[tuple(map(units.unit, pair)) for pair in quarters],
+    )

@@ -1,0 +1,289 @@
+"""Options that several commands take, in groups.
+
+A command takes a group as one parameter, and every field of the group is one of its options: what
+is added to a group, all these commands take.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from solidgear.show.command import Group, Progress
+from solidgear.core.errors import SolidgearError, show
+from solidgear.core.ladder import build
+from solidgear.core.ladder.registry import LADDER
+from solidgear.show.units import ENGINEERING, SYSTEMS
+
+if TYPE_CHECKING:
+    from solidgear.core.body import Body
+    from solidgear.core.judge.settle import Settled
+    from solidgear.core.scene import Scene
+
+#: the model that commands solve with unless told otherwise
+MODEL = "harmonic"
+#: the word for the cheapest mesh that keeps a tolerance, instead of a model
+AUTO = "auto"
+#: spellings of the option that names a model
+BY_MODEL = ("--model", "--fidelity", "-f")
+#: models that have error bars from a second mesh where theirs is set
+SECOND = ("solid",)
+#: units of tables and pages unless told otherwise
+UNITS = ENGINEERING.name
+
+SceneFile = Annotated[
+    Path,
+    typer.Argument(
+        help="Scene file (TOML), such as geometry/pinion_overhung.toml; - for standard input."
+    ),
+]
+if TYPE_CHECKING:
+    Choice = str
+    AutoChoice = str
+    UnitsChoice = str
+else:
+    UnitsChoice = StrEnum("UnitsChoice", [(name, name) for name in SYSTEMS])
+    Choice = StrEnum("Choice", [(name, name) for name in LADDER.bodies])
+    AutoChoice = StrEnum("AutoChoice", [(name, name) for name in (AUTO, *LADDER.bodies)])
+
+
+def share(text: str | float) -> float:
+    """A relative error from the command line, as a share or in per cent; defaults are numbers."""
+    number = str(text).strip()
+    try:
+        return float(number.removesuffix("%")) / (100 if number.endswith("%") else 1)
+    except ValueError:
+        raise typer.BadParameter(
+            f'"{text}" is no number; a tolerance is a share such as 0.01, or 1%'
+        ) from None
+
+
+def relative(name: str, about: str) -> Any:
+    """Option that is a relative error."""
+    return typer.Option(name, parser=share, metavar="FLOAT", help=about)
+
+
+Settings = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        help="Builder option as key=value, repeatable: order=8, layers=4, element=tet10; solidgear options lists them.",
+    ),
+]
+
+
+@dataclass(frozen=True)
+class Run(Group):
+    """Options of every command that solves and tells numbers."""
+
+    as_json: Annotated[
+        bool,
+        typer.Option("--json", help="Print JSON for machines instead of tables; always SI."),
+    ] = False
+
+    def progress(self) -> Progress:
+        """Lines on standard error, none beside JSON."""
+        return Progress(quiet=self.as_json)
+
+
+@dataclass(frozen=True)
+class Shown(Run):
+    """Those of a command whose numbers have other units than Hz."""
+
+    units: Annotated[
+        UnitsChoice,
+        typer.Option(
+            "--units",
+            help="Of tables and pages: "
+            + "; ".join(f"{units.name}: {units.about}" for units in SYSTEMS.values())
+            + ". JSON stays SI always.",
+        ),
+    ] = UNITS
+
+
+@dataclass(frozen=True)
+class Fixed(Group):
+    """A model and its mesh."""
+
+    name: Annotated[Choice, typer.Option(*BY_MODEL, help="Model to solve with.")] = MODEL
+    settings: Settings = None
+
+    def body(self, scene: Scene) -> Body:
+        """Body of a scene."""
+        return build_body(scene, self.name, self.settings)
+
+
+@dataclass(frozen=True)
+class Chosen(Group):
+    """A model and its mesh, or the cheapest that keeps a tolerance."""
+
+    name: Annotated[
+        AutoChoice,
+        typer.Option(
+            *BY_MODEL,
+            help="Model to solve with; auto: the cheapest whose bars are within --tol.",
+        ),
+    ] = AUTO
+    tol: Annotated[
+        float | None,
+        relative("--tol", "Of -f auto: relative error allowed; else the scene's own."),
+    ] = None
+    settings: Settings = None
+
+    @property
+    def pairs(self) -> list[str]:
+        """``--set`` options."""
+        return self.settings or []
+
+    def automatic(self, scene: Scene | None = None) -> bool:
+        """Tell whether the mesh is to be chosen; refuse what does not go together, with a model that
+        holds the scene and has the options that are set.
+
+        Raises
+        ------
+        SolidgearError
+            For a tolerance of a fixed model, which must not look as if it kept it, or a mesh that
+            is to be chosen and is set as well.
+        """
+        if self.name != AUTO:
+            if self.tol is not None:
+                raise SolidgearError(
+                    f"--tol {self.tol:g} needs -f auto; the mesh of -f {self.name} is set by --set"
+                )
+            return False
+        given = options(self.pairs)  # which says so where one is no key=value
+        if given:
+            held = (MODEL, *LADDER.holding(scene)) if scene is not None else (MODEL,)
+            fit = [m for m in held if scene is None or not LADDER[m].unfit(scene)]
+            able = [m for m in fit if given.keys() <= LADDER[m].options.keys()]
+            raise SolidgearError(
+                f"--set {show(self.pairs[0], 40)} needs a fixed model: add -f "
+                f"{(able or fit or [MODEL])[0]}"
+            )
+        return True
+
+
+@dataclass(frozen=True)
+class Solved(Chosen):
+    """The same of a single solution, which may be as large as a machine holds."""
+
+    engine: Annotated[
+        str | None,
+        typer.Option(
+            "--engine",
+            help="Who factors a 3D solid too large for this program: petsc (MUMPS under mpirun) "
+            "or petsc-gamg (multigrid, statics only); the same as --set engine=...",
+        ),
+    ] = None
+    second: Annotated[
+        bool,
+        typer.Option(
+            "--bars/--no-bars",
+            help="Of -f solid: error bars by a coarser second mesh, a quarter to two thirds more time.",
+        ),
+    ] = True
+
+    @property
+    def pairs(self) -> list[str]:
+        """``--set`` options with that of ``--engine``."""
+        return [*super().pairs, *([] if self.engine is None else [f"engine={self.engine}"])]
+
+    @property
+    def on_two_meshes(self) -> bool:
+        """True where error bars come from a second mesh."""
+        return self.second and self.name in SECOND
+
+    def without_bars(
+        self, bars: Mapping[Any, float], settled: Settled | None, scene: Scene, body: Body
+    ) -> str:
+        """Reason why numbers have no error bar; empty where they have one."""
+        if bars or settled is not None:
+            return ""
+        if self.on_two_meshes:
+            if scene.body is not None and scene.body.one_mesh:
+                from solidgear.core.judge.coarser_mesh import no_bar  # start-up: for mesh files alone
+
+                return no_bar(scene, body, options(self.pairs))
+            return "there is no coarser mesh beside the one that was set"
+        if self.name in SECOND:
+            return "--no-bars leaves the second mesh out"
+        return "the model was given, and its mesh with it; -f auto has them"
+
+    def body(
+        self, scene: Scene, ask: str, points: Sequence[str] = ()
+    ) -> tuple[Body, Settled | None]:
+        """The body to solve with, and how it was chosen where it was.
+
+        Parameters
+        ----------
+        points : sequence of str
+            As for :func:`solidgear.core.judge.settle.settle`.
+        """
+        if not self.automatic(scene):
+            return build_body(scene, self.name, self.pairs), None
+        from solidgear.core.judge.settle import settle  # start-up: for ``auto`` alone
+
+        # A second or less for most scenes: lines are for those who watch.
+        with Progress(quiet=not sys.stderr.isatty()) as progress:
+            settled = settle(scene, self.tol, ask, points=points, progress=progress)
+        return settled.body, settled
+
+
+def options(pairs: list[str] | None) -> dict:
+    """Builder options from ``key=value`` texts; numbers as numbers, a list with commas as a tuple."""
+    out: dict = {}
+    for pair in pairs or []:
+        key, sep, text = pair.partition("=")
+        if not sep or not key.isidentifier():
+            raise SolidgearError(f"--set {show(pair)}: write key=value, such as --set order=8")
+        if key in out:
+            raise SolidgearError(
+                f"--set {show(pair)}: {key} is set twice; set it once, lists with commas such as ovalising=2,3"
+            )
+        out[key] = tuple(_value(part) for part in text.split(",")) if "," in text else _value(text)
+    return out
+
+
+def options_by_name(
+    pairs: list[str] | None, names: Collection[str], what: str, example: str
+) -> dict[str, dict]:
+    """Builder options by the names of models or of shafts, from ``NAME.key=value`` texts."""
+    out: dict[str, list[str]] = {}
+    for pair in pairs or []:
+        name, dot, rest = pair.partition(".")
+        if not dot or name not in names:
+            raise SolidgearError(
+                f"--set {pair}: write {what.upper()}.key=value, such as --set {example}; "
+                f"{what}s: {', '.join(names)}"
+            )
+        out.setdefault(name, []).append(rest)
+    return {name: options(own) for name, own in out.items()}
+
+
+def refuse(given: Mapping[str, bool], what: str) -> None:
+    """Refuse the first of some options that is given; they are for something else, in words."""
+    for option, there in given.items():
+        if there:
+            raise SolidgearError(f"{option} is for {what}")
+
+
+def _value(text: str):
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            continue
+    return {"true": True, "false": False}.get(text, text)
+
+
+def build_body(scene: Scene, name: str, pairs: list[str] | None) -> Body:
+    """Body of a scene by one model, with ``--set`` options."""
+    # Checked here too: an option called scene or fidelity would be taken for an argument of
+    # `build`.
+    return build(scene, name, **LADDER[name].checked(options(pairs)))

@@ -1,0 +1,69 @@
+"""Commands for their help: modules of the command line without what only their work imports, which
+is most of a start.
+"""
+
+from __future__ import annotations
+
+import ast
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from importlib.abc import MetaPathFinder
+from importlib.machinery import ModuleSpec, PathFinder, SourceFileLoader
+from types import CodeType
+
+ROOM = "solidgear.app"
+
+
+@contextmanager
+def options_alone() -> Iterator[None]:
+    """While this lasts, modules of the command line are read for their options; they are forgotten
+    after it.
+    """
+    here, known = _Finder(), set(sys.modules)
+    sys.meta_path.insert(0, here)
+    try:
+        yield
+    finally:
+        sys.meta_path.remove(here)
+        for name in [n for n in sys.modules if n.startswith(f"{ROOM}.") and n not in known]:
+            del sys.modules[name]
+            vars(sys.modules[ROOM]).pop(name.rpartition(".")[2], None)
+
+
+class _Finder(MetaPathFinder):
+    def find_spec(self, fullname, path, target=None) -> ModuleSpec | None:
+        found = PathFinder.find_spec(fullname, path) if fullname.startswith(f"{ROOM}.") else None
+        if found and found.origin:
+            found.loader = _Loader(fullname, found.origin)
+        return found
+
+
+class _Loader(SourceFileLoader):
+    """Source without the imports that nothing names before a command runs."""
+
+    def get_code(self, fullname: str) -> CodeType:
+        tree = ast.parse(self.get_data(self.path))
+        told, before = _told(tree), 0
+        # functions that make options are called as the module is read, and those that they call
+        while len(told) > before:
+            before = len(told)
+            for node in tree.body:
+                if isinstance(node, ast.FunctionDef) and node.name in told:
+                    told |= set().union(*map(_told, node.body))
+        for node in tree.body:
+            if isinstance(node, ast.ImportFrom) and node.module != "__future__":
+                node.names = [a for a in node.names if (a.asname or a.name) in told]
+        tree.body = [n for n in tree.body if not isinstance(n, ast.ImportFrom) or n.names]
+        return compile(tree, self.path, "exec", dont_inherit=True)
+
+
+def _told(node: ast.AST) -> set[str]:
+    """Names that are looked up when a statement runs: of a command those of its head, of another
+    function its defaults.
+    """
+    parts: list[ast.AST] = list(ast.iter_child_nodes(node))
+    if isinstance(node, ast.FunctionDef):
+        head = [node.args] if node.decorator_list else [*node.args.defaults, *node.args.kw_defaults]
+        parts = [*node.decorator_list, *filter(None, head)]
+    return set().union([node.id] if isinstance(node, ast.Name) else [], *map(_told, parts))

@@ -1,0 +1,124 @@
+"""Surfaces and their motions in few bytes, for a page that has to hold them.
+
+Points come meridian by meridian, so that each is close to the one before and moves nearly as it
+does. Whole numbers of a step take the place of coordinates, differences of successive ones that of
+the numbers, and these are deflated (RFC 1950). The script of the page undoes it with the browser's
+own ``DecompressionStream``.
+"""
+
+from __future__ import annotations
+
+import base64
+import zlib
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from solidgear.core.body.surface import Surface
+
+#: points nearer than this share of the length are one
+SAME = 1e-8
+#: edges at which the surface turns by more than this stay sharp, and are drawn
+CREASE = np.cos(np.radians(32))
+#: sectors about the axis in which points are numbered; with 48 or 192 most pages are larger
+SECTORS = 96
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """A surface of triangles."""
+
+    points: np.ndarray  #: (n, 3) m; on a sharp edge there is one for either side of it
+    triangles: np.ndarray  #: (m, 3) normals point out of the material
+    edges: np.ndarray  #: (l, 2) sharp ones
+    source: np.ndarray  #: (n,) places of the points in the surface that they were taken from
+
+
+def mesh_of(surface: Surface) -> Mesh:
+    """Triangles of a drawn surface, welded where two pieces of it meet and split at sharp edges."""
+    triangles = _triangles(surface)
+    piece, edges = _creased(surface.points, triangles)
+    _, first = np.unique(piece, return_index=True)
+    source = triangles.ravel()[first]
+    order = _along_meridians(surface.points[source])
+    number = np.argsort(order)
+    rows = number[piece].reshape(-1, 3)
+    lowest = np.argmin(rows, axis=1)[:, None]
+    rows = np.take_along_axis(rows, (lowest + np.arange(3)) % 3, axis=1)
+    return Mesh(surface.points[source[order]], _sorted(rows), _sorted(number[edges]), source[order])
+
+
+def _triangles(surface: Surface) -> np.ndarray:
+    """Triangles of a surface between points of which none coincide."""
+    from scipy.spatial import cKDTree
+
+    points = surface.points
+    near = SAME * np.ptp(points, axis=0).max()
+    first, second = cKDTree(points).query_pairs(near, output_type="ndarray").T
+    number = np.arange(len(points))
+    np.minimum.at(number, second, first)
+    triangles = number[np.concatenate([_halved(points, surface.faces), surface.triangles])]
+    corners = np.sort(triangles, axis=1)
+    flat = (np.diff(corners, axis=1) == 0).any(axis=1)
+    # Where two bodies are welded face to face, neither face is of the surface.
+    _, back, count = np.unique(corners, axis=0, return_inverse=True, return_counts=True)
+    return triangles[~flat & (count[back.ravel()] == 1)]
+
+
+def _halved(points: np.ndarray, quads: np.ndarray) -> np.ndarray:
+    """Quadrilaterals as two triangles each, along the shorter diagonal."""
+    first, second = (
+        np.linalg.norm(points[quads[:, i + 2]] - points[quads[:, i]], axis=1) for i in (0, 1)
+    )
+    rolled = np.where((second < first)[:, None], np.roll(quads, -1, axis=1), quads)
+    return np.concatenate([rolled[:, [0, 1, 2]], rolled[:, [0, 2, 3]]])
+
+
+def _creased(points: np.ndarray, triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Split points where edges are sharp: new point of every corner, and the sharp edges."""
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components
+
+    a, b, c = points[triangles.T]
+    normal = np.cross(b - a, c - a)
+    normal /= np.maximum(np.linalg.norm(normal, axis=1), np.finfo(float).tiny)[:, None]
+    corner = np.arange(triangles.size)
+    following = np.roll(corner.reshape(-1, 3), -1, axis=1).ravel()
+    start, end = triangles.ravel(), triangles.ravel()[following]
+    # An edge runs the other way round in the triangle beyond it.
+    own, other = start * len(points) + end, end * len(points) + start
+    order = np.argsort(own)
+    beyond = order[np.searchsorted(own, other, sorter=order).clip(max=len(own) - 1)]
+    cosine = np.einsum("ij,ij->i", normal[corner // 3], normal[beyond // 3])
+    sharp = (own[beyond] != other) | (cosine < CREASE)
+    joins = corner[~sharp], following[beyond[~sharp]]
+    graph = coo_matrix((np.ones(len(joins[0])), joins), shape=(len(corner), len(corner)))
+    _, piece = connected_components(graph, directed=False)
+    once = sharp & (start < end)
+    return piece, np.column_stack([piece[once], piece[following[once]]])
+
+
+def _along_meridians(points: np.ndarray) -> np.ndarray:
+    """Order of points sector by sector about the axis, to and fro along it."""
+    x, y, z = points.T / np.ptp(points, axis=0).max()
+    sector = np.rint(np.arctan2(x, z) * SECTORS / (2 * np.pi)) % SECTORS
+    along = np.where(sector % 2, -1, 1) * y
+    return np.lexsort((np.hypot(x, z).round(4), along.round(4), sector))
+
+
+def _sorted(rows: np.ndarray) -> np.ndarray:
+    """Rows by their first number, then by the others."""
+    return rows[np.lexsort(rows.T[::-1])]
+
+
+def packed(values: np.ndarray, step: float = 1) -> str:
+    """Values as differences of successive whole numbers of steps, which stay below 2^30, deflated,
+    in base64.
+    """
+    apart = np.diff(np.rint(values / step).astype(np.int64), prepend=0)
+    counts = (2 * np.abs(apart) - (apart < 0)).astype("<u4")
+    # All low bytes first: they differ, and the others seldom do.
+    planes = counts.view(np.uint8).reshape(-1, 4).T
+    return base64.b64encode(zlib.compress(planes.tobytes(), 9)).decode()

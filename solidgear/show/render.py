@@ -1,0 +1,196 @@
+"""Pictures of mode shapes, drawn in a child process.
+
+Without the system's OpenGL libraries VTK does not raise, it takes the process down with a
+segmentation fault. So a child draws, the caller reads how it ended, and a failed picture never costs
+a number.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from solidgear.core.machine.patience import Patience
+from solidgear.core.machine.whole_file import whole
+from solidgear.show.drawing import ARRAYS
+
+if TYPE_CHECKING:
+    from solidgear.core.body.surface import Surface
+
+PACKAGES = (
+    "apt-get install libgl1 libegl1 libegl-mesa0 libglu1-mesa "
+    "libxft2 libxinerama1 libxcursor1 libgomp1"
+)
+WINDOW = "VTK_DEFAULT_OPENGL_WINDOW"
+#: what a child writes to its standard error
+SAID = "said.txt"
+#: a shape as it is, without a caption
+STILL = ((1.0, ""),)
+
+
+@dataclass(frozen=True, eq=False)
+class RenderJob:
+    """One picture to draw."""
+
+    surface: Surface
+    title: str  #: such as ``harmonic - bending 1 - 2758.0 Hz``
+    path: Path  #: of the png
+    #: factors on the displacement and what is written over each, side by side
+    frames: Sequence[tuple[float, str]] = STILL
+    along: bool = True  #: one shaft along y, seen across its motion; else a train, seen from above
+
+
+@dataclass(frozen=True)
+class RenderResult:
+    """Outcome of a :class:`RenderJob`."""
+
+    path: Path  #: holds the new picture if ``ok``; otherwise whatever was there before is untouched
+    reason: str = ""  #: one sentence on what went wrong, and what mends it; empty if ``ok``
+
+    @property
+    def ok(self) -> bool:
+        """True if it was drawn and written."""
+        return not self.reason
+
+
+def render_modes(jobs: Iterable[RenderJob], *, timeout: float = 120) -> list[RenderResult]:
+    """Draw deformed shafts, coloured by displacement, over their shape at rest, within so many
+    seconds of processor time for all of them; a result a job. Nothing is raised for a picture that
+    could not be drawn or written.
+    """
+    with Drawing(jobs, timeout=timeout) as drawing:
+        return drawing.results()
+
+
+class Drawing:
+    """Pictures being drawn by a child, while the caller does something else.
+
+    As a context manager: the child starts where it is entered and is gone where it is left.
+    """
+
+    def __init__(self, jobs: Iterable[RenderJob], *, timeout: float = 120):
+        self.jobs, self._patience = list(jobs), Patience(timeout)
+        self._child: subprocess.Popen | None = None
+
+    def __enter__(self) -> Drawing:
+        self._folder = tempfile.TemporaryDirectory(prefix="solidgear-render-")
+        self._windows = _windows()
+        try:
+            if self.jobs:
+                self._hand_over()
+                self._end = self._start()
+        except BaseException:
+            self.__exit__()
+            raise
+        return self
+
+    def __exit__(self, *_) -> None:
+        if self._child is not None and self._child.poll() is None:
+            self._child.kill()
+            self._child.wait()
+        self._folder.cleanup()
+
+    def results(self) -> list[RenderResult]:
+        """Wait for the pictures and put them in their places; a result a job."""
+        if not self.jobs:
+            return []
+        end = self._end or self._wait()
+        # A child that reached the end of its list has said all there is to say.
+        while end and self._windows and self._patience.remaining > 0:
+            end = self._start() or self._wait()
+        return [
+            RenderResult(job.path, _collect(self._room, i, job.path, end))
+            for i, job in enumerate(self.jobs)
+        ]
+
+    @property
+    def _room(self) -> Path:
+        return Path(self._folder.name)
+
+    def _hand_over(self) -> None:
+        """The jobs as files, for the child to read."""
+        arrays = {
+            f"{i}.{name}": getattr(job.surface, name)
+            for i, job in enumerate(self.jobs)
+            for name in ARRAYS
+        }
+        np.savez(self._room / "surfaces.npz", **arrays)
+        told = [{"title": j.title, "frames": list(j.frames), "along": j.along} for j in self.jobs]
+        (self._room / "jobs.json").write_text(json.dumps(told), encoding="utf-8")
+
+    def _start(self) -> str:
+        """Start a child on what is still to be drawn, in the next window; why it could not, if so."""
+        env = dict(os.environ)
+        window = self._windows.pop(0)
+        if window:
+            env[WINDOW] = window
+        # The child must find the same solidgear, wherever the caller runs.
+        here = str(Path(__file__).resolve().parents[2])
+        env["PYTHONPATH"] = os.pathsep.join(filter(None, [here, env.get("PYTHONPATH")]))
+        command = [sys.executable, "-m", "solidgear.show.drawing", str(self._room)]
+        try:
+            # into a file: nobody empties a pipe meanwhile
+            with (self._room / SAID).open("wb") as said:
+                self._child = subprocess.Popen(
+                    command,
+                    env=env,
+                    stdin=subprocess.DEVNULL,
+                    stdout=subprocess.DEVNULL,
+                    stderr=said,
+                )
+        except OSError as error:
+            return f"could not be started ({error})"
+        return ""
+
+    def _wait(self) -> str:
+        """Wait for the child; how it died, or nothing."""
+        child = self._child
+        assert child is not None
+        code = self._patience.wait(child)
+        if self._patience.reason:
+            return self._patience.reason
+        if code == 0:
+            return ""
+        if code < 0:
+            return f"was ended by signal {-code}"
+        text = (self._room / SAID).read_text(encoding="utf-8", errors="replace")
+        last = next((line.strip() for line in reversed(text.splitlines()) if line.strip()), "")
+        return f"ended with status {code}" + (f" ({last[:200]})" if last else "")
+
+
+def _windows() -> list[str | None]:
+    """VTK windows to try in turn; None leaves the choice to VTK."""
+    if not sys.platform.startswith("linux") or WINDOW in os.environ:
+        return [None]
+    # A display that is set may still be dead, as over a lost ssh connection.
+    return ([None] if os.environ.get("DISPLAY") else []) + [
+        "vtkEGLRenderWindow",
+        "vtkOSOpenGLRenderWindow",
+    ]
+
+
+def _collect(room: Path, index: int, path: Path, end: str) -> str:
+    """Move a finished picture to its place; else the reason why there is none, and what mends it."""
+    drawn, said = room / f"{index}.png", room / f"{index}.txt"
+    if said.exists():
+        return f"the picture {path.name} could not be drawn: {said.read_text(encoding='utf-8')}"
+    if drawn.exists():
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            with whole(path) as partial:
+                shutil.copyfile(drawn, partial)
+        except OSError as error:
+            return f"the picture {path} could not be written: {error.strerror or error}"
+        return ""
+    what = end or "left no picture"
+    return f"the drawing process {what}; on Debian and Ubuntu OpenGL is mended by `{PACKAGES}`"

@@ -1,0 +1,223 @@
+"""Scenes, bodies and results as they show themselves: in a line, a table or a picture."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from solidgear.core.frames import DOF_NAMES
+from solidgear.core.quantity import BLOCK_UNITS
+from solidgear.measured.tables import entries, pairs
+from solidgear.variants.optimise.tables import designs
+from solidgear.show.reading import mode_of
+from solidgear.show.sketch import draw
+from solidgear.show.table import Table
+from solidgear.show.words import bar_of, percent
+
+if TYPE_CHECKING:
+    from solidgear.core.body import Body
+
+#: results that are told by a table of their pages
+correlation, identification, optimum = pairs, entries, designs
+
+#: shapes that a picture shows unless told otherwise
+MOST_SHAPES = 6
+#: a motion this small beside the largest of its mode is not drawn
+SMALL = 0.05
+
+
+def scene(shaft: Any) -> Table:
+    """Parts of a shaft along its axis."""
+    rows: list[tuple[Any, ...]] = []
+    for s in shaft.segments:
+        rows.append((s.name, "segment", 1e3 * s.y0, 1e3 * s.y1, _diameters(s)))
+    for f in shaft.features:
+        lo, hi = f.span(shaft.segments)
+        rows.append((f.name, f.what, 1e3 * lo, 1e3 * hi, f"on {f.segment}"))
+    for b in shaft.bearings:
+        rows.append((b.name, "bearing", 1e3 * b.lo, 1e3 * b.hi, b.attachment))
+    seats = {s.name: s for s in shaft.stations}
+    for m in shaft.masses:
+        seat = seats[m.station]
+        rows.append((m.name, "mass", 1e3 * seat.lo, 1e3 * seat.hi, f"{m.mass:.6g} kg"))
+    for c in shaft.corners:
+        rows.append(
+            (c.name, c.kind, *(1e3 * y for y in c.span), f"on {shaft.segments[c.owner].name}")
+        )
+    if shaft.body is not None:
+        rows.append(
+            (
+                shaft.body.name,
+                shaft.body.what,
+                0.0,
+                1e3 * shaft.length,
+                "segments are its round part",
+            )
+        )
+    for port in shaft.ports:
+        rows.append((port.name, "port", 1e3 * port.lo, 1e3 * port.hi, port.attachment))
+    title = shaft.title or shaft.name
+    return Table(
+        f"Scene {shaft.name}: {title}, {1e3 * shaft.length:.6g} mm long",
+        ("part", "kind", "from mm", "to mm", "what"),
+        rows,
+    )
+
+
+def _diameters(segment: Any) -> str:
+    outer = (segment.outer0, segment.outer1)
+    inner = (segment.inner0, segment.inner1)
+
+    def ends(pair: tuple[float, float]) -> str:
+        return " to ".join(f"{2e3 * r:.6g}" for r in dict.fromkeys(pair))
+
+    bore = f", bore {ends(inner)} mm" if any(inner) else ""
+    return f"diameter {ends(outer)} mm{bore}"
+
+
+def scene_figure(shaft: Any) -> Any:
+    """The dimensioned section of the report."""
+    return draw(shaft.as_dict())
+
+
+def body(free_body: Body) -> Table:
+    """Blocks of a body."""
+    rows = [
+        (b.name, " ".join(DOF_NAMES[c] for c in b.components), b.size, b.mirror is not None)
+        for b in free_body.blocks
+    ]
+    ports = ", ".join(f"{p.name} ({p.attachment})" for p in free_body.ports)
+    return Table(
+        f"Body {free_body.fidelity}: {free_body.size} unknowns, ports {ports}",
+        ("block", "moves", "unknowns", "twin"),
+        rows,
+    )
+
+
+def mode_set(modes: Any) -> Table:
+    """Natural frequencies."""
+    rows = [(m.name, m.frequency_hz, m.multiplicity, m.waves, m.error) for m in modes.modes]
+    return Table(
+        f"Modes of the {modes.fidelity} body",
+        ("mode", "Hz", "shapes", "waves around", "solver's error"),
+        rows,
+    )
+
+
+def mode_set_figure(modes: Any, names: Sequence[str] = ()) -> Any:
+    """Section motions of elastic modes along the shaft: translations, of torsion the turns.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Modes to draw, by name; the first few elastic ones by default.
+    """
+    from matplotlib.figure import Figure
+
+    elastic = [m for m in modes.modes if m.frequency_hz > 0]
+    drawn = [modes.named(name) for name in names] if names else elastic[:MOST_SHAPES]
+    if not drawn or None in drawn:
+        raise ValueError(f"no such mode; there are {', '.join(modes.names)}")
+    figure = Figure(figsize=(7.0, 0.6 + 1.15 * len(drawn)), layout="constrained")
+    axes = figure.subplots(len(drawn), 1, sharex=True, squeeze=False)[:, 0]
+    y = 1e3 * modes.stations
+    for ax, mode in zip(axes, drawn):
+        moves, turns = np.abs(mode.motions[0]).max(axis=0).reshape(2, 3)
+        # turns of a bent line say what the line says; where it stays, as in torsion, they are all
+        bent = moves.max() > SMALL * turns.max() * np.ptp(modes.stations)
+        shown = range(3) if bent else range(3, 6)
+        largest = (moves if bent else turns).max() or 1.0
+        for k in shown:
+            if np.abs(mode.motions[0, :, k]).max() > SMALL * largest:
+                drawn_line = mode.motions[0, :, k] / largest
+                ax.plot(y, drawn_line, ".-", label=DOF_NAMES[k], markersize=4)
+        ax.axhline(0, color="#999999", lw=0.6)
+        ax.set(ylim=(-1.15, 1.15), yticks=[])
+        ax.set_title(f"{mode.name}, {mode.frequency_hz:.1f} Hz", loc="left", fontsize=9)
+        ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8, frameon=False)
+    axes[-1].set_xlabel("y, mm")
+    return figure
+
+
+def condensed(statics: Any, kind: str = "stiffness") -> Table:
+    """The 6x6 at a port, a stiffness or a compliance."""
+    return _matrix(statics, kind, f"at {statics.port} ({statics.attachment})", DOF_NAMES, "free")
+
+
+def coupled(statics: Any, kind: str = "compliance") -> Table:
+    """The matrix between several ports, a stiffness or a compliance."""
+    heads = [f"{port} {name}" for port in statics.ports for name in DOF_NAMES]
+    return _matrix(statics, kind, f"between {' and '.join(statics.ports)}", heads, "free together")
+
+
+def _matrix(statics: Any, kind: str, place: str, heads: Sequence[str], free: str) -> Table:
+    if kind not in BLOCK_UNITS:
+        raise ValueError(f"kind {kind!r}: use stiffness or compliance")
+    rows = [
+        (name, *(float(v) if np.isfinite(v) else None for v in row))
+        for name, row in zip(heads, getattr(statics, kind))
+    ]
+    names = f"; {free}: {', '.join(statics.free_names)}" if statics.free_names else ""
+    return Table(f"{kind} {place}, {', '.join(BLOCK_UNITS[kind])}{names}", ("", *heads), rows)
+
+
+def comparison(compared: Any) -> Table:
+    """Verdict and first numbers of every model."""
+    record, rows = compared.record, []
+    for name, model in record.models.items():
+        first = mode_of(model, "bending 1")
+        c_zz = model.compliance[2][2] if model.compliance else None
+        spent = round(sum(v for v in model.seconds.values() if v is not None), 3)
+        rows.append(
+            (name, c_zz, first.frequency_hz if first else None, model.valid, model.dofs, spent)
+        )
+    trust = record.verdict.trust
+    tolerance = percent(record.verdict.tolerance, signed=False)
+    title = f"trust {trust}" if trust else "not judged"
+    return Table(
+        f"Comparison of {compared.scene.name}: {title}; within {tolerance}: {record.verdict.cheapest or 'none'}",
+        ("model", "C_zz m/N", "bending 1 Hz", "valid", "unknowns", "s"),
+        rows,
+    )
+
+
+def answered(answer: Any) -> Table:
+    """Numbers with their bars."""
+    rows = [(v.quantity, v.value, v.unit, bar_of(v)) for v in answer.values]
+    words = "within" if answer.reached else "not within"
+    return Table(
+        f"Answer for {answer.scene}: {answer.rung}, {words} {percent(answer.tolerance, signed=False)}",
+        ("quantity", "value", "unit", "bar"),
+        rows,
+    )
+
+
+def swept(rows: Any) -> Table:
+    """Values that vary, the first natural frequencies with their bars, and why a row has none."""
+    heads = [*rows.varied, *(name for name in ("f1_hz", "f2_hz", "f3_hz") if name in rows.columns)]
+    columns = [*heads, "status"]
+    told = [tuple(_told(rows.columns, head, k) for head in columns) for k in range(len(rows))]
+    return Table("Rows of a sweep, SI", columns, told)
+
+
+def _told(columns: Mapping[str, list], head: str, k: int) -> str:
+    """A number of a row with its bar, where it has one."""
+    value, bar = (columns[name][k] if name in columns else None for name in (head, f"{head} bar"))
+    if value is None or isinstance(value, str):
+        return (value or "-")[:60]
+    return f"{value:.6g}" if bar is None else f"{value:.6g} ± {bar:.1g}"
+
+
+def two_shafts(found: Any) -> Table:
+    """Numbers of two shafts, their differences and what of them is resolved."""
+    rows = [
+        (one.name, one.change.a, one.change.b, one.unit, percent(one.relative), one.verdict)
+        for one in found.changes
+    ]
+    return Table(
+        f"{found.a.label} beside {found.b.label}",
+        ("number", "A", "B", "unit", "difference", ""),
+        rows,
+    )

@@ -1,0 +1,352 @@
+"""One table for every reader: a terminal, a page, a notebook, a file.
+
+A :class:`Table` holds values; each :class:`Column` says how its own are written. What a medium needs
+beside that stands here and nowhere else: :mod:`rich` asks for ``__rich_console__``, a notebook for
+``_repr_html_``, a page calls the macro ``table`` of ``parts.html``, a file takes :meth:`Table.csv`.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+
+from solidgear.core.machine.whole_file import whole
+from solidgear.show.page_parts import template
+from solidgear.show.units import Units, in_ascii
+from solidgear.show.words import DASH, as_text
+
+if TYPE_CHECKING:
+    from rich.console import Console, ConsoleOptions, RenderResult
+    from rich.table import Table as RichTable
+
+#: rows that a `repr` shows
+MOST_ROWS = 24
+#: characters from which on a text asks for a wide column where a page is narrow
+LONG = 60
+#: kinds of columns: numbers to the right, texts and single words to the left, marks in the middle
+NUMBER, TEXT, WORD, MARK = "number", "text", "word", "mark"
+#: how a kind is called in the style sheet
+CSS = {NUMBER: "", TEXT: "text", WORD: "word text", MARK: ""}
+#: on which side of its column a kind stands in a terminal
+SIDE: dict[str, Literal["left", "right", "center"]] = {
+    NUMBER: "right",
+    TEXT: "left",
+    WORD: "left",
+    MARK: "center",
+}
+
+
+class Cell(NamedTuple):
+    """A value that stands out."""
+
+    value: Any
+    #: ``quiet`` (said with less weight), ``faint`` (next to nothing), ``strong``, ``good``, ``bad``
+    #: (beyond what was asked), ``unresolved``, or ``mark`` and the status of an input
+    look: str = ""
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of a table."""
+
+    head: str  #: with its unit
+    #: the value, or :class:`Cell`, of an item; by default the item has its cells in the order of
+    #: the columns
+    of: Callable[[Any], Any] | None = None
+    #: writes a value; texts stand as they are, and a dash for what is not there
+    write: Callable[[Any], str] = as_text
+    #: ``number``, ``text``, ``word`` or ``mark``; by default a text for the first column, else a
+    #: number
+    kind: str = ""
+
+    def written(self, value: Any, nothing: str = DASH) -> str:
+        """A value as this column writes it."""
+        if value is None or isinstance(value, float) and not math.isfinite(value):
+            return nothing
+        return value if isinstance(value, str) else self.write(value)
+
+
+def text(head: str, of: Callable[[Any], Any] | None = None) -> Column:
+    """A column of texts, which may take several lines."""
+    return Column(head, of, kind=TEXT)
+
+
+def word(head: str, of: Callable[[Any], Any] | None = None) -> Column:
+    """A column of single words."""
+    return Column(head, of, kind=WORD)
+
+
+def quantity(
+    head: str, si: str, units: Units, of: Callable[[Any], Any] | None = None, digits: int = 5
+) -> Column:
+    """A column of values of an SI unit, shown in `units`."""
+    return Column(f"{head}, {units.unit(si)}", of, partial(units.number, si=si, digits=digits))
+
+
+def given(head: str, si: str, units: Units, of: Callable[[Any], Any] | None = None) -> Column:
+    """A column of values out of a scene, without zeros behind them."""
+    return Column(f"{head}, {units.unit(si)}", of, partial(units.given, si=si))
+
+
+@dataclass
+class Table:
+    """A table.
+
+    Examples
+    --------
+    >>> Table("two modes", ("mode", "Hz"), [("bending 1", 2758.0042), ("axial 1", 1388.5)])
+    two modes
+      mode       Hz
+      bending 1  2758.00
+      axial 1    1388.50
+    """
+
+    title: str
+    #: a text is the head of a column whose values need no more than :func:`as_text`
+    columns: Sequence[Any]
+    #: items for the columns, which become rows of values
+    rows: Sequence[Any] = field(default_factory=list)
+    note: str = ""  #: what stands below
+    #: name of a style: ``facts``, ``summary`` and ``numbers`` of pages, ``matrix``, and those of
+    #: terminals in ``TERMINAL``
+    style: str = ""
+    #: where the rows are several blocks: for each what stands over equal shares of the columns
+    #: behind the first, such as units
+    over: Sequence[tuple[str, ...]] = ()
+
+    def __post_init__(self) -> None:
+        columns = [c if isinstance(c, Column) else Column(c) for c in self.columns]
+        self.columns = [
+            c if c.kind else replace(c, kind=NUMBER if k else TEXT) for k, c in enumerate(columns)
+        ]
+        self.rows = [
+            [c.of(item) if c.of else item[k] for k, c in enumerate(self.columns)]
+            for item in self.rows
+        ]
+
+    def __bool__(self) -> bool:
+        return bool(self.rows)
+
+    @property
+    def heads(self) -> list[str]:
+        """Heads of the columns."""
+        return [column.head for column in self.columns]
+
+    @property
+    def values(self) -> list[list[Any]]:
+        """The rows without looks."""
+        return [[v.value if isinstance(v, Cell) else v for v in row] for row in self.rows]
+
+    @property
+    def cells(self) -> list[list[Cell]]:
+        """The rows as they are written, texts with their looks."""
+        return [[self._cell(c, value) for c, value in zip(self.columns, row)] for row in self.rows]
+
+    @property
+    def texts(self) -> list[list[str]]:
+        """The rows as they are written."""
+        return [[cell.value for cell in row] for row in self.cells]
+
+    @staticmethod
+    def _cell(column: Column, value: Any) -> Cell:
+        value, look = value if isinstance(value, Cell) else (value, "")
+        return Cell(column.written(value), look)
+
+    @property
+    def blocks(self) -> list[tuple[tuple[str, ...], list[list[Cell]]]]:
+        """Rows that belong together, and what stands over them."""
+        rows, many = self.cells, len(self.over) or 1
+        size = math.ceil(len(rows) / many)
+        over = self.over or [()]
+        return [(over[k], rows[k * size : (k + 1) * size]) for k in range(many)]
+
+    # ---------------------------------------------------------------------- a terminal
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
+        yield fitted(self, console, options)
+
+    def __repr__(self) -> str:
+        if not self.rows:
+            return self.title
+        shown = [self.heads, *self.texts[:MOST_ROWS]]
+        lines = [[in_ascii(text) for text in row] for row in shown]
+        widths = [max(map(len, column)) for column in zip(*lines)]
+        left = len(self.rows) - MOST_ROWS
+        return "\n".join(
+            [
+                self.title,
+                *("  " + "  ".join(map(str.ljust, line, widths)).rstrip() for line in lines),
+                *([f"  and {left} more"] if left > 0 else []),
+            ]
+        )
+
+    # ---------------------------------------------------------------------- a page
+    def _repr_html_(self) -> str:
+        return str(template("parts.html").module.table(self))
+
+    def css(self, k: int, cell: Cell | None = None) -> str:
+        """Classes of column `k` in the style sheet, or of a cell in it."""
+        kind = CSS[self.columns[k].kind] if k else ""
+        if cell is None:
+            return kind
+        wide = "long" if kind and len(cell.value) > LONG else ""
+        return " ".join(filter(None, (kind, cell.look, wide)))
+
+    # ---------------------------------------------------------------------- files
+    def csv(self) -> str:
+        """The table as comma-separated values; nothing where there is no value."""
+        out = io.StringIO()
+        writer = csv.writer(out, lineterminator="\n")
+        writer.writerow(self.heads)
+        for row in self.values:
+            writer.writerow([c.written(value, "") for c, value in zip(self.columns, row)])
+        return out.getvalue()
+
+    def write(self, path: Path) -> Path:
+        """Write it as comma-separated values; there is a whole file or none."""
+        with whole(path) as half:
+            half.write_text(self.csv(), encoding="utf-8", newline="")
+        return path
+
+    def to_dataframe(self) -> Any:
+        """As a data frame of pandas.
+
+        Raises
+        ------
+        ImportError
+            Where pandas is not installed; nothing else of solidgear needs it.
+        """
+        import pandas
+
+        return pandas.DataFrame(self.values, columns=self.heads)
+
+
+def exact(value: float) -> str:
+    """A number for other programs."""
+    return f"{value:.9g}"
+
+
+def numbers(columns: Mapping[str, Iterable[float]]) -> Table:
+    """Columns of numbers in SI by their heads, for other programs."""
+    return Table("", [Column(head, write=exact) for head in columns], list(zip(*columns.values())))
+
+
+#: what rich is told of the styles of terminals
+TERMINAL: dict[str, dict[str, Any]] = {
+    "": {"pad_edge": False},
+    "narrow": {"pad_edge": False, "padding": 0, "collapse_padding": True},
+    "ruled": {"show_edge": False},
+    "bare": {"padding": (0, 1, 0, 0)},
+}
+TERMINAL["matrix"] = TERMINAL["narrow"]
+#: right of a cell, left of it none, where a terminal has no room for more
+TIGHT = ((0, 1, 0, 0), (0, 0, 0, 0))
+#: characters that a column of texts has at least, if one of them needs as many
+LEAST_TEXT = 12
+
+
+def fitted(table: Table, console: Console, options: ConsoleOptions) -> RichTable:
+    """A table for a terminal of a width: texts and then heads take several lines, columns move
+    together, and no number is ever cut; what is wider still runs over.
+    """
+    shown = printed(table)
+    if _width(shown, console, options) <= options.max_width:
+        return shown
+    columns = list(zip(table.columns, zip(*table.texts)))
+    whole = [_least(column, cells, column.head.split("\n")) for column, cells in columns]
+    broken = [_least(column, cells, column.head.split()) for column, cells in columns]
+    # numbers without a line between them would run together
+    tight = TIGHT if shown.box else TIGHT[:1]
+    ways = [(shown.padding, whole), *((pad, broken) for pad in (shown.padding, *tight))]
+    for padding, widths in ways:
+        shown.padding = padding
+        for column, width in zip(shown.columns, widths):
+            column.width, column.no_wrap = width, False
+        spare = options.max_width - _width(shown, console, options)
+        if spare >= 0:
+            _widen_texts(table, shown, spare)
+            return shown
+    shown.width = _width(shown, console, options)
+    return shown
+
+
+def _width(shown: RichTable, console: Console, options: ConsoleOptions) -> int:
+    """Characters that a table takes where it may take any."""
+    from rich.measure import Measurement
+
+    return Measurement.get(console, options.update(max_width=1000), shown).maximum
+
+
+def _least(column: Column, cells: Iterable[str], heads: Iterable[str]) -> int:
+    """Characters of the widest cell or part of the head; of texts those of a word, or a few."""
+    parts = _widest([*heads, *cells])
+    if column.kind != TEXT:
+        return parts
+    words = [word for cell in cells for word in cell.split()]
+    return max(_widest([*heads, *words]), min(parts, LEAST_TEXT))
+
+
+def _widest(texts: Iterable[str]) -> int:
+    from rich.cells import cell_len
+
+    return max((cell_len(in_ascii(one)) for one in texts), default=0)
+
+
+def _widen_texts(table: Table, shown: RichTable, spare: int) -> None:
+    """Share what is left of a line among columns of texts, none more than it needs."""
+    left = []
+    for k, (column, cells) in enumerate(zip(table.columns, zip(*table.texts))):
+        if column.kind == TEXT:
+            left.append((_widest(cells) - (shown.columns[k].width or 0), k))
+    for done, (needs, k) in enumerate(sorted(left)):
+        more = max(min(needs, spare // (len(left) - done)), 0)
+        shown.columns[k].width = (shown.columns[k].width or 0) + more
+        spare -= more
+
+
+def printed(table: Table) -> RichTable:
+    """A table for a terminal.
+
+    Texts go through :class:`rich.text.Text`, so that a name with brackets in it stays a name.
+    """
+    from rich import box
+    from rich.table import Table as RichTable
+    from rich.text import Text
+
+    boxes = {"ruled": box.HEAVY_HEAD, "bare": None}
+    shown = RichTable(
+        box=boxes.get(table.style, box.SIMPLE_HEAD),
+        title=Text(in_ascii(table.title), "table.title") if table.title else None,
+        title_justify="left",
+        caption=Text(in_ascii(table.note), "table.caption") if table.note else None,
+        caption_justify="left",
+        **TERMINAL.get(table.style, TERMINAL[""]),
+    )
+    for column in table.columns:
+        shown.add_column(
+            Text(in_ascii(column.head)),
+            justify=SIDE[column.kind],
+            no_wrap=column.kind != TEXT,
+        )
+    last = len(table.over) - 1
+    for k, (over, rows) in enumerate(table.blocks):
+        if over:
+            shown.add_row(*_spread(over, len(table.columns)), style="dim")
+        for row in rows:
+            ends = k < last and row is rows[-1]
+            shown.add_row(*(Text(in_ascii(cell.value)) for cell in row), end_section=ends)
+    return shown
+
+
+def _spread(over: Sequence[str], columns: int) -> Iterable[str]:
+    """Texts in the middle of the equal shares of columns that they stand over."""
+    share = (columns - 1) // len(over)
+    cells = [""] * columns
+    for k, text in enumerate(over):
+        cells[1 + k * share + share // 2] = in_ascii(text)
+    return cells

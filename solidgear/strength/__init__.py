@@ -1,0 +1,1 @@
+"""Deflection and stress of shafts at rest."""

@@ -1,0 +1,108 @@
+"""Options on what acts on a train or a shaft at rest, and what they make of its file."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from solidgear.show.command import Group
+from solidgear.app.bearing import loaded_by
+from solidgear.show.options import refuse
+from solidgear.core.errors import SceneError, SolidgearError, show
+from solidgear.strength.deflection.tables import DOFS, LOAD_OF
+from solidgear.show.units import Units
+from solidgear.core.scene import Scene
+from solidgear.trains.file.operation import OperatingPoint
+from solidgear.core.scene.toml_file import is_train
+from solidgear.trains.file.train import Train
+from solidgear.core.loading import as_written, load_train
+from solidgear.trains.load.operation import named_point
+
+AtRestFile = Annotated[
+    Path, typer.Argument(help="Train or scene file (TOML), such as geometry/axle_overhung.toml.")
+]
+
+
+@dataclass(frozen=True)
+class Acting(Group):
+    """An operating point of a train, or a load of a shaft."""
+
+    torque: Annotated[
+        str | None,
+        typer.Option(help='Of a train, such as "115 N*m"; by default its first operating point.'),
+    ] = None
+    of: Annotated[
+        str | None,
+        typer.Option("--of", help="Shaft of --torque: pinion or gear; the engine's shaft."),
+    ] = None
+    point: Annotated[
+        str | None, typer.Option("--point", help="Operating point of a train, by name or number.")
+    ] = None
+    weight: Annotated[
+        str | None,
+        typer.Option(
+            help="With --torque: direction of weight in the first shaft's scene, such as -z."
+        ),
+    ] = None
+    load: Annotated[
+        str | None,
+        typer.Option(
+            "--load",
+            help='Of a shaft, in place of the load in its file: "x=2 kN, z=-500 N" at the port.',
+        ),
+    ] = None
+
+    def read(self, file: Path) -> Scene | tuple[Train, OperatingPoint]:
+        """A shaft under its load, or a train and its operating point; refuses options of the one
+        on a file of the other, and a train without operating point.
+        """
+        if is_train(file):
+            what = f"a shaft, and {file} is none: a train takes --torque"
+            refuse({"--load": self.load is not None}, what)
+            return self._at_point(file)
+        of_train = {"--torque": self.torque, "--point": self.point, "--weight": self.weight}
+        given = {option: value is not None for option, value in of_train.items()}
+        refuse(given, f"a train, and {file} is none: a shaft takes --load, or has [load]")
+        scene = as_written(file)
+        return scene if self.load is None else loaded_by(scene, self.load)
+
+    def _at_point(self, file: Path) -> tuple[Train, OperatingPoint]:
+        if self.torque is None:
+            what = f"a --torque, and {file} is none: write weight into its [operation]"
+            refuse({"--weight": self.weight is not None}, what)
+            train = load_train(file)
+            if not train.operation:
+                raise SolidgearError(
+                    f'{file}: no torque is given; write [operation] with torque = "115 N*m", or '
+                    "give --torque"
+                )
+            named = self.point is not None
+            return train, named_point(train, self.point) if named else train.operation[0]
+        if self.point is not None:
+            raise SolidgearError("give either --torque or --point, not both")
+        given: dict[str, Any] = {"torque": self.torque, "of": self.of, "weight": self.weight}
+        try:
+            own = OperatingPoint(**{key: value for key, value in given.items() if value})
+        except SceneError as error:
+            raise SolidgearError(f"--torque {show(self.torque, 40)}: {error}") from None
+        try:
+            train = load_train(file, own)
+        except SceneError as error:
+            if error.path[:1] != ("operation",) or error.path[-1] != "of":
+                raise
+            raise SolidgearError(f"--of {show(self.of, 40)}: {error.reason}") from None
+        return train, train.told(own)
+
+
+def load_in_words(scene: Scene, units: Units) -> str:
+    """The load of a scene, such as ``z 2000 N at pinion``."""
+    six = scene.load.six if scene.load else [0.0] * 6
+    parts = [
+        f"{name} {units.text(float(value), si, 4)}"
+        for name, value, si in zip(DOFS, six, LOAD_OF)
+        if value
+    ]
+    return f"{', '.join(parts) or 'no force'} at {scene.port.name}"

@@ -1,0 +1,1 @@
+"""Deflection of shafts and trains at rest."""

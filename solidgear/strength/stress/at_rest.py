@@ -1,0 +1,310 @@
+"""Stress of the shafts of a scene or of a train at rest, under the loads of their equilibrium.
+
+A shaft of a train is free but for the loads on its ports: teeth, springs, bearings, the weight of a
+wheel on it. A shaft of a scene has a load at the port and the reactions of the bearings. Both
+settle as plain bodies of revolution: cuts change reactions by next to nothing. Models that are made
+for cuts settle with them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from solidgear.bearings.solved import AS_STATED, Choice
+from solidgear.core.display import plain
+from solidgear.core.errors import SolidgearError
+from solidgear.core.ladder.registry import LADDER
+from solidgear.core.scene import Scene
+from solidgear.parts.body_file import BodyFile
+from solidgear.core.scene.filleted import filleted
+from solidgear.trains.file.operation import OperatingPoint
+from solidgear.trains.file.train import Train
+from solidgear.bearings.bearing_life import left_open
+from solidgear.strength.deflection.shaft import ShaftAtRest, load_of
+from solidgear.strength.stress.notch import ENOUGH
+from solidgear.strength.stress.rating import Conditions
+from solidgear.strength.stress.section_forces import COMPONENTS, SectionForces, forces_of
+from solidgear.strength.stress.shaft import ShaftStress, check_tolerance, local_stress, shaft_stress
+from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.load.operation import Operating, OperatingState
+
+#: default model on which shafts and bearings settle
+MODEL = LADDER.judges[0]
+#: caution on the results without an error bar
+WITHOUT_BAR = "reactions and section forces are those of one mesh; form factors have error bars"
+
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class ShaftLoads:
+    """Loads on a shaft, and gravity."""
+
+    loads: dict[str, np.ndarray]  #: by port, N and N m
+    gravity: np.ndarray | None = None  #: (3,) m/s^2, in the axes of its scene
+
+    def add(self, port: str, load: np.ndarray) -> None:
+        """Add one more load (6,) on a port."""
+        self.loads[port] = self.loads.get(port, np.zeros(6)) + load
+
+
+@dataclass(frozen=True)
+class StressedShaft:
+    """Stress of one shaft of a scene or a train."""
+
+    name: str
+    scene: Scene = field(repr=False)
+    acting: ShaftLoads
+    found: ShaftStress
+    #: least and largest of the largest bending moment, N m, over the open data of bearings; None if
+    #: none are open
+    open_moment: tuple[float, float] | None
+    open: Mapping[str, tuple[float, float]]  #: the same of the amplitude on each fillet, Pa
+
+    @property
+    def weak(self) -> tuple[str, ...]:
+        """Segments with a fillet whose material has no strength."""
+        segments = [self.scene.segments[notch.found.corner.owner] for notch in self.found.notches]
+        return tuple(dict.fromkeys(s.name for s in segments if s.material.strength is None))
+
+
+@dataclass(frozen=True)
+class StressSettings:
+    """Tolerance of form factors, which some mesh must reach, and conditions of the rating."""
+
+    tolerance: float = ENOUGH  #: relative error bar of form factors at which their meshes stop
+    conditions: Conditions = Conditions()  #: of the rating by DIN 743
+
+    def __post_init__(self) -> None:
+        check_tolerance(self.tolerance)
+
+
+@dataclass(frozen=True)
+class StressAtRest:
+    """Stress of a shaft under a load, or of both shafts of a train at an operating point."""
+
+    title: str
+    model: str  #: on which shafts and bearings settled
+    #: load of a scene, or operating point and mesh force of a train, as plain data in SI
+    under: Mapping[str, Any]
+    asked: StressSettings
+    shafts: tuple[StressedShaft, ...]
+    open_by: str  #: open data of bearings, in words; empty if none
+    cautions: tuple[str, ...] = ()  #: beside the remarks of each shaft
+
+    @property
+    def reached(self) -> bool:
+        """Return whether the error bars of all form factors are within the tolerance."""
+        notches = [notch for shaft in self.shafts for notch in shaft.found.notches]
+        return all(notch.found.widest <= self.asked.tolerance for notch in notches)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain data in SI that JSON can hold."""
+        data = plain(self) | {"components": list(COMPONENTS), "shafts": {}}
+        data["why_without_bar"] = WITHOUT_BAR
+        data["asked"]["conditions"] = self.asked.conditions.model_dump(mode="json")
+        for shaft in self.shafts:
+            worst = [notch.name for notch in shaft.found.worst]
+            data["shafts"][shaft.name] = plain(shaft) | {"worst": worst[0] if worst else None}
+        return data
+
+
+def stress_of_scene(
+    scene: Scene,
+    model: str = MODEL,
+    drive: Mapping[str, float] | None = None,
+    asked: StressSettings = StressSettings(),
+    progress: Progress = lambda text: None,
+) -> StressAtRest:
+    """Return the stress of a shaft under the [load] of the scene.
+
+    Torques about the axis, N m, enter at bearings, masses or further points (`drive`); the gear at
+    the port takes them out. Shaft and bearings settle on a model; those of catalogue data need no
+    stiffness yet.
+    """
+    file, scene = scene.body, filleted(scene)
+    load, port, drive = load_of(scene), scene.port.name, drive or {}
+    if port in drive:
+        raise SolidgearError(
+            f'the torque at "{port}" enters where the gear takes it out: name the bearing, mass or '
+            "point where a coupling or spline brings it"
+        )
+    progress(model)
+    at_rest = ShaftAtRest(_settling(scene, model), model)
+
+    def acting(choice: Choice) -> dict[str, ShaftLoads]:
+        shaft_loads = ShaftLoads({port: load})
+        for bearing in at_rest.settled(choice).bearings:
+            shaft_loads.add(bearing.name, -bearing.load)
+        for name, torque in drive.items():
+            shaft_loads.add(name, np.array([0, 0, 0, 0, torque, 0.0]))
+            shaft_loads.add(port, np.array([0, 0, 0, 0, -torque, 0.0]))
+        return {scene.name: shaft_loads}
+
+    under = {"port": port, "load": load, "drive": drive}
+    shafts, open_by = _shafts({scene.name: scene}, acting, asked, progress)
+    cautions = (*_file_cautions(file, scene), *_load_cautions(scene, drive))
+    return StressAtRest(scene.title or scene.name, model, under, asked, shafts, open_by, cautions)
+
+
+def _file_cautions(file: BodyFile | None, scene: Scene) -> Iterator[str]:
+    """Yield sentences on parts of a file that the round part leaves out, whose fillets are those of
+    a scene.
+    """
+    if file is None:
+        return
+    if not file.round:
+        yield (
+            f"{file.name} is not of revolution: stress is that of its round part, without what is cut "
+            "into it or stands out"
+        )
+    if cones := len(file.tori) - len(scene.blends):
+        yield (
+            f"{cones} of {len(file.tori)} arcs of {file.name} are short cones here, and corners between "
+            "them are none of the part: fillets are quarters of a turn at the root of a shoulder, "
+            "outside of seats"
+        )
+
+
+def _load_cautions(scene: Scene, drive: Mapping[str, float]) -> Iterator[str]:
+    """Yield sentences on loads that do not act on a shaft, and perhaps should."""
+    if not drive:
+        yield (
+            "no torque runs along the shaft: a [load] has forces and tilting moments; --drive says "
+            "where a torque enters"
+        )
+    for point in scene.further_ports:
+        if point.name not in drive:
+            yield f'nothing acts at the point "{point.name}": [load] is that of "{scene.port.name}"'
+
+
+def stress_of_train(
+    train: Train,
+    point: OperatingPoint,
+    model: str = MODEL,
+    asked: StressSettings = StressSettings(),
+    progress: Progress = lambda text: None,
+) -> StressAtRest:
+    """Return the stress of all shafts of a train at an operating point; shafts and bearings settle
+    on a model, no lumped one, which has no places.
+    """
+    progress(model)
+    files = {side: shaft.scene.body for side, shaft in train.shafts.items()}
+    round_parts = {
+        side: shaft.with_changes(scene=filleted(shaft.scene))
+        for side, shaft in train.shafts.items()
+    }
+    train = train.with_changes(shafts=round_parts)
+    shop = Workshop(_settling_train(train, model))
+    usual = Operating(shop, model).at(point)
+
+    def acting(choice: Choice) -> dict[str, ShaftLoads]:
+        as_stated = choice == AS_STATED
+        return _on_shafts(
+            shop, usual if as_stated else Operating(shop, model, choice=choice).at(point)
+        )
+
+    under = {"point": point.model_dump(mode="json"), "mesh_force": usual.mesh_force}
+    shafts, open_by = _shafts(
+        {side: train.shaft(side) for side in train.shafts}, acting, asked, progress
+    )
+    left_out = [text for k in files for text in _file_cautions(files[k], train.shafts[k].scene)]
+    cautions = (*left_out, *usual.notes, *shop.data_cautions, *_torque_cautions(train))
+    return StressAtRest(train.title or train.name, model, under, asked, shafts, open_by, cautions)
+
+
+def _on_shafts(shop: Workshop, state: OperatingState) -> dict[str, ShaftLoads]:
+    """Return all loads that act on the shafts of a train at rest."""
+    out = {}
+    for side, scene in shop.scenes.items():
+        turned = state.system.port(f"{side}.{scene.port.name}").axes.T
+        gravity = turned @ np.array(state.point.gravity)
+        out[side] = ShaftLoads({}, gravity if state.point.weight else None)
+        for end, head in shop.train.heads(side).values():
+            out[side].add(end.partition(".")[2], head.mass * np.r_[gravity, np.zeros(3)])
+    for end, six in state.forces().items():
+        side, _, port = end.partition(".")
+        if side in out:  # an engine and a load only turn
+            out[side].add(port, six)
+    return out
+
+
+def _torque_cautions(train: Train) -> Iterator[str]:
+    """Yield sentences on shafts whose torque enters where the teeth take it out."""
+    for name, rotor in train.rotors.items():
+        side, port = rotor.shaft, train.spring_port(name)
+        if [*train.shafts[side].gears] == [port]:
+            yield (
+                f"no torque runs along the {side}: {name}.spring is at the teeth "
+                f'(at = "{port}"); put it where the torque enters'
+            )
+
+
+def _settling(scene: Scene, model: str) -> Scene:
+    """Return the plain part of a shaft, or all of it on a model that is made for features."""
+    return scene if LADDER[model].for_features else scene.plain
+
+
+def _settling_train(train: Train, model: str) -> Train:
+    """Return a train of such shafts, whose teeth act at their ports."""
+    shafts = {
+        side: shaft.with_changes(scene=_settling(shaft.scene, model))
+        for side, shaft in train.shafts.items()
+    }
+    meshes = tuple(mesh.with_changes(local_harmonics=()) for mesh in train.meshes)
+    return train.with_changes(meshes=meshes, shafts=shafts)
+
+
+def _shafts(
+    scenes: Mapping[str, Scene],
+    acting: Callable[[Choice], dict[str, ShaftLoads]],
+    asked: StressSettings,
+    progress: Progress,
+) -> tuple[tuple[StressedShaft, ...], str]:
+    """Return the stress of every shaft, and in words which data of bearings are open."""
+    usual = acting(AS_STATED)
+    open_by, choices = left_open(scenes.values())
+    if choices:
+        progress("what the data of bearings leave open")
+    variants = [acting(choice) for choice in choices]
+    shafts = []
+    for name, scene in scenes.items():
+        shaft_loads = usual[name]
+        stress = shaft_stress(
+            scene,
+            shaft_loads.loads,
+            gravity=shaft_loads.gravity,
+            tolerance=asked.tolerance,
+            conditions=asked.conditions,
+            progress=progress,
+        )
+        forces_by_variant = [
+            forces_of(scene, loads[name].loads, loads[name].gravity) for loads in variants
+        ]
+        shafts.append(
+            StressedShaft(name, scene, shaft_loads, stress, *_ranges(stress, forces_by_variant))
+        )
+    return tuple(shafts), open_by
+
+
+def _ranges(
+    stress: ShaftStress, variants: Sequence[SectionForces]
+) -> tuple[tuple[float, float] | None, dict[str, tuple[float, float]]]:
+    """Return ranges of the largest bending moment, N m, and of the amplitude on each fillet, Pa,
+    over the section forces that were solved and the variants.
+    """
+    if not variants:
+        return None, {}
+    moments = [forces.largest_moment for forces in (stress.forces, *variants)]
+    amplitudes = {
+        notch.name: [
+            notch.local.amplitude,
+            *(local_stress(notch.found, forces.at(notch.y)).amplitude for forces in variants),
+        ]
+        for notch in stress.notches
+    }
+    return (min(moments), max(moments)), {k: (min(v), max(v)) for k, v in amplitudes.items()}

@@ -1,0 +1,136 @@
+"""The command stress: section forces of shafts, and the stress on their fillets."""
+
+from __future__ import annotations
+
+import json
+from contextlib import nullcontext
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from solidgear.strength.acting import Acting, AtRestFile, load_in_words
+from solidgear.show.command import NOT_REACHED, Group, caution, command, say
+from solidgear.show.options import BY_MODEL, MODEL, Choice, Shown, refuse, relative
+from solidgear.core.errors import SceneError, SolidgearError, show
+from solidgear.show.folder import held
+from solidgear.strength.stress.files import headline, sentences, shaft_tables, write_stress
+from solidgear.show.units import in_ascii, units_named
+from solidgear.core.scene.units import quantity
+from solidgear.core.loading import explained
+from solidgear.strength.stress.at_rest import StressSettings, stress_of_scene, stress_of_train
+from solidgear.strength.stress.rating import Conditions
+
+
+@dataclass(frozen=True)
+class Rated(Group):
+    """Data that a rating by DIN 743 needs beyond the file; what is not given is assumed."""
+
+    roughness: Annotated[
+        str | None, typer.Option(help='Rz of the fillets, such as "6.3 um"; else K_F is 1.')
+    ] = None
+    ultimate_at_size: Annotated[
+        float | None,
+        typer.Option(help="K_1 of the tensile strength, by the size of the part; else 1."),
+    ] = None
+    yield_at_size: Annotated[
+        float | None, typer.Option(help="K_1 of the yield point, by the size of the part; else 1.")
+    ] = None
+    hardening: Annotated[
+        float | None, typer.Option(help="K_V of a hardened or rolled surface; else 1.")
+    ] = None
+    force_share: Annotated[
+        float | None, typer.Option(help="Amplitude of the axial force over its mean; else 0.")
+    ] = None
+    torque_share: Annotated[
+        float | None, typer.Option(help="Amplitude of the torque over its mean; else 0.")
+    ] = None
+    constant_mean: Annotated[
+        bool,
+        typer.Option(
+            "--constant-mean",
+            help="Mean stress stays as loads grow (case 1 of the norm); else it grows (case 2).",
+        ),
+    ] = False
+
+    def conditions(self) -> Conditions:
+        """The same as read; a value that is none is refused with its option."""
+        given = {f.name: getattr(self, f.name) for f in fields(self)}
+        try:
+            return Conditions(**{name: v for name, v in given.items() if v is not None})
+        except SceneError as error:
+            first = error.problems[0]
+            option = f"--{str(first.path[0]).replace('_', '-')}"
+            raise SolidgearError(f"{option} {first.value}: {first.reason}") from None
+
+
+@command
+def stress(
+    file: AtRestFile,
+    *,
+    acting: Acting,
+    drive: Annotated[
+        list[str] | None,
+        typer.Option(
+            help='Of a shaft: torque that enters at a bearing, mass or point, such as "B=115 N*m", '
+            "and leaves at the port; repeatable."
+        ),
+    ] = None,
+    fidelity: Annotated[
+        Choice, typer.Option(*BY_MODEL, help="Model on which shafts and bearings settle.")
+    ] = MODEL,
+    tol: Annotated[
+        float,
+        relative("--tol", "Bar allowed of a form factor."),
+    ] = 0.01,
+    rated: Rated,
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", "-o", help="Folder for a page, section forces and their charts."),
+    ] = None,
+    run: Shown,
+) -> None:
+    asked, given, shown = (
+        StressSettings(tol, rated.conditions()),
+        acting.read(file),
+        units_named(run.units),
+    )
+    torques = dict(map(_torque, drive or ()))
+    with held(out) if out else nullcontext(), run.progress() as progress:
+        if isinstance(given, tuple):
+            instead = "springs of engine and load bring its torques"
+            refuse({"--drive": bool(drive)}, f"a shaft, and {file} is none: {instead}")
+            found = stress_of_train(*given, str(fidelity), asked, progress)
+            force = shown.text(found.under["mesh_force"], "N", 5)
+            lead = f"At {given[1].label}: mesh force {force} along the line of action"
+        else:
+            with explained(file):
+                found = stress_of_scene(given, str(fidelity), torques, asked, progress)
+            lead = f"Under {load_in_words(given, shown)}"
+            for name, torque in torques.items():
+                lead += f", and {shown.text(torque, 'N m', 4)} from {name} to {given.port.name}"
+        lead += f"; bearing reactions by {found.model}."
+        files = write_stress(out, found, lead, shown) if out else []
+    if run.as_json:
+        print(json.dumps(found.as_dict(), allow_nan=False))
+    else:
+        say(f"{found.title}: stress", lead, soft_wrap=False)
+        for shaft in found.shafts:
+            say(*shaft_tables(found, shaft, shown, every=False), soft_wrap=False)
+        say(*filter(None, [in_ascii(headline(found, shown))]), soft_wrap=False)
+        say(*sentences(found, shown), *map(caution, found.cautions), soft_wrap=False)
+        say(*([f"Written: {', '.join(map(str, files))}"] if files else []), soft_wrap=False)
+    if not found.reached:
+        raise typer.Exit(NOT_REACHED)
+
+
+def _torque(text: str) -> tuple[str, float]:
+    """Name and torque, N m, from ``B=115 N*m``."""
+    name, sep, value = (part.strip() for part in text.partition("="))
+    if not sep or not name:
+        raise SolidgearError(f'--drive {show(text)}: write NAME=TORQUE, such as "B=115 N*m"')
+    try:
+        return name, quantity(value, "torque")
+    except SceneError as error:
+        raise SolidgearError(f"--drive {show(text)}: {error}") from None

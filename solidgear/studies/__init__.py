@@ -1,1 +1,0 @@
-"""Uses of models: comparing, checking, sweeping."""

@@ -1,0 +1,1 @@
+"""Trains of geared shafts."""

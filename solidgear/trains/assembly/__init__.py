@@ -1,0 +1,1 @@
+"""A train put together from its shafts."""

@@ -1,0 +1,374 @@
+"""Models of the shafts of a train, and the system that they make."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from copy import copy
+from dataclasses import dataclass, field
+from time import perf_counter
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from solidgear.core.body import Body
+from solidgear.core.errors import SolidgearError, listed, nearest, show
+from solidgear.core.ladder import build
+from solidgear.core.ladder.registry import LADDER
+from solidgear.core.reduction.craig_bampton import craig_bampton
+from solidgear.core.reduction.rubin import rubin
+from solidgear.core.scene import Scene
+from solidgear.trains.file.gears import Pair
+from solidgear.trains.file.train import Train
+from solidgear.trains.file.housing import HOUSING
+from solidgear.trains.load.contact import Contact
+from solidgear.trains.assembly.gear_bodies import gear_cautions
+from solidgear.trains.assembly.housing import (
+    housing_cautions,
+    housing_losses,
+    housing_part,
+    links_on_housing,
+    mount_links,
+)
+from solidgear.trains.assembly.layout import contacts, places
+from solidgear.trains.assembly.local import local_teeth, mesh_port
+from solidgear.trains.assembly.shaft import JUDGE, LUMPED, RIGID, ShaftModel, checked_model, lumped
+from solidgear.trains.assembly.space import overlaps
+from solidgear.trains.assembly.stages import StageAtWork, stages_at_work
+from solidgear.core.system.gear_mesh import MeshVector
+from solidgear.core.system.links import Link, PortInertia, grounded, mesh_spring, torsion_spring
+from solidgear.core.system.parts import Inertia, Part, Placed, RigidBody
+from solidgear.core.system.system import System
+
+REDUCTIONS = {"rubin": rubin, "craig_bampton": craig_bampton}
+#: free modes of a shaft that are kept: with residuals, enough for 1e-5 to 4 kHz, as the bound shows
+KEPT = 24
+#: a mesh for systems: frequencies move by some 1e-5 against order 5
+MESH: dict[str, dict] = {JUDGE: {"order": 4}}
+
+
+@dataclass(eq=False)
+class Workshop:
+    """Models of the shafts of a train, each built once, and all that studies read of the train
+    with them: scenes, mesh contacts, places, planetary stages, on the flanks that carry.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> shop = Workshop(sg.load_train("geometry/axle_overhung.toml"))
+    >>> system = shop.system("timoshenko", "euler")
+    >>> list(system.parts), system.modes(3).frequency_hz.round(1)
+    (['engine', 'pinion', 'gear', 'load'], array([  0. ,  16.3,  55.4, 732.4]))
+    """
+
+    train: Train
+    reduction: str = "rubin"
+    kept: int = KEPT  #: modes of each shaft
+    #: builder options of models, by their names; of one shaft by (side, model), before those
+    settings: Mapping[str | tuple[str, str], Mapping] = field(default_factory=dict)
+
+    def __post_init__(self):
+        if self.reduction not in REDUCTIONS:
+            raise SolidgearError(
+                f"reduction {show(self.reduction, 30)} is unknown; use {' or '.join(REDUCTIONS)}"
+            )
+        self._models: dict[tuple[str, str], ShaftModel] = {}
+        self._local_seconds = 0.0
+        #: error bars of the first frequencies by the shafts' meshes, by the models of all shafts
+        self.bars: dict[tuple[str, ...], np.ndarray] = {}
+        self._read_train(self.train)
+
+    def _read_train(self, train: Train) -> None:
+        self.train = train
+        self.scenes: dict[str, Scene] = {side: train.shaft(side) for side in train.shafts}
+        self.contacts: dict[str, Contact] = contacts(train)
+        self.places = places(train, self.contacts, self.scenes)
+        self.stages: dict[str, StageAtWork] = stages_at_work(
+            train, self.contacts, self.scenes, self.places
+        )
+        point = train.point
+        self._flanks: dict[bool, Workshop] = {point is not None and point.coast: self}
+
+    @property
+    def contact(self) -> Contact:
+        """Contact of the only mesh; refused for a train with several."""
+        return self.contacts[self.train.only().name]
+
+    def models_by_shaft(self, models: Sequence[str]) -> dict[str, str]:
+        """Return the model of every shaft, from a model for each in the sequence of the file, or
+        one for all.
+        """
+        sides = [*self.train.shafts]
+        if len(models) not in (1, len(sides)):
+            raise SolidgearError(
+                f"{len(models)} models ({listed(models)}) for the {len(sides)} shafts "
+                f"{listed(sides)}; give one for each, or one for all"
+            )
+        shaft_models = models if len(models) == len(sides) else [*models] * len(sides)
+        return dict(zip(sides, shaft_models))
+
+    def shaft_model(self, side: str, model: str) -> ShaftModel:
+        """Return a shaft by a model, built when it is first requested."""
+        if (side, model) not in self._models:
+            kind, base = checked_model(model)
+            if base:
+                self._models[side, model] = self._derived_model(side, model, kind, base)
+            else:
+                start = perf_counter()
+                options = self.settings.get(model, MESH.get(model, {}))
+                side_options = self.settings.get((side, model), {})
+                body = build(self.scenes[side], model, **{**options, **side_options})
+                self._models[side, model] = self._reduce(side, model, body, start)
+        return self._models[side, model]
+
+    def set_body(self, side: str, model: str, body: Body) -> None:
+        """Set the body, on any mesh, that a model of a shaft is reduced from, in place of building
+        it.
+        """
+        self.bars.clear()
+        self._models[side, model] = self._reduce(side, model, body, perf_counter())
+
+    def _reduce(self, side: str, model: str, body: Body, start: float) -> ShaftModel:
+        """Reduce the body of a shaft, whose time counts from `start`."""
+        part = REDUCTIONS[self.reduction](body, n=self.kept)
+        seconds = perf_counter() - start
+        return ShaftModel(
+            side=side, model=model, part=part, body=body, unknowns=body.size, seconds=seconds
+        )
+
+    def add_model(self, model: ShaftModel) -> None:
+        """Add a shaft's model of another workshop, whose shafts differ in their bearings alone."""
+        self._models[model.side, model.model] = model
+
+    def add_part(self, side: str, name: str, part: Part, like: str) -> None:
+        """Register a part, with the ports of the shaft, as model `name` of a shaft; body and
+        unknowns are those of model `like`.
+        """
+        source = self.shaft_model(side, like)
+        self._models[side, name] = ShaftModel(
+            side=side,
+            model=name,
+            part=part,
+            body=source.body,
+            unknowns=source.unknowns,
+            seconds=source.seconds,
+        )
+
+    def with_bearings(self, stiffness: Mapping[str, ArrayLike]) -> Workshop:
+        """Return the same train on other bearings, from stiffness matrices (6, 6) by names such as
+        ``pinion.1``, series springs included, SI; bodies and reductions are kept.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import solidgear as sg
+        >>> shop = Workshop(sg.load_train("geometry/axle_overhung.toml"))
+        >>> usual = shop.system("euler", "euler").modes(3).frequency_hz[3]
+        >>> soft = shop.with_bearings({"gear.3": np.diag([1e8, 1e8, 1e8, 0, 0, 0])})
+        >>> bool(soft.system("euler", "euler").modes(3).frequency_hz[3] < usual)
+        True
+        """
+        shafts = self.train.shafts.items()
+        names = [f"{side}.{b.name}" for side, shaft in shafts for b in shaft.scene.bearings]
+        for name in stiffness:
+            if name not in names:
+                raise SolidgearError(
+                    f"no bearing {show(name, 40)}{nearest(name, names)}; there are {listed(names)}"
+                )
+        workshop = self._with_free_bodies()
+        for side, scene in self.scenes.items():
+            bearings = []
+            for bearing in scene.bearings:
+                matrix = stiffness.get(f"{side}.{bearing.name}")
+                if matrix is not None:
+                    bearing = bearing.with_changes(
+                        matrix=np.asarray(matrix).tolist(),
+                        axial_series=(),
+                        scale=1.0,
+                        catalogue=None,
+                        support=None,
+                    )
+                bearings.append(bearing)
+            workshop.scenes[side] = scene.with_changes(bearings=tuple(bearings))
+        return workshop
+
+    def with_train(self, train: Train) -> Workshop:
+        """Return the same shafts in a train that differs in bearings, housing, mesh or operating
+        point; bodies and reductions are kept.
+        """
+        workshop = self._with_free_bodies()
+        workshop._read_train(train)
+        return workshop
+
+    def _with_free_bodies(self) -> Workshop:
+        workshop = copy(self)
+        # bodies hold no bearings; lumped models, condensed on them, do
+        bodies = {k: m for k, m in self._models.items() if k[1].partition("/")[0] not in LUMPED}
+        workshop._models, workshop.scenes, workshop.bars, workshop._flanks = bodies, {}, {}, {}
+        return workshop
+
+    @property
+    def cautions(self) -> tuple[str, ...]:
+        """Sentences on data that do not fit together but can be solved, and on bearings without
+        load.
+        """
+        unloaded = [
+            f"bearing {end} carries nothing at {self.train.point.label}: it has no stiffness there"
+            for end in self.train.unloaded
+            if self.train.point is not None
+        ]
+        return (*self.data_cautions, *unloaded)
+
+    @property
+    def data_cautions(self) -> tuple[str, ...]:
+        """Sentences on meshes, gears, shafts that take the same space, and the housing."""
+        sentences = []
+        for name, contact in self.contacts.items():
+            head = f"{name}: " if len(self.contacts) > 1 else ""
+            sentences += [head + text for text in contact.cautions]
+        sentences += gear_cautions(self.train, self.contacts)
+        sentences += map(str, overlaps(self.train, self.scenes, self.places))
+        return (*sentences, *housing_cautions(self.train, self.places))
+
+    def on_flank(self, coast: bool) -> Workshop:
+        """Return the same train with the teeth in contact on one flank: `coast` is True for that
+        which the file does not name.
+        """
+        if coast not in self._flanks:
+            workshop = copy(self)
+            workshop.contacts, workshop.bars = contacts(self.train, coast), {}
+            workshop.stages = stages_at_work(
+                self.train, workshop.contacts, self.scenes, self.places, coast
+            )
+            self._flanks[coast] = workshop
+        return self._flanks[coast]
+
+    def _derived_model(self, side: str, model: str, kind: str, base: str) -> ShaftModel:
+        source = self.shaft_model(side, base)
+        start = perf_counter()
+        part: Part
+        if kind == RIGID:
+            part = RigidBody.of(source.body)
+        else:
+            if side in self.train.housed:
+                raise SolidgearError(
+                    f"a {kind} shaft has its bearings condensed to ground, and those of the {side} "
+                    f"stand in a housing; use one of {', '.join(LADDER.bodies)}, {RIGID}"
+                )
+            # a shaft that is a carrier may have no gear: it is held at its main lumped point
+            scene = self.scenes[side]
+            points = [*self.train.shafts[side].gears] or [scene.port.name]
+            part = lumped(source, kind, scene, points)
+        seconds = source.seconds + perf_counter() - start
+        return ShaftModel(
+            side=side,
+            model=model,
+            part=part,
+            body=source.body,
+            unknowns=source.unknowns,
+            seconds=seconds,
+        )
+
+    def system(self, *models: str, bearings: bool = True) -> System:
+        """Couple the shafts by models, one for each or one for all; without bearings, all that
+        rests on them is free. Parts are ``engine``, the shafts, ``load`` and other rotors, and
+        ``housing``; links are ``engine spring``, ``load spring``, ``mesh`` (with several ``mesh
+        input-middle``), the bearings, and mounts such as ``mount 1``.
+        """
+        train = self.train
+        rotors = {name: Inertia(rotor.inertia) for name, rotor in train.rotors.items()}
+        parts: dict[str, Part] = {name: rotors[name] for name in train.engines}
+        for side, model in self.models_by_shaft(models).items():
+            parts[side] = self.place_part(side, self.shaft_part(side, model))
+        parts |= rotors
+        links: dict[str, Link] = {}
+        if train.housing is not None:
+            parts[HOUSING], links = housing_part(train.housing), mount_links(train.housing)
+        for side in train.shafts:
+            links |= self._support_links(side, bearings)
+            for name, rotor in train.rotors_of(side).items():
+                port_name = f"{side}.{train.spring_port(name)}"
+                links[f"{name} spring"] = torsion_spring(port_name, rotor.spring.stiffness, name)
+            for name, (port, head) in train.heads(side).items():
+                diagonal = [head.mass] * 3 + [head.bending, head.torsional, head.bending]
+                links[name.replace(".", " ")] = PortInertia(port, np.diag(diagonal))
+        for pair in train.pairs:
+            (port, vector), (to, to_vector) = self.mesh_ends(pair, parts)
+            stiffness = self.contacts[pair.name].stiffness
+            links[pair.name] = mesh_spring(port, vector, to, to_vector, stiffness)
+        for stage in self.stages.values():
+            parts |= stage.parts(*self.places[stage.stage.shafts[0]])
+            links |= stage.links
+        return System(parts, links)
+
+    def _support_links(self, side: str, bearings: bool) -> dict[str, Link]:
+        """Return the links of a shaft to ground or to the housing, and masses on the ports."""
+        scene = self.scenes[side]
+        if not bearings:
+            free = [b.with_changes(matrix=np.zeros((6, 6)), hold=None) for b in scene.bearings]
+            scene = scene.with_changes(bearings=tuple(free), housing=None, housing_axial=None)
+        return links_on_housing(self.train, side, grounded(side, scene))
+
+    def shaft_part(self, side: str, model: str) -> Part:
+        """Return a shaft as a part, with the harmonics that the teeth drive where the train asks
+        for them.
+        """
+        shaft = self.shaft_model(side, model)
+        meshes = [
+            (pair, self._mesh_vector(pair, side).point)
+            for pair in self.train.pairs
+            if model == JUDGE and side in pair.shafts and pair.mesh.local_harmonics
+        ]
+        if not meshes:
+            return shaft.part
+        key = tuple(
+            (pair.name, pair.mesh.local_harmonics, pair.pinion.teeth, pair.ratio, *point.tolist())
+            for pair, point in meshes
+        )
+        if key not in shaft.local:
+            start = perf_counter()
+            part = local_teeth(side, self.scenes[side], shaft.part, shaft.body, meshes)
+            shaft.local.clear()  # of mesh points elsewhere
+            shaft.local[key] = part
+            self._local_seconds += perf_counter() - start
+        return shaft.local[key]
+
+    def mesh_ends(self, pair: Pair, parts: Mapping[str, Part]) -> list[tuple[str, MeshVector]]:
+        """Return the port of each shaft that the teeth of a mesh act on, and the line of action
+        from there.
+        """
+        out = []
+        for side, port in zip(pair.shafts, pair.ports):
+            vector = self._mesh_vector(pair, side)
+            if (name := mesh_port(pair)) in parts[side].ports:
+                out.append((f"{side}.{name}", MeshVector(vector.normal, np.zeros(3))))
+            else:
+                out.append((f"{side}.{port}", vector))
+        return out
+
+    def _mesh_vector(self, pair: Pair, side: str) -> MeshVector:
+        contact = self.contacts[pair.name]
+        return contact.pinion if side == pair.shafts[0] else contact.gear
+
+    def place_part(self, side: str, part: Part) -> Part:
+        """Return a shaft in the axes of the first shaft's scene, at the place where the teeth meet."""
+        first = side == next(iter(self.places))
+        return part if first else Placed(part, *self.places[side])
+
+    def loss_factors(self) -> dict[str, float]:
+        """Return the loss factors of all parts and links, by name."""
+        train, loss = self.train, self.train.losses
+        factors = {side: loss.shafts for side in train.shafts}
+        for side in train.shafts:
+            factors |= dict.fromkeys(grounded(side, self.scenes[side]), loss.bearings)
+            factors |= {f"{name} spring": loss.springs for name in train.rotors_of(side)}
+        if train.housing is not None:
+            factors |= housing_losses(train.housing)
+        for stage in self.stages.values():
+            factors |= dict.fromkeys(stage.links, loss.bearings)
+        return factors | {mesh.name: loss.mesh for mesh in train.teeth}
+
+    def build_seconds(self, *models: str) -> float:
+        """Return the time to build and reduce all shafts, s."""
+        models_by_side = self.models_by_shaft(models)
+        local = self._local_seconds if JUDGE in models_by_side.values() else 0.0
+        return sum(self.shaft_model(*shaft).seconds for shaft in models_by_side.items()) + local

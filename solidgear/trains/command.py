@@ -1,0 +1,209 @@
+"""Commands on a train, shafts that mesh: system-modes, response."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from solidgear.show.command import caution, command, say
+from solidgear.trains.response.speed_command import Speed, say_at_speed
+from solidgear.show.options import UNITS, Shown
+from solidgear.trains.options import Driven, Mix, Reduced, TrainFile
+from solidgear.core.errors import SolidgearError, show
+from solidgear.core.frames import DOF_NAMES
+from solidgear.trains.page import tables as train_tables
+from solidgear.show.folder import held
+from solidgear.trains.page.files import write_response
+from solidgear.trains.page.sheet import write_sheet
+from solidgear.trains.page.tables import modes, peaks
+from solidgear.show.units import units_named
+from solidgear.show.viewer import viewer_fragment
+from solidgear.trains.judge.comparison import train_data
+from solidgear.trains.response.loudest import loudest
+from solidgear.trains.modes.modes import train_modes, unpublished_lines
+from solidgear.trains.assembly.orders import order_map
+from solidgear.trains.modes.pictures import draw_modes, still_picture, turning_modes
+from solidgear.trains.response.respond import respond
+from solidgear.trains.assembly.shaft import mix_label
+from solidgear.trains.assembly.slips import unit_slips
+
+
+@command
+def system_modes(
+    train: TrainFile,
+    *,
+    models: Mix,
+    pictures: Annotated[
+        Path | None,
+        typer.Option("--pictures", help="Folder for a picture a mode, all shafts in place."),
+    ] = None,
+    mode: Annotated[
+        list[int] | None,
+        typer.Option("--mode", help="Only draw this one, counted from 1 as listed; repeatable."),
+    ] = None,
+    turn: Annotated[
+        Path | None,
+        typer.Option(help="HTML file: all modes of all shafts in 3D, to be turned and animated."),
+    ] = None,
+    reduced: Reduced,
+    run: Shown,
+) -> None:
+    shop = models.workshop(reduced, train)
+    if mode and pictures is None:
+        raise SolidgearError("--mode says which mode to draw; add --pictures and a folder")
+    said = unit_slips(shop)
+    mix = tuple(models.by_shaft(shop.train).values())
+    count = shop.train.ask.modes
+    found = train_modes(shop, *mix, max_frequency=reduced.max_frequency, at_most=count)
+    if run.units != UNITS and turn is None:
+        raise SolidgearError(
+            f"--units {run.units}: the table has Hz and rpm alone; add --turn model.html, whose page "
+            "shows the train in these units"
+        )
+    drawn = _drawn(shop, pictures, mode, found) if pictures else []
+    if turn is not None:
+        drawn += _turned(shop, found, turn, reduced.max_frequency, run.units, said)
+    if run.as_json:
+        cautions = {"cautions": [*said, *found.cautions]}
+        print(json.dumps(found.as_dict() | cautions, allow_nan=False))
+        return
+    say(*found.heading(), *map(caution, said))
+    say(modes(found.as_dict(), numbered=True), *found.remarks(), *drawn)
+
+
+def _drawn(shop, folder: Path, numbers: list[int] | None, found):
+    """Pictures of modes, and what is to be said of them."""
+    listed = [n for n, mode in enumerate(found.modes, start=1) if mode.frequency_hz > 0]
+    mix = found.models.values()
+    done = draw_modes(shop, *mix, folder=folder, numbers=numbers or listed).values()
+    written = [str(one.path) for one in done if one.ok]
+    lines = [f"Written: {', '.join(written)}"] if written else []
+    return lines + sorted({one.reason for one in done if not one.ok})
+
+
+def _turned(
+    shop, found, path: Path, max_frequency: float | None, units: str, slips: tuple[str, ...]
+) -> list[str]:
+    """Write the page in which modes can be turned; what is to be said of it."""
+    mix = found.models.values()
+    models = turning_modes(shop, *mix, highest_hz=max_frequency)
+    names = [mode.name for mode in found.modes]
+    elastic = [shape.name for shape in models.shapes]
+    first = next((name for name in elastic if "bending" in name), elastic[0])
+    still, said = still_picture(shop, *mix, number=names.index(first) + 1)
+    write_sheet(
+        path,
+        found.train,
+        f"Natural frequencies and mode shapes: {mix_label(found.models)}.",
+        [
+            train_tables.modes(found.as_dict(), "Natural frequencies"),
+            train_tables.facts(train_data(shop), units_named(units)),
+        ],
+        viewer=viewer_fragment([models], still=still, first=first),
+        notes=found.notes(),
+        cautions=[*slips, *found.cautions],
+    )
+    return [*filter(None, [said]), f"Written: {path}"]
+
+
+@command
+def response(
+    train: TrainFile,
+    *,
+    out: Annotated[
+        Path, typer.Option("--out", "-o", help="Folder for response.csv and its chart.")
+    ] = Path("out"),
+    driven: Driven,
+    force: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--force",
+            help="Force on a port instead of the transmission error, such as gear.gear:z=100 in N; repeatable.",
+        ),
+    ] = None,
+    orders: Annotated[
+        int | None,
+        typer.Option("--orders", help="Orders of the mesh in orders.png; 3, or as many as given."),
+    ] = None,
+    at: Speed,
+    reduced: Reduced,
+    run: Shown,
+) -> None:
+    shop = driven.workshop(reduced, train)
+    asked = at.asked(shop.train)
+    mixes, driver = driven.mixes(shop.train), shop.train.named_mesh(driven.mesh)
+    how = {"highest_hz": reduced.max_frequency, "mesh": driver.name, **driven.losses}
+    forces = _forces(force)
+    with held(out):
+        turns = asked.turns or None
+        found = [respond(shop, *mix, forces=forces, turns=turns, **how) for mix in mixes]
+        unpublished = shop.train.unpublished()
+        said = unit_slips(shop)
+        cautions = [*said, *found[0].cautions]
+        notes: dict = {"damping": driven.damping, "unpublished": unpublished, "cautions": cautions}
+        title, band = shop.train.called, shop.train.ask.decibels
+        if driver.label and not forces:
+            title += f", driven by the {driver.name}"
+        teeth = shop.train.per_turn(driver)
+        # a force on a port has no order of the mesh
+        lines = None if forces else order_map(shop, *mixes[0], mesh_orders=orders, **how)
+        limit = reduced.max_frequency
+        modes = lines.modes if lines else train_modes(shop, *mixes[0], max_frequency=limit).modes
+        there, told = asked.found(modes), train_data(shop)
+        top = loudest(found[0], modes, shop.train, shop.scenes, not forces, driver.name)
+        notes |= {"loudest": top.as_dict()}
+        files = write_response(out, found, title, teeth, band, notes, lines, told, run.units, there)
+    if run.as_json:
+        print((out / "response.json").read_text(encoding="utf-8"))
+        return
+    say(
+        f"{title}: {mix_label(found[0].models)}, {driven.damping} losses",
+        soft_wrap=False,
+    )
+    say(*top.sentences(), *map(caution, said))
+    tops = [(p.frequency_hz, p.force, p.mode) for p in found[0].peaks]
+    print_peaks(tops, "mesh force", "N", teeth, run.units)
+    if there is not None:
+        say_at_speed(there)
+    say(*unpublished_lines(unpublished), *map(caution, found[0].cautions))
+    say(f"Written: {', '.join(map(str, files))}")
+
+
+def _forces(texts: list[str] | None) -> dict:
+    """Six components at ports, from texts such as ``gear.gear:z=100``."""
+    out: dict = {}
+    for text in texts or []:
+        end, _, value = text.partition("=")
+        try:
+            number = float(value)
+        except ValueError:
+            number = float("nan")
+        if not abs(number) < float("inf"):
+            raise SolidgearError(
+                f"--force {show(text, 40)}: write PORT:COMPONENT=VALUE, such as gear.gear:z=100"
+            )
+        port, dof = end_of("--force", end, "=100")
+        out.setdefault(port, [0.0] * 6)[DOF_NAMES.index(dof)] += number
+    return out
+
+
+def end_of(option: str, text: str, more: str = "") -> tuple[str, str]:
+    """Port and component, from a text such as ``gear.gear:z``; what else follows is part of the
+    example in an error.
+    """
+    port, _, dof = text.partition(":")
+    if not port or dof not in DOF_NAMES:
+        raise SolidgearError(
+            f"{option} {show(text, 40)}: write PORT:COMPONENT{'=VALUE' if more else ''}, such as "
+            f"gear.gear:z{more}; components are {' '.join(DOF_NAMES)}"
+        )
+    return port, dof
+
+
+def print_peaks(found, what: str, si: str, teeth: float, units: str) -> None:
+    """Print peaks (Hz, size in an SI unit, mode), or that there is none."""
+    told = peaks(found, what, si, teeth, units_named(units))
+    say(told if told else f"{told.title}: none in this range.", soft_wrap=False)

@@ -1,0 +1,209 @@
+"""Housing under the bearings of a train, with mass and mounts: data only.
+
+Everything is in the axes of the train, which are those of the first shaft's scene.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Annotated, Any
+
+import numpy as np
+from pydantic import BeforeValidator, Field, InstanceOf, model_validator
+
+from solidgear.core.errors import SceneError, listed, nearest
+from solidgear.core.scene.bearing_stiffness import Matrix
+from solidgear.core.scene.housing_matrices import HousingMatrices
+from solidgear.trains.file.mesh_cycle import Vector
+from solidgear.core.scene.stations import Status
+from solidgear.core.scene.typed import Model
+from solidgear.core.scene.units import TYPED, Loss, Mass, quantity
+
+if TYPE_CHECKING:
+    from solidgear.trains.file.train import Train
+
+#: names of the housing among the parts of a train, and of the centre of mass among its points
+HOUSING, CENTRE = "housing", "centre"
+#: loss factor of castings with their joints, where none is given
+LOSS = 0.01
+
+
+def _inertia(value: Any) -> tuple[tuple[float, ...], ...]:
+    """Return a tensor of inertia, kg m^2, from its rows or the three moments about the axes."""
+    rows = value.tolist() if isinstance(value, np.ndarray) else value
+    form = "three moments of inertia about x, y and z, or three rows of three"
+    if not isinstance(rows, (list, tuple)) or len(rows) != 3:
+        raise SceneError(f"must be {form}")
+    if not any(isinstance(row, (list, tuple)) for row in rows):
+        rows = [[moment if j == k else 0.0 for j in range(3)] for k, moment in enumerate(rows)]
+    if any(not isinstance(row, (list, tuple)) or len(row) != 3 for row in rows):
+        raise SceneError(f"must be {form}")
+    tensor = np.array([[quantity(entry, "inertia") for entry in row] for row in rows])
+    if np.abs(tensor - tensor.T).max() > 1e-9 * np.abs(tensor).max():
+        raise SceneError("is not symmetric; products of inertia stand on both sides alike")
+    least, middle, most = np.linalg.eigvalsh(tensor)
+    if least <= 0:
+        raise SceneError(
+            f"has a principal moment of {least:.4g} kg m^2; all three must be greater than zero"
+        )
+    if most > (1 + TYPED) * (least + middle):
+        raise SceneError(
+            f"has principal moments of {least:.4g}, {middle:.4g} and {most:.4g} kg m^2, and no body "
+            "has one that is larger than the other two together"
+        )
+    return tuple(tuple(row) for row in tensor.tolist())
+
+
+class Mount(Model):
+    """A spring between the housing and ground."""
+
+    name: str = ""  #: by default its number, counted from one
+    position: Vector | None = None  #: of a rigid housing, m
+    at: str | None = None  #: a point of the housing instead
+    stiffness: Matrix  #: 6x6 about its place, SI; the constructor also takes named entries
+    loss: Loss = 0.1  #: loss factor, twice a damping ratio
+    status: Status = "assumed"
+
+    @model_validator(mode="after")
+    def _holds(self):
+        if (self.at is None) == (self.position is None):
+            reason = "say where it stands: position, or at = a point of the housing, one of the two"
+            raise SceneError(reason, path=("position",))
+        if not np.any(self.stiffness):
+            reason = "holds nothing; write entries such as {kxx = ..., kyy = ..., kzz = ...}"
+            raise SceneError(reason, path=("stiffness",))
+        return self
+
+
+class TrainHousing(Model):
+    """A body that carries the bearings of shafts, on mounts to ground: rigid, or of matrices.
+
+    Examples
+    --------
+    >>> mount = Mount(position=("0 mm", "0 mm", "-150 mm"), stiffness={"kzz": "2e7 N/m"})
+    >>> box = TrainHousing(mass="85 kg", inertia=(3.1, 2.2, 2.9), centre=(0, 0.1, 0), mount=(mount,))
+    >>> list(box.mounted), box.mass_matrix.diagonal()
+    (['1'], array([85. , 85. , 85. ,  3.1,  2.2,  2.9]))
+    """
+
+    #: of an elastic one: mass, inertia and centre are then theirs
+    matrices: InstanceOf[HousingMatrices] | None = Field(None, exclude=True, repr=False)
+    mass: Mass  #: kg
+    #: 3x3 about its centre of mass, kg m^2; the constructor also takes the three on the diagonal
+    inertia: Annotated[tuple[tuple[float, ...], ...], BeforeValidator(_inertia)]
+    centre: Vector  #: its centre of mass, m
+    loss: Loss | None = None  #: loss factor of an elastic one, 0.01 by default
+    #: shafts whose bearings stand in it, and with them rings of planetary stages; all by default
+    carries: Annotated[tuple[str, ...], Field(min_length=1)] | None = None
+    mounts: tuple[Mount, ...] = Field((), alias="mount")  #: ``mount`` in a file
+    points: dict[str, Vector] = {}  #: places of a rigid one whose motion is given, by name, m
+    status: Status = "assumed"  #: of mass and inertia
+
+    def __init__(self, /, **data: Any):
+        if isinstance(matrices := data.get("matrices"), HousingMatrices):
+            rigid_mass = matrices.rigid_mass
+            mass_fields = {"mass": float(rigid_mass[0, 0]), "inertia": rigid_mass[3:, 3:].tolist()}
+            data |= mass_fields | {"centre": tuple(matrices.centre.tolist()), "points": {}}
+        super().__init__(**data)
+
+    @model_validator(mode="after")
+    def _named_once(self):
+        if self.loss is not None and self.matrices is None:
+            raise SceneError("is of an elastic housing; a rigid one loses nothing", path=("loss",))
+        places, names = [*self.point_places], [CENTRE]
+        for k, mount in enumerate(self.mounts):
+            if mount.at is not None and mount.at not in places:
+                reason = f"names no point of the housing{nearest(mount.at, places)}; known here: "
+                raise SceneError(reason + listed(places), path=("mount", k, "at"))
+            if mount.at is None and self.matrices is not None:
+                reason = f"stands at a point of the matrices: write at, one of {listed(places)}"
+                raise SceneError(reason, path=("mount", k, "position"))
+        mount_names = [(("mount", k, "name"), name) for k, name in enumerate(self.mounted)]
+        for path, name in [*mount_names, *((("points", name), name) for name in self.points)]:
+            if name in names or "." in name or not name.strip():
+                reason = (
+                    f"{name!r} cannot name it: mounts and points have names of their own, without "
+                    f"dots, and {CENTRE!r} is the centre of mass"
+                )
+                raise SceneError(reason, path=path)
+            names.append(name)
+        return self
+
+    @property
+    def point_places(self) -> Mapping[str, tuple[float, ...]]:
+        """Points by name, m, without the centre of mass."""
+        if self.matrices is None:
+            return self.points
+        return {name: tuple(place.tolist()) for name, place in self.matrices.positions.items()}
+
+    @property
+    def mounted(self) -> dict[str, Mount]:
+        """Mounts by name."""
+        return {mount.name or str(k): mount for k, mount in enumerate(self.mounts, start=1)}
+
+    @property
+    def feet(self) -> dict[str, str]:
+        """Points that mounts stand at, by name of the mount."""
+        return {name: mount.at or name for name, mount in self.mounted.items()}
+
+    def foot(self, name: str) -> tuple[float, ...]:
+        """Return the place of a mount, m."""
+        mount = self.mounted[name]
+        return tuple(mount.position or map(float, self.point_places[mount.at or ""]))
+
+    @property
+    def free_points(self) -> list[str]:
+        """Points whose motion is reported: all without a bearing or a mount."""
+        return [
+            CENTRE,
+            *(n for n in self.point_places if "." not in n and n not in self.feet.values()),
+        ]
+
+    @property
+    def mass_matrix(self) -> np.ndarray:
+        """(6, 6) about the centre of mass."""
+        out = self.mass * np.eye(6)
+        out[3:, 3:] = self.inertia
+        return out
+
+    @property
+    def places(self) -> dict[str, np.ndarray]:
+        """(3,) places of all points of a rigid housing from the centre of mass, m."""
+        mounts = {name: mount.position for name, mount in self.mounted.items() if mount.at is None}
+        points = {CENTRE: self.centre, **mounts, **self.points}
+        return {name: np.subtract(place, self.centre) for name, place in points.items()}
+
+
+def housing_problems(train: Train) -> Iterator[SceneError]:
+    """Yield problems of the housing of a train: unknown or doubly housed shafts, and names."""
+    if train.housing is None:
+        return
+    for kind, names in (("shaft", train.shafts), ("rotor", train.rotors)):
+        if HOUSING in names:
+            reason = f"a {kind} beside a housing cannot be called {HOUSING!r}; give it another name"
+            yield SceneError(reason, path=(kind, HOUSING))
+    for k, side in enumerate(train.housing.carries or ()):
+        if side not in train.shafts:
+            choices = [*train.shafts]
+            reason = (
+                f"names no shaft {side!r}{nearest(side, choices)}; known here: {listed(choices)}"
+            )
+            yield SceneError(reason, path=(HOUSING, "carries", k))
+    if (matrices := train.housing.matrices) is not None:
+        scenes = {side: train.shafts[side].scene for side in train.housed}
+        needed = {f"{side}.{b.name}": "bearing" for side in scenes for b in scenes[side].bearings}
+        needed |= {s.ring_point: "ring" for s in train.stages if {*s.shafts} & {*train.housed}}
+        for name, kind_of_point in needed.items():
+            if name not in (choices := [*matrices.positions]):
+                reason = f"has no point {name!r}{nearest(name, choices)}, where that {kind_of_point} stands"
+                yield SceneError(
+                    f"{reason}; there are {listed(choices)}", path=(HOUSING, "matrices")
+                )
+    for side in train.housed:
+        scene = train.shafts[side].scene
+        if scene.housing is not None or scene.housing_axial is not None:
+            reason = (
+                f"has a [housing] of its own, and that of the train carries the bearings of the {side}; "
+                "leave one out, or the shaft out of carries"
+            )
+            yield SceneError(reason, path=(*train.shaft_path(side), "scene"))

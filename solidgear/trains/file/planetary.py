@@ -1,0 +1,328 @@
+"""Planetary stages of a train, between the shaft of the sun and that of the carrier: data only.
+
+Azimuths are those of the sun's scene: right-handed about y from x.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from math import atan, cos, pi, tan
+from typing import TYPE_CHECKING, Annotated
+
+from pydantic import Field, model_validator
+
+from solidgear.core.errors import SceneError, SolidgearError, listed, nearest
+from solidgear.trains.file.gears import Gear, HeadInertia, Pair, Teeth
+from solidgear.core.scene.planetary_teeth import PlanetaryTeeth
+from solidgear.core.scene.stations import Status
+from solidgear.trains.file.tables import Azimuth, Error, ErrorTable
+from solidgear.core.scene.typed import Model
+from solidgear.core.scene.units import MeshSpring, PressureAngle, TorsionSpring
+
+if TYPE_CHECKING:
+    from solidgear.trains.file.train import Train
+
+MATES = ("sun", "ring")
+MOST_PLANETS = 20
+
+
+class Seat(Model):
+    """Springs on which a body turns freely: pin and bearing of a planet."""
+
+    #: radial, axial: N/m
+    radial: MeshSpring
+    axial: MeshSpring
+    tilting: TorsionSpring  #: N m/rad
+
+    @property
+    def diagonal(self) -> list[float]:
+        """Stiffness on x y z thx thy thz."""
+        return [self.radial, self.axial, self.radial, self.tilting, 0.0, self.tilting]
+
+
+class HeldSeat(Seat):
+    """Springs that also hold a body against turning, with torsional stiffness in N m/rad."""
+
+    turning: TorsionSpring
+
+    @property
+    def diagonal(self) -> list[float]:
+        """Stiffness on x y z thx thy thz."""
+        stiffness = super().diagonal
+        stiffness[4] = self.turning
+        return stiffness
+
+
+class PlanetTable(HeadInertia):
+    """A planet, rigid; all are alike."""
+
+    teeth: Teeth
+    pin: Seat | None = None  #: between planet and carrier
+
+    @model_validator(mode="after")
+    def _on_a_pin(self) -> PlanetTable:
+        if self.pin is None:
+            reason = "planets are on no pins: give radial, axial and tilting stiffness of pin and"
+            raise SceneError(f"{reason} planet bearing", path=("pin",))
+        return self
+
+
+class RingTable(HeadInertia):
+    """A ring that is no part of the ground, rigid, on springs that keep it from turning."""
+
+    support: HeldSeat
+
+
+class PlanetMeshes(Model):
+    """Meshes of every planet with sun and ring."""
+
+    #: sun_stiffness, ring_stiffness: of the meshes with sun and ring, N/m
+    sun_stiffness: MeshSpring
+    ring_stiffness: MeshSpring
+    pressure_angle: PressureAngle  #: normal to the tooth, at the reference cylinder, rad
+    #: of each mesh; a single number is a constant amplitude, m; needed where it drives a motion
+    transmission_error: Error = None
+    status: Status = "assumed"
+
+
+class Planetary(Model):
+    """A planetary stage as a file describes it."""
+
+    #: a gear of a shaft, as in ``between`` of a mesh; its module, helix angle and face width are
+    #: those of the stage
+    sun: str
+    #: a shaft, at its main lumped point or at the one after a dot; it carries pins rigidly there
+    carrier: str
+    ring_teeth: Teeth
+    #: turns of the sun in one of the carrier, where a source gives it
+    ratio: Annotated[float, Field(gt=0)] | None = None
+    #: of them, at equal angles, unless `angles` are given
+    planets: Annotated[int, Field(strict=True, ge=1, le=MOST_PLANETS)] | None = None
+    #: of every planet, rad
+    angles: Annotated[tuple[Azimuth, ...], Field(max_length=MOST_PLANETS)] = ()
+    position: Azimuth = 0.0  #: of the carrier, which planets are turned by, rad
+    planet: PlanetTable
+    mesh: PlanetMeshes
+    ring: RingTable | None = None  #: one that gives way; without it the ring is fixed
+
+    @model_validator(mode="after")
+    def _so_many(self) -> Planetary:
+        if (self.planets is None) == (not self.angles):
+            reason = "give either planets, how many at equal angles, or the angles of all of them"
+            raise SceneError(reason, path=("planets",))
+        return self
+
+
+@dataclass(frozen=True)
+class PlanetMesh:
+    """Mesh of planets with sun or ring, with the interface of a `Pair`."""
+
+    #: ``mesh stage sun`` of all planets of the stage of that name, ``mesh stage sun 1`` of the
+    #: first
+    name: str
+    stage: Stage
+    mate: str
+    planets: tuple[int, ...]  #: counted from 1
+
+    @property
+    def mesh(self) -> PlanetMeshes:
+        """Table of the teeth."""
+        return self.stage.table.mesh
+
+    @property
+    def stiffness(self) -> float:
+        """Stiffness of each planet's mesh, N/m."""
+        return float(getattr(self.mesh, f"{self.mate}_stiffness"))
+
+    def phases(self, way: float) -> dict[str, float]:
+        """Return the phase lag of the error at each planet behind the first, rad, by name of the mesh;
+        `way` is 1 where the sun turns about +y of its scene, else -1.
+
+        Teeth of the sun reach a planet at the azimuth psi later by ``z_s psi``, and of the ring, for
+        planets assemble, by as much (Parker, Journal of Sound and Vibration 236, 2000, p. 561-573).
+        """
+        teeth, name = self.stage.teeth, f"{self.stage.name} {self.mate}"
+        angles = {k: way * teeth.sun * teeth.azimuths[k - 1] for k in self.planets}
+        return {f"{name} {k}": angles[k] - angles[self.planets[0]] for k in self.planets}
+
+    @property
+    def label(self) -> str:
+        """Name in the middle of a phrase."""
+        return self.name.removeprefix("mesh")
+
+
+@dataclass(frozen=True)
+class Stage:
+    """A planetary stage between two shafts, that of the sun and that of the carrier."""
+
+    called: str
+    shafts: tuple[str, str]
+    ports: tuple[str, str]
+    sun: Gear
+    table: Planetary
+
+    @property
+    def name(self) -> str:
+        """Name of all meshes of the stage together."""
+        return f"mesh {self.called}"
+
+    @property
+    def ring_point(self) -> str:
+        """Point of an elastic housing that holds the ring."""
+        return f"{self.called}.ring"
+
+    @cached_property
+    def teeth(self) -> PlanetaryTeeth:
+        """Transverse teeth; refuses teeth that do not fit, overlapping planets, another ratio."""
+        assert self.sun.module is not None
+        table, helix = self.table, self.sun.helix_angle or 0.0
+        return PlanetaryTeeth(
+            sun=self.sun.teeth,
+            planet=table.planet.teeth,
+            ring=table.ring_teeth,
+            module=self.sun.module / cos(helix),
+            planets=table.planets or table.angles,
+            pressure_angle=atan(tan(table.mesh.pressure_angle) / cos(helix)),
+            ratio=table.ratio,
+            helix=-helix if self.sun.hand == "left" else helix,
+        )
+
+    @property
+    def ratio(self) -> float:
+        """Turns of the first shaft in one of the second: of the sun in one of the carrier."""
+        return self.teeth.speed_ratio
+
+    @property
+    def levers(self) -> tuple[float, float]:
+        """Torques about +y on sun and carrier, N m, for 1 N in the mesh of every planet with the sun
+        while this drives about +y.
+        """
+        sun = len(self.teeth.azimuths) * self.teeth.base_radii[0] * cos(self.teeth.base_helix)
+        return -sun, sun * self.ratio
+
+    @cached_property
+    def meshes(self) -> tuple[PlanetMesh, ...]:
+        """Meshes of each planet with the sun, then those with the ring."""
+        return tuple(
+            PlanetMesh(f"{mesh.name} {k}", self, mesh.mate, (k,))
+            for mesh in self.together
+            for k in mesh.planets
+        )
+
+    @property
+    def together(self) -> tuple[PlanetMesh, ...]:
+        """Meshes of all planets together with the sun, and with the ring."""
+        planets = tuple(range(1, len(self.teeth.azimuths) + 1))
+        return tuple(PlanetMesh(f"{self.name} {mate}", self, mate, planets) for mate in MATES)
+
+
+def stage_of(train: Train, name: str) -> Stage:
+    """Return a planetary stage on the shafts of a train."""
+    table = train.planetary[name]
+    sun, _, port = table.sun.partition(".")
+    carrier, _, flange = table.carrier.partition(".")
+    gears, flange = train.shafts[sun].gears, flange or train.shafts[carrier].scene.port.name
+    port = port or next(iter(gears))
+    return Stage(name, (sun, carrier), (port, flange), gears[port], table)
+
+
+def stage_problems(train: Train) -> Iterator[SceneError]:
+    """Yield problems of planetary stages: unknown shafts or gears, names, teeth that do not fit."""
+    for name, table in train.planetary.items():
+        path = ("planetary", name)
+        if "." in name or not name.strip() or name in train.shafts or name in train.rotors:
+            reason = f"a stage cannot be called {name!r}; give it a name of its own, without dots"
+            yield SceneError(reason, path=path)
+            continue
+        problems = [*_ends(train, table)]
+        yield from (problem.located(None, prefix=path) for problem in problems)
+        if not problems:
+            yield from (problem.located(None, prefix=path) for problem in _teeth(train, name))
+
+
+def _ends(train: Train, table: Planetary) -> Iterator[SceneError]:
+    """Yield problems of the gear that is the sun, and of the shaft that is the carrier."""
+    for key, word in (("sun", table.sun), ("carrier", table.carrier)):
+        side, dot, port = word.partition(".")
+        if side not in train.shafts:
+            names = listed(train.shafts)
+            hint = nearest(side, train.shafts)
+            yield SceneError(f"names no shaft {side!r}{hint}; known here: {names}", path=(key,))
+            continue
+        shaft = train.shafts[side]
+        places = [*shaft.gears] if key == "sun" else [p.name for p in shaft.scene.ports]
+        kind = "gear" if key == "sun" else "lumped point"
+        if not places:
+            reason = f"the {side} carries no gear; write teeth and module under [shaft.{side}]"
+            yield SceneError(reason, path=(key,))
+        elif dot and port not in places:
+            reason = f"the {side} has no {kind} at {port!r}; it has {listed(places)}"
+            yield SceneError(reason, path=(key,))
+        elif not dot and key == "sun" and len(places) > 1:
+            choices = " or ".join(f'"{side}.{port}"' for port in places)
+            yield SceneError(f"the {side} carries several gears; write {choices}", path=(key,))
+    if table.sun.partition(".")[0] == table.carrier.partition(".")[0]:
+        reason = "sun and carrier are one shaft, and could not turn against each other"
+        yield SceneError(reason, path=("carrier",))
+
+
+def _teeth(train: Train, name: str) -> Iterator[SceneError]:
+    """Yield problems of teeth that are sound each by itself."""
+    stage = stage_of(train, name)
+    gear, (side, _), (port, _) = stage.sun, stage.shafts, stage.ports
+    gear_label = f"the gear {side}.{port}, the sun,"
+    if gear.module is None:
+        yield SceneError(f"{gear_label} needs its module", path=("sun",))
+    elif gear.helix_angle and gear.hand is None:
+        yield SceneError(f"{gear_label} has helical teeth; give their hand", path=("sun",))
+    elif gear.profile_shift:
+        reason = f"{gear_label} has a profile_shift, and stages are told without any; leave it out"
+        yield SceneError(reason, path=("sun",))
+    else:
+        try:
+            _ = stage.teeth
+        except SceneError as error:
+            keys = {"ring": "ring_teeth", "planets": "angles" if stage.table.angles else "planets"}
+            for problem in error.problems:
+                yield problem.located(
+                    None, path=tuple(keys.get(str(key), key) for key in problem.path)
+                )
+
+
+def with_carrier_turned(train: Train, name: str, angle: float) -> Train:
+    """Return a train with the carrier of a stage turned by an angle, rad."""
+    table = train.planetary[name]
+    turned_table = table.with_changes(position=(table.position + angle) % (2 * pi))
+    return train.with_changes(planetary={**train.planetary, name: turned_table})
+
+
+def named_pair(train: Train, word: str | None) -> Pair:
+    """Return a mesh of two shafts by name, as :meth:`solidgear.trains.file.train.Train.named_mesh`; refuse
+    a mesh of planets, whose teeth have no backlash.
+    """
+    mesh = train.named_mesh(word)
+    if isinstance(mesh, PlanetMesh):
+        names = listed(pair.label.strip() for pair in train.pairs) or "none"
+        raise SolidgearError(
+            f"teeth of planets have no backlash and do not drive motions with it; of {train.name} "
+            f"these may: {names}"
+        )
+    return mesh
+
+
+def error_of(driver: Pair | PlanetMesh) -> ErrorTable:
+    """Return the transmission error of a mesh that drives a motion; refuse a mesh without one."""
+    if (error := driver.mesh.transmission_error) is not None:
+        return error
+    table: tuple
+    if isinstance(driver, PlanetMesh):
+        table = ("planetary", driver.stage.called, "mesh")
+    else:
+        table = driver.paths["mesh"]
+    raise SceneError(
+        'this key is missing, and it is what drives the teeth; write transmission_error = "1 um", or '
+        "orders or a table over frequency",
+        path=(*table, "transmission_error"),
+    )

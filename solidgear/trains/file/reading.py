@@ -1,0 +1,326 @@
+"""From a TOML file of a train to a `Train`, errors named by the keys of the file.
+
+The format is documented by ``geometry/axle_overhung.toml``, for more than two shafts by
+``geometry/gearbox_two_stage.toml``, and with a housing by ``geometry/gearbox_housed.toml``.
+"""
+
+from __future__ import annotations
+
+import csv
+import os
+from collections.abc import Callable, Mapping
+from functools import partial
+from math import isfinite, sqrt
+from pathlib import Path
+from typing import Any
+
+from pydantic import model_validator
+
+from solidgear.core.errors import SceneError, near, show
+from solidgear.core.scene.file import load
+from solidgear.trains.file.gears import Member, Shaft
+from solidgear.core.scene.housing_matrices import ARRAYS, read_matrices
+from solidgear.core.scene.model import Scene
+from solidgear.trains.file.operation import Operation
+from solidgear.trains.file.planetary import Planetary
+from solidgear.core.scene.toml_file import name_of, parse, with_table_paths
+from solidgear.trains.file.train import SHORT, SIDES, Train
+from solidgear.trains.file.housing import HOUSING, TrainHousing
+from solidgear.trains.file.tables import Losses, Mesh, Rotor, TrainAsk
+from solidgear.core.scene.typed import Model, Problems
+from solidgear.core.scene.units import TYPED
+
+#: reads the scene of a side from a file, given whether the shaft stands alone
+ReadShaft = Callable[[str, Path, bool], Scene]
+
+CELL_COLUMNS = ("x", "y", "z", "nx", "ny", "nz", "force")
+MOST_CELLS = 100_000
+
+
+def _as_written(side: str, path: Path, alone: bool) -> Scene:
+    return load(path)
+
+
+def load_train(path: str | os.PathLike, shaft: ReadShaft = _as_written) -> Train:
+    """Read a train file, whose scenes lie relative to it. `shaft` reads the scene of a side from a
+    file, given whether the shaft stands alone: with an [operation] bearings settle with the train.
+    """
+    file_path = os.fspath(path)
+    return train_of(parse(file_path), file_path, shaft)
+
+
+class _Tables(Model):
+    """Tables that every train file has."""
+
+    title: str = ""
+    name: str = "train"
+    source: str = ""
+    engine: dict[str, Rotor] = {}
+    load: dict[str, Rotor] = {}
+    losses: Losses = Losses()
+    housing: TrainHousing | None = None
+    operation: Operation = ()
+    ask: TrainAsk = TrainAsk()
+
+    @model_validator(mode="before")
+    @classmethod
+    def _by_name(cls, tables: dict[str, Any]) -> dict[str, Any]:
+        """Name a single engine or load, which needs no name, by its role."""
+        roles = [role for role in SHORT if tables.get(role)]
+        return {**tables, **{r: {r: tables[r]} for r in roles if not _several(tables[r])}}
+
+    def train(
+        self, shafts: Mapping, meshes: tuple[Mesh, ...], rotors: Mapping, **more: Any
+    ) -> Train:
+        """Return the train of shafts, meshes and rotors with these tables."""
+        fields = {
+            key: getattr(self, key) for key in _Tables.model_fields if key in Train.model_fields
+        }
+        all_rotors: dict[str, Rotor] = {}
+        for kind, kind_rotors in (("engine", self.engine), ("load", self.load), ("rotor", rotors)):
+            for name, rotor in kind_rotors.items():
+                if name in all_rotors:
+                    reason = f"an engine or a load is called {name!r} as well; give it another name"
+                    raise SceneError(reason, path=(kind, name))
+                all_rotors[name] = rotor
+        more |= {"engines": tuple(self.engine), "loads": tuple(self.load)}
+        return Train(shafts=shafts, meshes=meshes, rotors=all_rotors, **more, **fields)
+
+
+class ShortFile(_Tables):
+    """File of a train of two shafts."""
+
+    pinion: Member
+    gear: Member
+    mesh: Mesh
+
+    def build_train(self) -> Train:
+        """Return the train, rotors without a shaft on those of their role."""
+        rotors = {
+            kind: {
+                name: rotor if rotor.shaft else rotor.with_changes(shaft=side)
+                for name, rotor in getattr(self, kind).items()
+            }
+            for kind, side in SHORT.items()
+        }
+        shafts = {"pinion": self.pinion.shaft, "gear": self.gear.shaft}
+        mesh = self.mesh.with_changes(between=tuple(shafts))
+        return self.with_changes(**rotors).train(shafts, (mesh,), {})
+
+
+class LongFile(_Tables):
+    """File of a train of any number of shafts."""
+
+    shaft: dict[str, Shaft]
+    mesh: tuple[Mesh, ...] = ()
+    planetary: dict[str, Planetary] = {}
+    rotor: dict[str, Rotor] = {}
+
+    def build_train(self) -> Train:
+        """Return the train."""
+        return self.train(self.shaft, self.mesh, self.rotor, planetary=self.planetary)
+
+
+def train_of(raw: Mapping[str, Any], file_path: str, shaft: ReadShaft = _as_written) -> Train:
+    """Resolve the tables of a train file; files that it names lie relative to `file_path`."""
+    folder = Path(file_path).parent
+    try:
+        if "segment" in raw:
+            raise SceneError(
+                "this is the scene of one shaft, not of a train; run solidgear compare, answer "
+                "or modes on it, or name a file with [pinion] and [gear], such as "
+                "geometry/axle_overhung.toml",
+                path=("segment",),
+            )
+        data: dict[str, Any] = {"name": name_of(file_path), **raw}
+        read_scene = partial(_with_scene, folder, "operation" not in raw, shaft)
+        problems, kind = Problems(), LongFile if "shaft" in raw else ShortFile
+        if kind is LongFile:
+            data["shaft"] = _shafts(problems, raw["shaft"], read_scene, "planetary" in raw)
+        for side in SIDES:
+            if isinstance(raw.get(side), Mapping):
+                data[side] = _read(problems, partial(read_scene, raw[side], (side,))) or raw[side]
+        _read_meshes(data, kind is LongFile, folder)
+        if isinstance(box := raw.get(HOUSING), Mapping) and "matrices" in box:
+            data[HOUSING] = _with_matrices(box, folder)
+        for role in (role for role in SHORT if role in raw):
+            for name in [*raw[role]] if _several(raw.get(role)) else [""]:
+                problems.read(partial(_check_rotor, raw, role, name))
+        if kind is LongFile:
+            problems.raise_any()
+        known_paths = {problem.path for problem in problems}
+        try:
+            train = kind(**data).build_train()
+        except SceneError as error:
+            problems_of_file = as_written(error, raw).problems
+            problems += [problem for problem in problems_of_file if problem.path not in known_paths]
+        problems.raise_any()
+        return train
+    except SceneError as error:
+        if error.where:
+            raise
+        raise as_written(error, raw).located(raw, where=file_path) from None
+
+
+def as_written(error: SceneError, raw: Mapping[str, Any]) -> SceneError:
+    """Return an error with paths of the file: as :func:`with_table_paths`, and those of a single
+    engine or load without a name.
+    """
+    alone = [(role, role) for role in SHORT if not _several(raw.get(role))]
+    problems = []
+    for problem in error.problems:
+        if problem.path[:2] in alone:
+            problem = problem.located(None, path=(problem.path[0], *problem.path[2:]))
+        problems.append(problem)
+    return with_table_paths(SceneError.of(problems), raw)
+
+
+def _several(table: Any) -> bool:
+    """Return True for a table of named engines or loads, and not of a single one."""
+    tables = isinstance(table, Mapping) and all(
+        isinstance(v, (Mapping, Rotor)) for v in table.values()
+    )
+    return tables and bool(table) and "spring" not in table
+
+
+def _shafts(
+    problems: Problems, tables: Any, read_scene: Callable, carriers: bool
+) -> dict[str, Shaft]:
+    """Return shafts by name: with a table for each of several gears, or a single gear in the table of
+    the shaft; a carrier may have none.
+    """
+    if not isinstance(tables, Mapping) or not all(isinstance(t, Mapping) for t in tables.values()):
+        reason = "holds a table for each shaft, such as [shaft.input]"
+        raise SceneError(reason, path=("shaft",))
+    out = {}
+    for name, table in tables.items():
+        path = ("shaft", name)
+        fields = _read(problems, partial(read_scene, table, path))
+        if fields is None:
+            continue
+        single = "gears" not in table and (not carriers or "teeth" in table)
+        shaft = problems.read(
+            lambda: Member(**fields).shaft if single else Shaft(**fields),  # noqa: B023  read at once
+            path,
+        )
+        if shaft is not None:
+            out[name] = shaft
+    return out
+
+
+def _read_meshes(data: dict[str, Any], many: bool, folder: Path) -> None:
+    """Read the contact cells that meshes name into `data`."""
+    meshes = data.get("mesh")
+    tables = meshes if many and isinstance(meshes, list) else [meshes]
+    read = []
+    for k, table in enumerate(tables):
+        if isinstance(table, Mapping) and "contact_cells" in table:
+            table = _with_cells(table, folder, ("mesh", k) if many else ("mesh",))
+        read.append(table)
+    if "mesh" in data:
+        data["mesh"] = read if many else read[0]
+
+
+def _read(problems: Problems, reader: Callable[[], dict[str, Any]]) -> dict[str, Any] | None:
+    """Return a result as `Problems.read`; problems of another file are raised at once."""
+    try:
+        return reader()
+    except SceneError as error:
+        if error.where:
+            raise
+        problems += error.problems
+        return None
+
+
+def _with_scene(
+    folder: Path, alone: bool, shaft: ReadShaft, table: Mapping[str, Any], path: tuple
+) -> dict[str, Any]:
+    name = table.get("scene")
+    if not isinstance(name, str):
+        reason = 'names the file of the shaft, such as "gear_shaft.toml"'
+        raise SceneError(reason, path=(*path, "scene"))
+    return {**table, "scene": shaft(path[-1], folder / name, alone)}
+
+
+def _check_rotor(raw: Mapping[str, Any], rotor: str, name: str) -> None:
+    """Refuse a rotor without a spring, which is most often left out, and explain the spring."""
+    path = (rotor, name) if name else (rotor,)
+    table = raw[rotor][name] if name else raw.get(rotor)
+    if not isinstance(table, Mapping):
+        reason = f"holds inertia and a spring: write [{rotor}] with inertia, and [{rotor}.spring]"
+        raise SceneError(reason, path=(rotor,))
+    side = table.get("shaft", SHORT[rotor])
+    misspelt = any(near(key, ("spring",)) for key in table if key != "spring")  # refused as such
+    if not isinstance(table.get("spring"), Mapping) and not misspelt:
+        raise SceneError(
+            f"the torsional spring between the {name or rotor} and the {side}'s shaft is missing; "
+            f"write [{'.'.join(path)}.spring] with stiffness and where it sits (at)",
+            path=(*path, "spring"),
+        )
+
+
+def _with_cells(table: Mapping[str, Any], folder: Path, path: tuple) -> dict[str, Any]:
+    fields = {key: value for key, value in table.items() if key != "contact_cells"}
+    name = table["contact_cells"]
+    if not isinstance(name, str):
+        reason = "names a CSV file with the columns " + ", ".join(CELL_COLUMNS)
+        raise SceneError(reason, path=(*path, "contact_cells"))
+    return {**fields, "contact_cells": read_cells(folder / name)}
+
+
+def _with_matrices(table: Mapping[str, Any], folder: Path) -> dict[str, Any]:
+    for key in ("mass", "inertia", "centre", "points"):
+        if key in table:
+            raise SceneError("follows from matrices; leave one of the two out", path=(HOUSING, key))
+    if not isinstance(name := table["matrices"], str):
+        reason = "names an .npz file with " + ", ".join(ARRAYS)
+        raise SceneError(reason, path=(HOUSING, "matrices"))
+    return {**table, "matrices": read_matrices(folder / name)}
+
+
+def read_cells(path: str | os.PathLike) -> tuple[dict[str, Any], ...]:
+    """Read contact cells from a CSV file with the columns x, y, z (m), nx, ny, nz and force (N), as a
+    `Mesh` takes them: ``point``, unit ``normal`` and ``force``.
+    """
+    file_path = os.fspath(path)
+    try:
+        with open(path, newline="", encoding="utf-8-sig") as file:
+            rows = list(csv.DictReader(file, skipinitialspace=True))
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        cause = getattr(error, "strerror", None) or "not a CSV file in UTF-8"
+        raise SceneError(f"the contact cells cannot be read: {cause}", where=file_path) from None
+    if not rows or len(rows) > MOST_CELLS:
+        raise SceneError(
+            f"{len(rows)} contact cells; there must be 1 to {MOST_CELLS}", where=file_path
+        )
+    missing = [c for c in CELL_COLUMNS if c not in rows[0]]
+    if missing:
+        reason = f"no column {missing[0]}; the first line must name {', '.join(CELL_COLUMNS)}"
+        raise SceneError(reason, where=file_path)
+    cells = tuple(_cell(row, k, file_path) for k, row in enumerate(rows, start=2))
+    if not sum(cell["force"] for cell in cells) > 0:
+        raise SceneError("no cell carries a force; the sum must be above zero", where=file_path)
+    return cells
+
+
+def _cell(row: Mapping[str, Any], line: int, file_path: str) -> dict[str, Any]:
+    value = []
+    for column in CELL_COLUMNS:
+        try:
+            number = float(row[column])
+        except (TypeError, ValueError):
+            number = float("nan")
+        if not isfinite(number):
+            reason = f"line {line}, {column} = {show(row[column], 30)}: must be a number in SI"
+            raise SceneError(reason, where=file_path)
+        value.append(number)
+    normal, force = value[3:6], value[6]
+    length = sqrt(sum(v * v for v in normal))
+    if abs(length - 1) > TYPED:
+        reason = f"line {line}: the normal has length {length:.6g}; it must be a unit vector"
+        raise SceneError(reason, where=file_path)
+    if force < 0:
+        reason = f"line {line}, force = {force:g}: teeth push and do not pull; must not be negative"
+        raise SceneError(reason, where=file_path)
+    unit = tuple(v / length for v in normal)
+    return {"point": tuple(value[:3]), "normal": unit, "force": force}

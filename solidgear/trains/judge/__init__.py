@@ -1,0 +1,1 @@
+"""Models of a train beside each other."""

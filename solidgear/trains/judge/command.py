@@ -1,0 +1,110 @@
+"""A train judged like a shaft: compare on a train file, and judge-system."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from contextlib import nullcontext
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from solidgear.show.command import caution, command, say
+from solidgear.show.options import Shown, refuse
+from solidgear.trains.options import Reduced, TrainFile, mix
+from solidgear.show.folder import held
+from solidgear.show.table import Column, Table, text
+from solidgear.trains.page.page import write_train
+from solidgear.trains.page.tables import mix_words
+from solidgear.show.viewer import viewer_fragment
+from solidgear.trains.judge.comparison import compare_train as compared
+from solidgear.trains.modes.modes import unpublished_lines
+
+
+@command
+def judge_system(
+    train: TrainFile,
+    *,
+    out: Annotated[
+        Path | None, typer.Option("--out", "-o", help="Folder for the report, as of compare.")
+    ] = None,
+    against: Annotated[
+        list[str] | None,
+        typer.Option("--against", help="Further mix to judge, as PINION+GEAR; repeatable."),
+    ] = None,
+    reduced: Reduced,
+    run: Shown,
+) -> None:
+    more = [mix(text) for text in against or []]
+    _judged(train, out, reduced, run, more, renders=True)
+
+
+def compare_train(
+    train: Path, out: Path, renders: bool, run: Shown, given: dict[str, bool]
+) -> None:
+    """The command compare on a train.
+
+    Parameters
+    ----------
+    given : dict of str to bool
+        Options of compare that speak of one shaft, and whether they were given.
+    """
+    instead = (
+        "every mix of its models is judged; add further ones by solidgear judge-system --against"
+    )
+    refuse(given, f"one shaft, and {train} is a train: {instead}")
+    _judged(train, out, Reduced(), run, renders=renders)
+
+
+def _judged(
+    train: Path,
+    out: Path | None,
+    reduced: Reduced,
+    run: Shown,
+    more: Sequence[tuple[str, ...]] = (),
+    *,
+    renders: bool,
+) -> None:
+    shop = reduced.workshop(train)
+    with held(out) if out else nullcontext(), run.progress() as progress:
+        found = compared(shop, reduced.max_frequency, more, progress)
+        results = found.results()
+        if out:
+            progress("report")
+            draw = found.pictures if renders else None
+            viewer = viewer_fragment(found.turned(), first=next(iter(found.loud), ""))
+            shown = found.drawn, found.marks, found.orders
+            write_train(results, *shown, out, draw, run.units, viewer)
+    if run.as_json:
+        print(json.dumps(results, allow_nan=False))
+        return
+    verdict = found.verdict
+    heading = f"{verdict.train}, up to {verdict.highest_hz:g} Hz"
+    say(heading, *found.top.sentences(), _verdict_table(verdict), soft_wrap=False)
+    say(*verdict.sentences(), *unpublished_lines(verdict.unpublished))
+    say(*map(caution, verdict.cautions))
+    if out:
+        say(f"Report: {out / 'report.html'}")
+
+
+def _verdict_table(found):
+    def end(hz: float | None) -> str:
+        return f"{found.highest_hz:.0f}+" if hz is None else f"{hz:.0f}"
+
+    def off(mix) -> str:
+        if mix.error is None:
+            return f"{mix.mode} gone" if mix.mode else ""
+        digits = 1 if abs(mix.error) < 0.0995 else 0
+        return f"{mix.mode} {100 * mix.error:+.{digits}f} %"
+
+    columns = [
+        text(" + ".join(found.mixes[0].models), lambda m: mix_words(m.mix)),
+        Column(f"modes\n{100 * found.tolerance:g} %", lambda m: end(m.modes_to_hz)),
+        Column(f"force\n{found.decibels:g} dB", lambda m: end(m.force_to_hz)),
+        Column(f"force\n{100 * found.tolerance:g} %", lambda m: end(m.close_to_hz)),
+        text("first mode off", off),
+        text("by", lambda m: m.cause),
+        Column("s", lambda m: f"{m.seconds:.1f}"),
+    ]
+    return Table("Within the band up to, in Hz", columns, found.mixes, style="bare")

@@ -1,0 +1,1 @@
+"""Operating points of a train: loads, contact, lives."""

@@ -1,0 +1,399 @@
+r"""A train at an operating point: mesh force, settled bearings, and how all parts lie.
+
+A torque T on one shaft is carried by the teeth with ``F = |T| / |h|`` along their line of action, h
+the lever of that shaft (the fifth component of its mesh vector), and leaves by the other shaft's
+rotor.  Displacements are small against all lengths, so that the line of action stays where it is;
+bearings of catalogue data settle together with the deflection of both shafts and of the mesh
+(:mod:`solidgear.trains.system.equilibrium`).
+
+A positive torque loads the flank that the file names, a negative one the other: its normal is the
+first one mirrored at the normal m of the pitch surface, ``n' = 2 (n . m) m - n``, which turns the
+tangential and the spiral part of a tooth force round and leaves the part of the pressure angle.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from copy import copy
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+
+from solidgear.bearings.catalogued import Catalogued
+from solidgear.bearings.solved import AS_STATED, Choice, catalogued_bearings
+from solidgear.core.errors import SceneError, SolidgearError, listed
+from solidgear.trains.file.operation import OperatingPoint
+from solidgear.trains.file.train import Train
+from solidgear.strength.deflection.shaft import seats_of
+from solidgear.trains.assembly.housing import housing_port
+from solidgear.trains.assembly.layout import force_on, mesh_forces, rotor_torques
+from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.load.planet_loads import carrier_torques, centrifugal_load
+from solidgear.trains.assembly.stages import mesh_row
+from solidgear.trains.system.equilibrium import OnBearings, Seats, SystemEquilibrium, weight
+from solidgear.core.system.port_forces import port_forces
+from solidgear.core.system.system import System
+
+#: model of all shafts on which bearings settle: loads hang little on how shoulders are modelled
+SHAFT = "timoshenko"
+#: a [load] of a scene that is off the mesh force by less, of it, is that force written down
+SAME_LOAD = 0.05
+LOOP = (
+    "meshes of a loop divide the torque by their stiffness, as if all of their teeth touched without "
+    "load: errors of teeth and places shift it"
+)
+
+
+@dataclass(frozen=True, eq=False)
+class OperatingState:
+    """A train at rest at one operating point."""
+
+    point: OperatingPoint
+    models: dict[str, str]  #: by shaft
+    #: along the line of action, N, by mesh; zero where no torque passes
+    mesh_forces: dict[str, float]
+    equilibrium: SystemEquilibrium  #: of all parts; the spring port of the engine does not turn
+    #: without the bearings; the equilibrium is in its coordinates
+    system: System = field(repr=False)
+    bearings: dict[str, Catalogued] = field(
+        repr=False
+    )  #: bearings of catalogue data, by ``side.name``
+    #: loads from outside on ports of parts: torques of both rotors and other forces
+    outside: dict[str, np.ndarray] = field(repr=False)
+    notes: tuple[str, ...] = ()  #: sentences
+
+    @property
+    def mesh_force(self) -> float:
+        """Force of the first mesh, N."""
+        return next(iter(self.mesh_forces.values()))
+
+    @property
+    def coordinates(self) -> np.ndarray:
+        """Coordinates (N,) of the system."""
+        return self.equilibrium.coordinates
+
+    def motion(self, end: str) -> np.ndarray:
+        """Return the motion (6,) of a port such as ``pinion.A``, m and rad, in the axes of its
+        scene.
+        """
+        return self.system.motion(end) @ self.coordinates
+
+    def forces(self) -> dict[str, np.ndarray]:
+        """Return the force (6,) of everything but weight on each port of a shaft: teeth, springs,
+        bearings, and loads from outside, N and N m, in the axes of the scene.
+        """
+        out = port_forces(self.system, self.coordinates)
+        for end, force in self.outside.items():
+            out[end] = out.get(end, np.zeros(6)) + force
+        for end, force in self.equilibrium.load.items():
+            out[end] = out.get(end, np.zeros(6)) - force
+        return out
+
+
+class Operating:
+    """A train with the shafts at models (bodies or ``rigid``, one for each shaft or one for all),
+    to be settled at any operating point; `choice` is the place in the ranges of catalogue data,
+    and bearings with a load of their own are refused.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> from solidgear.trains.file.operation import OperatingPoint
+    >>> shop = Workshop(sg.load_train("geometry/axle_straddle.toml"))
+    >>> found = Operating(shop).at(OperatingPoint(torque=100.0))
+    >>> lever = shop.contact.pinion.lever
+    >>> round(found.mesh_force * abs(lever), 9)
+    100.0
+    """
+
+    def __init__(self, workshop: Workshop, *models: str, choice: Choice = AS_STATED):
+        self.workshop, self.models, self.choice = workshop, models or (SHAFT,), choice
+        for side in workshop.train.shafts:
+            refuse_own_loads(workshop.train, side)
+
+    @cached_property
+    def bearings(self) -> dict[str, Catalogued]:
+        """Bearings of catalogue data, by ``side.name``."""
+        out: dict[str, Catalogued] = {}
+        train = self.workshop.train
+        for side, shaft in train.shafts.items():
+            try:
+                shaft_bearings = catalogued_bearings(shaft.scene, self.choice)
+            except SceneError as error:
+                raise error.located(None, prefix=(*train.shaft_path(side), "scene")) from None
+            out |= {f"{side}.{name}": catalogued for name, catalogued in shaft_bearings.items()}
+        return out
+
+    @cached_property
+    def _seats(self) -> tuple[Seats, ...]:
+        scenes = self.workshop.scenes.items()
+        train, out = self.workshop.train, []
+        for side, scene in scenes:
+            seats = seats_of(side, scene, self.bearings)
+            ports = (housing_port(train, side, seat.port) for seat in seats.bearings)
+            out.append(replace(seats, stands_in=tuple(port for port in ports if port is not None)))
+        return tuple(out)
+
+    @cached_property
+    def _flanks(self) -> dict[bool, OnBearings]:
+        return {}
+
+    def _on_flank(self, coast: bool) -> tuple[Workshop, OnBearings]:
+        """Return the train with the flank that carries, without the bearings, and the seats that it
+        rests on.
+        """
+        shop = self.workshop.on_flank(coast)
+        if coast not in self._flanks:
+            system = shop.system(*self.models, bearings=False)
+            self._flanks[coast] = OnBearings(system, self._seats)
+        return shop, self._flanks[coast]
+
+    def with_points(self, train: Train) -> Operating:
+        """Return the same bearings on the same shafts, in a train that differs in operating points
+        alone.
+        """
+        _ = self._seats, self._flanks  # found once for all of them
+        out = copy(self)
+        out.workshop = self.workshop.with_train(train)
+        return out
+
+    def at(self, point: OperatingPoint, start: OperatingState | None = None) -> OperatingState:
+        """Settle the train at an operating point, from the state `start` of the same train if it is
+        on the same flank; refused where nothing holds a shaft under the loads.
+        """
+        point = self.workshop.train.told(point)
+        shop, seated = self._on_flank(point.coast)
+        forces = mesh_forces(shop.train, shop.contacts, point)
+        loads, notes = self._loads(shop, point, forces)
+        total = seated.system.load(loads) + centrifugal_load(shop, seated.system, point)
+        if point.weight is not None:
+            total = total + weight(seated.system, point.gravity)
+        begin = None
+        if start is not None and start.point.coast == point.coast:
+            begin = start.equilibrium
+        try:
+            solved = seated.equilibrium(total, begin)
+        except SolidgearError as error:
+            raise SolidgearError(f"at {point.label}: {error}") from None
+        solved = _engine_still(solved, seated.system, shop.train)
+        if loop_shares := loop_forces(shop, seated.system, solved.coordinates, point.label):
+            forces = {name: {**forces, **loop_shares}[name] for name in shop.contacts}
+            notes.append(LOOP)
+        notes += [
+            f"at {point.label} bearing {end} carries nothing: its clearance is not taken up, and it "
+            "has no stiffness"
+            for end in solved.lost
+        ]
+        return OperatingState(
+            point=point,
+            models=shop.models_by_shaft(self.models),
+            mesh_forces=forces,
+            equilibrium=solved,
+            system=seated.system,
+            bearings=self.bearings,
+            outside=loads,
+            notes=tuple(notes),
+        )
+
+    def _loads(
+        self, shop: Workshop, point: OperatingPoint, forces: dict[str, float]
+    ) -> tuple[dict[str, np.ndarray], list[str]]:
+        """Return loads at ports in addition to the mesh forces, which the torques of engine and load bring
+        about, and notes on them.
+        """
+        loads, notes = rotor_loads(shop, point), []
+        for force in point.force:
+            loads[force.at] = loads.get(force.at, np.zeros(6)) + force.six
+        for end, torque in carrier_torques(shop, point).items():
+            loads[end] = loads.get(end, np.zeros(6)) + torque * np.eye(6)[4]
+            notes.append(
+                f"at {point.label} the weight of planets turns {end} by {abs(torque):.4g} N m: it is "
+                "balanced there, and no shaft carries it"
+            )
+        for side, scene in shop.scenes.items():
+            added, sentences = scene_load(shop, side, forces)
+            notes += sentences
+            if added is not None:
+                end = f"{side}.{scene.port.name}"
+                loads[end] = loads.get(end, np.zeros(6)) + added
+        return loads, notes
+
+
+def refuse_own_loads(train: Train, side: str) -> None:
+    """Refuse bearings with a load of their own where a torque brings it."""
+    for bearing in train.shafts[side].scene.bearings:
+        data = bearing.catalogue
+        if data is None:
+            continue
+        for key in ("load", "displacement"):
+            if getattr(data, key) is not None:
+                reason = (
+                    f"bearing {bearing.name} has a {key} of its own, and in a train with an "
+                    "[operation] the torque brings its load: leave it out"
+                )
+                raise SceneError(reason, path=(*train.shaft_path(side), "scene"))
+
+
+def scene_load(
+    workshop: Workshop, side: str, forces: Mapping[str, float]
+) -> tuple[np.ndarray | None, list[str]]:
+    """Return the load (6,) that the [load] of a shaft's scene adds to the mesh force, and notes;
+    refused if it is neither the mesh force nor declared as added or replaced.
+    """
+    train, scene = workshop.train, workshop.scenes[side]
+    if scene.load is None:
+        return None, []
+    load, word = np.array(scene.load.six), train.shafts[side].scene_load
+    if word == "added":
+        return load, [f"the [load] of the {side}'s scene is added to the mesh force"]
+    if word == "replaced":
+        return None, []
+    if any(train.flows[pair.name] is None for pair in train.pairs if side in pair.shafts):
+        raise SceneError(
+            f"the [load] of the {side}'s scene stands beside teeth of a loop of meshes, whose force the "
+            'bearings have a say in: write "replaced", or "added" where it acts beside the teeth',
+            path=(*train.shaft_path(side), "scene_load"),
+        )
+    flanks = [(workshop.on_flank(p.coast), p) for p in train.operation]
+    mesh_loads = [_force_on(s, side, mesh_forces(train, s.contacts, p)) for s, p in flanks]
+    mesh_loads.append(_force_on(workshop, side, forces))
+    if any(np.linalg.norm(load[:3] - f) <= SAME_LOAD * np.linalg.norm(f) for f in mesh_loads):
+        return None, [f"the [load] of the {side}'s scene is its mesh force, and is not added"]
+    raise SceneError(
+        f"the [load] of the {side}'s scene is ({_newtons(load[:3])}) N at its lumped point, and the "
+        f"mesh force is ({_newtons(mesh_loads[0])}) N: leave [load] out of the scene, or write "
+        f'scene_load = "replaced" under [{".".join(train.shaft_path(side))}], or "added" where it '
+        "acts beside the teeth",
+        path=(*train.shaft_path(side), "scene_load"),
+    )
+
+
+def _force_on(workshop: Workshop, side: str, forces: Mapping[str, float]) -> np.ndarray:
+    """Return the (3,) force of all teeth on a shaft, in the axes of the scene, N; equal planets
+    have none.
+    """
+    forces_on = [
+        forces[pair.name] * force_on(pair, side, workshop.contacts[pair.name])[:3]
+        for pair in workshop.train.pairs
+        if side in pair.shafts
+    ]
+    return np.sum([np.zeros(3), *forces_on], axis=0)
+
+
+def _newtons(force: np.ndarray) -> str:
+    return ", ".join(f"{v:.0f}" for v in force)
+
+
+def rotor_loads(workshop: Workshop, point: OperatingPoint) -> dict[str, np.ndarray]:
+    """Return (6,) torques of engines and loads, by rotor."""
+    by_rotor = rotor_torques(workshop.train, workshop.contacts, point)
+    return {name: torque * np.eye(6)[4] for name, torque in by_rotor.items()}
+
+
+def mean_forces(workshop: Workshop, point: OperatingPoint) -> dict[str, float]:
+    """Return the forces of all meshes at an operating point, N, of a planetary stage those of each
+    planet; those of a loop as Timoshenko shafts divide them under all that loads the train
+    there.
+    """
+    if None in workshop.train.flows.values():
+        return Operating(workshop).at(point).mesh_forces
+    return mesh_forces(workshop.train, workshop.contacts, point)
+
+
+def loop_forces(
+    workshop: Workshop, system: System, coordinates: np.ndarray, place: str
+) -> dict[str, float]:
+    """Return the forces of meshes that a loop makes share the torque by their stiffness, N, by
+    mesh; their teeth all touch where nothing is loaded, and teeth that would have to pull are
+    refused.
+    """
+    out = {}
+    for name in (name for name, flow in workshop.train.flows.items() if flow is None):
+        row, stiffness = mesh_row(system, name)
+        out[name] = -stiffness * float(row @ coordinates)
+        if not out[name] > 0:
+            raise SolidgearError(
+                f"at {place}: the teeth of the {name} would have to pull with {-out[name]:.4g} N, so "
+                "that the loop of meshes carries its torque: name the other flank of its gears, or "
+                "another torque"
+            )
+    return out
+
+
+def _engine_still(solved: SystemEquilibrium, system: System, train: Train) -> SystemEquilibrium:
+    """Return the same with the train turned until the port of the engine's spring has no rotation."""
+    turning = _rotation(system, [*train.shafts])
+    row = system.motion(f"{train.reference}.{train.spring_port(train.engines[0])}")[4]
+    turned = float(row @ turning)
+    if turned == 0.0:
+        return solved
+    factor = float(row @ solved.coordinates) / turned
+    return replace(solved, coordinates=solved.coordinates - factor * turning)
+
+
+def _rotation(system: System, shafts: list[str]) -> np.ndarray:
+    """Return the (N,) free motion of the train that moves no seat of a bearing but about the axis."""
+    free = system.free
+    ends = [f"{side}.{p}" for side in shafts for p in system.parts[side].ports]
+    still = np.vstack([system.motion(end)[[0, 1, 2, 3, 5]] for end in ends]) @ free
+    _, _, vectors = np.linalg.svd(still)
+    return free @ vectors[-1]
+
+
+def with_settled_bearings(train: Train, state: OperatingState) -> Train:
+    """Return a train with one operating point, the bearings with the stiffness that they have
+    there.
+    """
+    shafts = {}
+    for side, shaft in train.shafts.items():
+        bearings = [
+            bearing
+            if bearing.catalogue is None
+            else bearing.with_changes(matrix=_symmetric(state, side, bearing.name))
+            for bearing in shaft.scene.bearings
+        ]
+        scene = shaft.scene.with_changes(bearings=tuple(bearings))
+        shafts[side] = shaft.with_changes(scene=scene)
+    point = state.point.with_changes(share=None, hours=None)
+    return train.with_changes(operation=(point,), shafts=shafts)
+
+
+def _symmetric(state: OperatingState, side: str, name: str) -> np.ndarray:
+    """Return the tangent (6, 6) of a bearing; friction at speed leaves a part that is no spring."""
+    tangent = state.equilibrium.tangent[f"{side}.{name}"]
+    return (tangent + tangent.T) / 2
+
+
+def at_point(train: Train, word: str | int | None = None) -> Train:
+    """Return a train with bearings settled at an operating point, by name or number
+    from one; by default the first, and the train keeps the others.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> train = sg.load_train("geometry/axle_straddle.toml")
+    >>> points = ({"torque": 100.0, "name": "drive"}, {"torque": "-30 N*m", "name": "coast"})
+    >>> at_point(train.with_changes(operation=points), "coast").point.torque
+    -30.0
+    """
+    point = train.operation[0] if word is None and train.operation else named_point(train, word)
+    settled_train = with_settled_bearings(train, Operating(Workshop(train)).at(point))
+    return (
+        settled_train if word is not None else settled_train.with_changes(operation=train.operation)
+    )
+
+
+def named_point(train: Train, word: str | int | None) -> OperatingPoint:
+    """Return the operating point of a train by name or number, counted from one."""
+    if not train.operation:
+        raise SolidgearError(
+            f"{train.name} has no operating point; write [operation] with a torque in its file"
+        )
+    for k, point in enumerate(train.operation, start=1):
+        if word in (point.name, k, str(k)) and word != "":
+            return point
+    names = [
+        f"{k}" + (f" {p.name!r}" if p.name else "") for k, p in enumerate(train.operation, start=1)
+    ]
+    raise SolidgearError(f"no operating point {word!r}; there are {listed(names)}")

@@ -1,0 +1,232 @@
+"""Options of commands on a train: its file, how its shafts are reduced, and their models."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from solidgear.show.command import Group
+from solidgear.show.options import MODEL, options_by_name
+from solidgear.core.errors import SceneError, SolidgearError, listed, show
+from solidgear.core.ladder.registry import LADDER
+from solidgear.core.scene.toml_file import parse
+from solidgear.trains.file.train import Train
+from solidgear.trains.file.reading import as_written
+from solidgear.trains.file.tables import FIRST_HARMONIC, LAST_HARMONIC
+from solidgear.core.loading import load_train
+from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.load.operation import at_point
+from solidgear.trains.assembly.shaft import checked_model
+
+TrainFile = Annotated[
+    Path, typer.Argument(help="Train file (TOML), such as geometry/axle_overhung.toml.")
+]
+MODELS = (
+    f"{', '.join(LADDER.bodies)}, rigid, lumped, lumped-bending, lumped-matched, "
+    "lumped-old; a lumped one may name its body, lumped/euler."
+)
+MOST_KEPT = 200
+ShaftSettings = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        help="Builder option of the model of one shaft as SIDE.key=value, repeatable: "
+        "pinion.order=3, gear.elements=40; solidgear options lists them.",
+    ),
+]
+
+
+@dataclass(frozen=True)
+class Reduced(Group):
+    """Options of every command on a train: how its shafts are reduced, and up to which frequency."""
+
+    max_frequency: Annotated[
+        float | None, typer.Option(help="Hz; as the file says by default.")
+    ] = None
+    reduction: Annotated[
+        str,
+        typer.Option("--reduction", help="rubin (free modes and residuals) or craig_bampton."),
+    ] = "rubin"
+    kept: Annotated[
+        int, typer.Option("--kept", help="Modes of each shaft kept in its reduction.")
+    ] = 24
+    local_harmonics: Annotated[
+        str | None,
+        typer.Option(
+            "--local-harmonics",
+            help="Harmonics n >= 2 of harmonic solids that the teeth drive where they touch, such as "
+            "2,3; by default as local_harmonics of each mesh in the file says.",
+        ),
+    ] = None
+    point: Annotated[
+        str | None,
+        typer.Option(
+            "--point",
+            help="Operating point, by its name or number in the file; the first by default.",
+        ),
+    ] = None
+
+    @property
+    def given(self) -> dict[str, bool]:
+        """Options, and whether they are other than usual."""
+        usual = vars(Reduced())
+        return {f"--{k.replace('_', '-')}": v != usual[k] for k, v in vars(self).items()}
+
+    def checked(self) -> Reduced:
+        """The same, once these options are sound."""
+        if not 1 <= self.kept <= MOST_KEPT:
+            raise SolidgearError(f"--kept {show(self.kept)}: give 1 to {MOST_KEPT} modes")
+        if self.max_frequency is not None and not self.max_frequency > 0:
+            raise SolidgearError(
+                f"--max-frequency {self.max_frequency:g}: must be greater than zero, in Hz"
+            )
+        return self
+
+    @property
+    def harmonics(self) -> tuple[int, ...]:
+        """Those of ``--local-harmonics``; none where the file says."""
+        return () if self.local_harmonics is None else _harmonics(self.local_harmonics)
+
+    def workshop(
+        self, path: Path, settings: Mapping[str | tuple[str, str], Mapping] | None = None
+    ) -> Workshop:
+        """Workshop of a train, once these options are sound, with builder options by side and model."""
+        self.checked()
+        loaded = load_train(path)
+        if self.point is not None:
+            loaded = at_point(loaded, self.point)
+        if self.harmonics:
+            own = {"local_harmonics": self.harmonics}
+            loaded = loaded.with_changes(meshes=tuple(m.with_changes(**own) for m in loaded.meshes))
+        try:
+            return Workshop(loaded, self.reduction, self.kept, settings or {})
+        except SceneError as error:  # what the mesh of a sound file cannot be
+            raw = parse(str(path))
+            raise as_written(error, raw).located(raw, where=str(path)) from None
+
+
+@dataclass(frozen=True)
+class Pair(Group):
+    """Models of the shafts."""
+
+    pinion: Annotated[
+        str, typer.Option("--pinion", help=f"Model of the pinion's shaft: {MODELS}")
+    ] = MODEL
+    gear: Annotated[str, typer.Option("--gear", help="Model of the gear's shaft, as --pinion.")] = (
+        MODEL
+    )
+    shafts: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--shaft", help="Model of a shaft of another name, such as input=euler; repeatable."
+        ),
+    ] = None
+
+    def by_shaft(self, train: Train) -> dict[str, str]:
+        """Models of the shafts of a train."""
+        return self.of(train.shafts, train.name)
+
+    def of(self, shafts: Collection[str], name: str) -> dict[str, str]:
+        """Models of shafts, of a train by that name; refuses a shaft that it does not have."""
+        given = {s: m for s, m in (("pinion", self.pinion), ("gear", self.gear)) if m != MODEL}
+        for text in self.shafts or []:
+            side, equals, model = text.partition("=")
+            if not equals:
+                raise SolidgearError(f"--shaft {show(text, 40)}: write SHAFT=MODEL, input=euler")
+            given[side] = model
+        for side in given:
+            if side not in shafts:
+                known = listed(shafts)
+                raise SolidgearError(f"{name} has no shaft {show(side, 40)}; it has {known}")
+        return {side: given.get(side, MODEL) for side in shafts}
+
+
+@dataclass(frozen=True)
+class Mix(Pair):
+    """The same with their builder options."""
+
+    settings: ShaftSettings = None
+
+    def workshop(self, reduced: Reduced, path: Path) -> Workshop:
+        """Workshop of a train with these builder options."""
+        shop = reduced.workshop(path)
+        shop.settings = of_shafts(self.settings, self.by_shaft(shop.train))
+        return shop
+
+
+@dataclass(frozen=True)
+class Driven(Mix):
+    """Options of every command on steady motion: losses, and models to draw as well."""
+
+    against: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--against",
+            help="Further model to draw, as PINION+GEAR, such as euler+euler; repeatable.",
+        ),
+    ] = None
+    damping: Annotated[
+        str,
+        typer.Option(
+            help="hysteretic, viscous (with --matched-at), modal, or literal (C = zeta K)."
+        ),
+    ] = "hysteretic"
+    matched_at: Annotated[
+        float | None, typer.Option("--matched-at", help="Hz at which viscous losses match.")
+    ] = None
+
+    mesh: Annotated[
+        str | None,
+        typer.Option(
+            "--mesh", help="Whose transmission error drives the train, of several; the first."
+        ),
+    ] = None
+
+    def mixes(self, train: Train) -> list[tuple[str, ...]]:
+        """Models of all shafts, the first those that are told."""
+        return [tuple(self.by_shaft(train).values()), *map(mix, self.against or [])]
+
+    @property
+    def losses(self) -> dict[str, Any]:
+        """Their kind, and the Hz at which viscous ones match."""
+        return {"damping": self.damping, "matched_hz": self.matched_at or 0.0}
+
+
+def of_shafts(
+    pairs: list[str] | None, models: Mapping[str, str]
+) -> dict[str | tuple[str, str], dict[str, Any]]:
+    """Builder options of all shafts, by (side, model), from ``SIDE.key=value`` texts; of a lumped
+    or rigid shaft those of the body it comes from.
+    """
+    out: dict[str | tuple[str, str], dict[str, Any]] = {}
+    given = options_by_name(pairs, models, "side", "pinion.order=3")
+    for side, options in given.items():
+        kind, base = checked_model(models[side])
+        out[side, base or kind] = LADDER[base or kind].checked(options)
+    return out
+
+
+def _harmonics(text: str) -> tuple[int, ...]:
+    """Numbers of waves from a text such as ``2,3``."""
+    try:
+        found = tuple(int(word) for word in text.split(",") if word.strip())
+    except ValueError:
+        found = ()
+    sound = all(FIRST_HARMONIC <= n <= LAST_HARMONIC for n in found)
+    if not found or not sound or len(set(found)) < len(found):
+        raise SolidgearError(
+            f"--local-harmonics {show(text, 40)}: write whole numbers from {FIRST_HARMONIC} to "
+            f"{LAST_HARMONIC}, each once, such as 2,3"
+        )
+    return found
+
+
+def mix(text: str) -> tuple[str, ...]:
+    """Models of all shafts in the sequence of the file."""
+    if "+" not in text:
+        raise SolidgearError(f"--against {show(text, 40)}: write PINION+GEAR, such as euler+euler")
+    return tuple(word.strip() for word in text.split("+"))

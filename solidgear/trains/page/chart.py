@@ -1,0 +1,312 @@
+"""Charts of a train over frequency, every model in one figure: mesh force and transmission error, or
+a receptance.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from solidgear.show.panel import (
+    Axis,
+    Panel,
+    Series,
+    curve,
+    lines_legend,
+    log_ticks,
+    read_places,
+    readout,
+)
+from solidgear.show.plot import BETWEEN, NARROW, WIDE, Chart, in_columns
+from solidgear.trains.page.tables import turned
+from solidgear.show.units import ENGINEERING, Units, plain
+from solidgear.show.words import hertz
+
+COLOURS = ("#00805e", "#0072b2", "#c98a00", "#b3305c", "#5a3e8c", "#444444", "#1f9bb8", "#8a6d3b")
+#: of two responses beside each other, told apart by everyone
+PAIR = ("#0072b2", "#c98a00")
+#: of the band around the first model
+BAND = "#d0e8e1"
+#: px; names of peaks that are closer would lie on one another, and what one takes over the curves
+APART, ROOM = 14.0, 130.0
+#: largest over least amplitude that a panel of several shows: dips go deeper
+DEEPEST = 1e4
+#: column of a response, its name on a panel, and its SI unit
+PANELS = (
+    ("mesh force [N]", "mesh force", "N"),
+    ("dynamic transmission error [m]", "dynamic transmission error", "m moved"),
+)
+
+
+def response_chart(
+    responses: Sequence[Any],
+    title: str,
+    teeth: float | None,
+    band: float | None,
+    marks: Mapping[str, float],
+    units: Units = ENGINEERING,
+    width: float = WIDE,
+) -> Chart:
+    """Mesh force and dynamic transmission error over frequency, the first response the reference.
+
+    Parameters
+    ----------
+    teeth : int or None
+        Of the pinion, for the upper axis in rpm; None where the responses do not share them.
+    band : float or None
+        Drawn around the first where there are others, dB.
+    marks : mapping of str to float
+        Where a model leaves the band, Hz, by label.
+    """
+    last = responses[0].frequency_hz[-1]
+    # where models differ is the upper end; below half the first departure they are one line
+    first = max(responses[0].frequency_hz[0], min(marks.values(), default=0.0) / 2)
+    band = band if len(responses) > 1 else None
+    models, panels = _models(responses, PAIR if band is None else COLOURS), []
+    if band is not None:
+        models |= {f"{band:g} dB around it": Series(BAND)}
+    words = f"mesh frequency in Hz{_cut(responses[0], first)}"
+    for k, (column, what, si) in enumerate(PANELS):
+        unit, top = units.unit(si), k == 0
+        sizes = [units.values(np.abs(r.columns[column]), si) for r in responses]
+        curves = [
+            _Curve(r.label, r.frequency_hz, size, ((what, unit, size),))
+            for r, size in zip(responses, sizes)
+        ]
+        height = 340.0 if top else 200.0
+        ends = _ends([s[r.frequency_hz >= first] for r, s in zip(responses, sizes)])
+        panel = Panel(
+            Axis("" if top else words, (first, last), log=True),
+            Axis(f"{what} in {unit}", _with_room(ends, height) if top else ends, log=True),
+            height,
+            series=models,
+            legend=_legend(width) if top else None,
+            upper=_speed(teeth, (first, last)) if top and teeth else None,
+        )
+        if band is not None:
+            _shade(panel, responses[0].frequency_hz, sizes[0], band)
+        _curves(panel, curves, teeth, width)
+        if top:
+            dots = {"type": "rule", "strokeDash": [2, 3], "strokeWidth": 1.4}
+            lines = [{"x": hz, "y": ends[0], "y2": ends[1], "name": n} for n, hz in marks.items()]
+            panel.draw(dots, [line for line in lines if line["name"] in models])
+            tops = [
+                _tops([(p.frequency_hz, p.force, p.mode) for p in r.peaks], "N", units)
+                for r in responses
+            ]
+            _peaks(panel, responses, tops, teeth, (what, unit), width)
+        panels.append(panel)
+    return Chart(in_columns(panels, 1), width, title)
+
+
+def columns_chart(
+    responses: Sequence[Any],
+    columns: Sequence[tuple[str, str]],
+    teeth: float | None,
+    units: Units = ENGINEERING,
+    width: float = WIDE,
+) -> Chart | None:
+    """Amplitudes of several columns over frequency, a panel each, the responses over one another,
+    where they have them; None without any. Columns are names in the responses, with their units,
+    and what panels are called; those that never move are left out.
+    """
+    ends = responses[0].frequency_hz[0], responses[0].frequency_hz[-1]
+    models, panels = _models(responses, PAIR), []
+    moving = [c for c in columns if any(np.any(r.columns.get(c[0])) for r in responses)]
+    beside = 2 if width > NARROW and len(moving) > 1 else 1
+    for k, (column, title) in enumerate(moving):
+        si = column.partition(" [")[2].rstrip("]")
+        si = f"{si} moved" if si in ("m", "rad") else si
+        own = [r for r in responses if column in r.columns]
+        sizes = [units.values(np.abs(r.columns[column]), si) for r in own]
+        low, high = _ends(sizes)
+        unit = units.unit(si)
+        panel = Panel(
+            Axis("mesh frequency in Hz" if k >= len(moving) - beside else "", ends, log=True),
+            Axis(unit, (max(low, high / DEEPEST), high), log=True),
+            140.0,
+            title,
+            series=models,
+            legend=_legend(width) if k == 0 else None,
+        )
+        curves = [
+            _Curve(r.label, r.frequency_hz, size, ((title, unit, size),))
+            for r, size in zip(own, sizes)
+        ]
+        _curves(panel, curves, teeth, width / beside / 2)
+        panels.append(panel)
+    if len(panels) % beside:  # as wide as those above it
+        panels[-1].right += (width + BETWEEN) / beside
+    return Chart(in_columns(panels, beside), width) if panels else None
+
+
+def _cut(response: Any, first: float) -> str:
+    """Remark on the part that an axis leaves out below; nothing where it begins with the response."""
+    if first <= response.frequency_hz[0]:
+        return ""
+    below = sum(peak.frequency_hz < first for peak in response.peaks)
+    peaks = {0: "", 1: "; 1 peak lies below"}.get(below, f"; {below} peaks lie below")
+    return f", from half of where the first model leaves the band{peaks}"
+
+
+def receptance_chart(
+    found: Sequence[Any],
+    title: str,
+    teeth: float,
+    units: Units = ENGINEERING,
+    width: float = WIDE,
+) -> Chart:
+    """Amplitude and phase of receptances between the same two ends over frequency, the peaks of the
+    first model named; `teeth` as of a response.
+    """
+    unit, models = units.unit(found[0].unit), _models(found)
+    sizes = [units.values(np.abs(one.value), one.unit) for one in found]
+    phases = [np.degrees(np.angle(one.value)) for one in found]
+    ends = found[0].frequency_hz[0], found[0].frequency_hz[-1]
+    amplitude = Panel(
+        Axis("", ends, log=True),
+        Axis(f"receptance in {unit}", _with_room(_ends(sizes), 360.0), log=True),
+        360.0,
+        series=models,
+        legend=_legend(width),
+        upper=_speed(teeth, ends),
+    )
+    turns = {float(v): str(v) for v in (-180, -90, 0, 90, 180)}
+    phase = Panel(
+        Axis("frequency in Hz", ends, log=True),
+        Axis("phase in degrees", (-185.0, 185.0), ticks=turns),
+        150.0,
+        series=models,
+    )
+    for panel, values in ((amplitude, sizes), (phase, phases)):
+        curves = [
+            _Curve(
+                one.label,
+                one.frequency_hz,
+                value,
+                (("receptance", unit, size), ("phase", "degrees", angle)),
+            )
+            for one, value, size, angle in zip(found, values, sizes, phases)
+        ]
+        _curves(panel, curves, teeth, width, 180.0 if panel is phase else np.inf)
+    tops = [_tops(one.peaks, one.unit, units) for one in found]
+    _peaks(amplitude, found, tops, teeth, ("receptance", unit), width)
+    return Chart(in_columns([amplitude, phase], 1), width, title)
+
+
+class _Curve(NamedTuple):
+    """A model over frequency; ``read`` is (what, unit, values) at every place."""
+
+    name: str
+    hz: np.ndarray
+    y: np.ndarray
+    read: tuple[tuple[str, str, np.ndarray], ...]
+
+
+def _models(found: Sequence[Any], colours: Sequence[str] = COLOURS) -> dict[str, Series]:
+    """Models by their labels, the colours in turn."""
+    colours = colours if len(found) == len(PAIR) else COLOURS
+    return {one.label: Series(colours[k % len(colours)]) for k, one in enumerate(found)}
+
+
+def _legend(width: float) -> dict[str, Any]:
+    return lines_legend(3 if width > NARROW else 1)
+
+
+def _speed(teeth: float, ends: tuple[float, float]) -> Axis:
+    """The upper axis: round speeds of that shaft, at the frequencies where its teeth mesh."""
+    rounds = log_ticks(60 * ends[0] / teeth, 60 * ends[1] / teeth)
+    ticks = {rpm * teeth / 60: f"{rpm:g}" for rpm in rounds}
+    words = f"{turned(teeth)} speed in rpm at which the teeth mesh at it"
+    return Axis(words, ends, log=True, ticks=ticks, grid=False)
+
+
+def _ends(sizes: Sequence[np.ndarray]) -> tuple[float, float]:
+    """Least and largest amplitude, with room."""
+    seen = np.concatenate(sizes)
+    seen = seen[seen > 0] if np.any(seen > 0) else np.ones(1)
+    return 0.6 * seen.min(), 1.8 * seen.max()
+
+
+def _with_room(ends: tuple[float, float], height: float) -> tuple[float, float]:
+    """Ends of an axis with room for names over the curves."""
+    low, high = ends
+    return low, high * (high / low) ** (ROOM / (height - ROOM))
+
+
+def _words(name: str, hz: float, teeth: float | None, *facts: tuple[str, str, str]) -> str:
+    """The words on a place of a model over frequency."""
+    speed = (f"{turned(teeth)} speed", f"{60 * hz / teeth:.0f}" if teeth else "", "rpm")
+    return readout(name, ("frequency", hertz(hz), "Hz"), speed, *facts)
+
+
+def _curves(
+    panel: Panel, curves: Sequence[_Curve], teeth: float | None, width: float, jump: float = np.inf
+) -> None:
+    """Curves, the first in front, and what is to be read along them; broken where one jumps."""
+    first, last = panel.x.ends
+    for k, one in reversed(list(enumerate(curves))):
+        seen = np.flatnonzero((one.hz >= first) & (one.hz <= last))
+        x, y = one.hz[seen], one.y[seen]
+        turns = np.cumsum(np.abs(np.diff(y, prepend=y[0])) > jump)
+        rows = curve(x, y, name=one.name)
+        for row, part in zip(rows, turns.tolist()):
+            row["detail"] = part
+        panel.draw({"type": "line", "strokeWidth": 1.8 if k == 0 else 1.1}, rows)
+        read = []
+        for i in read_places(x, y, int(width / APART), log=True):
+            facts = [(what, _figure(what, v[seen[i]]), unit) for what, unit, v in one.read]
+            words = _words(one.name, float(x[i]), teeth, *facts)
+            read.append({"x": x[i], "y": y[i], "readout": words})
+        panel.read(read, panel.series[one.name].colour)
+
+
+def _figure(what: str, value: float) -> str:
+    return f"{value:.1f}" if what == "phase" else plain(float(value), 4)
+
+
+def _shade(panel: Panel, hz: np.ndarray, size: np.ndarray, band: float) -> None:
+    """The band in decibels around a curve."""
+    factor, seen = 10 ** (band / 20), hz >= panel.x.ends[0]
+    ends = ((size[seen] / factor).tolist(), (size[seen] * factor).tolist())
+    rows = [
+        {"x": x, "y": low, "y2": high, "name": f"{band:g} dB around it"}
+        for x, low, high in zip(hz[seen].tolist(), *ends)
+    ]
+    panel.draw({"type": "area", "opacity": 0.7}, rows)
+
+
+def _tops(peaks: Sequence[tuple[float, float, str]], si: str, units: Units) -> list:
+    """Peaks (Hz, size, mode), their sizes in the units chosen."""
+    return [(hz, units.value(size, si), mode) for hz, size, mode in peaks]
+
+
+def _peaks(
+    panel: Panel,
+    models: Sequence[Any],
+    tops: Sequence[list],
+    teeth: float | None,
+    what: tuple[str, str],
+    width: float,
+) -> None:
+    """The peaks of every model, to be read with the modes that make them, and over those of the
+    first their names; one that would lie on its neighbour is left to the table.
+    """
+    for one, peaks in zip(models, tops):
+        rows = []
+        for hz, size, mode in peaks:
+            facts = ("peak of", mode, ""), (what[0], plain(float(size), 4), what[1])
+            words = _words(one.label, float(hz), teeth, *facts)
+            rows.append({"x": hz, "y": size, "readout": words})
+        panel.read(rows, panel.series[one.label].colour)
+    first, last = panel.x.ends
+    pixel = np.log(last / first) / (width - panel.beside - panel.right)
+    named, before = [], -np.inf
+    for hz, size, mode in tops[0]:
+        if hz >= first and np.log(hz) - before >= APART * pixel:
+            before = np.log(hz)
+            named.append({"x": hz, "y": size, "text": f"{mode}  {hz:.0f} Hz"})
+    look = {"type": "text", "angle": -90, "align": "left", "baseline": "middle", "dx": 7}
+    panel.draw(look | {"fontSize": 10}, named)

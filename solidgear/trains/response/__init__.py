@@ -1,0 +1,1 @@
+"""Forced response of a train."""

@@ -1,0 +1,213 @@
+"""Chart and table of order lines: frequency over the speed of the pinion, like a Campbell diagram."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from solidgear.show.panel import INK, Axis, Panel, read_places, readout
+from solidgear.show.plot import NARROW, WIDE, Chart
+from solidgear.show.units import ENGINEERING, Units, plain
+from solidgear.show.words import hertz
+
+#: widest line, pt, and how many decades of force below the largest are told apart
+WIDEST, DECADES = 5.0, 2.0
+#: places at which a line is read, and pieces of which one is drawn
+PLACES, PIECES = 60, 120
+#: px; right of the chart for the names of modes, on a wide and on a narrow page
+NAMES, NARROW_NAMES = 190.0, 135.0
+#: of natural frequencies
+MODE = "#9aa4ad"
+PLAIN, SHAFTS = "#666666", ("#b3305c", "#5a3e8c", "#2b7a5d", "#8a5a00")
+
+
+def order_chart(
+    found: Any, title: str, teeth: float, units: Units = ENGINEERING, width: float = WIDE
+) -> Chart:
+    """Order lines and natural frequencies; the upper axis needs the teeth in one turn of the shaft
+    that speeds are told of.
+    """
+    high, narrow = found.highest_rpm, width <= NARROW
+    panel = Panel(
+        Axis(f"{found.teeth.of} speed in rpm", (0.0, high)),
+        Axis("frequency in Hz", (0.0, found.highest_hz)),
+        400 if narrow else 520,
+        right=NARROW_NAMES if narrow else NAMES,
+        upper=Axis(
+            "first order of the mesh in Hz",
+            (0.0, high),
+            ticks={60 * hz / teeth: f"{hz:g}" for hz in _rounds(high * teeth / 60)},
+            grid=False,
+        ),
+    )
+    places = [{"y": mode.frequency_hz} for mode in found.modes]
+    panel.draw({"type": "rule", "color": MODE}, places)
+    _mode_names(panel, found, 9 if narrow else 10)
+    forces = [line.force.max() for line in found.lines if line.force is not None]
+    largest = max(forces, default=1.0)
+    for line in found.lines:
+        _line(panel, line, found, largest, units)
+    _crossings(panel, found, units)
+    return Chart([[panel]], width, title)
+
+
+def _rounds(high: float) -> np.ndarray:
+    """Some round numbers from zero to an end."""
+    decade = 10.0 ** np.floor(np.log10(high))
+    step = next(decade * part for part in (0.1, 0.2, 0.5, 1.0, 2.0) if high <= 8 * decade * part)
+    return np.arange(0.0, high, step)
+
+
+def _mode_names(panel: Panel, found: Any, letter: int) -> None:
+    """Names right of their lines, moved apart where frequencies are close."""
+    order = sorted(found.modes, key=lambda mode: mode.frequency_hz)
+    shares = np.array([mode.frequency_hz / found.highest_hz for mode in order])
+    heights = found.highest_hz * spread(shares, letter * 1.25 / panel.height)
+    end = found.highest_rpm
+    rows = [
+        {"x": end, "x2": 1.02 * end, "y": mode.frequency_hz, "y2": height}
+        for mode, height in zip(order, heights.tolist())
+    ]
+    panel.draw({"type": "rule", "color": MODE, "clip": False}, rows)
+    names = [
+        {"x": row["x2"], "y": row["y2"], "text": f"{mode.name}  {mode.frequency_hz:.0f} Hz"}
+        for mode, row in zip(order, rows)
+    ]
+    look = {"type": "text", "align": "left", "baseline": "middle", "dx": 3, "fontSize": letter}
+    panel.draw(look, names)
+
+
+def spread(places: np.ndarray, apart: float) -> np.ndarray:
+    """Ascending places moved as little as may be until neighbours are a distance apart, and kept
+    below 1.
+
+    Parameters
+    ----------
+    places : (n,) ndarray
+
+    Returns
+    -------
+    (n,) ndarray
+
+    Examples
+    --------
+    >>> spread(np.array([0.1, 0.11, 0.5, 1.0]), 0.05).round(3)
+    array([0.08, 0.13, 0.5 , 1.  ])
+    """
+    groups: list[tuple[float, int]] = []  # middle and number of those that touch
+    for place in places:
+        groups.append((float(place), 1))
+        while len(groups) > 1:
+            (low, n), (high, m) = groups[-2:]
+            if high - low >= (n + m) / 2 * apart - 1e-12:
+                break
+            groups[-2:] = [((n * low + m * high) / (n + m), n + m)]
+    out = [middle + (k - (n - 1) / 2) * apart for middle, n in groups for k in range(n)]
+    below = 1.0 - apart * np.arange(len(out))[::-1]
+    return np.minimum(out, below)
+
+
+def _crossings(panel: Panel, found: Any, units: Units) -> None:
+    """Every crossing, to be read with the mode that is met; a ring where there is a force."""
+    for seen in (True, False):
+        rows = [
+            {
+                "x": c.rpm,
+                "y": c.frequency_hz,
+                "readout": readout(
+                    c.line,
+                    ("meets", c.mode, ""),
+                    *_facts(found, c.rpm, c.frequency_hz, c.force, units),
+                ),
+            }
+            for c in found.crossings
+            if (c.force is not None) == seen
+        ]
+        ring = {"type": "point", "fill": "#ffffff", "stroke": INK, "strokeWidth": 1}
+        panel.draw(ring | {"size": 18 if seen else 0}, rows)
+
+
+def _facts(
+    found: Any, rpm: float, hz: float, force: float | None, units: Units
+) -> list[tuple[str, str, str]]:
+    """The words on a place of an order; no force where there is none."""
+    size = "" if force is None else plain(units.value(float(force), "N"), 4)
+    return [
+        (f"{found.teeth.of} speed", f"{rpm:.0f}", "rpm"),
+        ("frequency", hertz(float(hz)), "Hz"),
+        ("mesh force", size, units.unit("N")),
+    ]
+
+
+def _line(panel: Panel, line: Any, found: Any, largest: float, units: Units) -> None:
+    """An order, where it has a force as wide and as dark as that is, and its name."""
+    kind, number = line.name.split()[0], int(line.name.split()[-1])
+    shafts = [*dict.fromkeys(own.name.split()[0] for own in found.lines)]
+    shafts = [name for name in shafts if name != "mesh"]
+    own_colour = PLAIN if kind == "mesh" else SHAFTS[shafts.index(kind) % len(SHAFTS)]
+    end = min(found.highest_rpm, 60 * found.highest_hz / line.per_turn)
+    if line.force is None:
+        dash = [6, 4] if kind == "mesh" else [2, 3]
+        ends = [{"x": rpm, "y": rpm * line.per_turn / 60} for rpm in (0.0, end)]
+        panel.draw(
+            {"type": "line", "color": own_colour, "strokeDash": dash, "strokeWidth": 1}, ends
+        )
+        speeds, forces = np.linspace(0, end, PLACES), [None] * PLACES
+    else:
+        speeds, forces = line.rpm, line.force
+        _pieces(panel, line, largest, units)
+    rows = []
+    kept = range(PLACES) if line.force is None else read_places(speeds, forces, PLACES)
+    for k in kept:
+        rpm = float(speeds[k])
+        told = _facts(found, rpm, rpm * line.per_turn / 60, forces[k], units)
+        words = readout(line.name, *told)
+        rows.append({"x": rpm, "y": rpm * line.per_turn / 60, "readout": words})
+    panel.read(rows, own_colour)
+    # names are staggered: lines of one kind run close together
+    steps = -0.06 if kind == "mesh" else 0.13
+    share = (0.93 if kind == "mesh" else 0.67) + steps * (number % 3)
+    colour = INK if kind == "mesh" else own_colour
+    name = {"type": "text", "align": "right", "color": colour, "dx": -4, "dy": -6}
+    place = {"x": share * end, "y": share * end * line.per_turn / 60}
+    panel.draw(name, [{**place, "text": line.name}])
+
+
+def _pieces(panel: Panel, line: Any, largest: float, units: Units) -> None:
+    """A line in pieces, each in the colour and width of its force."""
+    kept = np.unique(
+        [*read_places(line.rpm, line.force, PIECES), *np.flatnonzero(line.force == largest)]
+    )
+    rpm, force = line.rpm[kept], line.force[kept]
+    middle = np.sqrt(force[:-1] * force[1:])
+    share = 1 + np.log10(np.maximum(middle / largest, 10**-DECADES)) / DECADES
+    rows = [
+        {
+            "x": rpm[k],
+            "x2": rpm[k + 1],
+            "y": rpm[k] * line.per_turn / 60,
+            "y2": rpm[k + 1] * line.per_turn / 60,
+            "force": units.value(float(middle[k]), "N"),
+            "strokeWidth": round(0.8 + (WIDEST - 0.8) * float(share[k]), 2),
+        }
+        for k in range(len(middle))
+    ]
+    top = units.value(float(largest), "N") or largest
+    scale = {"type": "log", "scheme": "viridis", "reverse": True, "clamp": True}
+    legend = {
+        "orient": "bottom",
+        "title": f"mesh force along an order, {units.unit('N')}",
+        "gradientLength": 250,
+        "tickCount": 4,
+    }
+    panel.draw(
+        {"type": "rule", "strokeCap": "round"},
+        rows,
+        color={
+            "field": "force",
+            "type": "quantitative",
+            "scale": scale | {"domain": [top * 10**-DECADES, top]},
+            "legend": legend,
+        },
+    )

@@ -1,0 +1,58 @@
+"""The command receptance: motion of one port of a train for a unit force on another."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from solidgear.show.command import caution, command, say
+from solidgear.show.options import Shown
+from solidgear.trains.command import end_of, print_peaks
+from solidgear.trains.options import Driven, Reduced, TrainFile
+from solidgear.show.folder import held
+from solidgear.trains.page.files import write_receptance
+from solidgear.trains.judge.comparison import train_data
+from solidgear.trains.modes.modes import unpublished_lines
+from solidgear.trains.response.receptance import receptance as between
+from solidgear.trains.assembly.slips import unit_slips
+
+END = "as PORT:COMPONENT, such as gear.gear:z, in the axes of the port's own shaft."
+
+
+@command
+def receptance(
+    train: TrainFile,
+    *,
+    from_: Annotated[str, typer.Option("--from", help=f"Where a unit force acts, {END}")],
+    to: Annotated[str, typer.Option("--to", help=f"Whose motion is told, {END}")],
+    out: Annotated[
+        Path, typer.Option("--out", "-o", help="Folder for receptance.csv and its chart.")
+    ] = Path("out"),
+    driven: Driven,
+    reduced: Reduced,
+    run: Shown,
+) -> None:
+    shop = driven.workshop(reduced, train)
+    ends = end_of("--from", from_), end_of("--to", to)
+    unpublished, said = shop.train.unpublished(), unit_slips(shop)
+    cautions = [*said, *shop.cautions]
+    title = f"{shop.train.called}: {to} for a unit force on {from_}"
+    with held(out):
+        how: dict[str, Any] = {"highest_hz": reduced.max_frequency, **driven.losses}
+        mixes = driven.mixes(shop.train)
+        found = [between(shop, *mix, from_=ends[0], to=ends[1], **how) for mix in mixes]
+        notes = {"from": from_, "to": to, "unpublished": unpublished, "cautions": cautions}
+        teeth = shop.train.per_turn(shop.train.named_mesh(driven.mesh))
+        files = write_receptance(out, found, title, teeth, notes, train_data(shop), run.units)
+    if run.as_json:
+        print((out / "receptance.json").read_text(encoding="utf-8"))
+        return
+    say(
+        f"{title}; {found[0].label}, {driven.damping} losses",
+        *map(caution, said),
+    )
+    print_peaks(found[0].peaks, "receptance", found[0].unit, teeth, run.units)
+    say(*unpublished_lines(unpublished), *map(caution, shop.cautions))
+    say(f"Written: {', '.join(map(str, files))}")

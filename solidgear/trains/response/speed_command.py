@@ -1,0 +1,140 @@
+"""Options of `response` that speak of one speed, and what is printed of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from math import pi
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from solidgear.show.command import Group, say
+from solidgear.core.errors import SceneError, SolidgearError, show
+from solidgear.show import speed_tables
+from solidgear.trains.file.train import Train
+from solidgear.core.scene.units import quantity
+from solidgear.trains.response.spectrum import read_spectrum
+from solidgear.trains.response.at_speed import (
+    NEAR,
+    AtSpeed,
+    at_speed,
+    refuse_share,
+    turns_of_pinion,
+)
+from solidgear.trains.modes.modes import TrainMode
+
+#: rows of tables on a terminal
+MOST, MOST_NEAR = 30, 10
+
+
+@dataclass(frozen=True)
+class Speed(Group):
+    """Options of `response` that speak of one speed."""
+
+    speed: Annotated[
+        str | None,
+        typer.Option(
+            "--speed",
+            help='Speed such as "3000 rpm": orders of shafts, mesh and catalogue bearings in Hz, and '
+            "those near natural frequencies. By default that of the operating point.",
+        ),
+    ] = None
+    of: Annotated[
+        str | None,
+        typer.Option("--of", help="Whose speed it is: pinion or gear; the engine's shaft."),
+    ] = None
+    measured: Annotated[
+        Path | None,
+        typer.Option(
+            "--measured",
+            help="Spectrum at this speed (CSV: frequency in Hz, amplitude), laid over the computed "
+            "mesh force; every peak is told with its order.",
+        ),
+    ] = None
+    fit_speed: Annotated[
+        float | None,
+        typer.Option(
+            "--fit-speed",
+            help="Fit the speed within this share, such as 0.03, to the mesh order in the spectrum.",
+        ),
+    ] = None
+    within: Annotated[
+        float | None,
+        typer.Option(
+            "--within", help="Share of a natural frequency within which an order is told; 0.05."
+        ),
+    ] = None
+
+    def asked(self, train: Train) -> Asked:
+        """The same of a train, checked."""
+        return Asked(train, self)
+
+
+class Asked:
+    """Options of one speed, checked before anything is solved.
+
+    Raises
+    ------
+    SolidgearError
+        For a speed that is none, a spectrum that cannot be used, or options that need others.
+    """
+
+    def __init__(self, train: Train, given: Speed):
+        self.train, self.fit = train, given.fit_speed
+        self.within = NEAR if given.within is None else given.within
+        self.turns, self.told = 0.0, ""
+        if given.speed is not None:
+            of = given.of or train.reference
+            self.turns, self.told = _turns(train, given.speed, of), f"{given.speed} of the {of}"
+            if of != train.reference:
+                self.told += f", {60 * self.turns:.6g} rpm of the {train.reference}"
+        elif train.point is not None and train.point.speed:
+            own = train.point.speed_of(train.reference, train.turns) or 0.0
+            self.turns, self.told = own / (2 * pi), train.point.label
+        else:
+            for option, value in (
+                ("--measured", given.measured),
+                ("--within", given.within),
+                ("--of", given.of),
+            ):
+                if value is not None:
+                    raise SolidgearError(f'{option} needs a speed; add --speed "3000 rpm"')
+        refuse_share("--within", given.within)
+        refuse_share("--fit-speed", given.fit_speed)
+        if given.fit_speed is not None and given.measured is None:
+            raise SolidgearError("--fit-speed needs a spectrum; add --measured spectrum.csv")
+        self.spectrum = None if given.measured is None else read_spectrum(given.measured)
+
+    def found(self, modes: Iterable[TrainMode]) -> AtSpeed | None:
+        """Orders at the speed; nothing without one."""
+        if not self.turns:
+            return None
+        how = self.within, self.spectrum, self.fit
+        return at_speed(self.train, modes, self.turns, self.told, *how)
+
+
+def _turns(train: Train, text: str, of: str) -> float:
+    try:
+        speed = quantity(text, "speed")
+    except SceneError:
+        raise SolidgearError(
+            f'--speed {show(text, 40)}: write a number and a unit, such as "3000 rpm" or '
+            '"314 rad/s"'
+        ) from None
+    try:
+        return turns_of_pinion(train, speed, of)
+    except SolidgearError as error:
+        raise SolidgearError(f"--speed {show(text, 40)} --of {show(of, 40)}: {error}") from None
+
+
+def say_at_speed(found: AtSpeed) -> None:
+    """Print orders at a speed, those near natural frequencies, and measured peaks."""
+    say(speed_tables.first_lines(found.lines))
+    near = speed_tables.coincidences(found, MOST_NEAR)
+    say(near if near else f"{near.title}: none.")
+    if found.spectrum is not None:
+        peaks = speed_tables.measured(found, MOST)
+        say(peaks if peaks else f"{peaks.title}: none stands out of the noise.")
+    say(*found.notes())

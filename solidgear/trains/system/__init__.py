@@ -1,0 +1,1 @@
+"""Parts and links of planetary stages, and equilibrium of a system."""

@@ -1,0 +1,1 @@
+"""Which unknown is worth measuring."""

@@ -1,0 +1,59 @@
+"""The command that tells which open input leaves how much of a number open."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from solidgear.show.command import command, say
+from solidgear.show.arguments import load
+from solidgear.show.options import Run, SceneFile
+from solidgear.core.errors import SolidgearError, listed
+from solidgear.core.judge.answer import asked_for
+from solidgear.variants.budget.chart import budget_chart
+from solidgear.show.open_words import budget as table
+from solidgear.show.plot import check_ending
+from solidgear.variants.budget.budget import budget as worked_out
+
+
+@command
+def budget(
+    scene: SceneFile,
+    *,
+    ask: Annotated[
+        str,
+        typer.Option("--ask", help="Comma-separated, as of answer; by default what is judged."),
+    ] = "",
+    samples: Annotated[
+        int,
+        typer.Option("--samples", help="Seeded samples of all inputs together, beside the sums."),
+    ] = 0,
+    seed: Annotated[int, typer.Option("--seed", min=0, help="Of the samples.")] = 0,
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", "-o", help="The same as a chart: a file that ends in .png or .svg."),
+    ] = None,
+    run: Run,
+) -> None:
+    if out is not None:
+        check_ending(out)
+    loaded = load(scene)
+    names = asked_for(loaded, ask) if ask else ()
+    with run.progress() as progress:
+        found = worked_out(loaded, samples=samples, seed=seed, progress=progress)
+    absent = [name for name in names if found.of(name) is None]
+    if absent:
+        raise SolidgearError(f"--ask: no range is known of {listed(absent)}")
+    if out is not None:
+        chart = budget_chart(found, asked=names)
+        if chart is not None:
+            chart.write(out)
+    if run.as_json:
+        print(json.dumps({"scene": loaded.name, **found.model_dump(mode="json")}, allow_nan=False))
+        return
+    say(table(found, names))
+    if out is not None:
+        say(f"Chart: {out}")

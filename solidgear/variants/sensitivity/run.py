@@ -1,0 +1,313 @@
+"""Sensitivities: derivatives of compliances, stiffnesses and natural frequencies by every number of
+a scene file, from one solution (:mod:`solidgear.variants.sensitivity.adjoint`).
+
+The file is read with each number a little smaller and larger; what then moves of shaft, seats,
+materials, bearings and masses is multiplied with what the asked numbers feel of it.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from solidgear.core.body import Body, as_supports
+from solidgear.core.errors import SolidgearError, listed, nearest
+from solidgear.core.ladder import build
+from solidgear.core.machine.threads import pinned
+from solidgear.core.quantity import Quantity
+from solidgear.core.scene import Scene
+from solidgear.core.scene.paths import label_of
+from solidgear.core.scene.toml_file import parse
+from solidgear.variants.sensitivity.adjoint import Form, entry_form, mode_form
+from solidgear.core.solve.modes import modes
+from solidgear.core.loading import load
+from solidgear.variants.sensitivity.derivatives import Derivatives
+from solidgear.variants.sensitivity.entries import around, numbers
+from solidgear.variants.sweep.amounts import in_si
+
+#: what is asked for
+USUAL = ("bending 1", "C_zz")
+#: models that have derivatives
+MODELS = ("harmonic", "timoshenko", "euler", "solid")
+#: of the strongest elasticity: what is below is symmetry and rounding, and given as zero
+NOTHING = 1e-9
+#: on bars of values and derivatives
+BARS = "from_coarser_mesh is the distance from a coarser mesh where there is one: no proven bound"
+
+
+@dataclass(frozen=True)
+class Derivative:
+    """Of one number by one entry of the file."""
+
+    path: str  #: as in :mod:`solidgear.core.scene.paths`
+    written: str  #: the entry as the file has it
+    at: float  #: the entry in SI
+    unit: str  #: that the file gives it in; empty for SI
+    by: float  #: derivative, SI over SI
+    elasticity: float  #: relative change of the number over that of the entry
+    apart: float | None = None  #: distance of the elasticity from that on a coarser mesh
+    side: str = ""  #: the only way that the entry may go, and that the derivative is for
+
+    @property
+    def by_unit(self) -> float:
+        """Derivative by one unit of the file."""
+        return self.by * ((in_si(f"1 {self.unit}") or 1.0) if self.unit else 1.0)
+
+
+@dataclass(frozen=True)
+class OfNumber:
+    """Derivatives of one number, the strongest first."""
+
+    name: str
+    value: float  #: SI
+    unit: str
+    pair: bool  #: whether it is the mean of a pair of equal frequencies
+    apart: float | None  #: distance of the value from that on a coarser mesh
+    derivatives: tuple[Derivative, ...]
+
+    def __getitem__(self, path: str) -> Derivative:
+        for one in self.derivatives:
+            if one.path == path:
+                return one
+        known = [one.path for one in self.derivatives]
+        raise SolidgearError(f"there is no derivative by {path}{nearest(path, known)}")
+
+
+@dataclass(frozen=True)
+class Sensitivities:
+    """Derivatives of some numbers by entries of a scene file."""
+
+    title: str
+    model: str
+    of: tuple[OfNumber, ...]
+    without: dict[str, str]  #: entries without a derivative, and why
+    notes: tuple[str, ...]  #: what was held fixed, and how sure derivatives are
+
+    def __getitem__(self, name: str) -> OfNumber:
+        for one in self.of:
+            if one.name == name:
+                return one
+        raise SolidgearError(
+            f"{name} was not asked for; there are {listed([o.name for o in self.of])}"
+        )
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain data in SI."""
+        return {
+            "title": self.title,
+            "model": self.model,
+            "of": [
+                {
+                    "name": one.name,
+                    "value": one.value,
+                    "unit": one.unit,
+                    "from_coarser_mesh": one.apart,
+                    "mean_of_pair": one.pair,
+                    "derivatives": [
+                        {
+                            "path": d.path,
+                            "written": d.written,
+                            "at": d.at,
+                            "derivative": d.by,
+                            "elasticity": d.elasticity,
+                            "from_coarser_mesh": d.apart,
+                            "one_sided": d.side,
+                        }
+                        for d in one.derivatives
+                    ],
+                }
+                for one in self.of
+            ],
+            "without": self.without,
+            "bars": BARS,
+            "notes": list(self.notes),
+        }
+
+
+@pinned
+def sensitivities(
+    file: str | os.PathLike,
+    model: str = "harmonic",
+    of: Sequence[str] | None = None,
+    by: Sequence[str] | None = None,
+    *,
+    coarser: bool = True,
+    progress: Callable[[str], None] = lambda _: None,
+    **options: Any,
+) -> Sensitivities:
+    """Derivatives of compliances, stiffnesses and natural frequencies by the numbers of a scene file.
+
+    Exact derivatives of the discrete numbers on a mesh that moves with the shaft, by adjoints: the
+    problem is self-adjoint, so nothing is solved again (Haug, Choi and Komkov, Design Sensitivity
+    Analysis of Structural Systems, 1986). Of a pair of equal frequencies that of their mean.
+    The stiffness of catalogue bearings is held as it is.
+
+    Parameters
+    ----------
+    file : str or path
+        A scene file (TOML).
+    model : {'harmonic', 'timoshenko', 'euler', 'solid'}
+        The solid has derivatives of modes by springs, masses and materials alone.
+    of : sequence of str, optional
+        Numbers such as ``"C_zz"``, ``"K_thx@pinion"`` or ``"bending 1"``; by default first bending
+        and the compliance ``C_zz``.
+    by : sequence of str, optional
+        Paths of entries, or what they begin with, such as ``"bearing.A"``; by default all numbers of
+        materials, segments, bearings, masses, housing and ports.
+    coarser : bool
+        Whether to derive on a coarser mesh as well, which tells how far mesh moves a derivative.
+    progress : callable
+        Told what is being done.
+    **options
+        Of the model, such as ``order=7``.
+
+    Returns
+    -------
+    Sensitivities
+
+    Raises
+    ------
+    SceneError
+        As :func:`solidgear.load`.
+    SolidgearError
+        A model or a feature without derivatives, a number that there is not, a path of no number.
+
+    Examples
+    --------
+    First bending of a beam goes with the root of its modulus and of the stiffness of its bearings:
+
+    >>> import solidgear as sg
+    >>> found = sg.sensitivities("geometry/shaft_stepped.toml", "timoshenko", of=["bending 1"])
+    >>> bending = found["bending 1"]
+    >>> springs = [d.elasticity for d in bending.derivatives if ".stiffness." in d.path]
+    >>> round(bending["material.E"].elasticity + sum(springs), 6)
+    0.5
+    """
+    where = os.fspath(file)
+    scene, tables = load(where), parse(where)
+    _supported(scene, model)
+    asked = [Quantity(name) for name in of or USUAL[: 1 if model == "solid" else 2]]
+    if model == "solid" and not all(one.is_frequency for one in asked):
+        static = next(one for one in asked if not one.is_frequency)
+        raise SolidgearError(f"derivatives of {static} are for bodies of revolution; ask for modes")
+    moves = [*numbers(tables, by)]
+    levels: list[dict[str, Any]] = [{}]
+    if coarser and model != "solid":
+        levels.append(_coarser(scene, model, options))
+    found = []
+    for more in levels:
+        mesh = f" ({', '.join(f'{k} {v}' for k, v in more.items())})" if more else ""
+        progress(f"{scene.name}: {model}{mesh}")
+        found.append(Derived(scene, model, asked, {**options, **more}))
+    rows: list[list[Derivative]] = [[] for _ in asked]
+    without: dict[str, str] = {}
+    for keys in moves:
+        path = label_of(keys, tables)
+        try:
+            sides = around(scene, tables, keys, where)
+            fine, *rest = [d.by(sides.low, sides.high, sides.step).tolist() for d in found]
+        except SolidgearError as error:
+            without[path] = _plainly(error)
+            continue
+        for k, value in enumerate(found[0].values):
+            scale = sides.at / value
+            apart = abs(rest[0][k] - fine[k]) * abs(scale) if rest else None
+            told = path, sides.written, sides.at, sides.unit, fine[k], fine[k] * scale
+            rows[k].append(Derivative(*told, apart, sides.side))
+    first = found[0]
+    coarse = found[-1].values if len(found) > 1 else [None] * len(asked)
+    given = [
+        OfNumber(str(q), v, q.unit, pair, None if w is None else abs(v - w), _ranked(r))
+        for q, v, w, pair, r in zip(asked, first.values, coarse, first.pairs, rows)
+    ]
+    return Sensitivities(
+        scene.title or scene.name, model, tuple(given), without, (*_notes(scene, levels, given),)
+    )
+
+
+def _ranked(rows: list[Derivative]) -> tuple[Derivative, ...]:
+    """The strongest first; what is nothing beside it, and not by a length of zero, is zero."""
+    least = NOTHING * max((abs(d.elasticity) for d in rows), default=0.0)
+    kept = [
+        replace(d, by=0.0, elasticity=0.0) if d.at and abs(d.elasticity) <= least else d
+        for d in rows
+    ]
+    return tuple(sorted(kept, key=lambda d: -abs(d.elasticity)))
+
+
+def _supported(scene: Scene, model: str) -> None:
+    if model not in MODELS:
+        raise SolidgearError(
+            f"the {model} model has no derivatives; ask {', '.join(MODELS[:-1])} or {MODELS[-1]}"
+        )
+    if model != "solid" and (scene.body is not None or scene.features):
+        what = "a part from a file" if scene.body is not None else scene.features[0].name
+        raise SolidgearError(
+            f"{what}: derivatives by the {model} model are for shafts of segments; the solid model "
+            "has those by springs, masses and materials"
+        )
+
+
+def _coarser(scene: Scene, model: str, options: dict[str, Any]) -> dict[str, Any]:
+    if model == "harmonic":
+        return {"order": max(3, options.get("order", 5) - 1)}
+    return {"elements": max(1, build(scene, model, **options).mesh["elements"] // 2)}
+
+
+def _plainly(error: SolidgearError) -> str:
+    """The reason alone, of an error that may name file and key."""
+    return str(getattr(error, "reason", "") or error).splitlines()[0]
+
+
+class Derived:
+    """Numbers of one body and what they feel."""
+
+    def __init__(self, scene: Scene, model: str, numbers: Sequence[Quantity], options: dict):
+        self.scene, self.model = scene, model
+        self.body: Body = build(scene, model, **options)
+        self.supports = as_supports(scene)
+        self.values: list[float] = []
+        self.pairs: list[bool] = []
+        self.forms: list[Form] = []
+        shapes = None
+        if any(q.is_frequency for q in numbers):
+            shapes = modes(self.body, scene, n=scene.ask.modes)
+        for wanted in numbers:
+            if wanted.is_frequency:
+                assert shapes is not None
+                mode = shapes.named(str(wanted))
+                if mode is None:
+                    names = listed(list(map(str, shapes.names)))
+                    raise SolidgearError(f"{wanted}: no such mode was found; there are {names}")
+                self.values.append(mode.frequency_hz)
+                self.forms.append(mode_form(self.body, self.supports, mode))
+                self.pairs.append(mode.multiplicity > 1)
+                continue
+            points = wanted.points_among([p.name for p in scene.ports])
+            if len(points) > 1:
+                raise SolidgearError(f"{wanted}: terms between points have no derivatives here")
+            value, form = entry_form(
+                self.body, self.supports, wanted, (*points, scene.port.name)[0]
+            )
+            self.values.append(value)
+            self.forms.append(form)
+            self.pairs.append(False)
+        self.by = Derivatives(scene, self.body, self.forms, model, options).by
+
+
+def _notes(scene: Scene, levels: list[dict], of: Sequence[OfNumber]) -> Iterator[str]:
+    held = [b.name for b in scene.bearings if b.catalogue is not None]
+    if held:
+        yield f"The stiffness of catalogue bearings ({listed(held)}) is held fixed."
+    pairs = [one.name for one in of if one.pair]
+    if pairs:
+        yield f"{listed(pairs)}: derivative of the mean of the pair."
+    for side in ("larger", "smaller"):
+        paths = sorted(d.path for d in of[0].derivatives if d.side == side)
+        if paths:
+            yield f"One-sided, for {side} entries, as the file allows no others: {listed(paths)}."
+    if len(levels) > 1:
+        mesh = ", ".join(f"{key} {value}" for key, value in levels[1].items())
+        yield f"Mesh: distance from the derivative on a coarser mesh ({mesh}); no proven bound."

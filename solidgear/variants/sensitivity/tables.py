@@ -1,0 +1,167 @@
+"""Sensitivities of numbers: tables, chart and files."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from solidgear.show.panel import PERCENT, Axis, Panel, Series, readout, wrapped
+from solidgear.show.plot import NARROW, WIDE, Chart
+from solidgear.show.sheet_files import write_files
+from solidgear.show.table import Column, Table, text
+from solidgear.show.units import Units
+from solidgear.show.words import percent
+
+#: rows of a table and bars of a chart: what comes behind moves the number little
+MOST = 15
+#: of the number, below which nothing is told of the mesh
+LEAST = 1e-4
+#: px; height of a bar, and of names on a wide and on a narrow page
+BAR, NAMES, NARROW_NAMES = 20.0, 250.0, 172.0
+UP, DOWN = "a larger entry raises it", "a larger entry lowers it"
+
+
+def strongest(of: Any) -> list[Any]:
+    """Entries that move a number most."""
+    return [one for one in of.derivatives if one.elasticity][:MOST]
+
+
+def table(of: Any, units: Units, rows: Sequence[Any] | None = None) -> Table:
+    """Entries that move one number."""
+    shown = strongest(of) if rows is None else rows
+    unit = units.unit(of.unit)
+    columns: list[Column] = [
+        text("entry of the file", lambda d: d.path),
+        text("as written", lambda d: d.written),
+        Column("for 1 % more", lambda d: d.elasticity / 100, percent),
+        Column(
+            "by its unit", lambda d: f"{_signed(units, d.by_unit, of.unit)} {_per(unit, d.unit)}"
+        ),
+    ]
+    apart = [d.apart / 100 for d in shown if d.apart is not None]
+    if max(apart, default=0.0) >= LEAST:
+        columns.append(Column("mesh", lambda d: d.apart and d.apart / 100, _mesh))
+    rest = [d for d in of.derivatives if d not in shown]
+    still = sum(not d.elasticity for d in rest)
+    note = []
+    if apart and max(apart) < LEAST:
+        note.append(f"Mesh: below {percent(LEAST, signed=False)} everywhere.")
+    if len(rest) > still:
+        most = percent(abs(rest[0].elasticity) / 100, signed=False)
+        note.append(f"{len(rest) - still} more move it by {most} or less.")
+    if still:
+        note.append(f"Without effect: {still}.")
+    value = units.text(of.value, of.unit)
+    return Table(f"What would move {of.name} ({value})", columns, shown, " ".join(note))
+
+
+def _per(unit: str, own: str) -> str:
+    """Unit of a derivative."""
+    return f"{unit} per {own or '1 in SI'}"
+
+
+def _signed(units: Units, value: float, si: str) -> str:
+    """A change, to four digits with its sign."""
+    here = units.value(value, si) or 0.0
+    return f"{here:+.4g}"
+
+
+def _mesh(share: float) -> str:
+    if share < LEAST:
+        return f"< {percent(LEAST, signed=False)}"
+    return f"+- {percent(share, signed=False)}"
+
+
+def lines(found: Any) -> Table:
+    """All derivatives for other programs, in SI."""
+    heads = (
+        "number",
+        "value",
+        "unit",
+        "value from coarser mesh",
+        "entry",
+        "written",
+        "at",
+        "derivative",
+        "elasticity",
+        "elasticity from coarser mesh",
+        "one-sided",
+    )
+    rows = [
+        (
+            one.name,
+            one.value,
+            one.unit,
+            one.apart,
+            d.path,
+            d.written,
+            d.at,
+            d.by,
+            d.elasticity,
+            d.apart,
+            d.side,
+        )
+        for one in found.of
+        for d in one.derivatives
+    ]
+    return Table("sensitivities", [Column(head, write=repr) for head in heads], rows)
+
+
+def chart(of: Any, width: float = WIDE) -> Chart | None:
+    """Bars of the change of one number for one per cent of each entry."""
+    rows = strongest(of)
+    if not rows:
+        return None
+    left = NAMES if width > NARROW else NARROW_NAMES
+    names = {float(k): "\n".join(wrapped(d.path, left - 10)) for k, d in enumerate(rows)}
+    thick = max(BAR, 15.0 * max(name.count("\n") + 1 for name in names.values()) + 2)
+    top = 1.05 * abs(rows[0].elasticity) / 100
+    panel = Panel(
+        Axis(f"change of {of.name} for 1 % more", (-top, top), label=PERCENT),
+        Axis("", (len(rows) - 0.5, -0.5), ticks=names, grid=False),
+        thick * len(rows),
+        series={UP: Series("#0072b2"), DOWN: Series("#b3305c")},
+        legend={"orient": "top", "symbolType": "square", "columns": 2 if width > NARROW else 1},
+        left=left,
+    )
+    bars = [
+        {
+            "x": 0.0,
+            "x2": d.elasticity / 100,
+            "y": k - 0.38,
+            "y2": k + 0.38,
+            "name": UP if d.elasticity > 0 else DOWN,
+            "readout": readout(
+                d.path,
+                ("in the file", d.written, ""),
+                ("1 % more", percent(d.elasticity / 100), ""),
+            ),
+        }
+        for k, d in enumerate(rows)
+    ]
+    panel.draw({"type": "rect", "strokeWidth": 0}, bars)
+    return Chart([[panel]], width)
+
+
+def write(folder: Path, found: Any, units: Units) -> list[Path]:
+    """Write page, CSV, JSON and charts into a folder."""
+    charts = {f"sensitivities_{k}": partial(chart, one) for k, one in enumerate(found.of, start=1)}
+    return write_files(
+        folder,
+        "sensitivities",
+        f"{found.title}: sensitivities",
+        f"By the {found.model} model.",
+        [table(one, units) for one in found.of],
+        found.as_dict(),
+        lines={"sensitivities": lines(found)},
+        charts=charts,
+        notes=notes(found),
+    )
+
+
+def notes(found: Any) -> list[str]:
+    """Entries held, accuracy of derivatives, and entries without any."""
+    without = [f"No derivative by {path}: {why}." for path, why in found.without.items()]
+    return [*found.notes, *without]

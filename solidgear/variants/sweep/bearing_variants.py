@@ -1,0 +1,259 @@
+"""The bearing sets of a sweep as scenes of a file, and the one shaft that carries all their seats.
+
+What varies is read by the paths and rules of every sweep over a file; here places of seats are read
+once each, and springs from the tables of their bearings alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from solidgear.bearings.solved import solved
+from solidgear.core.body import Supports, as_supports
+from solidgear.core.errors import SceneError, SolidgearError
+from solidgear.core.scene import Bearing, Feature, PointMass, Port, Scene, Segment
+from solidgear.parts.body_file import BodyFile
+from solidgear.core.scene.outline import Outline
+from solidgear.core.scene.paths import Keys, Tables, entries, entry
+from solidgear.core.scene.sprung import resprung
+from solidgear.core.loading import load, scene_of, shaft
+from solidgear.variants.sweep.design import Design
+from solidgear.variants.sweep.entries import Entry
+from solidgear.variants.sweep.file_variants import OWN
+from solidgear.variants.sweep.scene_variants import SceneVariants, scene_variants
+
+#: keys of a bearing that its springs are made of, and those of the housing of all
+SPRINGS = ("stiffness", "matrix", "axial_series", "housing", "scale")
+HOUSING = ("stiffness", "matrix", "axial", "scale")
+POSITION = "position"
+#: words that may name the middle of a bearing
+DATUMS = ("from", "at")
+#: scenes whose catalogue bearings have settled that are kept
+KEPT = 200
+
+
+@dataclass(frozen=True)
+class SeatedShaft:
+    """A shaft with every seat that a sweep may use, as builders see a scene.
+
+    A `Scene` refuses seats that overlap; here only one of them carries a bearing at a time.
+    """
+
+    segments: tuple[Segment, ...]
+    stations: tuple[Port | Bearing | PointMass, ...]
+    outline: Outline[Segment]
+    features: tuple[Feature, ...] = ()
+    body: BodyFile | None = None
+
+    @property
+    def plain(self) -> SeatedShaft:
+        """The same shaft as its segments alone."""
+        return replace(self, features=(), body=None)
+
+    @property
+    def length(self) -> float:
+        """Length of the shaft in m."""
+        return self.segments[-1].y1
+
+
+@dataclass(frozen=True)
+class BearingVariants(SceneVariants):
+    """Points of a sweep over springs and positions of bearings alone."""
+
+    @cached_property
+    def scene(self) -> Scene:
+        """The file as it is."""
+        return load(self.path)
+
+    @cached_property
+    def moves(self) -> list[int]:
+        """Places of the entries that move seats."""
+        return [k for k, one in enumerate(self.entries) if one.keys[-1] == POSITION]
+
+    @cached_property
+    def _placed(self) -> dict[tuple[float, ...], Scene | SceneError]:
+        """Scene, or why there is none, for every placement of the seats that occurs, catalogue
+        bearings without their stiffness.
+        """
+        moving = [self.entries[k] for k in self.moves]
+        out: dict[tuple[float, ...], Scene | SceneError] = {}
+        for key in dict.fromkeys(map(tuple, self.values[:, self.moves].tolist())):
+            try:
+                out[key] = scene_of(self.put(OWN, moving, key), self.path, alone=False)
+            except SceneError as error:
+                out[key] = error
+        return out
+
+    def of(self, index: int) -> Scene:
+        row = self.values[index].tolist()
+        placed = self._placed[tuple(row[k] for k in self.moves)]
+        if isinstance(placed, SceneError):
+            raise placed
+        springs = [k for k in range(len(row)) if k not in self.moves]
+        if springs:
+            tables = self.put(OWN, [self.entries[k] for k in springs], [row[k] for k in springs])
+            touched = [place.keys for k in springs for place in self.entries[k].places]
+            placed = resprung(placed, tables, touched)
+        if all(bearing.catalogue is None for bearing in placed.bearings):
+            return placed
+        return self._at_load(placed, row)
+
+    def _at_load(self, scene: Scene, row: Sequence[float]) -> Scene:
+        """A scene whose catalogue bearings carry what the load of the scene brings them; what it is
+        multiplied by has no part in it.
+        """
+        key = tuple(v for one, v in zip(self.entries, row) if not self.multiplies(one))
+        if key not in self._at_rest:
+            if len(self._at_rest) >= KEPT:
+                self._at_rest.clear()
+            self._at_rest[key] = settled_anew(scene)
+        settled = {bearing.name: bearing for bearing in self._at_rest[key].bearings}
+        return scene.unjudged(
+            bearings=tuple(
+                bearing
+                if bearing.catalogue is None
+                else bearing.with_changes(matrix=settled[bearing.name].matrix)
+                for bearing in scene.bearings
+            )
+        )
+
+    @cached_property
+    def _at_rest(self) -> dict[tuple[float, ...], Scene]:
+        return {}
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {key: value for key, value in self.__dict__.items() if key != "_at_rest"}
+
+    def multiplies(self, one: Entry) -> bool:
+        """True for an entry that multiplies catalogue bearings alone."""
+        return all(
+            place.keys[0] == "bearing"
+            and place.keys[2:] == ("scale",)
+            and self.scene.bearings[int(place.keys[1])].catalogue is not None
+            for place in one.places
+        )
+
+    def supports(self, index: int) -> tuple[Scene, Supports]:
+        """Scene of one variant, and its springs on the ports of the :meth:`shaft`. Raises like
+        :meth:`of`.
+        """
+        scene = self.of(index)
+        return scene, as_supports(scene).on_stations(scene.stations, _port_name)
+
+    def shaft(self) -> SeatedShaft:
+        """The shaft with the seats of all placements that can be.
+
+        Raises
+        ------
+        SolidgearError
+            If nothing can be solved, or a rigid seat is to move.
+        """
+        placed = [scene for scene in self._placed.values() if isinstance(scene, Scene)]
+        if not placed:
+            raise SolidgearError(
+                f"no variant can be solved; the first one is refused: {next(iter(self._placed.values()))}"
+            )
+        for k in self.moves:
+            one = self.entries[k]
+            moved = [self.scene.bearings[int(place.keys[1])] for place in one.places]
+            if len(one.values) > 1 and any(bearing.attachment == "rigid" for bearing in moved):
+                raise SolidgearError(
+                    f"{one.label}: a rigid seat stiffens the shaft wherever it is meshed, so it "
+                    "cannot move in one body; use attachment 'average' or 'section'"
+                )
+        seats = {
+            seat_name(b): b.with_changes(name=seat_name(b))
+            for scene in placed
+            for b in scene.bearings
+        }
+        ordered = sorted(seats.values(), key=lambda b: b.y)
+        own = (m for m in self.scene.masses if m.on is None)
+        return SeatedShaft(
+            self.scene.segments,
+            (self.scene.port, *ordered, *own, *self.scene.further_ports),
+            self.scene.outline,
+            self.scene.features,
+            self.scene.body,
+        )
+
+
+def bearing_variants(
+    path: Path | str, vary: Iterable[str], sample: int | None = None, seed: int = 0
+) -> BearingVariants | None:
+    """Points of a sweep over springs and positions of bearings, all combinations or a sample of them;
+    None where something else varies, or hangs on a bearing that moves.
+
+    Examples
+    --------
+    >>> path = "geometry/shaft_stepped.toml"
+    >>> len(bearing_variants(path, ["bearing.A.kxx=1e8,2e8", "bearing.B.position=-40 mm,-30 mm"]))
+    4
+    >>> bearing_variants(path, ["segment.left.diameter=50 mm,52 mm"]) is None
+    True
+    """
+    design = Design(tuple(vary), sample, seed)
+    found = scene_variants(Path(path), design, "bearing.1.kxx=log:1e8 N/m:1e10 N/m:9")
+    tables = found.files[OWN]
+    keys = [place.keys for one in found.entries for place in one.places]
+    if not all(one.numeric for one in found.entries) or not all(map(_of_bearings, keys)):
+        return None
+    if _hangs_on(
+        tables, [entry((*key[:2], "name"), tables) for key in keys if key[-1] == POSITION]
+    ):
+        return None
+    if sample is None:
+        return BearingVariants(*_fields(found))
+    # every seat is meshed: a position is one of those listed
+    listed = tuple(
+        replace(one, spacing="list") if one.keys[-1] == POSITION else one for one in found.entries
+    )
+    drawn = design.drawn(listed)
+    return BearingVariants(*_fields(replace(found, entries=listed, values=drawn)))
+
+
+def _fields(found: SceneVariants) -> tuple[Any, ...]:
+    return found.path, found.files, found.entries, found.values, found.kept, found.design
+
+
+def _of_bearings(keys: Keys) -> bool:
+    """True for an entry of springs or positions of bearings, or of their housing."""
+    if keys[0] == "housing":
+        return keys[1] in HOUSING
+    return keys[0] == "bearing" and (keys[2] in SPRINGS or keys[2:] == (POSITION,))
+
+
+def _hangs_on(tables: Tables, names: Sequence[Any]) -> bool:
+    """True where the place of something that is no bearing is counted from one of some bearings."""
+    middles = {f"bearing.{name}" for name in names}
+    return any(
+        keys[-1] in DATUMS and keys[0] != "bearing" and entry(keys, tables) in middles
+        for keys in entries(tables)
+    )
+
+
+def settled_anew(scene: Scene) -> Scene:
+    """A scene whose catalogue bearings carry what its load brings them: a tangent is that of a load,
+    and where a seat moves, loads move with it.
+    """
+    try:
+        return solved(scene, shaft(scene)).scene
+    except SceneError:
+        raise
+    except SolidgearError as error:
+        raise SceneError(str(error)) from None
+
+
+def _port_name(station: Port | Bearing | PointMass) -> str:
+    """Name of the port of a station in the shaft of a sweep: seats of bearings are shared."""
+    return seat_name(station) if isinstance(station, Bearing) else station.name
+
+
+def seat_name(bearing: Bearing) -> str:
+    """Name of the port a bearing sits on: bearings of any stiffness share it if they hold the same
+    surface alike.
+    """
+    return f"seat at {bearing.y!r} m, {bearing.lo!r} to {bearing.hi!r} m, {bearing.attachment}"

@@ -1,0 +1,89 @@
+"""A sweep from Python: its rows as a table."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Any
+
+from solidgear.core.scene.toml_file import is_train
+from solidgear.variants.sweep.design import Design
+from solidgear.variants.sweep.file_task import FileTask, Swept, run
+from solidgear.variants.sweep.rows import tell_in_log
+from solidgear.variants.sweep.scene_task import scene_task
+from solidgear.variants.sweep.train_task import train_task
+
+
+def sweep(
+    file: str | os.PathLike,
+    vary: str | Iterable[str] = (),
+    *,
+    sample: int | None = None,
+    seed: int = 0,
+    one_at_a_time: bool = False,
+    table: str | os.PathLike | None = None,
+    keep_sum: Iterable[str] = (),
+    out: str | os.PathLike | None = None,
+    jobs: int = 1,
+    dask: str | None = None,
+    overwrite: bool = False,
+    progress: Callable[[int, int, str], None] = lambda done, total, text: None,
+    tell: Callable[[str], None] = tell_in_log,
+    **how: Any,
+) -> Swept:
+    """Solve many variants of the file of a shaft or of a train.
+
+    Parameters
+    ----------
+    file : path
+        Of the scene or train.
+    vary : str or iterable of str
+        ``PATH=VALUES``: any entry of the file, such as ``segment.neck.diameter=30 mm:40 mm:5``.
+    sample, seed : int
+        Points of a Latin hypercube in place of all combinations.
+    one_at_a_time : bool
+        The file as it is, then each value with all others as in the file.
+    table : path, optional
+        Of variants of your own, a CSV file with paths as heads, in place of `vary`.
+    keep_sum : iterable of str
+        ``PATH+PATH``: sums that stay what they are in the file.
+    out : path, optional
+        Keeps the rows; the same sweep goes on from there.
+    jobs, dask, overwrite, progress, tell
+        As of :func:`solidgear.variants.sweep.file_task.run`.
+    **how
+        Of a shaft those of :func:`solidgear.variants.sweep.scene_task.scene_task`, of a train those
+        of :func:`solidgear.variants.sweep.train_task.train_task`, such as ``model`` and ``n``.
+
+    Returns
+    -------
+    Swept
+
+    Raises
+    ------
+    SolidgearError
+        A path or a value that no variant can have. A variant that the rules of the file refuse is
+        no error: its row says why.
+
+    Examples
+    --------
+    Two diameters together, by a beam:
+
+    >>> import solidgear as sg
+    >>> both = "segment.left.diameter+segment.right.diameter=45 mm:50 mm:3"
+    >>> rows = sg.sweep("geometry/shaft_stepped.toml", both, model="timoshenko")
+    >>> bool(rows["C_zz"][0] > rows["C_zz"][2])
+    True
+    """
+    texts = (vary,) if isinstance(vary, str) else tuple(vary)
+    own = None if table is None else Path(table)
+    design = Design(texts, sample, seed, one_at_a_time, own, tuple(keep_sum))
+    make: Callable[..., FileTask] = train_task if is_train(Path(file)) else scene_task
+    task = make(Path(file), design, **how)
+    with tempfile.TemporaryDirectory() as folder:
+        rows = Path(folder) / "rows.csv" if out is None else Path(out)
+        return run(
+            task, rows, jobs=jobs, dask=dask, overwrite=overwrite, progress=progress, tell=tell
+        )

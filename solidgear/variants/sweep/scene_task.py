@@ -1,0 +1,173 @@
+"""Rows of a sweep of scenes: numbers with their bars."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from solidgear.core.body import Body, as_supports
+from solidgear.core.judge.settle import Settled
+from solidgear.core.judge.solving import answer_of_body
+from solidgear.core.ladder import build
+from solidgear.core.ladder.registry import LADDER
+from solidgear.core.models.limits import number
+from solidgear.core.quantity import QUANTITIES
+from solidgear.core.scene import Scene
+from solidgear.core.judge.one_shaft import mass_of, one_shaft
+from solidgear.variants.sweep.bearing_task import BARS, without_bars
+from solidgear.variants.sweep.bench import surface
+from solidgear.variants.sweep.design import Design
+from solidgear.variants.sweep.file_task import FileTask
+from solidgear.variants.sweep.file_variants import OWN, plain
+from solidgear.variants.sweep.scene_variants import SceneVariants, scene_variants
+
+#: static quantities of a row
+STATICS = tuple(q for q in QUANTITIES if not q.is_frequency)
+#: natural frequencies of a row at most
+MOST_MODES = 30
+
+
+@dataclass(frozen=True)
+class SceneTask(FileTask):
+    """Everything that turns variants of a scene into rows: each is read, meshed and solved for
+    itself.
+    """
+
+    variants: SceneVariants
+    #: none for the cheapest mesh whose bars are within the tolerance, variant by variant
+    model: str | None
+    tolerance: float | None  #: relative; that of the scene by default
+    options: Mapping[str, Any]  #: of the builder of a model that is given
+    n: int  #: natural frequencies
+    first: int = 0  #: a variant that can be read
+
+    @cached_property
+    def _last(self) -> dict[Any, Settled]:
+        """Mesh of the last row, by its shaft."""
+        return {}
+
+    @property
+    def columns(self) -> dict[str, type]:
+        out: dict[str, type] = {"model": str, "unknowns": int}
+        out |= {"mass": float, "mass bar": float} | ({BARS: str} if self.model else {})
+        for name in STATICS:
+            out |= self._with_bar(str(name), float)
+        for k in range(1, self.n + 1):
+            out |= self._with_bar(f"f{k}_hz", float) | {f"mode{k}": str}
+        return out
+
+    def _with_bar(self, name: str, kind: type) -> dict[str, type]:
+        return {name: kind} | ({f"{name} bar": float} if self.model is None else {})
+
+    @property
+    def plan(self) -> dict[str, Any]:
+        part = self.variants.of(self.first).body
+        return {
+            "scene": plain(self.variants.tables(self.first)[OWN]),
+            "part": part and part.model_dump(mode="json"),
+            "model": self.model,
+            "set": plain(self.options),
+            "tolerance": self.tolerance,
+            "n": self.n,
+        }
+
+    def numbers(self, index: int) -> dict[str, Any]:
+        scene = self.variants.of(index)
+        return self._settled(scene) if self.model is None else self._fixed(scene)
+
+    def _settled(self, scene: Scene) -> dict[str, Any]:
+        """Numbers with bars, by the cheapest mesh."""
+        key = surface(scene)
+        tol = scene.ask.tolerance if self.tolerance is None else self.tolerance
+        found = one_shaft(
+            scene.with_changes(ask=scene.ask.with_changes(modes=self.n)),
+            tol,
+            before=self._last.get(key),
+        )
+        self._last.clear()
+        self._last[key] = found.settled
+        out: dict[str, Any] = {
+            "model": f"{found.settled.rung}, {found.settled.setting}",
+            "unknowns": found.settled.body.size,
+            "mass": found.mass,
+            "mass bar": found.mass_bar and found.mass_bar * found.mass,
+        }
+        for name in STATICS:
+            out |= {str(name): found.values.get(name), f"{name} bar": found.bar(name)}
+        elastic = [mode for mode in found.modes.modes if mode.frequency_hz > 0]
+        for k, mode in enumerate(map(found.seen, elastic[: self.n]), start=1):
+            out |= {f"f{k}_hz": mode.frequency_hz, f"f{k}_hz bar": mode.width}
+            out[f"mode{k}"] = mode.name
+        return out
+
+    def _fixed(self, scene: Scene) -> dict[str, Any]:
+        """Numbers of one model on the mesh that was asked for, without bars."""
+        assert self.model is not None
+        body: Body = build(scene, self.model, **self.options)
+        found = answer_of_body(body, as_supports(scene), [scene.port.name], self.n, ovalising=True)
+        mass, exact = mass_of(scene, body)
+        out: dict[str, Any] = {
+            "model": self.model,
+            "unknowns": body.size,
+            "mass": mass,
+            "mass bar": exact and exact * mass,
+            BARS: without_bars(self.model),
+        }
+        out |= {str(name): found.quantities.get(name) for name in STATICS}
+        elastic = [mode for mode in found.modes.modes if mode.frequency_hz > 0]
+        for k, mode in enumerate(elastic[: self.n], start=1):
+            out |= {f"f{k}_hz": mode.frequency_hz, f"mode{k}": str(mode.name)}
+        return out
+
+
+def scene_task(
+    scene: Path,
+    design: Design,
+    *,
+    model: str | None = None,
+    tolerance: float | None = None,
+    options: Mapping[str, Any] | None = None,
+    n: int | None = None,
+) -> SceneTask:
+    """Statics and natural frequencies of many variants of a scene, each with its bars.
+
+    Parameters
+    ----------
+    scene : Path
+        Of the scene file.
+    design : Design
+        Entries that vary: any number or word of the file, such as
+        ``segment.neck.diameter=30 mm:40 mm:5``. The change is made to the tables of the file, and
+        every rule of the file applies.
+    model : str, optional
+        None for the cheapest mesh whose bars are within the tolerance, variant by variant; of a
+        model that is given rows have no bars.
+    tolerance : float, optional
+        Relative; that of the scene by default.
+    options : mapping, optional
+        Of the builder of a model that is given.
+    n : int, optional
+        Natural frequencies of a row; as many as the scene asks for by default.
+
+    Raises
+    ------
+    SolidgearError
+        A path or a value that no variant can have, and too many variants.
+
+    Examples
+    --------
+    >>> design = Design(("segment.1.diameter=45 mm,50 mm",))
+    >>> task = scene_task(Path("geometry/shaft_stepped.toml"), design, model="timoshenko")
+    >>> thin, thick = task.rows([0, 1])
+    >>> thin["C_zz"] > thick["C_zz"]
+    True
+    """
+    given = {} if model is None else LADDER[model].checked(dict(options or {}))
+    variants = scene_variants(scene, design, "segment.1.diameter=30 mm:40 mm:5")
+    first, usual = variants.first_sound()
+    n = usual.ask.modes if n is None else n
+    number("sweep", "n", n, least=1, below=MOST_MODES + 1, whole=True)
+    return SceneTask(variants, model, tolerance, given, n, first)
