@@ -143,14 +143,16 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
+    from solidgear.bearings.elastic_ring import elastic_ring
+    from solidgear.compare.comparison import compare
     from solidgear.core.body import Body, Supports
     from solidgear.core.errors import SceneError, SolidgearError
     from solidgear.core.judge.answer import answer
     from solidgear.core.ladder import build
+    from solidgear.core.loading import load, load_train
     from solidgear.core.reduction.craig_bampton import craig_bampton
     from solidgear.core.reduction.rubin import rubin
     from solidgear.core.reduction.superelement import Superelement
-    from solidgear.show.viewer import turn
     from solidgear.core.scene import (
         STEEL,
         Ask,
@@ -163,17 +165,8 @@ if TYPE_CHECKING:
         Scene,
         Segment,
     )
-    from solidgear.trains.file.train import Train
     from solidgear.core.solve.modes import modes
     from solidgear.core.solve.statics import condense
-    from solidgear.variants.budget.budget import budget
-    from solidgear.compare.comparison import compare
-    from solidgear.bearings.elastic_ring import elastic_ring
-    from solidgear.core.loading import load, load_train
-    from solidgear.variants.optimise.optimise import optimise
-    from solidgear.variants.sensitivity.run import sensitivities
-    from solidgear.strength.stress.shaft import shaft_stress
-    from solidgear.variants.sweep.file_sweep import sweep
     from solidgear.core.system import (
         BearingSpring,
         CentralMember,
@@ -193,7 +186,14 @@ if TYPE_CHECKING:
         mesh_spring,
         torsion_spring,
     )
+    from solidgear.show.viewer import turn
+    from solidgear.strength.stress.shaft import shaft_stress
+    from solidgear.trains.file.train import Train
     from solidgear.trains.system import carrier_turn
+    from solidgear.variants.budget.budget import budget
+    from solidgear.variants.optimise.optimise import optimise
+    from solidgear.variants.sensitivity.run import sensitivities
+    from solidgear.variants.sweep.file_sweep import sweep
 
 
 def __getattr__(name: str):

@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from solidgear.core.judge.record import Record
 from solidgear.compare.page import html
+from solidgear.core.judge.record import Record
 from solidgear.show import terminal
 from solidgear.show.border import as_record
 

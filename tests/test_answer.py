@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.core.body import as_supports
 from solidgear.app.answer import _absent, sentences
+from solidgear.core.body import as_supports
 from solidgear.core.judge import question
 from solidgear.core.judge.answer import answer
 from solidgear.core.judge.quantities import change

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from solidgear.core.errors import SceneError, SolidgearError
-from solidgear.core.scene.file import load
 from solidgear.core.loading import explained
+from solidgear.core.scene.file import load
 
 GOOD = (Path(__file__).parents[1] / "geometry" / "pinion_overhung.toml").read_text(encoding="utf-8")
 BRG2 = GOOD.index('position = "150 mm"')  # edits marked "2:" are made from here on

@@ -6,11 +6,11 @@ from types import SimpleNamespace
 import pytest
 
 from solidgear.core.scene.file import load
-from solidgear.trains.file.reading import load_train
 from solidgear.guards import GUARDS
 from solidgear.guards.bearings import misfits
 from solidgear.trains.assembly.layout import contacts, places
 from solidgear.trains.assembly.space import overlaps
+from solidgear.trains.file.reading import load_train
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 SCENE = load(GEOMETRY / "gearbox_catalogue.toml")

@@ -12,11 +12,13 @@ from catalogue_ratings import ANGULAR_CONTACT, CYLINDRICAL, DEEP_GROOVE, TAPERED
 from command import command
 
 from solidgear.bearings.ball import BallRow
+from solidgear.bearings.catalogue import Catalogue
 from solidgear.bearings.catalogued import catalogued, state
 from solidgear.bearings.duty import DutyPoint, duty_life
 from solidgear.bearings.equivalent import equivalent_load, factors, static_load
 from solidgear.bearings.geometry import Inside, inner_geometry
 from solidgear.bearings.life import life, life_factor, reference_viscosity, reliability_factor
+from solidgear.bearings.lubrication import Lubrication
 from solidgear.bearings.rating import (
     fatigue_limit,
     rated,
@@ -28,8 +30,6 @@ from solidgear.bearings.reference_life import damage, edge_stress, raceways
 from solidgear.bearings.roller import RollerRow
 from solidgear.bearings.rolling import RollingBearing
 from solidgear.core.errors import SceneError
-from solidgear.bearings.catalogue import Catalogue
-from solidgear.bearings.lubrication import Lubrication
 
 SCENE = "geometry/gearbox_catalogue.toml"
 RPM = math.pi / 30

@@ -8,8 +8,10 @@ import pytest
 from shafts import moved_by
 
 from solidgear.bearings.ball import BallRow
+from solidgear.bearings.catalogue import Catalogue, Kind
 from solidgear.bearings.catalogued import catalogued, state
 from solidgear.bearings.clearance import clearance_range, mounting_change
+from solidgear.bearings.designation import boundary
 from solidgear.bearings.geometry import Inside, inner_geometry
 from solidgear.bearings.preload import SprungRow, pushed
 from solidgear.bearings.rating import ball_rating, ratings, roller_rating
@@ -17,8 +19,6 @@ from solidgear.bearings.roller import RollerRow
 from solidgear.bearings.rolling import RollingBearing
 from solidgear.bearings.spinning import SpinningBalls
 from solidgear.core.errors import SceneError
-from solidgear.bearings.catalogue import Catalogue, Kind
-from solidgear.bearings.designation import boundary
 from solidgear.core.scene.rules import preload_problems
 from solidgear.core.scene.stations import Bearing
 

@@ -12,9 +12,9 @@ from solidgear.bearings.equilibrium import equilibrium
 from solidgear.bearings.roller import RollerRow
 from solidgear.bearings.rolling import RollingBearing
 from solidgear.bearings.solved import solved
+from solidgear.bearings.study import over_load
 from solidgear.core.errors import SceneError, SolidgearError
 from solidgear.core.scene.file import load as read
-from solidgear.bearings.study import over_load
 from tests.command import command
 from tests.dense import whole
 

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 from scipy.optimize import fsolve
 
+from solidgear.bearings.catalogue import Catalogue
 from solidgear.bearings.catalogued import catalogued, state
+from solidgear.bearings.designation import boundary
 from solidgear.bearings.equivalent import factors, static_factors
 from solidgear.bearings.geometry import inner_geometry
 from solidgear.bearings.hertz import line_constant, point_contact
@@ -14,8 +16,6 @@ from solidgear.bearings.life import life
 from solidgear.bearings.rating import ball_rating, static_ball_rating
 from solidgear.bearings.spherical import SphericalRow
 from solidgear.core.errors import SceneError
-from solidgear.bearings.catalogue import Catalogue
-from solidgear.bearings.designation import boundary
 
 #: Harris and Kotzalas, Essential Concepts, ch. 2: a 22317
 HARRIS = SphericalRow(14, 25e-3, 135.077e-3, length=20.76e-3, angle=math.radians(12))

@@ -10,7 +10,6 @@ import pytest
 import solidgear as sg
 from solidgear.core.body import as_supports
 from solidgear.core.judge.quantities import measure, size
-from solidgear.cuts.sector.teeth import section_area, section_polar
 from solidgear.core.scene import (
     STEEL,
     Bearing,
@@ -25,6 +24,7 @@ from solidgear.core.scene import (
 )
 from solidgear.core.scene.closed_form import mass_properties
 from solidgear.core.scene.outline import Outline
+from solidgear.cuts.sector.teeth import section_area, section_polar
 from validation.campaign.truths import reference as spectral_levels
 from validation.campaign.truths.corner_mesh import corner_mesh, singular_points
 from validation.campaign.truths.reference import SURE, settle, spectral_reference

@@ -12,15 +12,13 @@ import pytest
 
 import solidgear as sg
 from solidgear.compare.race import command
+from solidgear.compare.race import rows as race_rows
+from solidgear.compare.race import style as race_style
 from solidgear.compare.race import timing as racing
 from solidgear.compare.race.answers import answer
 from solidgear.compare.race.cases import AUTO, plan
-from solidgear.compare.race.pareto import Race, Row
-from solidgear.compare.race.timing import race
-from solidgear.core.quantity import QUANTITIES
-from solidgear.compare.race import rows as race_rows, style as race_style
-from solidgear.show.panel import SHAPES
 from solidgear.compare.race.figure import draw, race_chart
+from solidgear.compare.race.pareto import Race, Row
 from solidgear.compare.race.rows import (
     MACHINE,
     PICTURE,
@@ -32,6 +30,9 @@ from solidgear.compare.race.rows import (
     write_rows,
 )
 from solidgear.compare.race.tables import front_rows, section
+from solidgear.compare.race.timing import race
+from solidgear.core.quantity import QUANTITIES
+from solidgear.show.panel import SHAPES
 from tests.charted import SETUP, few, texts_of, words_of
 from tests.plain import render_page, write_report
 

@@ -11,17 +11,16 @@ import pytest
 import scipy.linalg as sla
 
 import solidgear as sg
+from solidgear import guards
 from solidgear.app.check import thoughts
+from solidgear.bearings.catalogue import Catalogue
 from solidgear.core.judge.study import study
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.scene import STEEL, Ask, Bearing, Fillet, Port, Scene, Segment
-from solidgear.bearings.catalogue import Catalogue
 from solidgear.core.scene.closed_form import mass_properties, whole_mass
-from solidgear.guards import check
-from solidgear import guards
-from solidgear.guards.check import cautions, check_scene, notices
-from solidgear.guards import GUARDS, Notice, elements, models
+from solidgear.guards import GUARDS, Notice, check, elements, models
 from solidgear.guards import probe as probe_module
+from solidgear.guards.check import cautions, check_scene, notices
 from solidgear.guards.notice import against, beams, everything
 from solidgear.guards.probe import Probe
 from tests.command import command

@@ -12,13 +12,13 @@ import numpy as np
 import pytest
 
 import solidgear as sg
+from solidgear.compare.comparison import compare
 from solidgear.core.errors import SolidgearError
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.meshing.quality import MeshError
 from solidgear.core.models.options import ATTACHMENTS
 from solidgear.core.quantity import ACROSS, QUANTITIES
 from solidgear.show.outputs import OUTPUTS
-from solidgear.compare.comparison import compare
 from tests.command import strict
 
 #: charts are drawn in the folder that all tests share, once

@@ -146,9 +146,9 @@ def test_a_stub_is_corrected_on_its_coarsest_mesh():
     the flat changes is what the two 3D solids say all the same, in both planes: no mode stands for
     one of the other plane. The change itself is 0.4 to 0.8 %, of which the square is left out.
     """
-    from solidgear.cuts.solid.featured import featured_body, meshed
     from solidgear.core.models.solid.plan import tetrahedra_plan
     from solidgear.core.scene import Flat
+    from solidgear.cuts.solid.featured import featured_body, meshed
 
     stub = [
         sg.Segment.cylinder("thick", length=0.035, diameter=0.098),

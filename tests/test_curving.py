@@ -21,13 +21,13 @@ from solidgear.core.meshing.curving import (
 )
 from solidgear.core.meshing.edge_places import edge_places
 from solidgear.core.meshing.quality import element_ratios, element_volumes
-from solidgear.cuts.sector.meshing import volume_of_sector
 from solidgear.core.meshing.tetrahedra import tetrahedra
-from solidgear.cuts.sector.body import cyclic_features, meshed_sector
 from solidgear.core.models.solid.plan import tetrahedra_plan
 from solidgear.core.scene.closed_form import integrals_along, volume_of
 from solidgear.core.scene.outline import Frustum, Outline
 from solidgear.core.solve.modes import modes
+from solidgear.cuts.sector.body import cyclic_features, meshed_sector
+from solidgear.cuts.sector.meshing import volume_of_sector
 
 GEOMETRY = Path(__file__).parents[1] / "geometry"
 

@@ -11,8 +11,8 @@ from solidgear.core.errors import SceneError
 from solidgear.cuts.cylindrical import working_cylinders
 from solidgear.trains.assembly.layout import contacts
 from solidgear.trains.assembly.models import Workshop
-from solidgear.trains.modes.modes import train_modes
 from solidgear.trains.load.operation import at_point
+from solidgear.trains.modes.modes import train_modes
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 PLAIN = {"pitch_radius": None, "spiral_angle": None, "pitch_angle": None, "scene_load": "replaced"}

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.parts.decks.universal import unit_of
 from solidgear.core.scene.file_materials import FileMaterial
 from solidgear.core.scene.materials import by_name
 from solidgear.core.scene.parts import Material
+from solidgear.parts.decks.universal import unit_of
 from tests.command import command
 from validation.mesh_files import rod, write_mesh
 

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.parts.decks import read
-from solidgear.parts.mesh_file import mesh_from
 from solidgear.core.meshing.placing import TURNS, Placing
 from solidgear.core.meshing.quality import MeshError
 from solidgear.core.scene.outline import Outline
+from solidgear.parts.decks import read
+from solidgear.parts.mesh_file import mesh_from
 from validation.fuzz.decks import DECK_CHANGES, DECKS
 from validation.mesh_files import rod, write_mesh
 
@@ -245,11 +245,11 @@ def test_sound_parts_have_no_pits():
     """
     from skfem import MeshTet1
 
+    from solidgear.core.meshing.tetrahedra import tetrahedra
+    from solidgear.core.models.solid.plan import tetrahedra_plan
+    from solidgear.cuts.solid.featured import meshed
     from solidgear.cuts.solid.meshing import submesh
     from solidgear.parts.mesh_file import lost_elements
-    from solidgear.core.meshing.tetrahedra import tetrahedra
-    from solidgear.cuts.solid.featured import meshed
-    from solidgear.core.models.solid.plan import tetrahedra_plan
 
     keyed, hollow = (sg.load(f"geometry/{n}.toml") for n in ("pinion_keyed", "shaft_hollow"))
     keyed = keyed.with_changes(

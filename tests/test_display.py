@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.show.table import MOST_ROWS, Table
 from solidgear.compare.comparison import Comparison
+from solidgear.show.table import MOST_ROWS, Table
 
 ROOT = Path(__file__).parent.parent
 

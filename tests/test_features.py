@@ -12,16 +12,16 @@ from skfem import MeshTet1, MeshTet2
 
 import solidgear as sg
 from solidgear.core.judge.record import ModelRecord, ModeRecord
-from solidgear.cuts.solid.cuts import mirror_plane
-from solidgear.cuts.solid.meshing import FeaturedMesh, submesh
 from solidgear.core.meshing.quality import MeshError, check_mesh
-from solidgear.cuts.solid.featured import featured_body, meshed
-from solidgear.cuts.solid.halves import half_blocks
 from solidgear.core.models.solid.mesh import _isoparametric
 from solidgear.core.models.solid.plan import tetrahedra_plan
 from solidgear.core.models.solid.seat_faces import Seats
-from solidgear.show.reading import mode_of
 from solidgear.core.scene import CrossHole, Flat, Keyway
+from solidgear.cuts.solid.cuts import mirror_plane
+from solidgear.cuts.solid.featured import featured_body, meshed
+from solidgear.cuts.solid.halves import half_blocks
+from solidgear.cuts.solid.meshing import FeaturedMesh, submesh
+from solidgear.show.reading import mode_of
 from validation.campaign.truths.volumes import removed_mass
 
 ROOT = Path(__file__).parent.parent

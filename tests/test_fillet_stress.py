@@ -7,12 +7,12 @@ from filleted import STRONG, shoulder
 import solidgear as sg
 from solidgear import SolidgearError
 from solidgear.core.frames import rotation
-from solidgear.strength.stress.arc_stress import Arc
 from solidgear.core.models.harmonic.body import harmonic
 from solidgear.core.scene import Chamfer, Fillet
 from solidgear.core.solve.backends.matrix import FactorError
 from solidgear.core.solve.statics import flexibility
 from solidgear.strength.stress import notch
+from solidgear.strength.stress.arc_stress import Arc
 from solidgear.strength.stress.notch import UNIT_LOADS, fillet_factors, piece_around
 from solidgear.strength.stress.published import CHARTS
 from solidgear.strength.stress.shaft import shaft_stress, sharp_corners

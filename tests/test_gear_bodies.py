@@ -5,9 +5,9 @@ from pathlib import Path
 import pytest
 
 from solidgear.core.errors import SceneError
-from solidgear.trains.file.reading import load_train
 from solidgear.trains.assembly.gear_bodies import gear_cautions
 from solidgear.trains.assembly.layout import contacts
+from solidgear.trains.file.reading import load_train
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 

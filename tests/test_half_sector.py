@@ -13,12 +13,12 @@ from test_sector import BOLTS, SPIRAL, STEEL, TEETH, apart, shaft
 import solidgear as sg
 from solidgear.core.frames import rotation
 from solidgear.core.ladder.registry import LADDER
-from solidgear.cuts.sector.meshing import mirrored
-from solidgear.cuts.sector.body import meshed_sector, sector, whole
-from solidgear.cuts.sector.half import HalfSector, basis, half_sector_solid
 from solidgear.core.models.solid.matrices import _matrices
 from solidgear.core.scene import Spline
 from solidgear.cuts.features.around import mirror_angle
+from solidgear.cuts.sector.body import meshed_sector, sector, whole
+from solidgear.cuts.sector.half import HalfSector, basis, half_sector_solid
+from solidgear.cuts.sector.meshing import mirrored
 
 #: equal to rounding whatever the mesh
 COARSE = 0.1

@@ -7,8 +7,8 @@ import pytest
 from test_sector import BOLTS, shaft
 
 from solidgear.core.ladder.registry import LADDER
-from solidgear.cuts.solid.holes import FULL_SHARE, hole_of, hole_places, hole_size
 from solidgear.cuts.sector.body import meshed_sector, sector
+from solidgear.cuts.solid.holes import FULL_SHARE, hole_of, hole_places, hole_size
 
 SMALL = BOLTS.with_changes(count=4, diameter=0.003, depth=0.008, angle=0.3)
 SCENE = shaft(SMALL)

@@ -13,11 +13,10 @@ from command import command
 import solidgear as sg
 from solidgear.core.body import as_supports
 from solidgear.core.judge.bounded import mode_bars
+from solidgear.core.loading import scene_of
 from solidgear.core.scene.paths import keys_of, with_entry
 from solidgear.core.scene.toml_file import parse
 from solidgear.core.scene.uncertain import with_ranges
-from solidgear.variants.sensitivity.adjoint import mode_form
-from solidgear.core.loading import scene_of
 from solidgear.measured.alignment import Peak, ShapeLikeness, align
 from solidgear.measured.computed import Computed, computed_up_to
 from solidgear.measured.correlate import SURE, correlate
@@ -27,6 +26,7 @@ from solidgear.measured.identify import identify
 from solidgear.measured.same_part import Common
 from solidgear.measured.sprung import Sprung
 from solidgear.measured.varied import varied_of
+from solidgear.variants.sensitivity.adjoint import mode_form
 from solidgear.variants.sensitivity.derivatives import Derivatives
 
 ROD = """

@@ -8,17 +8,17 @@ from pathlib import Path
 import pytest
 
 import solidgear as sg
+from solidgear.compare.page.html import render_page
+from solidgear.compare.page.write import Drawn, render_mode
 from solidgear.compare.race.cases import plan
+from solidgear.compare.race.figure import race_chart
 from solidgear.compare.race.timing import race
 from solidgear.core.ladder.beams import Timoshenko
 from solidgear.core.ladder.harmonic import Harmonic
 from solidgear.core.ladder.model import Model
 from solidgear.core.ladder.registry import LADDER
-from solidgear.compare.page.html import render_page
-from solidgear.compare.race.figure import race_chart
-from solidgear.show.terminal import final_table
-from solidgear.compare.page.write import Drawn, render_mode
 from solidgear.guards.check import check_scene
+from solidgear.show.terminal import final_table
 from tests.charted import texts_of
 
 ROOT = Path(__file__).parent.parent

@@ -8,13 +8,13 @@ import pytest
 from test_nonlinear_pair import pair
 
 import solidgear as sg
+from solidgear.backlash.results import BacklashStudy
 from solidgear.backlash.solver.apart import search
 from solidgear.backlash.solver.continuation import follow
 from solidgear.backlash.solver.motion import steady_motion
 from solidgear.backlash.solver.stability import stable
-from solidgear.trains.assembly.models import Workshop
 from solidgear.backlash.train import teeth_of, with_backlash
-from solidgear.backlash.results import BacklashStudy
+from solidgear.trains.assembly.models import Workshop
 
 OVERHUNG = Path(__file__).parent.parent / "geometry" / "axle_overhung.toml"
 

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from teeth import ALONG, mass_on_teeth
 
-from solidgear.core.errors import SolidgearError
 from solidgear.backlash.solver.apart import period_doubled_branches
 from solidgear.backlash.solver.balance import Balance
 from solidgear.backlash.solver.continuation import follow
@@ -14,6 +13,7 @@ from solidgear.backlash.solver.model import remainder
 from solidgear.backlash.solver.motion import Run, steady_motion, sweep
 from solidgear.backlash.solver.run_up import run_up
 from solidgear.backlash.solver.stability import multipliers, stable
+from solidgear.core.errors import SolidgearError
 from solidgear.core.system import Inertia, RowSpring, System
 from solidgear.core.system.law import Gap
 

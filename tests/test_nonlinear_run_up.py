@@ -8,10 +8,10 @@ from scipy.integrate import solve_ivp
 from scipy.special import wofz
 from teeth import ALONG, mass_on_teeth
 
-from solidgear.core.errors import SolidgearError
 from solidgear.backlash.solver.continuation import follow
 from solidgear.backlash.solver.model import remainder
 from solidgear.backlash.solver.run_up import run_up
+from solidgear.core.errors import SolidgearError
 from solidgear.core.system import Inertia, RowSpring, System
 from solidgear.core.system.law import Gap
 

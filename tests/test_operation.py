@@ -13,8 +13,8 @@ from pathlib import Path
 import pytest
 
 import solidgear as sg
-from solidgear.show.folder import LOCK, held
 from solidgear.compare.comparison import compare
+from solidgear.show.folder import LOCK, held
 
 pytestmark = pytest.mark.usefixtures("no_charts")
 

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.show.options import build_body, options
 from solidgear.core.elements import ELEMENTS
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.ladder.solid import _CHARTED
@@ -16,6 +15,7 @@ from solidgear.core.models.harmonic.body import harmonic
 from solidgear.core.models.options import FACTORING_OPTIONS, THINNEST_LAYER
 from solidgear.core.models.solid.body import solid
 from solidgear.guards.elements import LINEAR, LOCKING
+from solidgear.show.options import build_body, options
 
 SCENE = sg.load(Path(__file__).parents[1] / "geometry" / "shaft_stepped.toml")
 BUILDERS = {"euler": beam, "timoshenko": beam, "harmonic": harmonic, "solid": solid}

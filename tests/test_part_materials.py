@@ -344,8 +344,8 @@ def test_gmsh_writes_what_is_read_here(tmp_path):
     """Order of nodes and numbers of groups, as another program writes them: the same volumes from
     every format, second-order tetrahedra and bricks.
     """
-    from solidgear.parts.mesh_file import mesh_from
     from solidgear.core.meshing.placing import TURNS, Placing
+    from solidgear.parts.mesh_file import mesh_from
 
     place = Placing(1e-3, TURNS["y"], (0.0, 0.0, 0.0))
     for hexes, kind in ((False, "tet10"), (True, "hex20")):

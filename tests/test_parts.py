@@ -14,14 +14,14 @@ import solidgear as sg
 from solidgear.core.elements import ELEMENTS
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.machine.isolated import isolated
-from solidgear.parts.mesh_file import mesh_from
 from solidgear.core.meshing.placing import TURNS, Placing
-from solidgear.parts.own_mesh import solid_body
-from solidgear.show.outputs import node_order
 from solidgear.core.scene import Keyway
 from solidgear.core.scene.closed_form import volume_of
 from solidgear.core.scene.outline import Outline
 from solidgear.guards import check, round_part
+from solidgear.parts.mesh_file import mesh_from
+from solidgear.parts.own_mesh import solid_body
+from solidgear.show.outputs import node_order
 from validation.step_parts import shaft_step, with_unit, write_step
 
 ROOT = Path(__file__).parent.parent
@@ -464,11 +464,11 @@ def test_a_keyed_mesh_has_no_seat_on_the_floor_of_the_key():
     """Floors and walls of a keyway that crosses a seat are none of it: its area is that of the
     cylinder less the opening.
     """
-    from solidgear.cuts.solid.meshing import submesh
-    from solidgear.cuts.solid.featured import meshed
     from solidgear.core.models.solid.mesh import _isoparametric
     from solidgear.core.models.solid.plan import tetrahedra_plan
     from solidgear.core.models.solid.seat_faces import Seats
+    from solidgear.cuts.solid.featured import meshed
+    from solidgear.cuts.solid.meshing import submesh
 
     rod = sg.Segment.cylinder("rod", length=0.2, diameter=0.06)
     key = Keyway(

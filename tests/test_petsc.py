@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.petsc import solver as petsc
 from solidgear.core.solve.factor import FactorError
 from solidgear.core.solve.shifted import factors
+from solidgear.petsc import solver as petsc
 
 SCENE = sg.load(Path(__file__).parents[1] / "geometry" / "pinion_overhung.toml")
 SMALL = {"element": "tet10", "refinement": 0.3}

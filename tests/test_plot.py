@@ -11,9 +11,9 @@ import solidgear as sg
 from solidgear.compare.page.charts import CHARTS
 from solidgear.show.panel import Axis, Panel, read_places, readout
 from solidgear.show.plot import NARROW, WIDE, Chart, page_svg
-from solidgear.trains.page.chart import receptance_chart, response_chart
 from solidgear.show.units import SYSTEMS
 from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.page.chart import receptance_chart, response_chart
 from solidgear.trains.response.receptance import receptance
 from solidgear.trains.response.respond import respond
 from tests.charted import facts_of, texts_of, words_of

@@ -9,18 +9,18 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.core.judge.quantities import between, canonical_name, measure, size
+from solidgear.compare.page.front import numbers
+from solidgear.compare.page.point_tables import points
 from solidgear.compare.recording import recorded
+from solidgear.core.judge.quantities import between, canonical_name, measure, size
 from solidgear.core.judge.settle import settle
 from solidgear.core.judge.study import study
 from solidgear.core.quantity import COMPLIANCE, Quantity
-from solidgear.compare.page.front import numbers
-from solidgear.compare.page.point_tables import points
-from solidgear.show.units import ENGINEERING
 from solidgear.core.scene import Bearing, Port, Scene, Segment
 from solidgear.guards.data import split_pair
 from solidgear.guards.models import beam_against_solid
 from solidgear.guards.probe import Probe
+from solidgear.show.units import ENGINEERING
 from tests.command import command
 from validation.campaign.cases.points import judged, scene_of, solutions
 from validation.campaign.rows import SMALL

@@ -7,10 +7,10 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.special import beta
 
-from solidgear.core.errors import SolidgearError
 from solidgear.backlash.solver.balance import Balance, as_complex
 from solidgear.backlash.solver.model import remainder
 from solidgear.backlash.solver.two_tone import TwoTone
+from solidgear.core.errors import SolidgearError
 from solidgear.core.system import Inertia, RowSpring, System, torsion_spring
 from solidgear.core.system.law import Gap
 from validation.reducer.design import Design

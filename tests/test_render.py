@@ -17,15 +17,15 @@ from skfem.quadrature import get_quadrature
 from skfem.refdom import RefHex, RefTet
 
 import solidgear as sg
-from solidgear.core.errors import SolidgearError
-from solidgear.show import render
 from solidgear.compare.page import write
-from solidgear.show.folder import OWN, clear
-from solidgear.show.outputs import OUTPUTS, Output, write_vtu
-from solidgear.show.render import PACKAGES, Drawing, RenderJob, render_modes
+from solidgear.core.errors import SolidgearError
 from solidgear.core.scene.closed_form import volume_of
 from solidgear.core.scene.outline import Outline
 from solidgear.core.solve.modes import Mode
+from solidgear.show import render
+from solidgear.show.folder import OWN, clear
+from solidgear.show.outputs import OUTPUTS, Output, write_vtu
+from solidgear.show.render import PACKAGES, Drawing, RenderJob, render_modes
 
 ROOT = Path(__file__).parents[1]
 SOLID = {"refinement": 0.5}

@@ -14,10 +14,10 @@ import pytest
 from rich.console import Console
 
 import solidgear as sg
+from solidgear.compare.page import charts, input_tables
+from solidgear.compare.recording import recorded
 from solidgear.core.errors import SolidgearError
 from solidgear.core.judge.record import SCHEMA, Record
-from solidgear.compare.recording import recorded
-from solidgear.compare.page import charts, input_tables
 from solidgear.show.border import as_record
 from solidgear.show.page_parts import data_uri
 from solidgear.show.plot import WIDE

@@ -9,10 +9,10 @@ import re
 import pytest
 
 import solidgear as sg
-from solidgear.core.errors import SolidgearError
-from solidgear.core.judge.record import Record
 from solidgear.compare.page import front
 from solidgear.compare.page.input_tables import scene_facts
+from solidgear.core.errors import SolidgearError
+from solidgear.core.judge.record import Record
 from solidgear.show.terminal import matrix_table
 from solidgear.show.units import (
     ENGINEERING,

@@ -3,10 +3,10 @@
 from dataclasses import fields
 
 import solidgear as sg
-from solidgear.core.judge.bars import ErrorBar
-from solidgear.core.judge.record import BarRecord, Record
 from solidgear.compare.page import evidence_tables
 from solidgear.compare.page.input_tables import bearings, scene_facts
+from solidgear.core.judge.bars import ErrorBar
+from solidgear.core.judge.record import BarRecord, Record
 from solidgear.show.units import US
 
 CATALOGUE = sg.load("geometry/gearbox_catalogue.toml").as_dict()

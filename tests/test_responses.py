@@ -7,10 +7,10 @@ import pytest
 from universal_files import nodes, response, units, written
 
 from solidgear.core.errors import SceneError, SolidgearError
-from solidgear.parts.universal_units import UNITS
 from solidgear.measured.data import load_measured, measured_from_responses
 from solidgear.measured.modal_fit import fit_modes
 from solidgear.measured.universal import Responses, read_universal
+from solidgear.parts.universal_units import UNITS
 
 #: frequencies, Hz, and damping ratios; two are 0.5 % apart, one stands at the end of the axis
 MODES = [(120.0, 0.01), (333.0, 0.002), (700.0, 0.003), (703.5, 0.003), (1200.0, 0.001)]

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.parts.mesh_file import _hexes
 from solidgear.core.meshing.tetrahedra import tetrahedra
 from solidgear.core.models.solid.mesh import _isoparametric
 from solidgear.core.models.solid.seat_faces import Seats
 from solidgear.core.scene.outline import Outline
+from solidgear.parts.mesh_file import _hexes
 
 RADIUS, WIDTH = 0.03, 0.06
 ROD = sg.Segment.cylinder("rod", length=0.12, diameter=2 * RADIUS)

@@ -13,16 +13,16 @@ from scipy.integrate import quad
 
 import solidgear as sg
 from solidgear.core.ladder.registry import LADDER
-from solidgear.cuts.sector.meshing import volume_of_sector
-from solidgear.cuts.sector.teeth import half_outline, outline, section_area, section_polar
-from solidgear.cuts.sector.body import meshed_sector, sector, whole
-from solidgear.cuts.sector.cyclic import Sector, basis, doubled
-from solidgear.cuts.solid.featured import featured_body, meshed
 from solidgear.core.models.solid.plan import tetrahedra_plan
 from solidgear.core.scene import BoltCircle, Fillet, Keyway, Spline, Teeth
 from solidgear.core.scene.closed_form import volume_of
-from solidgear.cuts.features.around import no_common_sector
 from solidgear.core.scene.outline import Outline
+from solidgear.cuts.features.around import no_common_sector
+from solidgear.cuts.sector.body import meshed_sector, sector, whole
+from solidgear.cuts.sector.cyclic import Sector, basis, doubled
+from solidgear.cuts.sector.meshing import volume_of_sector
+from solidgear.cuts.sector.teeth import half_outline, outline, section_area, section_polar
+from solidgear.cuts.solid.featured import featured_body, meshed
 
 ROOT = Path(__file__).parent.parent
 TOOTHED = ROOT / "geometry" / "pinion_toothed.toml"

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from solidgear.parts.part import length_unit
 from solidgear.core.meshing.quality import MeshError
+from solidgear.parts.part import length_unit
 from validation.step_parts import with_unit
 
 STEP = (Path(__file__).parents[1] / "geometry" / "shaft_step.step").read_text()

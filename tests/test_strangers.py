@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import solidgear as sg
+from solidgear.compare.comparison import compare
 from solidgear.core.judge.completeness import completeness
 from solidgear.core.judge.study import study
 from solidgear.core.judge.ties import SCENE
@@ -18,7 +19,6 @@ from solidgear.core.ladder.registry import LADDER
 from solidgear.core.ladder.solid import HEXAHEDRA
 from solidgear.core.scene import Bearing, Port, Scene, Segment
 from solidgear.guards.check import check_scene
-from solidgear.compare.comparison import compare
 from solidgear.guards.probe import Probe
 
 SCENES = Path(__file__).parent / "scenes"

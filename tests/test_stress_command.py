@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.strength.stress.files import shaft_tables
 from solidgear.core.scene.closed_form import mass_properties
-from solidgear.trains.file.operation import GRAVITY, OperatingPoint
 from solidgear.strength.stress import shaft
 from solidgear.strength.stress.at_rest import StressSettings, stress_of_scene, stress_of_train
+from solidgear.strength.stress.files import shaft_tables
 from solidgear.strength.stress.rating import Conditions
+from solidgear.trains.file.operation import GRAVITY, OperatingPoint
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 FILLETED = GEOMETRY / "pinion_filleted.toml"

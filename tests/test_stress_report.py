@@ -7,10 +7,10 @@ from charted import facts_of
 from filleted import STRONG, shoulder
 from test_fillet_stress import loads_on
 
-from solidgear.strength.stress import tables as stress_tables
-from solidgear.strength.stress.section_chart import section_chart
 from solidgear.show.units import US
+from solidgear.strength.stress import tables as stress_tables
 from solidgear.strength.stress.rating import Conditions
+from solidgear.strength.stress.section_chart import section_chart
 from solidgear.strength.stress.shaft import shaft_stress
 
 

@@ -7,10 +7,10 @@ import pytest
 
 import solidgear as sg
 from solidgear.guards.probe import Probe
-from solidgear.trains.judge import check as checked
-from solidgear.trains.judge.check import check_train
 from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.assembly.slips import mesh_unit_slips, unit_slips
+from solidgear.trains.judge import check as checked
+from solidgear.trains.judge.check import check_train
 from tests.command import command
 
 AXLE = "geometry/axle_overhung.toml"

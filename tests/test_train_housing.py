@@ -10,11 +10,11 @@ import pytest
 import solidgear as sg
 from solidgear.core.errors import SceneError, SolidgearError
 from solidgear.strength.deflection.train import deflection
-from solidgear.trains.judge.judge import _Judge
 from solidgear.trains.assembly.meshes import mesh_bars
 from solidgear.trains.assembly.models import Workshop
-from solidgear.trains.modes.modes import train_modes
+from solidgear.trains.judge.judge import _Judge
 from solidgear.trains.load.operation import Operating
+from solidgear.trains.modes.modes import train_modes
 from solidgear.trains.modes.pairing import modes_and_motions
 from solidgear.trains.response.receptance import receptance
 from solidgear.trains.response.respond import Drive

@@ -7,10 +7,10 @@ import pytest
 
 import solidgear as sg
 from solidgear.core.errors import SceneError
-from solidgear.trains.file.operation import OperatingPoint
 from solidgear.strength.deflection.train import deflection
 from solidgear.trains.assembly.housing import BOX, mount_rows
 from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.load.operation import Operating
 from tests.test_train_housing import carried
 from tests.test_train_planetary import (

@@ -8,14 +8,14 @@ from typer.testing import CliRunner
 
 import solidgear as sg
 from solidgear.show import command as app
+from solidgear.trains.assembly.meshes import mesh_bars
+from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.shaft import LUMPED
 from solidgear.trains.file.train import SIDES
 from solidgear.trains.judge import judge as judging
 from solidgear.trains.judge.judge import JUDGE, judge_train
-from solidgear.trains.assembly.meshes import mesh_bars
-from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.modes.modes import train_modes
 from solidgear.trains.response.respond import Drive
-from solidgear.trains.assembly.shaft import LUMPED
 
 TRAIN = sg.load_train("geometry/axle_overhung.toml")
 COARSE = {"harmonic": {"order": 2, "layers": 1}}

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.trains.response.loudest import loudest
 from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.modes.modes import train_modes
+from solidgear.trains.response.loudest import loudest
 from solidgear.trains.response.respond import Drive, respond
 from tests.command import command
 

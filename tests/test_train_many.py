@@ -9,10 +9,10 @@ import scipy.linalg as sla
 
 import solidgear as sg
 from solidgear.core.errors import SolidgearError
-from solidgear.trains.judge.judge import JUDGE, MIXED, mixes_of
 from solidgear.trains.assembly.models import Workshop
-from solidgear.trains.modes.modes import train_modes
+from solidgear.trains.judge.judge import JUDGE, MIXED, mixes_of
 from solidgear.trains.load.operation import Operating
+from solidgear.trains.modes.modes import train_modes
 from solidgear.trains.response.respond import Drive
 from tests.command import command
 

@@ -2,12 +2,12 @@
 
 import pytest
 
+from solidgear.backlash.train import teeth_of
 from solidgear.core.errors import SceneError, SolidgearError
 from solidgear.core.scene.file import load
-from solidgear.trains.file.reading import load_train
 from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.file.reading import load_train
 from solidgear.trains.modes.modes import train_modes
-from solidgear.backlash.train import teeth_of
 from solidgear.trains.response.respond import respond
 from tests.command import command
 

@@ -8,15 +8,15 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.core.errors import SceneError
+from solidgear.backlash.results import BacklashStudy
 from solidgear.backlash.solver.balance import Balance
 from solidgear.backlash.solver.continuation import follow
 from solidgear.backlash.solver.integrated import Integrated
 from solidgear.backlash.solver.model import remainder
 from solidgear.backlash.solver.motion import sweep
-from solidgear.trains.assembly.models import Workshop
 from solidgear.backlash.train import backlash_model, over_force, parting, teeth_of, with_backlash
-from solidgear.backlash.results import BacklashStudy
+from solidgear.core.errors import SceneError
+from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.response.respond import Drive
 
 OVERHUNG = Path(__file__).parent.parent / "geometry" / "axle_overhung.toml"

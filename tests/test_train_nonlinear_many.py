@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.core.errors import SolidgearError
+from solidgear.backlash.results import BacklashStudy
 from solidgear.backlash.solver.balance import Balance
 from solidgear.backlash.solver.continuation import follow
 from solidgear.backlash.solver.model import remainder
 from solidgear.backlash.solver.motion import steady_motion
-from solidgear.trains.load.contact import axes_of
-from solidgear.trains.assembly.models import Workshop
 from solidgear.backlash.train import backlash_model, parting, teeth_of, with_backlash
-from solidgear.backlash.results import BacklashStudy
+from solidgear.core.errors import SolidgearError
+from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.load.contact import axes_of
 from solidgear.trains.response.respond import Drive
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"

@@ -9,13 +9,13 @@ import pytest
 
 import solidgear as sg
 from solidgear.core.errors import SceneError, SolidgearError
-from solidgear.trains.file.operation import GRAVITY, OperatingPoint
+from solidgear.strength.deflection.misalignment import misalignment
 from solidgear.strength.deflection.shaft import deflect_scene
 from solidgear.strength.deflection.train import deflect_train, deflection
-from solidgear.strength.deflection.misalignment import misalignment
 from solidgear.trains.assembly.models import Workshop
-from solidgear.trains.modes.modes import train_modes
+from solidgear.trains.file.operation import GRAVITY, OperatingPoint
 from solidgear.trains.load.operation import Operating, at_point
+from solidgear.trains.modes.modes import train_modes
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 GEARBOX = GEOMETRY / "gearbox_train.toml"

@@ -5,10 +5,10 @@ import pytest
 from test_train_models import COARSE, OVERHUNG
 
 import solidgear as sg
-from solidgear.trains.response.order_chart import spread
 from solidgear.trains.assembly.models import Workshop
-from solidgear.trains.modes.modes import train_modes
 from solidgear.trains.assembly.orders import order_map
+from solidgear.trains.modes.modes import train_modes
+from solidgear.trains.response.order_chart import spread
 from solidgear.trains.response.respond import Drive
 
 TRAIN = sg.load_train(OVERHUNG)

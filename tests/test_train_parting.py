@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.trains.assembly.models import Workshop
 from solidgear.backlash.train import teeth_of, with_backlash
+from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.load.operation import Operating, with_settled_bearings
 from solidgear.trains.modes.parting import largest_relief, parting_frequency, teeth_relief
 from solidgear.trains.response.respond import Drive, respond

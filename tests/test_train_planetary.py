@@ -11,16 +11,16 @@ import scipy.linalg as sla
 
 import solidgear as sg
 from solidgear.core.errors import SceneError
-from solidgear.trains.file.operation import OperatingPoint
-from solidgear.trains.file.planetary import MATES, with_carrier_turned
 from solidgear.strength.deflection.train import deflection
 from solidgear.trains.assembly.kinematics import train_orders
 from solidgear.trains.assembly.layout import mesh_forces
 from solidgear.trains.assembly.models import Workshop
-from solidgear.trains.modes.modes import train_modes
-from solidgear.trains.load.operation import Operating
-from solidgear.trains.response.respond import Drive, respond
 from solidgear.trains.assembly.stages import mesh_row
+from solidgear.trains.file.operation import OperatingPoint
+from solidgear.trains.file.planetary import MATES, with_carrier_turned
+from solidgear.trains.load.operation import Operating
+from solidgear.trains.modes.modes import train_modes
+from solidgear.trains.response.respond import Drive, respond
 from validation.reducer.design import FACE, Design
 
 REDUCER, RIGID = "geometry/reducer.toml", "rigid/timoshenko"

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.core.errors import SceneError
 from solidgear.backlash.solver.continuation import follow
 from solidgear.backlash.solver.motion import steady_motion
-from solidgear.trains.load.contact import axes_of
-from solidgear.trains.assembly.models import Workshop
 from solidgear.backlash.train import backlash_model, teeth_of
+from solidgear.core.errors import SceneError
+from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.load.contact import axes_of
 from solidgear.trains.load.operation import Operating
 from tests.test_train_many import BEARING, PRESSURE, SHAFTS, scene_text, written
 

@@ -8,11 +8,11 @@ from test_train_models import COARSE, OVERHUNG, assembled
 
 import solidgear as sg
 from solidgear.core.frames import DOF_NAMES
+from solidgear.core.system.steady import peaks
 from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.modes.naming import mode_names
 from solidgear.trains.response.receptance import receptance
 from solidgear.trains.response.respond import NO_MODE, Drive
-from solidgear.core.system.steady import peaks
 from tests.command import command, table
 
 TRAIN = sg.load_train(OVERHUNG)

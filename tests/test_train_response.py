@@ -5,10 +5,10 @@ import pytest
 from test_train_models import COARSE, OVERHUNG, assembled
 
 import solidgear as sg
-from solidgear.trains.file.tables import ErrorTable
-from solidgear.trains.assembly.models import Workshop
-from solidgear.trains.response.respond import Drive, respond
 from solidgear.core.system.steady import SteadyState, peaks
+from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.file.tables import ErrorTable
+from solidgear.trains.response.respond import Drive, respond
 from tests.command import command, table
 
 TRAIN = sg.load_train(OVERHUNG)

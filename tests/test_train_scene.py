@@ -7,12 +7,12 @@ import pytest
 
 import solidgear as sg
 from solidgear.core.frames import cross_matrix
-from solidgear.trains.file.reading import load_train
-from solidgear.trains.assembly.layout import contacts
-from solidgear.trains.assembly.models import Workshop
-from solidgear.trains.modes.modes import wrench_lines
 from solidgear.core.system.contact_cells import contact_wrench
 from solidgear.core.system.gear_mesh import to_gear_frame
+from solidgear.trains.assembly.layout import contacts
+from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.file.reading import load_train
+from solidgear.trains.modes.modes import wrench_lines
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 OVERHUNG = (GEOMETRY / "axle_overhung.toml").read_text()

@@ -5,10 +5,10 @@ import pytest
 from test_train_models import COARSE, OVERHUNG
 
 import solidgear as sg
-from solidgear.trains.assembly.models import Workshop
-from solidgear.trains.response.respond import Drive
 from solidgear.core.system.common_loss import common_loss
 from solidgear.core.system.steady import SteadyState
+from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.response.respond import Drive
 
 TRAIN = sg.load_train(OVERHUNG)
 MIX = ("timoshenko", "timoshenko")

@@ -8,14 +8,14 @@ from test_bearings_catalogue import KNOWN_BALLS
 from test_train_models import OVERHUNG
 
 import solidgear as sg
+from solidgear.bearings.catalogue import Catalogue
 from solidgear.bearings.geometry import Inside, inner_geometry
 from solidgear.bearings.passing import passing
 from solidgear.core.errors import SolidgearError
 from solidgear.measured.chart import outline
-from solidgear.bearings.catalogue import Catalogue
-from solidgear.trains.response.spectrum import Spectrum, read_spectrum
-from solidgear.trains.response.at_speed import Line, at_speed, explained, turns_of_pinion
 from solidgear.trains.assembly.kinematics import SLIP, bearing_orders, settled_angles, train_orders
+from solidgear.trains.response.at_speed import Line, at_speed, explained, turns_of_pinion
+from solidgear.trains.response.spectrum import Spectrum, read_spectrum
 from tests.charted import words_of
 from tests.command import command, table
 

@@ -13,17 +13,17 @@ import solidgear as sg
 from solidgear.core.errors import SolidgearError
 from solidgear.core.scene.paths import keys_of, label_of, with_entry
 from solidgear.core.scene.toml_file import parse
+from solidgear.strength.deflection.misalignment import measured_names
+from solidgear.strength.deflection.train import deflection
+from solidgear.trains.assembly import models
+from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.load.operation import at_point
+from solidgear.trains.modes.modes import train_modes
+from solidgear.trains.response.respond import respond
 from solidgear.variants.sweep import file_task
 from solidgear.variants.sweep.design import Design
 from solidgear.variants.sweep.file_task import run
 from solidgear.variants.sweep.train_task import train_task
-from solidgear.trains.assembly import models
-from solidgear.strength.deflection.train import deflection
-from solidgear.strength.deflection.misalignment import measured_names
-from solidgear.trains.assembly.models import Workshop
-from solidgear.trains.modes.modes import train_modes
-from solidgear.trains.load.operation import at_point
-from solidgear.trains.response.respond import respond
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 TWO_STAGE = GEOMETRY / "gearbox_two_stage.toml"

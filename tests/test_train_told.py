@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.show.command import say
-from solidgear.strength.deflection import tables as deflection_tables
 from solidgear.show import speed_tables
+from solidgear.show.command import say
 from solidgear.show.units import ENGINEERING
-from solidgear.trains.file.operation import OperatingPoint
-from solidgear.trains.response.at_speed import Coincidence
+from solidgear.strength.deflection import tables as deflection_tables
 from solidgear.strength.deflection.train import Measured, deflect_train
 from solidgear.trains.assembly.layout import senses
 from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.load.operation import Operating
+from solidgear.trains.response.at_speed import Coincidence
 from solidgear.trains.system.equilibrium import without_rounding
 
 GEARBOX, REDUCER = "geometry/gearbox_train.toml", "geometry/reducer.toml"

@@ -11,17 +11,17 @@ import numpy as np
 import pytest
 
 import solidgear as sg
+from solidgear.compare.two.differences import differences
+from solidgear.compare.two.two_trains import two_trains
+from solidgear.compare.two.two_trains_page import others, reactions
 from solidgear.core.body import as_supports
 from solidgear.core.errors import SolidgearError
-from solidgear.compare.two.two_trains_page import others, reactions
-from solidgear.compare.two.differences import differences
-from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.assembly import models
 from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.file.operation import OperatingPoint
+from solidgear.trains.load.strain import strain_shares
 from solidgear.trains.modes.modes import train_modes
 from solidgear.trains.response.respond import respond
-from solidgear.trains.load.strain import strain_shares
-from solidgear.compare.two.two_trains import two_trains
 from tests.command import command, page_of, table
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"

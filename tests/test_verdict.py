@@ -5,6 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from solidgear.compare.comparison import compare
+from solidgear.compare.verdict import judge, percent, trusted
 from solidgear.core.body.mode_names import ModeName
 from solidgear.core.judge.bars import ErrorBar
 from solidgear.core.judge.deviations import BEYOND, OPEN, WITHIN, deviations, gap_verdict
@@ -13,11 +15,9 @@ from solidgear.core.judge.record import GuardRecord, LevelRecord
 from solidgear.core.judge.solution import Solution
 from solidgear.core.judge.solving import Answer, Statics
 from solidgear.core.judge.ties import SCENE, SECTION
-from solidgear.compare.verdict import judge, percent, trusted
 from solidgear.core.quantity import Quantity
 from solidgear.core.scene import Ask, Bearing, Scene, Segment
 from solidgear.core.solve.modes import Mode, ModeSet
-from solidgear.compare.comparison import compare
 
 STATIONS = np.linspace(0.0, 1.0, 13)
 

@@ -12,11 +12,11 @@ import pytest
 
 import solidgear as sg
 from solidgear.core.errors import SolidgearError
+from solidgear.core.scene.closed_form import volume_of
+from solidgear.core.scene.outline import Outline
 from solidgear.show import viewer
 from solidgear.show.packing import mesh_of
 from solidgear.show.turning import picks, turned
-from solidgear.core.scene.closed_form import volume_of
-from solidgear.core.scene.outline import Outline
 from tests.command import command
 
 ROOT = Path(__file__).parents[1]

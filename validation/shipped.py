@@ -5,9 +5,9 @@ from __future__ import annotations
 from functools import cache
 from pathlib import Path
 
+from solidgear.core.loading import load
 from solidgear.core.scene.shaft import resolved
 from solidgear.core.scene.toml_file import is_train, parse
-from solidgear.core.loading import load
 
 GEOMETRY = Path(__file__).resolve().parent.parent / "geometry"
 

@@ -14,14 +14,14 @@ from typing import Any
 import numpy as np
 
 from solidgear.core.machine.isolated import isolated
-from solidgear.cuts.solid.cuts import tool
 from solidgear.core.meshing.gmsh_session import Session, import_gmsh
 from solidgear.core.meshing.revolved import draw_revolved
-from solidgear.parts.step import axis_angle
 from solidgear.core.scene import Keyway, Segment
 from solidgear.core.scene.blends import Corner
-from solidgear.parts.body_file import UNITS
 from solidgear.core.scene.outline import Frustum, Outline
+from solidgear.cuts.solid.cuts import tool
+from solidgear.parts.body_file import UNITS
+from solidgear.parts.step import axis_angle
 from validation.shipped import GEOMETRY
 
 #: how a STEP file says its unit; the kernel writes millimetres whatever was drawn

@@ -18,8 +18,8 @@ from dataclasses import dataclass
 import numpy as np
 
 import solidgear as sg
-from solidgear.cuts.sector.body import sector
 from solidgear.core.scene import Teeth
+from solidgear.cuts.sector.body import sector
 from validation.common import ROOT, results_folder, write_rows
 
 #: share of the depth of a tooth, above its root, at which the stiffest like cone runs

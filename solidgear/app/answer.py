@@ -10,9 +10,7 @@ from typing import Annotated, Any
 
 import typer
 
-from solidgear.show.command import NOT_REACHED, caution, command, say
-from solidgear.show.arguments import load
-from solidgear.show.options import SceneFile, Shown, relative
+from solidgear.compare.page.where_chart import draw_where, worth_naming
 from solidgear.core.errors import SolidgearError
 from solidgear.core.judge.answer import Answered, Step
 from solidgear.core.judge.answer import answer as solve
@@ -25,17 +23,19 @@ from solidgear.core.ladder.model import BEAM
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.models.kinds import PARTS
 from solidgear.core.quantity import Quantity
+from solidgear.core.scene import Scene
+from solidgear.guards.bearings import misfits
+from solidgear.guards.data import facing_one_way
+from solidgear.show.arguments import load
+from solidgear.show.command import NOT_REACHED, caution, command, say
 from solidgear.show.open_words import columns as ranges
 from solidgear.show.open_words import remark
+from solidgear.show.options import SceneFile, Shown, relative
 from solidgear.show.plot import check_ending
 from solidgear.show.table import Column, Table, text
 from solidgear.show.units import units_named
-from solidgear.compare.page.where_chart import draw_where, worth_naming
 from solidgear.show.words import bar_of, count, percent, seconds
-from solidgear.core.scene import Scene
 from solidgear.variants.budget.budget import beside
-from solidgear.guards.bearings import misfits
-from solidgear.guards.data import facing_one_way
 
 
 @command

@@ -10,22 +10,22 @@ from typing import Annotated, Any
 import numpy as np
 import typer
 
-from solidgear.bearings.rolling import UNITS
-from solidgear.show.command import command, say
+from solidgear.bearings.bearing_life import bearing_lives
+from solidgear.bearings.chart import BearingPanel, draw_bearings
+from solidgear.bearings.designation import boundary
 from solidgear.bearings.life_command import plain_life, print_life, speed_of
-from solidgear.show.options import Run, SceneFile
+from solidgear.bearings.rolling import UNITS
+from solidgear.bearings.study import BearingFacts, bearing_facts, over_load, with_load
 from solidgear.core.errors import SceneError, SolidgearError, show
 from solidgear.core.frames import DOF_NAMES
-from solidgear.bearings.chart import BearingPanel, draw_bearings
+from solidgear.core.loading import as_written, explained, shaft
+from solidgear.core.scene import Scene
+from solidgear.core.scene.toml_file import describes_train, parse
+from solidgear.show.command import command, say
+from solidgear.show.options import Run, SceneFile
 from solidgear.show.plot import check_ending
 from solidgear.show.terminal import matrix_table
 from solidgear.show.words import engineering
-from solidgear.core.scene import Scene
-from solidgear.bearings.designation import boundary
-from solidgear.core.scene.toml_file import describes_train, parse
-from solidgear.bearings.bearing_life import bearing_lives
-from solidgear.bearings.study import BearingFacts, bearing_facts, over_load, with_load
-from solidgear.core.loading import as_written, explained, shaft
 
 
 @command

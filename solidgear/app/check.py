@@ -7,14 +7,14 @@ from pathlib import Path
 
 import typer
 
-from solidgear.show.command import caution, command, filled
-from solidgear.show.options import MODEL, Fixed, Run, SceneFile, refuse
 from solidgear.core.ladder import build
 from solidgear.core.ladder.meshes import HARMONIC
 from solidgear.core.ladder.registry import LADDER
+from solidgear.core.loading import load
 from solidgear.core.scene.toml_file import is_train
 from solidgear.guards.check import VERDICTS, check_scene
-from solidgear.core.loading import load
+from solidgear.show.command import caution, command, filled
+from solidgear.show.options import MODEL, Fixed, Run, SceneFile, refuse
 
 #: not capitalised where it begins a sentence
 COMMAND = "solidgear"
@@ -123,8 +123,8 @@ def check_train(train: Path, as_json: bool, given: dict[str, bool]) -> None:
     refused where they were given.
     """
     # start-up: a shaft has no use for the studies of trains
-    from solidgear.trains.options import Reduced
     from solidgear.trains.judge.check import check_train as checked
+    from solidgear.trains.options import Reduced
 
     instead = "run check on the file of the shaft for other models and meshes"
     refuse(given, f"one shaft, and {train} is a train: {instead}")

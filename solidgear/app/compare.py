@@ -11,27 +11,27 @@ from typing import Annotated
 
 import typer
 
-from solidgear.show.command import caution, command, say
+from solidgear.compare.comparison import check_models
+from solidgear.compare.comparison import compare as compared
 from solidgear.compare.race.command import run_chart
-from solidgear.show.arguments import load
-from solidgear.show.options import MODEL, SceneFile, Shown, options_by_name, refuse
-from solidgear.trains.judge.command import compare_train
-from solidgear.trains.options import Pair, Reduced
+from solidgear.compare.two import two_shafts_page, two_trains_page
+from solidgear.compare.two.differences import differences
+from solidgear.compare.two.two_shafts import TwoShafts, two_shafts
+from solidgear.compare.two.two_trains import TwoTrains, two_trains
 from solidgear.core.elements import ELEMENTS
 from solidgear.core.errors import SolidgearError, listed
 from solidgear.core.ladder.registry import LADDER
-from solidgear.compare.two import two_shafts_page, two_trains_page
+from solidgear.core.loading import load as read
+from solidgear.core.scene.toml_file import is_train
+from solidgear.show.arguments import load
+from solidgear.show.command import caution, command, say
 from solidgear.show.folder import held
+from solidgear.show.options import MODEL, SceneFile, Shown, options_by_name, refuse
 from solidgear.show.terminal import closing_lines, final_table, verdict_text
 from solidgear.show.units import units_named
-from solidgear.compare.two.differences import differences
-from solidgear.core.scene.toml_file import is_train
-from solidgear.compare.comparison import check_models
-from solidgear.compare.comparison import compare as compared
-from solidgear.core.loading import load as read
 from solidgear.trains.assembly.shaft import checked_model
-from solidgear.compare.two.two_trains import TwoTrains, two_trains
-from solidgear.compare.two.two_shafts import TwoShafts, two_shafts
+from solidgear.trains.judge.command import compare_train
+from solidgear.trains.options import Pair, Reduced
 
 
 @command

@@ -10,13 +10,13 @@ from typing import Annotated, Any
 
 import typer
 
-from solidgear.show.command import command, say
 from solidgear.app.starts import STARTS, start
 from solidgear.core.errors import SolidgearError, nearest, show
 from solidgear.core.ladder.model import Model
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.machine.whole_file import whole
 from solidgear.core.models.options import Option, limits
+from solidgear.show.command import command, say
 from solidgear.show.table import Table, text, word
 
 KINDS = "; ".join(f"{kind}: {what}" for kind, what in STARTS.items())

@@ -7,10 +7,6 @@ from typing import Annotated
 
 import typer
 
-from solidgear.core.body import as_supports
-from solidgear.show.command import caution, command, say
-from solidgear.bearings.life_command import speed_of
-from solidgear.show.arguments import load
 from solidgear.app.settled import (
     SECOND_MESH,
     bar_lines,
@@ -20,7 +16,8 @@ from solidgear.app.settled import (
     unjudged,
     without_bar,
 )
-from solidgear.show.options import Run, SceneFile, Solved, options
+from solidgear.bearings.life_command import speed_of
+from solidgear.core.body import as_supports
 from solidgear.core.errors import SolidgearError, listed, show
 from solidgear.core.judge.at_rest import spin_caution
 from solidgear.core.judge.coarser_mesh import coarser_bars
@@ -29,13 +26,16 @@ from solidgear.core.judge.hidden import complete_list, less_widest
 from solidgear.core.judge.settle import bars_of_modes
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.quantity import Quantity
-from solidgear.show.terminal import modes_table
-from solidgear.show.words import by_plane
 from solidgear.core.scene.rules import MOST_MODES
 from solidgear.core.solve.mixtures import mixtures
 from solidgear.core.solve.modes import modes as solve
-from solidgear.variants.budget.budget import beside
 from solidgear.guards.check import cautions
+from solidgear.show.arguments import load
+from solidgear.show.command import caution, command, say
+from solidgear.show.options import Run, SceneFile, Solved, options
+from solidgear.show.terminal import modes_table
+from solidgear.show.words import by_plane
+from solidgear.variants.budget.budget import beside
 
 #: rows of a list whose beginning has left the terminal
 MANY = 30

@@ -8,13 +8,13 @@ from typing import Annotated
 
 import typer
 
-from solidgear.show.command import command
-from solidgear.show.arguments import load
-from solidgear.show.options import Choice, Fixed, SceneFile
+from solidgear.compare.page.write import Drawn, render_mode, turn_modes
 from solidgear.core.errors import SolidgearError
 from solidgear.core.ladder.registry import LADDER
-from solidgear.compare.page.write import Drawn, render_mode, turn_modes
 from solidgear.core.solve.modes import modes as solve
+from solidgear.show.arguments import load
+from solidgear.show.command import command
+from solidgear.show.options import Choice, Fixed, SceneFile
 
 
 @command

@@ -6,17 +6,17 @@ from collections.abc import Mapping, Sequence
 
 import typer
 
-from solidgear.core.body import Body
 from solidgear.app.answer import sentences
-from solidgear.show.command import NOT_REACHED
+from solidgear.core.body import Body
 from solidgear.core.errors import listed
 from solidgear.core.judge.quantities import in_words
 from solidgear.core.judge.settle import Settled, widest
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.quantity import Quantity
-from solidgear.show.words import is_number, percent
 from solidgear.core.scene import Scene
 from solidgear.core.solve.modes import ModeSet
+from solidgear.show.command import NOT_REACHED
+from solidgear.show.words import is_number, percent
 
 #: where bars of a 3D solid come from whose mesh was set
 SECOND_MESH = "Bars: from a second, coarser mesh."

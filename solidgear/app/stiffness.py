@@ -9,25 +9,25 @@ from typing import Annotated, Any
 import numpy as np
 import typer
 
-from solidgear.show.command import caution, command, say
-from solidgear.show.arguments import load
 from solidgear.app.settled import SECOND_MESH, bar_lines, ended, heading, largest_bar
-from solidgear.show.options import SceneFile, Shown, Solved, options
 from solidgear.core.errors import SolidgearError
 from solidgear.core.frames import DOF_NAMES
 from solidgear.core.judge.coarser_mesh import static_bars
 from solidgear.core.quantity import COMPLIANCE, STIFFNESS, Quantity
-from solidgear.show.open_words import table as open_table
-from solidgear.show.table import Column, Table
-from solidgear.show.terminal import matrix_table
-from solidgear.show.units import units_named
-from solidgear.show.words import plus_minus
 from solidgear.core.scene import Port, Scene
 from solidgear.core.scene.rules import no_such_point
 from solidgear.core.solve.condensed import Condensed, Coupled
 from solidgear.core.solve.statics import condense
-from solidgear.variants.budget.budget import beside
 from solidgear.guards.check import cautions
+from solidgear.show.arguments import load
+from solidgear.show.command import caution, command, say
+from solidgear.show.open_words import table as open_table
+from solidgear.show.options import SceneFile, Shown, Solved, options
+from solidgear.show.table import Column, Table
+from solidgear.show.terminal import matrix_table
+from solidgear.show.units import units_named
+from solidgear.show.words import plus_minus
+from solidgear.variants.budget.budget import beside
 
 
 @command

@@ -20,8 +20,8 @@ from solidgear.show.panel import (
 )
 from solidgear.show.plot import NARROW, WIDE, Chart, in_columns
 from solidgear.show.units import ENGINEERING, Units, plain
-from solidgear.trains.response.waterfall import DEEP, waterfall
 from solidgear.show.words import hertz
+from solidgear.trains.response.waterfall import DEEP, waterfall
 
 STABLE, UNSTABLE, LINEAR, APART = "stable", "unstable", "linear: no backlash", "stable, apart"
 OTHERS = ("#c98a00", "#b3305c", "#5a3e8c", "#1f9bb8", "#8a6d3b")

@@ -9,22 +9,22 @@ from typing import Annotated, Any
 
 import typer
 
-from solidgear.show.command import caution, command, say
-from solidgear.show.options import Shown
-from solidgear.trains.options import Mix, Reduced, TrainFile, mix
-from solidgear.core.errors import SceneError, SolidgearError, show
-from solidgear.show.folder import held
+from solidgear.backlash import train as study
 from solidgear.backlash.files import lead, mixes, over_force, write_nonlinear
+from solidgear.backlash.results import BacklashStudy
+from solidgear.core.errors import SceneError, SolidgearError, show
+from solidgear.core.scene.units import quantity
+from solidgear.show.command import caution, command, say
+from solidgear.show.folder import held
+from solidgear.show.options import Shown
 from solidgear.show.units import units_named
+from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.slips import unit_slips
 from solidgear.trains.file.gears import Pair
 from solidgear.trains.file.planetary import named_pair
-from solidgear.core.scene.units import quantity
-from solidgear.backlash import train as study
 from solidgear.trains.judge.comparison import train_data
-from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.modes.modes import unpublished_lines
-from solidgear.backlash.results import BacklashStudy
-from solidgear.trains.assembly.slips import unit_slips
+from solidgear.trains.options import Mix, Reduced, TrainFile, mix
 from solidgear.trains.response.speed_run import ramp_of, speed_run
 
 #: speeds of a sweep in time, and mean forces of a map: each takes seconds

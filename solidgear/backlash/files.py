@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.trains.page import tables as train_tables
 from solidgear.backlash.chart import backlash_chart, waterfall_chart
 from solidgear.show.sheet_files import write_files
 from solidgear.show.table import Column, Table, numbers, text
-from solidgear.trains.page.files import places
 from solidgear.show.units import ENGINEERING, Units, plain, units_named
 from solidgear.show.words import DASH, hertz
+from solidgear.trains.page import tables as train_tables
+from solidgear.trains.page.files import places
 
 
 def lead(found: Any, shown: Units) -> str:

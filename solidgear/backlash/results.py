@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.trains.file.layout import PerTurn
-from solidgear.trains.file.train import Train
 from solidgear.backlash.apart import branch_data, branch_sentences
 from solidgear.backlash.torque import AtForce, Backlash, Jump, Range, Teeth
 from solidgear.backlash.train import InTime
+from solidgear.trains.file.layout import PerTurn
+from solidgear.trains.file.train import Train
 from solidgear.trains.response.speed_run import SpeedRun
 
 #: of motions that repeat themselves otherwise than every mesh period

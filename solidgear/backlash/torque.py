@@ -99,7 +99,9 @@ class Backlash:
     #: number of the law whose mesh is described: 0 for the mesh whose transmission error drives the train
     law: int = 0
     periods: int = 1  #: of the driven mesh after which motions repeat themselves
-    end: str = ""  #: of a branch apart, as :class:`solidgear.backlash.solver.apart.SeparateBranch` says
+    end: str = (
+        ""  #: of a branch apart, as :class:`solidgear.backlash.solver.apart.SeparateBranch` says
+    )
     #: for branches apart; None where they were not looked for
     search: Search | None = field(default=None, repr=False)
     branches_apart: tuple[Backlash, ...] = ()  #: those that were found

@@ -23,24 +23,24 @@ from time import process_time
 
 import numpy as np
 
-from solidgear.core.errors import SceneError, SolidgearError
+from solidgear.backlash.apart import largest_multipliers, search_branches
 from solidgear.backlash.solver.continuation import follow
 from solidgear.backlash.solver.model import Remainder, remainder
 from solidgear.backlash.solver.motion import Steady, sweep
-from solidgear.trains.file.gears import Pair
-from solidgear.trains.file.operation import OperatingPoint
-from solidgear.trains.file.planetary import error_of, named_pair
-from solidgear.backlash.apart import largest_multipliers, search_branches
 from solidgear.backlash.torque import AtForce, Backlash, Teeth
-from solidgear.trains.load.contact import LEVER_REFUSED, axes_of
-from solidgear.trains.assembly.layout import mesh_forces
-from solidgear.trains.assembly.models import Workshop
-from solidgear.trains.modes.modes import refuse_unresolved
-from solidgear.trains.load.operation import SHAFT, loop_forces, rotor_loads
+from solidgear.core.errors import SceneError, SolidgearError
 from solidgear.core.system.gear_mesh import MeshVector, to_gear_frame
 from solidgear.core.system.law import Gap
 from solidgear.core.system.links import RowSpring
 from solidgear.core.system.system import System
+from solidgear.trains.assembly.layout import mesh_forces
+from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.file.gears import Pair
+from solidgear.trains.file.operation import OperatingPoint
+from solidgear.trains.file.planetary import error_of, named_pair
+from solidgear.trains.load.contact import LEVER_REFUSED, axes_of
+from solidgear.trains.load.operation import SHAFT, loop_forces, rotor_loads
+from solidgear.trains.modes.modes import refuse_unresolved
 
 #: the first frequency of a branch by default, over the highest
 BEGIN = 0.01

@@ -12,8 +12,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from solidgear.core.errors import SceneError, show
 from solidgear.bearings.designation import boundary
+from solidgear.core.errors import SceneError, show
 from solidgear.core.scene.typed import Model
 from solidgear.core.scene.units import (
     Angle,

@@ -9,6 +9,7 @@ from typing import Any, Literal
 import numpy as np
 
 from solidgear.bearings.ball import BallRow, ThrustBallRow
+from solidgear.bearings.catalogue import WAYS, Catalogue
 from solidgear.bearings.clearance import clearance_at_work
 from solidgear.bearings.equivalent import static_factors
 from solidgear.bearings.geometry import Inside, inner_geometry
@@ -18,7 +19,6 @@ from solidgear.bearings.rolling import RollingBearing, Row
 from solidgear.bearings.spherical import SphericalRow
 from solidgear.bearings.spinning import SpinningBalls
 from solidgear.core.errors import SceneError, SolidgearError
-from solidgear.bearings.catalogue import WAYS, Catalogue
 
 End = Literal["middle", "softer", "stiffer"]
 

@@ -15,9 +15,9 @@ from __future__ import annotations
 
 import math
 
+from solidgear.bearings.catalogue import ONE_SIDED, Catalogue
 from solidgear.bearings.geometry import Inside
 from solidgear.core.errors import SceneError
-from solidgear.bearings.catalogue import ONE_SIDED, Catalogue
 
 #: 1/K, bearing steel
 EXPANSION = 11.5e-6

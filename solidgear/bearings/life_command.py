@@ -7,13 +7,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
+from solidgear.bearings.bearing_life import BearingLife
 from solidgear.bearings.life import Life
-from solidgear.show.command import say
 from solidgear.core.errors import SceneError, SolidgearError
+from solidgear.core.scene.units import quantity
+from solidgear.show.command import say
 from solidgear.show.table import Column, Table
 from solidgear.show.words import engineering
-from solidgear.core.scene.units import quantity
-from solidgear.bearings.bearing_life import BearingLife
 
 
 def speed_of(text: str | None) -> float | None:

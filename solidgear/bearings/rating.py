@@ -18,8 +18,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from solidgear.bearings.ball import BallRow
-from solidgear.bearings.kinds import SHARES
 from solidgear.bearings.catalogue import Catalogue
+from solidgear.bearings.kinds import SHARES
 
 if TYPE_CHECKING:
     from solidgear.bearings.geometry import Inside

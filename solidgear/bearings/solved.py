@@ -14,11 +14,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from solidgear.bearings.balance import Linear, Mounted
+from solidgear.bearings.catalogue import Preload
 from solidgear.bearings.catalogued import Catalogued, End, catalogued, state
 from solidgear.bearings.equilibrium import Equilibrium, equilibrium
 from solidgear.core.errors import SceneError
 from solidgear.core.scene import Bearing, Scene
-from solidgear.bearings.catalogue import Preload
 
 if TYPE_CHECKING:
     from solidgear.core.body import Body

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from solidgear.bearings.catalogue import Catalogue
 from solidgear.bearings.catalogued import Catalogued
 from solidgear.bearings.row import Contacts
 from solidgear.bearings.solved import Choice, Solved, solved
 from solidgear.core.body import Body
 from solidgear.core.errors import SolidgearError
 from solidgear.core.scene import Bearing, BearingLoad, Scene
-from solidgear.bearings.catalogue import Catalogue
 
 #: why one row of a pair carries nothing
 LOST = "any more: the pair has lost its preload"

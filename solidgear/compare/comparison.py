@@ -10,6 +10,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, overload
 
+from solidgear.compare.page.write import write_all
+from solidgear.compare.recording import recorded
+from solidgear.compare.two.two_shafts import two_shafts
 from solidgear.core.display import Displayed
 from solidgear.core.errors import SolidgearError
 from solidgear.core.judge.causes import SHOWN, attachment_causes, beam_causes, shoulder_cause
@@ -17,7 +20,6 @@ from solidgear.core.judge.lumped import synthesise_all
 from solidgear.core.judge.open_record import OpenNumbers
 from solidgear.core.judge.quantities import change
 from solidgear.core.judge.record import CauseRecord, GuardRecord, LumpedRecord, Record, WhereRecord
-from solidgear.compare.recording import recorded
 from solidgear.core.judge.solution import Solution
 from solidgear.core.judge.study import study
 from solidgear.core.judge.ties import SECTION
@@ -28,15 +30,13 @@ from solidgear.core.ladder.registry import LADDER
 from solidgear.core.machine.memory import one_run
 from solidgear.core.machine.meter import Meter
 from solidgear.core.machine.threads import pinned
-from solidgear.show.units import units_named
-from solidgear.compare.page.write import write_all
 from solidgear.core.scene import Scene
 from solidgear.core.scene.shaft import without_axis
-from solidgear.trains.file.train import Train
-from solidgear.variants.budget.budget import opened
 from solidgear.guards.check import notices
 from solidgear.guards.models import cells_around
-from solidgear.compare.two.two_shafts import two_shafts
+from solidgear.show.units import units_named
+from solidgear.trains.file.train import Train
+from solidgear.variants.budget.budget import opened
 
 if TYPE_CHECKING:
     from solidgear.compare.two.two_shafts import TwoShafts

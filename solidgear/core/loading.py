@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from solidgear.core.body import Body
     from solidgear.core.scene import Scene
     from solidgear.parts.body_file import BodyTable
-    from solidgear.trains.file.operation import OperatingPoint
     from solidgear.parts.recognised import Recognised
+    from solidgear.trains.file.operation import OperatingPoint
     from solidgear.trains.file.train import Train
 
 #: model on which bearings and shaft find their equilibrium: loads in a shaft depend little on how

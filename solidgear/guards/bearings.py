@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import combinations
 
-from solidgear.core.scene import Bearing, Scene
 from solidgear.bearings.catalogue import Catalogue
+from solidgear.core.scene import Bearing, Scene
 from solidgear.core.scene.outline import TOUCH
 from solidgear.guards.notice import Notice, Notices
 from solidgear.guards.probe import Probe

@@ -21,8 +21,8 @@ from solidgear.core.scene.outline import Outline
 from solidgear.core.scene.shaft import feature_labels, resolved, without_axis
 from solidgear.guards import GUARDS, LEVELS, Notice, Probe
 from solidgear.guards.notice import Notices, beams, everything
-from solidgear.guards.smearing import smearing
 from solidgear.guards.round_part import against_the_part, described, of_files
+from solidgear.guards.smearing import smearing
 
 if TYPE_CHECKING:
     from solidgear.core.scene import Scene

@@ -12,10 +12,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from solidgear.core.ladder.registry import LADDER
-from solidgear.cuts.sector.teeth import lacking
 from solidgear.core.scene.closed_form import mass_properties
 from solidgear.core.scene.outline import Outline
 from solidgear.core.scene.shaft import feature_labels
+from solidgear.cuts.sector.teeth import lacking
 from solidgear.guards.notice import Notice, Notices, everything
 
 if TYPE_CHECKING:

@@ -10,9 +10,10 @@ from typing import Annotated, Any
 
 import typer
 
-from solidgear.show.command import command, say
-from solidgear.show.arguments import load
-from solidgear.show.options import Run, share
+from solidgear.measured.correlate import correlate as correlated
+from solidgear.measured.data import load_measured
+from solidgear.measured.identify import identify as identified
+from solidgear.measured.overlay import overlay
 from solidgear.measured.tables import (
     entries,
     fitted,
@@ -22,13 +23,12 @@ from solidgear.measured.tables import (
     write_correlation,
     write_identification,
 )
-from solidgear.show.folder import held
-from solidgear.show.viewer import viewer_fragment
-from solidgear.measured.correlate import correlate as correlated
-from solidgear.measured.data import load_measured
-from solidgear.measured.identify import identify as identified
-from solidgear.measured.overlay import overlay
 from solidgear.measured.turned import turned_beside
+from solidgear.show.arguments import load
+from solidgear.show.command import command, say
+from solidgear.show.folder import held
+from solidgear.show.options import Run, share
+from solidgear.show.viewer import viewer_fragment
 
 SceneFile = Annotated[Path, typer.Argument(help="Scene file (TOML).")]
 MeasuredFile = Annotated[

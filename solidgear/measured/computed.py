@@ -11,6 +11,7 @@ import numpy as np
 
 from solidgear.core.body import Body, as_supports
 from solidgear.core.judge.bounded import mode_bars
+from solidgear.core.judge.change import BarredMode
 from solidgear.core.judge.coarser_mesh import coarser_bars
 from solidgear.core.judge.settle import Settled, bars_of_modes, settle
 from solidgear.core.ladder import build
@@ -19,9 +20,8 @@ from solidgear.core.machine.threads import pinned
 from solidgear.core.scene import Scene
 from solidgear.core.scene.rules import MOST_MODES
 from solidgear.core.scene.shaft import without_axis
-from solidgear.variants.sensitivity.adjoint import mode_form
 from solidgear.core.solve.modes import Mode, ModeSet, modes
-from solidgear.core.judge.change import BarredMode
+from solidgear.variants.sensitivity.adjoint import mode_form
 from solidgear.variants.sweep.bench import surface
 
 Progress = Callable[[str], None]

@@ -30,10 +30,10 @@ from pydantic import AfterValidator, BeforeValidator, Field, PrivateAttr, model_
 
 from solidgear.core.body.surface import Surface
 from solidgear.core.errors import SceneError, show
+from solidgear.core.loading import explained
 from solidgear.core.scene.toml_file import parse
 from solidgear.core.scene.typed import Model
 from solidgear.core.scene.units import Frequency, quantity
-from solidgear.core.loading import explained
 from solidgear.measured.alignment import BANDWIDTH
 from solidgear.measured.axis_labels import response
 from solidgear.measured.csv_file import read_csv

@@ -15,12 +15,11 @@ import numpy as np
 from solidgear.core.body import as_supports
 from solidgear.core.display import Displayed
 from solidgear.core.errors import SolidgearError
+from solidgear.core.loading import scene_of
 from solidgear.core.machine.threads import pinned
 from solidgear.core.scene import Scene
 from solidgear.core.scene.paths import Tables, replace_entry
 from solidgear.core.scene.toml_file import parse
-from solidgear.variants.sensitivity.adjoint import mode_form
-from solidgear.core.loading import scene_of
 from solidgear.measured.computed import Computed, computed_like, computed_up_to
 from solidgear.measured.correlate import DEVIATIONS, SURE, placed_in
 from solidgear.measured.data import Measured
@@ -28,6 +27,7 @@ from solidgear.measured.fit import ALIKE, SAME, End, Fit, best_of
 from solidgear.measured.same_part import Likeness
 from solidgear.measured.sprung import Sprung
 from solidgear.measured.varied import varied_of
+from solidgear.variants.sensitivity.adjoint import mode_form
 from solidgear.variants.sensitivity.derivatives import Derivatives
 from solidgear.variants.sweep.bench import surface
 

@@ -20,8 +20,8 @@ from scipy.spatial import cKDTree
 from solidgear.core.body.surface import Surface
 from solidgear.core.errors import SolidgearError
 from solidgear.core.meshing.placing import TURNS, Placing
-from solidgear.parts.body_file import UNITS, Origin, Unit
 from solidgear.core.scene.typed import Model
+from solidgear.parts.body_file import UNITS, Origin, Unit
 
 #: largest distance of a point from the surface, as a share of the largest radius
 OFF = 0.05

@@ -15,8 +15,8 @@ from solidgear.show.panel import GREY, INK, PERCENT, Axis, Panel, Series, readou
 from solidgear.show.plot import WIDE, Chart
 from solidgear.show.sheet_files import write_files
 from solidgear.show.table import NUMBER, Column, Table, text
-from solidgear.trains.page.sheet import Section
 from solidgear.show.words import hertz, percent
+from solidgear.trains.page.sheet import Section
 
 #: looks of pairs by their verdict
 BOTH = {"measured": Series(INK), "computed": Series("#00805e")}

@@ -8,10 +8,10 @@ import numpy as np
 from scipy.sparse.csgraph import minimum_spanning_tree
 from scipy.spatial import distance_matrix
 
-from solidgear.show.packing import Mesh
-from solidgear.show.turning import Member, Turned, together
 from solidgear.measured.correlate import Correlation
 from solidgear.measured.shapes import SurfacePoints
+from solidgear.show.packing import Mesh
+from solidgear.show.turning import Member, Turned, together
 
 #: modes that a page has room for
 MOST = 16

@@ -15,10 +15,10 @@ from typing import Any
 import numpy as np
 
 from solidgear.core.errors import SceneError, SolidgearError
-from solidgear.core.meshing.placing import Placing
-from solidgear.parts.universal_units import units_of
 from solidgear.core.loading import explained
+from solidgear.core.meshing.placing import Placing
 from solidgear.measured.axis_labels import force, frequency, motion
+from solidgear.parts.universal_units import units_of
 
 #: endings of their names
 ENDINGS = (".unv", ".uff")

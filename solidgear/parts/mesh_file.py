@@ -15,11 +15,11 @@ from skfem import Mesh, MeshHex1, MeshHex2, MeshTet1
 
 from solidgear.core.errors import listed, nearest, show
 from solidgear.core.meshing.curving import ten_nodes, with_middles, with_nodes
-from solidgear.parts.decks import Deck, read
-from solidgear.parts.decks.deck import KINDS, Group
 from solidgear.core.meshing.placing import Placing
 from solidgear.core.meshing.quality import MeshError, check_mesh, element_volumes, outward
 from solidgear.core.scene.file_materials import FileMaterial
+from solidgear.parts.decks import Deck, read
+from solidgear.parts.decks.deck import KINDS, Group
 
 #: groups that a sentence names
 MOST_NAMED = 12

@@ -15,18 +15,18 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from solidgear.core.errors import SceneError
-from solidgear.parts.decks import universal
-from solidgear.parts.decks.deck import reader_of
-from solidgear.parts.part_file import PartContent, coarser_meshes, content_of, read, skin
 from solidgear.core.meshing.placing import TURNS, Placing, Triple, turn_of
 from solidgear.core.meshing.quality import MeshError
-from solidgear.parts.round_part import ON_LINE, RoundPart, round_part
-from solidgear.parts.shared_axis import shared_axis
-from solidgear.parts.body_file import NONE, UNITS, BodyFile, BodyTable
 from solidgear.core.scene.closed_form import volume_of
 from solidgear.core.scene.outline import Frustum, Outline
 from solidgear.core.scene.patches import Patch, block_patches
+from solidgear.parts.body_file import NONE, UNITS, BodyFile, BodyTable
+from solidgear.parts.decks import universal
+from solidgear.parts.decks.deck import reader_of
+from solidgear.parts.part_file import PartContent, coarser_meshes, content_of, read, skin
 from solidgear.parts.recognised import Recognised
+from solidgear.parts.round_part import ON_LINE, RoundPart, round_part
+from solidgear.parts.shared_axis import shared_axis
 
 #: least share of the surface that is round about the axis, for a part to be a shaft
 LEAST_ROUND = 0.2

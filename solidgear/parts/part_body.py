@@ -14,15 +14,15 @@ from solidgear.core.elements import SOLVED_AS
 from solidgear.core.errors import SolidgearError
 from solidgear.core.kernel.room import assemblable
 from solidgear.core.machine.isolated import IsolatedError, isolated
-from solidgear.parts import step
 from solidgear.core.meshing.element_size import size_formulas
-from solidgear.parts.part_file import file_mesh
 from solidgear.core.meshing.placing import Placing
 from solidgear.core.meshing.quality import MeshError, cell_sizes
 from solidgear.core.meshing.revolved import graded_corners
 from solidgear.core.meshing.tetrahedra import check_filling
-from solidgear.parts.own_mesh import solid_body
 from solidgear.core.models.solid.plan import tetrahedra_of, tetrahedra_plan
+from solidgear.parts import step
+from solidgear.parts.own_mesh import solid_body
+from solidgear.parts.part_file import file_mesh
 
 #: seconds after which a mesh is given up
 MESH_SECONDS = 900.0

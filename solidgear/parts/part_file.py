@@ -12,12 +12,12 @@ import numpy as np
 
 from solidgear.core.errors import SceneError
 from solidgear.core.machine.isolated import IsolatedError, isolated
-from solidgear.parts.mesh_file import FileMesh, mesh_from
 from solidgear.core.meshing.placing import Placing
 from solidgear.core.meshing.quality import MeshError
-from solidgear.parts.step import survey
-from solidgear.parts.body_file import BodyTable, CoarseMesh, PartGroup
 from solidgear.core.scene.patches import Patch
+from solidgear.parts.body_file import BodyTable, CoarseMesh, PartGroup
+from solidgear.parts.mesh_file import FileMesh, mesh_from
+from solidgear.parts.step import survey
 
 #: s of processor time after which a file is given up
 LOOK_SECONDS = 25.0

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, NamedTuple
 from pydantic import Field, model_validator
 
 from solidgear.core.errors import SceneError, listed
-from solidgear.parts.body_file import BodyFile, BodyTable
 from solidgear.core.scene.parts import Material, Segment
 from solidgear.core.scene.typed import Model
 from solidgear.core.scene.units import Length, PositiveLength
+from solidgear.parts.body_file import BodyFile, BodyTable
 
 if TYPE_CHECKING:
     from solidgear.core.scene.places import Places

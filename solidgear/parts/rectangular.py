@@ -13,8 +13,8 @@ from solidgear.core.body import Body
 from solidgear.core.errors import SolidgearError
 from solidgear.core.kernel.room import assemblable
 from solidgear.core.meshing.quality import cell_sizes
-from solidgear.parts.own_mesh import solid_body
 from solidgear.core.scene.patches import FACES
+from solidgear.parts.own_mesh import solid_body
 
 #: cells along the shortest edge at refinement 1; of longer edges they grow with the root of the edge,
 #: since waves along an edge are longer than those across: every edge is divided by a multiple of this,

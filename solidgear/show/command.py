@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar, get_type_hints
 import typer
 from typer.core import TyperCommand, TyperGroup
 
-from solidgear.show.options_alone import options_alone
 from solidgear.core.machine.memory import one_command
+from solidgear.show.options_alone import options_alone
 
 if TYPE_CHECKING:
     from rich.console import Console, RenderableType
@@ -118,16 +118,32 @@ GROUPS = {
     },
 }
 COMMANDS = {name: line for group in GROUPS.values() for name, line in group.items()}
-#: modules of commands, where they have another name
+#: modules of commands, each in the room of its question
 MODULES = {
-    "new": "files",
-    "scenes": "files",
-    "options": "files",
-    "correlate": "measured",
-    "identify": "measured",
-    "system-modes": "train",
-    "response": "train",
-    "judge-system": "train_judge",
+    "new": "app.files",
+    "scenes": "app.files",
+    "check": "app.check",
+    "options": "app.files",
+    "answer": "app.answer",
+    "stiffness": "app.stiffness",
+    "modes": "app.modes",
+    "compare": "app.compare",
+    "chart": "compare.race.command",
+    "render": "app.render",
+    "bearing": "app.bearing",
+    "stress": "strength.stress.command",
+    "sweep": "variants.sweep.command",
+    "sensitivities": "variants.sensitivity.command",
+    "optimise": "variants.optimise.command",
+    "budget": "variants.budget.command",
+    "correlate": "measured.command",
+    "identify": "measured.command",
+    "system-modes": "trains.command",
+    "response": "trains.command",
+    "receptance": "trains.response.receptance_command",
+    "nonlinear": "backlash.command",
+    "deflect": "strength.deflection.command",
+    "judge-system": "trains.judge.command",
 }
 
 
@@ -185,7 +201,7 @@ class Door(TyperGroup):
 
 def _imported(name: str) -> Any:
     """A command with its options."""
-    module = import_module(f"solidgear.app.{MODULES.get(name, name)}")
+    module = import_module(f"solidgear.{MODULES[name]}")
     alone = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
     alone.command(name, cls=Told, help=COMMANDS[name])(getattr(module, name.replace("-", "_")))
     return typer.main.get_command(alone)

@@ -15,10 +15,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from solidgear.show.command import Group, Progress
 from solidgear.core.errors import SolidgearError, show
 from solidgear.core.ladder import build
 from solidgear.core.ladder.registry import LADDER
+from solidgear.show.command import Group, Progress
 from solidgear.show.units import ENGINEERING, SYSTEMS
 
 if TYPE_CHECKING:
@@ -207,7 +207,9 @@ class Solved(Chosen):
             return ""
         if self.on_two_meshes:
             if scene.body is not None and scene.body.one_mesh:
-                from solidgear.core.judge.coarser_mesh import no_bar  # start-up: for mesh files alone
+                from solidgear.core.judge.coarser_mesh import (
+                    no_bar,  # start-up: for mesh files alone
+                )
 
                 return no_bar(scene, body, options(self.pairs))
             return "there is no coarser mesh beside the one that was set"

@@ -10,11 +10,11 @@ import numpy as np
 from solidgear.core.frames import DOF_NAMES
 from solidgear.core.quantity import BLOCK_UNITS
 from solidgear.measured.tables import entries, pairs
-from solidgear.variants.optimise.tables import designs
 from solidgear.show.reading import mode_of
 from solidgear.show.sketch import draw
 from solidgear.show.table import Table
 from solidgear.show.words import bar_of, percent
+from solidgear.variants.optimise.tables import designs
 
 if TYPE_CHECKING:
     from solidgear.core.body import Body

@@ -8,17 +8,17 @@ from typing import Annotated, Any
 
 import typer
 
-from solidgear.show.command import Group
 from solidgear.app.bearing import loaded_by
-from solidgear.show.options import refuse
 from solidgear.core.errors import SceneError, SolidgearError, show
-from solidgear.strength.deflection.tables import DOFS, LOAD_OF
-from solidgear.show.units import Units
-from solidgear.core.scene import Scene
-from solidgear.trains.file.operation import OperatingPoint
-from solidgear.core.scene.toml_file import is_train
-from solidgear.trains.file.train import Train
 from solidgear.core.loading import as_written, load_train
+from solidgear.core.scene import Scene
+from solidgear.core.scene.toml_file import is_train
+from solidgear.show.command import Group
+from solidgear.show.options import refuse
+from solidgear.show.units import Units
+from solidgear.strength.deflection.tables import DOFS, LOAD_OF
+from solidgear.trains.file.operation import OperatingPoint
+from solidgear.trains.file.train import Train
 from solidgear.trains.load.operation import named_point
 
 AtRestFile = Annotated[

@@ -8,27 +8,27 @@ from typing import Annotated
 
 import typer
 
-from solidgear.show.command import caution, command, say
-from solidgear.trains.response.speed_command import Speed, say_at_speed
-from solidgear.show.options import UNITS, Shown
-from solidgear.trains.options import Driven, Mix, Reduced, TrainFile
 from solidgear.core.errors import SolidgearError, show
 from solidgear.core.frames import DOF_NAMES
-from solidgear.trains.page import tables as train_tables
+from solidgear.show.command import caution, command, say
 from solidgear.show.folder import held
+from solidgear.show.options import UNITS, Shown
+from solidgear.show.units import units_named
+from solidgear.show.viewer import viewer_fragment
+from solidgear.trains.assembly.orders import order_map
+from solidgear.trains.assembly.shaft import mix_label
+from solidgear.trains.assembly.slips import unit_slips
+from solidgear.trains.judge.comparison import train_data
+from solidgear.trains.modes.modes import train_modes, unpublished_lines
+from solidgear.trains.modes.pictures import draw_modes, still_picture, turning_modes
+from solidgear.trains.options import Driven, Mix, Reduced, TrainFile
+from solidgear.trains.page import tables as train_tables
 from solidgear.trains.page.files import write_response
 from solidgear.trains.page.sheet import write_sheet
 from solidgear.trains.page.tables import modes, peaks
-from solidgear.show.units import units_named
-from solidgear.show.viewer import viewer_fragment
-from solidgear.trains.judge.comparison import train_data
 from solidgear.trains.response.loudest import loudest
-from solidgear.trains.modes.modes import train_modes, unpublished_lines
-from solidgear.trains.assembly.orders import order_map
-from solidgear.trains.modes.pictures import draw_modes, still_picture, turning_modes
 from solidgear.trains.response.respond import respond
-from solidgear.trains.assembly.shaft import mix_label
-from solidgear.trains.assembly.slips import unit_slips
+from solidgear.trains.response.speed_command import Speed, say_at_speed
 
 
 @command

@@ -9,18 +9,18 @@ from typing import Annotated, Any
 
 import typer
 
-from solidgear.show.command import Group
-from solidgear.show.options import MODEL, options_by_name
 from solidgear.core.errors import SceneError, SolidgearError, listed, show
 from solidgear.core.ladder.registry import LADDER
+from solidgear.core.loading import load_train
 from solidgear.core.scene.toml_file import parse
-from solidgear.trains.file.train import Train
+from solidgear.show.command import Group
+from solidgear.show.options import MODEL, options_by_name
+from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.shaft import checked_model
 from solidgear.trains.file.reading import as_written
 from solidgear.trains.file.tables import FIRST_HARMONIC, LAST_HARMONIC
-from solidgear.core.loading import load_train
-from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.file.train import Train
 from solidgear.trains.load.operation import at_point
-from solidgear.trains.assembly.shaft import checked_model
 
 TrainFile = Annotated[
     Path, typer.Argument(help="Train file (TOML), such as geometry/axle_overhung.toml.")

@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 
 import solidgear as sg
-from solidgear.core.errors import SolidgearError
+from solidgear.backlash.results import BacklashStudy
 from solidgear.backlash.solver.motion import steady_motion
 from solidgear.backlash.torque import Backlash
-from solidgear.trains.assembly.models import Workshop
 from solidgear.backlash.train import FADED, teeth_of, with_backlash
-from solidgear.backlash.results import BacklashStudy
+from solidgear.core.errors import SolidgearError
+from solidgear.trains.assembly.models import Workshop
 from validation.common import ROOT
 
 AXLES = ("axle_overhung", "axle_thesis")

@@ -17,10 +17,10 @@ from typing import Any
 import numpy as np
 
 import solidgear as sg
-from solidgear.show.words import percent
 from solidgear.core.scene.file import scene_of
 from solidgear.measured.data import load_measured
 from solidgear.measured.identify import Identification, identify
+from solidgear.show.words import percent
 
 HERE = Path(__file__).parent
 PAGE = HERE.parents[1] / "docs" / "validation" / "experiments.md"

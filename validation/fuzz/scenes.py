@@ -13,10 +13,10 @@ from pathlib import Path
 import numpy as np
 
 from solidgear.core.ladder import build
+from solidgear.core.loading import load
 from solidgear.core.solve.modes import modes
 from solidgear.core.solve.statics import condense
 from solidgear.guards.check import check_scene
-from solidgear.core.loading import load
 from validation.fuzz.case import Case, Finding, Fuzz, Refused, refusing
 from validation.fuzz.commands import ran
 from validation.fuzz.spoiling import spoilt

@@ -17,10 +17,10 @@ import solidgear as sg
 from solidgear.backlash.solver.continuation import Branch, follow
 from solidgear.backlash.solver.model import Remainder, remainder
 from solidgear.backlash.solver.motion import sweep
-from solidgear.trains.assembly.models import Workshop
 from solidgear.backlash.train import STEP, backlash_model, teeth_of
 from solidgear.core.system import Inertia, RowSpring, System
 from solidgear.core.system.law import Gap
+from solidgear.trains.assembly.models import Workshop
 from validation.common import ROOT
 from validation.race import pyharm_peer
 from validation.race.heat import Check, Heat, Sample

@@ -18,9 +18,9 @@ import numpy as np
 
 import solidgear as sg
 from solidgear.bearings.balance import Linear, Mounted
+from solidgear.bearings.catalogue import Catalogue
 from solidgear.bearings.catalogued import catalogued
 from solidgear.bearings.equilibrium import Equilibrium, equilibrium
-from solidgear.bearings.catalogue import Catalogue
 from solidgear.core.scene.file import scene_of
 from solidgear.core.system import CarrierTurn
 from solidgear.core.system.gear_mesh import line_of_action, mean_radius, mesh_point

@@ -17,10 +17,10 @@ import numpy as np
 
 import solidgear as sg
 from solidgear.bearings.balance import Mounted
+from solidgear.bearings.catalogue import Catalogue
 from solidgear.bearings.catalogued import catalogued
 from solidgear.bearings.equilibrium import Equilibrium, equilibrium
 from solidgear.core.frames import rotation
-from solidgear.bearings.catalogue import Catalogue
 from solidgear.core.scene.file import scene_of
 from solidgear.core.system.gear_mesh import (
     cylindrical_mesh,

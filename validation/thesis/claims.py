@@ -22,15 +22,15 @@ from scipy.optimize import linear_sum_assignment
 
 import solidgear as sg
 from solidgear.core.reduction.effective_mass import synthesise
-from solidgear.show.plot import Make
-from solidgear.trains.page.sheet import Section, write_sheet
-from solidgear.show.words import capital
 from solidgear.core.scene import Scene
-from solidgear.trains.file.train import Train
-from solidgear.trains.assembly.models import Workshop
-from solidgear.trains.modes.pairing import mac, modes_and_motions
-from solidgear.trains.response.respond import Drive, respond
 from solidgear.core.system.steady import peaks
+from solidgear.show.plot import Make
+from solidgear.show.words import capital
+from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.file.train import Train
+from solidgear.trains.modes.pairing import mac, modes_and_motions
+from solidgear.trains.page.sheet import Section, write_sheet
+from solidgear.trains.response.respond import Drive, respond
 from validation.common import ROOT, markdown, results_folder, show, write_rows
 from validation.thesis.lumped_pair import COMPONENTS, PairModes, diagonal_mass
 from validation.thesis.pair import CASES, DATA, gear_support, geared_pair

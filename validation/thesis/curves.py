@@ -9,13 +9,13 @@ from functools import cache
 
 import numpy as np
 
-from solidgear.show.plot import Chart
-from solidgear.trains.page.chart import columns_chart, response_chart
+from solidgear.compare.two.two_trains import TwoTrains, two_trains
 from solidgear.compare.two.two_trains_page import Bar, motions, shares_chart
+from solidgear.show.plot import Chart
 from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.page.chart import columns_chart, response_chart
 from solidgear.trains.response.respond import respond
 from solidgear.trains.response.response import TrainResponse
-from solidgear.compare.two.two_trains import TwoTrains, two_trains
 from validation.thesis import claims
 from validation.thesis.claims import AXES, WAYS, fourteen, mounted
 from validation.thesis.pair import CASES, DATA

@@ -14,9 +14,9 @@ import numpy as np
 
 import solidgear as sg
 from solidgear.core.reduction.superelement import Superelement, Truncation, assemble
-from solidgear.trains.file.train import SIDES, Train
 from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.assembly.shaft import JUDGE
+from solidgear.trains.file.train import SIDES, Train
 from validation.common import ROOT, results_folder, show, write_rows
 
 HIGHEST, REFERENCE = 4000.0, 160

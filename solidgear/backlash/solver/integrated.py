@@ -13,10 +13,10 @@ import numpy as np
 from scipy.integrate import DOP853
 from scipy.optimize import brentq
 
-from solidgear.core.errors import SolidgearError
 from solidgear.backlash.solver.kinks import continued, kinks
 from solidgear.backlash.solver.model import Remainder
 from solidgear.backlash.solver.sway import Line
+from solidgear.core.errors import SolidgearError
 
 #: looks at a stretch in a period
 LOOKS = 128

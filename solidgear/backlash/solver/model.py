@@ -19,8 +19,8 @@ from functools import cached_property
 
 import numpy as np
 
-from solidgear.core.errors import SolidgearError
 from solidgear.backlash.solver.sway import Line, Sway
+from solidgear.core.errors import SolidgearError
 from solidgear.core.system.law import Force, Law
 from solidgear.core.system.links import RowSpring
 from solidgear.core.system.steady import lost_stiffness

@@ -13,12 +13,12 @@ import numpy as np
 import scipy.linalg as sla
 from scipy.special import factorial
 
-from solidgear.core.errors import SolidgearError
-from solidgear.core.machine.threads import pinned
 from solidgear.backlash.solver.continuation import Point
 from solidgear.backlash.solver.integrated import LOOKS, TOLERANCE, Integrated
 from solidgear.backlash.solver.model import Remainder
 from solidgear.backlash.solver.pieces import SHORT, TERMS, Piece, Pieces
+from solidgear.core.errors import SolidgearError
+from solidgear.core.machine.threads import pinned
 
 #: rest of a transient, relative, when a motion is steady
 STEADY = 1e-5

@@ -15,8 +15,6 @@ from functools import cached_property
 
 import numpy as np
 
-from solidgear.core.errors import SolidgearError
-from solidgear.core.machine.threads import pinned
 from solidgear.backlash.solver.balance import (
     ARRIVED,
     Residual,
@@ -26,6 +24,8 @@ from solidgear.backlash.solver.balance import (
     over_parts,
 )
 from solidgear.backlash.solver.model import Remainder
+from solidgear.core.errors import SolidgearError
+from solidgear.core.machine.threads import pinned
 
 #: steps of Newton's method, and halvings of one that leads away
 ITERATIONS, HALVINGS = 40, 8

@@ -20,9 +20,9 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.optimize import brentq
 
-from solidgear.core.machine.threads import pinned
 from solidgear.backlash.solver.model import Remainder
 from solidgear.backlash.solver.stability import over_cycle
+from solidgear.core.machine.threads import pinned
 
 #: instants of a cycle, and harmonics of Hill's determinant on either side
 INSTANTS, HARMONICS = 512, 8

@@ -9,15 +9,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
-from solidgear.core.judge.record import Record
-from solidgear.variants.budget.chart import of_record as budget_chart
 from solidgear.compare.page.change_charts import attachment_chart, cause_chart
 from solidgear.compare.page.convergence_chart import convergence_chart
 from solidgear.compare.page.cost_chart import cost_chart
+from solidgear.compare.page.where_chart import where_chart
+from solidgear.core.judge.record import Record
 from solidgear.show.mode_charts import mac_chart, mode_chart
 from solidgear.show.plot import Chart, page_svg
 from solidgear.show.sketch_page import sketch_svg
-from solidgear.compare.page.where_chart import where_chart
+from solidgear.variants.budget.chart import of_record as budget_chart
 
 #: those that are described in Vega-Lite, for a page of a width
 DESCRIBED: dict[str, Callable[[Record, float], Chart | None]] = {

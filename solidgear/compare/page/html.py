@@ -12,8 +12,6 @@ import logging
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from solidgear.core.judge.record import Record, VerdictRecord
-from solidgear.core.machine.whole_file import whole
 from solidgear.compare.page import (
     charts,
     evidence_tables,
@@ -22,9 +20,11 @@ from solidgear.compare.page import (
     point_tables,
     result_tables,
 )
-from solidgear.show import open_words, run_tables
-from solidgear.compare.race import tables as race_tables
 from solidgear.compare.page.lumped import lumped_tables
+from solidgear.compare.race import tables as race_tables
+from solidgear.core.judge.record import Record, VerdictRecord
+from solidgear.core.machine.whole_file import whole
+from solidgear.show import open_words, run_tables
 from solidgear.show.page_parts import Contents, data_uri, template
 from solidgear.show.reading import model_name, reference_of
 from solidgear.show.units import Units, units_named

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
+from solidgear.bearings.words import catalogue, load_row, speed_row, without_column
 from solidgear.core.judge.record import Record
 from solidgear.core.quantity import Quantity
-from solidgear.bearings.words import catalogue, load_row, speed_row, without_column
 from solidgear.show.reading import entry
 from solidgear.show.table import Column, Table, given, text, word
-from solidgear.trains.page.tables import mark, material_words
 from solidgear.show.units import ENGINEERING, Units
 from solidgear.show.words import DASH, engineering, is_number, short_percent
+from solidgear.trains.page.tables import mark, material_words
 
 #: of a bearing's 6x6
 BEARING_ENTRIES = tuple(map(Quantity, ("K_xx", "K_yy", "K_zz", "K_z,thx", "K_thx", "K_thz")))

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
+from solidgear.compare.page.result_tables import across, apart
 from solidgear.core.judge.record import Record
 from solidgear.core.quantity import C_ZZ, COMPLIANCE, STIFFNESS, Quantity
 from solidgear.show.matrices import block as matrix
 from solidgear.show.reading import LUMPED, block, entry, model_name, value_of
-from solidgear.compare.page.result_tables import across, apart
 from solidgear.show.table import Table
 from solidgear.show.units import ENGINEERING, Units
 from solidgear.show.words import capital, plus_minus

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from solidgear.compare.page.html import drawn_charts, write_report
 from solidgear.core.errors import SolidgearError
 from solidgear.show.folder import begun, prepare
-from solidgear.compare.page.html import drawn_charts, write_report
 from solidgear.show.outputs import OUTPUTS
 from solidgear.show.page_parts import data_uri
 from solidgear.show.reading import model_name
@@ -21,12 +21,12 @@ from solidgear.show.turning import Turned, turned
 from solidgear.show.viewer import TURNED, Turning
 
 if TYPE_CHECKING:
+    from solidgear.compare.comparison import Comparison
     from solidgear.core.body import Body
     from solidgear.core.judge.record import Record
     from solidgear.core.judge.solution import Solution
-    from solidgear.show.render import RenderResult
     from solidgear.core.solve.modes import ModeSet
-    from solidgear.compare.comparison import Comparison
+    from solidgear.show.render import RenderResult
 
 MODE = "bending 1"
 

@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from solidgear.compare.race.cases import AUTO
 from solidgear.core.errors import SolidgearError
 from solidgear.core.judge.answer import solve_cheapest
 from solidgear.core.judge.lumped import preferred, sources
 from solidgear.core.judge.question import FamilySolver, build_families
-from solidgear.compare.race.cases import AUTO
 from solidgear.core.judge.refinement import Refinement
 from solidgear.core.judge.solving import Answer, Statics, solve
 from solidgear.core.ladder.model import LUMPED

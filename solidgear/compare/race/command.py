@@ -9,21 +9,21 @@ from typing import Annotated
 
 import typer
 
-from solidgear.show.command import Progress, command, say
-from solidgear.show.arguments import load
-from solidgear.show.options import Run, SceneFile
-from solidgear.core.errors import SolidgearError
-from solidgear.compare.race.cases import plan, setup_seconds
-from solidgear.compare.race.pareto import Race
-from solidgear.compare.race.timing import BUDGET, FULL_BUDGET, FULL_SURE, race
-from solidgear.core.judge.record import Record
-from solidgear.show.border import as_record
-from solidgear.show.folder import clear_halves, held
 from solidgear.compare.page.html import write_report
+from solidgear.compare.race.cases import plan, setup_seconds
 from solidgear.compare.race.figure import draw
+from solidgear.compare.race.pareto import Race
 from solidgear.compare.race.rows import PICTURE, left_out, records, write_rows
 from solidgear.compare.race.tables import front_table
+from solidgear.compare.race.timing import BUDGET, FULL_BUDGET, FULL_SURE, race
+from solidgear.core.errors import SolidgearError
+from solidgear.core.judge.record import Record
 from solidgear.core.scene import Scene
+from solidgear.show.arguments import load
+from solidgear.show.border import as_record
+from solidgear.show.command import Progress, command, say
+from solidgear.show.folder import clear_halves, held
+from solidgear.show.options import Run, SceneFile
 
 
 @command

@@ -5,7 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from solidgear.compare.race.legend import FRONT, footer, legend
 from solidgear.compare.race.pareto import AUTOMATIC, Race, Row
+from solidgear.compare.race.rows import COSTS, error_text, options_text
+from solidgear.compare.race.style import REFERENCE, Look
 from solidgear.show.panel import (
     COUNT,
     GREY,
@@ -18,9 +21,6 @@ from solidgear.show.panel import (
     tolerance_line,
 )
 from solidgear.show.plot import WIDE, Chart
-from solidgear.compare.race.legend import FRONT, footer, legend
-from solidgear.compare.race.rows import COSTS, error_text, options_text
-from solidgear.compare.race.style import REFERENCE, Look
 from solidgear.show.words import grouped, is_number, percent, seconds
 
 QUANTITY = {"C_zz": "port compliance C_zz", "bending 1": "first bending frequency"}

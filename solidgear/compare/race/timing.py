@@ -16,9 +16,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from solidgear.core.errors import SolidgearError
 from solidgear.compare.race.answers import answer
 from solidgear.compare.race.pareto import CHARTED, Race, Row
+from solidgear.core.errors import SolidgearError
 from solidgear.core.judge.settle import settle
 from solidgear.core.ladder.model import BEAM, LUMPED
 from solidgear.core.ladder.registry import LADDER

@@ -16,10 +16,10 @@ from typing import TYPE_CHECKING, Any
 
 from solidgear.core.errors import SceneError, show
 from solidgear.core.scene import file
-from solidgear.trains.file import reading as train_file
 from solidgear.core.scene.toml_file import describes_train, parse
-from solidgear.trains.file.train import SIDES
 from solidgear.core.scene.units import DIMENSIONS, quantity
+from solidgear.trains.file import reading as train_file
+from solidgear.trains.file.train import SIDES
 
 if TYPE_CHECKING:
     from solidgear.core.scene.model import Scene

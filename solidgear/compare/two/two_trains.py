@@ -15,22 +15,24 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.core.errors import SolidgearError, listed
-from solidgear.core.ladder.registry import LADDER
-from solidgear.core.machine.environment import environment
-from solidgear.core.machine.threads import pinned
-from solidgear.compare.two.two_trains_page import write_two_trains
-from solidgear.show.units import ENGINEERING, Units, units_named
-from solidgear.show.words import hertz, percent
 from solidgear.compare.two.differences import Difference
-from solidgear.trains.file.gears import Pair
-from solidgear.trains.file.planetary import PlanetMesh
+from solidgear.compare.two.two_trains_page import write_two_trains
+from solidgear.core.errors import SolidgearError, listed
 from solidgear.core.judge import beside
 from solidgear.core.judge.beside import Beside, Side, decibels
 from solidgear.core.judge.change import Change
-from solidgear.trains.judge.comparison import train_data
+from solidgear.core.ladder.registry import LADDER
+from solidgear.core.machine.environment import environment
+from solidgear.core.machine.threads import pinned
+from solidgear.show.units import ENGINEERING, Units, units_named
+from solidgear.show.words import hertz, percent
 from solidgear.strength.deflection.train import TrainDeflection, deflection, with_ranges
 from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.shaft import JUDGE, LUMPED, mix_label
+from solidgear.trains.assembly.slips import unit_slips
+from solidgear.trains.file.gears import Pair
+from solidgear.trains.file.planetary import PlanetMesh
+from solidgear.trains.judge.comparison import train_data
 from solidgear.trains.modes.modes import unpublished_lines
 from solidgear.trains.modes.pairing import (
     BEYOND,
@@ -44,8 +46,6 @@ from solidgear.trains.modes.pairing import (
 )
 from solidgear.trains.response.respond import respond
 from solidgear.trains.response.response import Peak, TrainResponse
-from solidgear.trains.assembly.shaft import JUDGE, LUMPED, mix_label
-from solidgear.trains.assembly.slips import unit_slips
 
 #: column of the force of the mesh that drives
 FORCE = "mesh force [N]"

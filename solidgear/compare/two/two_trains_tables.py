@@ -8,10 +8,10 @@ from math import degrees
 from typing import Any
 
 from solidgear.show.beside import band, its, names
-from solidgear.strength.deflection.tables import meanings
 from solidgear.show.table import Cell, Column, Table, quantity, text, word
 from solidgear.show.units import ENGINEERING, Units
 from solidgear.show.words import hertz, percent
+from solidgear.strength.deflection.tables import meanings
 
 #: of a share that is shown: less is no place of a mode
 LEAST_SHARE = 0.0005

@@ -9,9 +9,9 @@ from typing import Any, Generic, TypeVar
 
 import numpy as np
 
-from solidgear.show.words import hertz, percent
 from solidgear.compare.two.differences import Difference
 from solidgear.core.judge.change import BarredMode, Change, ModePair
+from solidgear.show.words import hertz, percent
 
 #: entries of the input that are named in a sentence
 NAMED = 3

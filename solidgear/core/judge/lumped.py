@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from solidgear.compare.verdict import Judgement, objections
 from solidgear.core.body import as_supports
 from solidgear.core.body.mode_names import ModeName
 from solidgear.core.errors import SolidgearError
@@ -19,7 +20,6 @@ from solidgear.core.judge.record import (
     ModelRecord,
     ModeRecord,
 )
-from solidgear.compare.verdict import Judgement, objections
 from solidgear.core.ladder.model import BEAM, LUMPED, SOLID
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.reduction.effective_mass import Synthesis, synthesise

@@ -7,16 +7,16 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from solidgear.compare.two.differences import ROUNDING
 from solidgear.core.body import Body, as_supports
+from solidgear.core.judge.beside import Side
+from solidgear.core.judge.change import BarredMode
 from solidgear.core.judge.quantities import Values, size
 from solidgear.core.judge.settle import Settled, bars_of_modes, settle
 from solidgear.core.judge.solving import answer_of_body
 from solidgear.core.quantity import QUANTITIES, Quantity
 from solidgear.core.scene.closed_form import mass_properties
-from solidgear.compare.two.differences import ROUNDING
 from solidgear.core.solve.modes import Mode, ModeSet
-from solidgear.core.judge.beside import Side
-from solidgear.core.judge.change import BarredMode
 from solidgear.guards.check import cautions
 
 if TYPE_CHECKING:

@@ -119,8 +119,8 @@ class Model:
 
     def unfit(self, scene: Any) -> str:
         """Return the reason why it does not model a scene; empty if it does."""
-        from solidgear.cuts.features import FEATURES
         from solidgear.core.scene.shaft import feature_labels
+        from solidgear.cuts.features import FEATURES
 
         features, with_smeared = features_of(scene), getattr(scene, "features", ())
         if self.for_features and not any(f.sort in self.holds for f in with_smeared):

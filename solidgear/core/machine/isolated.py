@@ -14,7 +14,7 @@ from typing import Any
 
 from solidgear.core.machine.patience import Patience
 
-_ROOT = str(Path(__file__).resolve().parents[2])
+_ROOT = str(Path(__file__).resolve().parents[3])
 _CODE = "from solidgear.core.machine.isolated import _serve; _serve()"
 
 

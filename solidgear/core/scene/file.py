@@ -14,23 +14,20 @@ from typing import Annotated, Any, NamedTuple
 
 from pydantic import BeforeValidator, model_validator
 
+from solidgear.bearings.arrangement import Arrangement, Pair, read_pairs, readable_tables
+from solidgear.bearings.catalogue import BearingLoad
+from solidgear.bearings.lubrication import Lubrication
 from solidgear.core.errors import SceneError
 from solidgear.core.scene import rules
-from solidgear.bearings.arrangement import Arrangement, Pair, read_pairs, readable_tables
 from solidgear.core.scene.ask import Ask
 from solidgear.core.scene.blends import BLENDS
-from solidgear.parts.body_file import BodyTable, with_port
-from solidgear.bearings.catalogue import BearingLoad
 from solidgear.core.scene.ends import seat_masses
-from solidgear.cuts.features import FEATURES
 from solidgear.core.scene.housing import Housing, read_housing
-from solidgear.bearings.lubrication import Lubrication
 from solidgear.core.scene.materials import by_name
 from solidgear.core.scene.model import Scene
 from solidgear.core.scene.parts import STEEL, Material, Segment
 from solidgear.core.scene.places import Placed, Places
 from solidgear.core.scene.point_mass import PointMass
-from solidgear.parts.recognised import Reader, Recognised, refuse_parts, with_seats
 from solidgear.core.scene.shapes import SHAPES, Cylinder, Shape, lay_out
 from solidgear.core.scene.stations import Attachment, Bearing, Port
 from solidgear.core.scene.toml_file import (
@@ -43,6 +40,9 @@ from solidgear.core.scene.toml_file import (
 )
 from solidgear.core.scene.typed import Holds, Model, Problems
 from solidgear.core.scene.uncertain import with_ranges
+from solidgear.cuts.features import FEATURES
+from solidgear.parts.body_file import BodyTable, with_port
+from solidgear.parts.recognised import Reader, Recognised, refuse_parts, with_seats
 
 Table = dict[str, Any]
 #: entries of the lists of a file

@@ -13,18 +13,16 @@ from typing import Any, ClassVar
 
 from pydantic import model_validator
 
+from solidgear.bearings.catalogue import BearingLoad
+from solidgear.bearings.lubrication import Lubrication
 from solidgear.core.display import Displayed
 from solidgear.core.errors import SceneError
 from solidgear.core.scene import rules
 from solidgear.core.scene.ask import Ask
 from solidgear.core.scene.bearing_stiffness import stiffness_entries
 from solidgear.core.scene.blends import Blend, Corner
-from solidgear.parts.body_file import BodyFile
-from solidgear.bearings.catalogue import BearingLoad
 from solidgear.core.scene.ends import seat_masses, snap_seats
-from solidgear.cuts.features import Feature
 from solidgear.core.scene.housing import Housing
-from solidgear.bearings.lubrication import Lubrication
 from solidgear.core.scene.outline import Outline
 from solidgear.core.scene.parts import STEEL, Material, Segment
 from solidgear.core.scene.patches import off_patches
@@ -33,6 +31,8 @@ from solidgear.core.scene.stations import Bearing, Port
 from solidgear.core.scene.typed import Model
 from solidgear.core.scene.uncertain import Uncertain
 from solidgear.core.scene.units import AxialSpring
+from solidgear.cuts.features import Feature
+from solidgear.parts.body_file import BodyFile
 
 
 class Scene(Displayed, Model):

@@ -15,9 +15,9 @@ from pydantic.fields import FieldInfo
 
 from solidgear.core.errors import SceneError, listed, nearest
 from solidgear.core.scene.patches import Patch
-from solidgear.parts.recognised import Recognised, Seat
 from solidgear.core.scene.typed import Model, Problems, by_key, not_misspelt, unknown_keys
 from solidgear.core.scene.units import Length
+from solidgear.parts.recognised import Recognised, Seat
 
 #: in place of a place that is not known, m
 SOMEWHERE = 1.0

@@ -11,11 +11,12 @@ from typing import TYPE_CHECKING, Any
 
 from solidgear.core.errors import SceneError, listed, nearest, show
 from solidgear.core.quantity import AT, STIFFNESS, Quantity
-from solidgear.cuts.features import feature_problems
 from solidgear.core.scene.outline import TOUCH, Outline, radii_of
 from solidgear.core.scene.units import TYPED
+from solidgear.cuts.features import feature_problems
 
 if TYPE_CHECKING:
+    from solidgear.bearings.catalogue import Catalogue
     from solidgear.core.scene import (
         Bearing,
         Blend,
@@ -26,7 +27,6 @@ if TYPE_CHECKING:
         Port,
         Segment,
     )
-    from solidgear.bearings.catalogue import Catalogue
 
 #: least diameter and least length of a part over the length of the shaft, least wall over the
 #: radius; thinner ones would need endless meshes or drown in rounding, and come from wrong units

@@ -8,15 +8,14 @@ from typing import Annotated, Any, ClassVar, Literal
 import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
+from solidgear.bearings.catalogue import Catalogue
 from solidgear.core.errors import SceneError, show
 from solidgear.core.frames import DOF_NAMES
 from solidgear.core.scene.bearing_stiffness import Matrix, refuse_two_stiffnesses
-from solidgear.bearings.catalogue import Catalogue
 from solidgear.core.scene.ends import check_face_words
 from solidgear.core.scene.housing import Elastic, elastic
 from solidgear.core.scene.patches import Patch, Point, fields_on_patch, patch_problems
 from solidgear.core.scene.places import Along, Placed, Places
-from solidgear.parts.recognised import Seat
 from solidgear.core.scene.support import (
     HOLDS,
     Hold,
@@ -36,6 +35,7 @@ from solidgear.core.scene.units import (
     Position,
     PositiveLength,
 )
+from solidgear.parts.recognised import Seat
 
 Attachment = Literal["average", "rigid", "section"]
 Status = Literal["published", "identified", "assumed", "measured", "calculated", "estimated"]

@@ -9,11 +9,11 @@ from typing import Any, Literal, get_args, get_origin
 from pydantic.fields import FieldInfo
 
 from solidgear.core.scene.blends import BLENDS
-from solidgear.cuts.features import FEATURES
 from solidgear.core.scene.file import SceneFile, ScenePartFile
 from solidgear.core.scene.paths import Keys
-from solidgear.trains.file.reading import LongFile, ShortFile
 from solidgear.core.scene.typed import Holds, Model
+from solidgear.cuts.features import FEATURES
+from solidgear.trains.file.reading import LongFile, ShortFile
 
 #: models that files are read into
 FILES = (SceneFile, ScenePartFile, ShortFile, LongFile)

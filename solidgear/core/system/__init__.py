@@ -1,12 +1,6 @@
 """Parts with ports and links between them, gear meshes and planetary stages."""
 
 from solidgear.core.scene.planetary_teeth import PlanetaryTeeth
-from solidgear.trains.system.carrier_turn import (
-    CarrierTurn,
-    FixedSupport,
-    PlanetError,
-    carrier_turn,
-)
 from solidgear.core.system.gear_mesh import MeshVector
 from solidgear.core.system.links import (
     BearingSpring,
@@ -20,10 +14,16 @@ from solidgear.core.system.links import (
 )
 from solidgear.core.system.modes import SystemModes
 from solidgear.core.system.parts import Inertia, Part, Placed, PlanarBody, RigidBody
+from solidgear.core.system.system import System
+from solidgear.trains.system.carrier_turn import (
+    CarrierTurn,
+    FixedSupport,
+    PlanetError,
+    carrier_turn,
+)
 from solidgear.trains.system.planetary import PlanetaryStage
 from solidgear.trains.system.planetary_members import CentralMember, Planet
 from solidgear.trains.system.planetary_modes import PlanetaryMode
-from solidgear.core.system.system import System
 
 __all__ = [
     "CarrierTurn",

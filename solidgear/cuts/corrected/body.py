@@ -33,12 +33,12 @@ from solidgear.core.body import Block, Body
 from solidgear.core.body.sections import Sections
 from solidgear.core.body.surface import Drawing, Surface, Volume
 from solidgear.core.errors import SolidgearError
-from solidgear.cuts.corrected.mesh import meshed_cuts
 from solidgear.core.models.harmonic.body import harmonic
+from solidgear.core.scene.attached import attached_stations
+from solidgear.cuts.corrected.mesh import meshed_cuts
 from solidgear.cuts.corrected.modal import Modal, alike_turn, modal
 from solidgear.cuts.solid.featured import featured_body
 from solidgear.cuts.solid.halves import PARTS
-from solidgear.core.scene.attached import attached_stations
 
 #: free modes kept, twins counted twice: these hold the supported modes of a plain pinion to 2e-7
 #: (bending 1) and 3e-5 (bending 3)

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 from solidgear.core.bounds.safety import FEATURES
 from solidgear.core.ladder.meshes import FREE, Sequence
 from solidgear.core.ladder.model import Options, Series
-from solidgear.parts.volume import PER_TETRAHEDRON, Volume
 from solidgear.core.models.kinds import CUTS
 from solidgear.core.models.options import CORRECTED_OPTIONS
+from solidgear.parts.volume import PER_TETRAHEDRON, Volume
 
 if TYPE_CHECKING:
     from solidgear.core.body import Body
@@ -60,8 +60,8 @@ class Corrected(Volume):
 
     def rough_unknowns(self, scene: Any, options: Options) -> float:
         """Estimate the unknowns of one of its 3D solids."""
-        from solidgear.cuts.corrected.mesh import plan_of
         from solidgear.core.models.solid.plan import tetrahedra_of
+        from solidgear.cuts.corrected.mesh import plan_of
 
         full_options = self.defaults() | self.given(scene, options)
         plan = plan_of(scene, full_options["refinement"], full_options["attachments"])

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from typing import TypeAlias, get_args
 
 from solidgear.core.errors import SceneError
+from solidgear.core.scene.parts import Segment
 from solidgear.cuts.features.around import meeting_problems
 from solidgear.cuts.features.base import OnSegment
 from solidgear.cuts.features.bolt_circle import BoltCircle
@@ -13,7 +14,6 @@ from solidgear.cuts.features.cross_hole import CrossHole
 from solidgear.cuts.features.flat import Flat
 from solidgear.cuts.features.keyway import Keyway
 from solidgear.cuts.features.toothed import Spline, Teeth
-from solidgear.core.scene.parts import Segment
 
 #: features of one shaft
 MOST_FEATURES = 20

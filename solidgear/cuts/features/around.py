@@ -8,10 +8,10 @@ from itertools import combinations
 from typing import Any
 
 from solidgear.core.errors import SceneError
+from solidgear.core.scene.parts import Segment
 from solidgear.cuts.features.base import FEWEST, SMALLEST
 from solidgear.cuts.features.bolt_circle import BoltCircle
 from solidgear.cuts.features.toothed import Spline, Teeth
-from solidgear.core.scene.parts import Segment
 
 #: angle, rad, up to which gaps of two sets of teeth lie behind each other
 SAME_ANGLE = 1e-9

@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from typing import Any, Literal
 
 from solidgear.core.errors import SceneError
-from solidgear.cuts.features.cut import Frame, Long
 from solidgear.core.scene.parts import Segment
 from solidgear.core.scene.units import PositiveLength
+from solidgear.cuts.features.cut import Frame, Long
 
 
 class Flat(Long):

@@ -7,11 +7,11 @@ from collections.abc import Iterator
 from typing import Any, Literal
 
 from solidgear.core.errors import SceneError
-from solidgear.cuts.features.base import SMALLEST
-from solidgear.cuts.features.cut import Frame, Long
 from solidgear.core.scene.outline import TOUCH
 from solidgear.core.scene.parts import Segment
 from solidgear.core.scene.units import PositiveLength
+from solidgear.cuts.features.base import SMALLEST
+from solidgear.cuts.features.cut import Frame, Long
 
 
 class Keyway(Long):

@@ -16,7 +16,20 @@ from solidgear.core.body import Block, Body
 from solidgear.core.errors import SolidgearError
 from solidgear.core.kernel.room import assemblable
 from solidgear.core.meshing.element_size import rough_cells
-from solidgear.cuts.solid.holes import fine_lines
+from solidgear.core.models.kinds import CYCLIC
+from solidgear.core.models.size import Size, size_of_mesh
+from solidgear.core.models.solid.block import body_of, free_block, mesh_facts
+from solidgear.core.models.solid.mesh import SolidMesh, _isoparametric, basis_of
+from solidgear.core.models.solid.plan import tetrahedra_plan
+from solidgear.core.scene.attached import attached_stations
+from solidgear.core.scene.outline import Outline
+from solidgear.core.scene.parts import Segment
+from solidgear.core.scene.shaft import resolved
+from solidgear.cuts.features.around import SAME_ANGLE, middle, mirror_angle, no_common_sector
+from solidgear.cuts.features.base import SMALLEST
+from solidgear.cuts.sector.cyclic import cyclic_blocks
+from solidgear.cuts.sector.half import half_sector_blocks, half_sector_solid
+from solidgear.cuts.sector.mesh import seats, sector_solid
 from solidgear.cuts.sector.meshing import (
     SectorMesh,
     hole_sizes,
@@ -25,20 +38,7 @@ from solidgear.cuts.sector.meshing import (
     sector_mesh,
     sectors_of,
 )
-from solidgear.core.models.kinds import CYCLIC
-from solidgear.cuts.sector.cyclic import cyclic_blocks
-from solidgear.cuts.sector.half import half_sector_blocks, half_sector_solid
-from solidgear.cuts.sector.mesh import seats, sector_solid
-from solidgear.core.models.size import Size, size_of_mesh
-from solidgear.core.models.solid.block import body_of, free_block, mesh_facts
-from solidgear.core.models.solid.mesh import SolidMesh, _isoparametric, basis_of
-from solidgear.core.models.solid.plan import tetrahedra_plan
-from solidgear.core.scene.attached import attached_stations
-from solidgear.cuts.features.around import SAME_ANGLE, middle, mirror_angle, no_common_sector
-from solidgear.cuts.features.base import SMALLEST
-from solidgear.core.scene.outline import Outline
-from solidgear.core.scene.parts import Segment
-from solidgear.core.scene.shaft import resolved
+from solidgear.cuts.solid.holes import fine_lines
 
 #: eigenvalues of pairs in a real matrix made of a complex one differ by rounding
 PAIRS = 1e-9

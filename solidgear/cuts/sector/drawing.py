@@ -10,13 +10,13 @@ from typing import Any
 import numpy as np
 
 from solidgear.core.frames import rotation
-from solidgear.cuts.solid.holes import hole_places
 from solidgear.core.meshing.quality import MeshError
 from solidgear.core.meshing.revolved import draw_revolved
+from solidgear.core.scene.outline import Frustum, Outline
+from solidgear.cuts.features.around import middle
 from solidgear.cuts.sector.teeth import half_outline
 from solidgear.cuts.sector.teeth import outline as teeth_outline
-from solidgear.cuts.features.around import middle
-from solidgear.core.scene.outline import Frustum, Outline
+from solidgear.cuts.solid.holes import hole_places
 
 
 def draw_sector(gmsh, outline: Outline, toothed, planes, circles, count: int, half: bool):

@@ -30,13 +30,13 @@ from solidgear.core.body import Block
 from solidgear.core.body.surface import Surface
 from solidgear.core.frames import rotation
 from solidgear.core.kernel.attachment import Attached, with_ports
-from solidgear.cuts.sector.meshing import MATCH, SectorMesh
-from solidgear.cuts.sector.cyclic import ROUNDING
-from solidgear.cuts.sector.mesh import PieceSolid
 from solidgear.core.models.solid.block import rigid_motions
 from solidgear.core.models.solid.drawing import copied, solid_surface
 from solidgear.core.models.solid.matrices import _matrices, weighed
 from solidgear.core.models.solid.mesh import SolidMesh, _isoparametric
+from solidgear.cuts.sector.cyclic import ROUNDING
+from solidgear.cuts.sector.mesh import PieceSolid
+from solidgear.cuts.sector.meshing import MATCH, SectorMesh
 
 #: blocks that ports move in: harmonic index and components
 PORTED: dict[str, tuple[int, tuple[int, ...]]] = {

@@ -11,12 +11,12 @@ import numpy as np
 
 from solidgear.core.body.surface import Surface
 from solidgear.core.frames import rotation
-from solidgear.cuts.sector.meshing import SectorMesh, cut_vertices, matched
-from solidgear.cuts.sector.cyclic import Sector
 from solidgear.core.models.solid.block import Facets
 from solidgear.core.models.solid.drawing import copied, solid_surface
 from solidgear.core.models.solid.mesh import SolidMesh, _isoparametric
 from solidgear.core.models.solid.seat_faces import Seats
+from solidgear.cuts.sector.cyclic import Sector
+from solidgear.cuts.sector.meshing import SectorMesh, cut_vertices, matched
 
 
 def seats(mesh: SolidMesh, straight: np.ndarray, scene: Any, features: Sequence[Any]) -> Facets:

@@ -23,11 +23,8 @@ from solidgear.core.frames import rotation
 from solidgear.core.meshing.curving import ten_nodes, with_nodes
 from solidgear.core.meshing.element_size import set_size, size_formulas
 from solidgear.core.meshing.gmsh_session import Session, import_gmsh
-from solidgear.cuts.solid.holes import Hole, hole_of, hole_places, hole_size
 from solidgear.core.meshing.quality import MeshError, MeshQuality, check_mesh
 from solidgear.core.meshing.revolved import graded_corners
-from solidgear.cuts.sector.drawing import draw_sector, drill, pair_faces
-from solidgear.cuts.sector.teeth import section_area, tooth_size, turn_at
 from solidgear.core.meshing.tetrahedra import (
     check_filling,
     filled,
@@ -35,9 +32,12 @@ from solidgear.core.meshing.tetrahedra import (
     segment_of_elements,
 )
 from solidgear.core.scene.closed_form import integrals_along, volume_of
-from solidgear.cuts.features.around import middle, mirror_angle, no_common_sector
 from solidgear.core.scene.outline import Outline
 from solidgear.core.scene.parts import Segment
+from solidgear.cuts.features.around import middle, mirror_angle, no_common_sector
+from solidgear.cuts.sector.drawing import draw_sector, drill, pair_faces
+from solidgear.cuts.sector.teeth import section_area, tooth_size, turn_at
+from solidgear.cuts.solid.holes import Hole, hole_of, hole_places, hole_size
 
 #: of the length of the shaft: cut faces whose nodes match no better than this do not match
 MATCH = 1e-9

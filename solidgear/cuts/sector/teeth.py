@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.cuts.solid.cuts import ACROSS, GROWTH
 from solidgear.core.meshing.element_size import _num
 from solidgear.core.scene.closed_form import integrals_along
 from solidgear.cuts.features.toothed import arc
+from solidgear.cuts.solid.cuts import ACROSS, GROWTH
 
 
 def outline(teeth: Any, count: int) -> tuple[np.ndarray, np.ndarray]:

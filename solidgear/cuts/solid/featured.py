@@ -12,15 +12,15 @@ import numpy as np
 
 from solidgear.core.body import Block, Body
 from solidgear.core.kernel.room import assemblable
-from solidgear.cuts.solid.meshing import FeaturedMesh, featured_mesh, submesh
 from solidgear.core.meshing.quality import check_mesh
 from solidgear.core.models.kinds import CYCLIC
 from solidgear.core.models.solid.block import Facets, body_of, free_block, mesh_facts
-from solidgear.cuts.solid.halves import HalfDrawing, half_blocks
 from solidgear.core.models.solid.mesh import SolidMesh, _isoparametric
 from solidgear.core.models.solid.plan import tetrahedra_of
 from solidgear.core.models.solid.seat_faces import Seats
 from solidgear.core.scene.shaft import resolved
+from solidgear.cuts.solid.halves import HalfDrawing, half_blocks
+from solidgear.cuts.solid.meshing import FeaturedMesh, featured_mesh, submesh
 
 
 def meshed(scene, plan: dict, refinement: float, half: bool, edges: bool = False) -> FeaturedMesh:

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.cuts.solid.cuts import ACROSS, GROWTH
 from solidgear.core.meshing.element_size import _num
 from solidgear.cuts.sector.teeth import turn_at
+from solidgear.cuts.solid.cuts import ACROSS, GROWTH
 
 Place = tuple[float, float]
 #: share of the section that holes take from which elements at them are refined as all others are.

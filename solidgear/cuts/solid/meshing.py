@@ -17,7 +17,6 @@ import numpy as np
 from skfem import MeshTet2
 
 from solidgear.core.meshing.curving import Filling, ten_nodes
-from solidgear.cuts.solid.cuts import edge_size, feature_size, mirror_plane, tool
 from solidgear.core.meshing.element_size import set_size, size_formulas
 from solidgear.core.meshing.gmsh_session import Session, import_gmsh
 from solidgear.core.meshing.quality import MeshError, MeshQuality, check_mesh
@@ -29,9 +28,10 @@ from solidgear.core.meshing.tetrahedra import (
     segment_of_elements,
 )
 from solidgear.core.scene.closed_form import volume_of
-from solidgear.cuts.features.cut import Cut
 from solidgear.core.scene.outline import Outline
 from solidgear.core.scene.parts import Segment
+from solidgear.cuts.features.cut import Cut
+from solidgear.cuts.solid.cuts import edge_size, feature_size, mirror_plane, tool
 
 #: angle about y at which half a shaft begins, so that the other end of the half turn lies in the
 #: same plane
@@ -91,7 +91,8 @@ def featured_mesh(
     share = turn / (2 * pi)
     volume, sizes_around = share * volume_of(outline), []
     if around_axis:
-        from solidgear.cuts.sector import meshing as sector, drawing as sector_drawing  # slow to import, and seldom needed
+        from solidgear.cuts.sector import drawing as sector_drawing
+        from solidgear.cuts.sector import meshing as sector  # slow to import, and seldom needed
 
         volume = sector.volume_of_sector(outline, around_axis, 1)
         sizes_around = sector.sizes_around(outline.segments, around_axis, refinement)

@@ -9,10 +9,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solidgear.parts.decks.deck import Deck, Lines, coordinates, integer, text_of, wrong_node_count
-from solidgear.parts.decks.left_out import KEYWORDS, OTHER, TYPES, LeftOut, sort_of
 from solidgear.core.meshing.quality import MeshError
 from solidgear.core.scene.file_materials import FileMaterial
+from solidgear.parts.decks.deck import Deck, Lines, coordinates, integer, text_of, wrong_node_count
+from solidgear.parts.decks.left_out import KEYWORDS, OTHER, TYPES, LeftOut, sort_of
 
 #: kinds of cells by the nodes of a continuum element, in meshio's words
 CONTINUUM = {

@@ -11,9 +11,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solidgear.parts.decks.left_out import LeftOut
 from solidgear.core.meshing.quality import MeshError
 from solidgear.core.scene.file_materials import FileMaterial
+from solidgear.parts.decks.left_out import LeftOut
 
 #: how a file ends, and the module of this room that reads it
 FORMATS = {

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.parts.decks.deck import Deck, Group, one_kind
 from solidgear.core.meshing.quality import MeshError
+from solidgear.parts.decks.deck import Deck, Group, one_kind
 
 #: modules of meshio
 MODULES = {".msh": "gmsh", ".vtu": "vtu"}

@@ -6,10 +6,10 @@ import re
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from solidgear.parts.decks.deck import Deck, Lines, integer, text_of, wrong_node_count
-from solidgear.parts.decks.left_out import CARDS, LINK, sort_of
 from solidgear.core.meshing.quality import MeshError
 from solidgear.core.scene.file_materials import FileMaterial
+from solidgear.parts.decks.deck import Deck, Lines, integer, text_of, wrong_node_count
+from solidgear.parts.decks.left_out import CARDS, LINK, sort_of
 
 #: kinds of cells of a card by their number of nodes, in meshio's words
 SOLIDS = {

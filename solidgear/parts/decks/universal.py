@@ -10,9 +10,9 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
+from solidgear.core.meshing.quality import MeshError
 from solidgear.parts.decks.deck import Deck, Lines, coordinates, integer, text_of, wrong_node_count
 from solidgear.parts.decks.left_out import DATASETS, DESCRIPTORS, LINK, OTHER, SORTS, sort_of
-from solidgear.core.meshing.quality import MeshError
 from solidgear.parts.universal_units import units_of
 
 #: by the descriptor of a finite element: kind of cell in meshio's words, and its nodes in VTK's

@@ -9,21 +9,21 @@ from typing import Annotated, Any
 
 import typer
 
-from solidgear.strength.acting import Acting, AtRestFile, load_in_words
-from solidgear.show.command import Progress, caution, command, say
-from solidgear.show.options import BY_MODEL, Shown
-from solidgear.strength.deflection import tables
-from solidgear.strength.deflection.files import write_deflection
-from solidgear.show.folder import held
-from solidgear.show.units import units_named
-from solidgear.core.scene import Scene
-from solidgear.trains.file.operation import OperatingPoint
-from solidgear.trains.file.train import Train
-from solidgear.strength.deflection import shaft as deflection
 from solidgear.core.loading import explained
+from solidgear.core.scene import Scene
+from solidgear.show.command import Progress, caution, command, say
+from solidgear.show.folder import held
+from solidgear.show.options import BY_MODEL, Shown
+from solidgear.show.units import units_named
+from solidgear.strength.acting import Acting, AtRestFile, load_in_words
+from solidgear.strength.deflection import shaft as deflection
+from solidgear.strength.deflection import tables
 from solidgear.strength.deflection import train as of_train
+from solidgear.strength.deflection.files import write_deflection
 from solidgear.trains.assembly.layout import senses_sentence
 from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.file.operation import OperatingPoint
+from solidgear.trains.file.train import Train
 
 
 @command

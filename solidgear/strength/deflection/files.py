@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.strength.deflection import tables
 from solidgear.show.panel import GREY, Axis, Panel, Series, curve, lines_legend, readout
 from solidgear.show.plot import NARROW, WIDE, Chart, in_columns
 from solidgear.show.sheet_files import write_files
 from solidgear.show.table import Table
-from solidgear.trains.page.chart import COLOURS
 from solidgear.show.units import ENGINEERING, Units, units_named
+from solidgear.strength.deflection import tables
+from solidgear.trains.page.chart import COLOURS
 
 
 def write_deflection(

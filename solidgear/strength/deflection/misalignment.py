@@ -32,10 +32,10 @@ import numpy as np
 
 from solidgear.core.frames import cross_matrix
 from solidgear.core.reduction.superelement import PortMotion
+from solidgear.core.system.system import System
+from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.file.gears import Member, Pair
 from solidgear.trains.file.train import Train
-from solidgear.trains.assembly.models import Workshop
-from solidgear.core.system.system import System
 
 #: axes whose angle has a sine below this are parallel
 PARALLEL = 1e-6

@@ -20,8 +20,8 @@ from solidgear.core.ladder.registry import LADDER
 from solidgear.core.reduction.rubin import rubin
 from solidgear.core.scene import Bearing, Scene
 from solidgear.core.solve.naming import Projection
-from solidgear.trains.system.equilibrium import OnBearings, Seats, SystemEquilibrium
 from solidgear.core.system.system import System
+from solidgear.trains.system.equilibrium import OnBearings, Seats, SystemEquilibrium
 
 #: stations of a deflection line
 STATIONS = 81

@@ -20,6 +20,7 @@ from typing import Any
 
 import numpy as np
 
+from solidgear.bearings.bearing_life import left_open
 from solidgear.core.bounds.harmonic import HarmonicBounds, harmonic_bounds, with_tail
 from solidgear.core.bounds.safety import LOCAL
 from solidgear.core.errors import SolidgearError, listed
@@ -27,20 +28,19 @@ from solidgear.core.frames import DOF_NAMES
 from solidgear.core.judge.deviations import WITHIN, gap_verdict
 from solidgear.core.machine.threads import pinned
 from solidgear.core.scene.coned import coned
-from solidgear.trains.file.operation import OperatingPoint
-from solidgear.trains.file.housing import HOUSING
-from solidgear.bearings.bearing_life import left_open
+from solidgear.core.system.port_forces import port_forces
+from solidgear.core.system.system import System
+from solidgear.strength.deflection.misalignment import misalignment
 from solidgear.strength.deflection.shaft import ShaftDeflection, shaft_deflection
 from solidgear.trains.assembly.components import FORCE_UNITS
 from solidgear.trains.assembly.housing import BOX, housing_motion, mount_rows
 from solidgear.trains.assembly.layout import senses
-from solidgear.strength.deflection.misalignment import misalignment
 from solidgear.trains.assembly.models import Workshop
-from solidgear.trains.load.operation import Operating, OperatingState, with_settled_bearings
 from solidgear.trains.assembly.shaft import JUDGE, LUMPED, RIGID, mix_label
 from solidgear.trains.assembly.turn import StageTurn, over_a_turn
-from solidgear.core.system.port_forces import port_forces
-from solidgear.core.system.system import System
+from solidgear.trains.file.housing import HOUSING
+from solidgear.trains.file.operation import OperatingPoint
+from solidgear.trains.load.operation import Operating, OperatingState, with_settled_bearings
 
 #: models that a deflection is solved with, the cheapest first
 MODELS = (RIGID, "euler", "timoshenko", JUDGE)

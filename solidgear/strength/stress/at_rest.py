@@ -14,22 +14,22 @@ from typing import Any
 
 import numpy as np
 
+from solidgear.bearings.bearing_life import left_open
 from solidgear.bearings.solved import AS_STATED, Choice
 from solidgear.core.display import plain
 from solidgear.core.errors import SolidgearError
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.scene import Scene
-from solidgear.parts.body_file import BodyFile
 from solidgear.core.scene.filleted import filleted
-from solidgear.trains.file.operation import OperatingPoint
-from solidgear.trains.file.train import Train
-from solidgear.bearings.bearing_life import left_open
+from solidgear.parts.body_file import BodyFile
 from solidgear.strength.deflection.shaft import ShaftAtRest, load_of
 from solidgear.strength.stress.notch import ENOUGH
 from solidgear.strength.stress.rating import Conditions
 from solidgear.strength.stress.section_forces import COMPONENTS, SectionForces, forces_of
 from solidgear.strength.stress.shaft import ShaftStress, check_tolerance, local_stress, shaft_stress
 from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.file.operation import OperatingPoint
+from solidgear.trains.file.train import Train
 from solidgear.trains.load.operation import Operating, OperatingState
 
 #: default model on which shafts and bearings settle

@@ -10,16 +10,16 @@ from typing import Annotated
 
 import typer
 
-from solidgear.strength.acting import Acting, AtRestFile, load_in_words
-from solidgear.show.command import NOT_REACHED, Group, caution, command, say
-from solidgear.show.options import BY_MODEL, MODEL, Choice, Shown, refuse, relative
 from solidgear.core.errors import SceneError, SolidgearError, show
-from solidgear.show.folder import held
-from solidgear.strength.stress.files import headline, sentences, shaft_tables, write_stress
-from solidgear.show.units import in_ascii, units_named
-from solidgear.core.scene.units import quantity
 from solidgear.core.loading import explained
+from solidgear.core.scene.units import quantity
+from solidgear.show.command import NOT_REACHED, Group, caution, command, say
+from solidgear.show.folder import held
+from solidgear.show.options import BY_MODEL, MODEL, Choice, Shown, refuse, relative
+from solidgear.show.units import in_ascii, units_named
+from solidgear.strength.acting import Acting, AtRestFile, load_in_words
 from solidgear.strength.stress.at_rest import StressSettings, stress_of_scene, stress_of_train
+from solidgear.strength.stress.files import headline, sentences, shaft_tables, write_stress
 from solidgear.strength.stress.rating import Conditions
 
 

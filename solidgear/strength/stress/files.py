@@ -7,12 +7,12 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from solidgear.strength.stress import tables
 from solidgear.show.plot import Make
-from solidgear.strength.stress.section_chart import section_chart
 from solidgear.show.sheet_files import write_files
 from solidgear.show.table import Table
 from solidgear.show.units import ENGINEERING, Units
+from solidgear.strength.stress import tables
+from solidgear.strength.stress.section_chart import section_chart
 
 if TYPE_CHECKING:
     from solidgear.strength.stress.at_rest import StressAtRest, StressedShaft

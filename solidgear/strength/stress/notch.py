@@ -29,13 +29,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from solidgear.core.errors import SolidgearError
-from solidgear.strength.stress.arc_stress import Arc, ArcStress
 from solidgear.core.models.harmonic.body import harmonic
 from solidgear.core.scene import Port
 from solidgear.core.scene.coned import coned
 from solidgear.core.scene.outline import TOUCH, Outline
 from solidgear.core.solve.backends.matrix import FactorError
 from solidgear.core.solve.statics import flexibility
+from solidgear.strength.stress.arc_stress import Arc, ArcStress
 from solidgear.strength.stress.nominal import CrossSection
 
 if TYPE_CHECKING:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from math import cos, pi, sin, sqrt
 
 from solidgear.core.scene import Scene
+from solidgear.trains.assembly.layout import mesh_forces
 from solidgear.trains.file.gears import HeadInertia, Pair
 from solidgear.trains.file.layout import ends_of, flanks_from_file
 from solidgear.trains.file.planetary import Stage
@@ -23,7 +24,6 @@ from solidgear.trains.file.tooth_fit import (
 )
 from solidgear.trains.file.train import Train
 from solidgear.trains.load.contact import Contact
-from solidgear.trains.assembly.layout import mesh_forces
 
 #: modules by which a body may end below the roots of its teeth, as a blank drawn without them, or
 #: above their tips

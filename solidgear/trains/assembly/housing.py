@@ -13,13 +13,13 @@ import numpy as np
 from solidgear.core.frames import DOF_NAMES
 from solidgear.core.reduction.superelement import PortMotion
 from solidgear.core.scene.housing_matrices import HousingMatrices
-from solidgear.trains.file.planetary import Stage
-from solidgear.trains.file.train import Train
-from solidgear.trains.file.housing import CENTRE, HOUSING, LOSS, TrainHousing
-from solidgear.trains.assembly.components import FORCE_UNITS, MOTION_UNITS, six_columns
 from solidgear.core.system.links import BearingSpring, Link, relative_motion
 from solidgear.core.system.parts import Part, Placed, RigidBody
 from solidgear.core.system.system import System
+from solidgear.trains.assembly.components import FORCE_UNITS, MOTION_UNITS, six_columns
+from solidgear.trains.file.housing import CENTRE, HOUSING, LOSS, TrainHousing
+from solidgear.trains.file.planetary import Stage
+from solidgear.trains.file.train import Train
 
 if TYPE_CHECKING:
     from solidgear.trains.response.respond import Drive

@@ -16,15 +16,15 @@ from math import degrees
 
 import numpy as np
 
+from solidgear.bearings.catalogue import Catalogue
 from solidgear.bearings.catalogued import Catalogued
 from solidgear.bearings.geometry import Geometry, inner_geometry
 from solidgear.bearings.passing import passing, working_angle
 from solidgear.bearings.solved import solved
+from solidgear.core.loading import shaft
 from solidgear.core.scene import Scene
-from solidgear.bearings.catalogue import Catalogue
 from solidgear.trains.file.planetary import Stage
 from solidgear.trains.file.train import Train
-from solidgear.core.loading import shaft
 
 #: harmonics of a shaft, of a mesh, of a bearing, and sidebands on each side of a mesh
 SHAFT_ORDERS, MESH_ORDERS, BEARING_ORDERS, SIDEBANDS = (1, 2, 3, 4), (1, 2, 3), (1, 2, 3), 2

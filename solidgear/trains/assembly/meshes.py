@@ -17,10 +17,10 @@ from solidgear.core.bounds.safety import LOCAL
 from solidgear.core.elements import ELEMENTS
 from solidgear.core.machine.threads import pinned
 from solidgear.core.scene.coned import coned
-from solidgear.trains.assembly.models import Workshop
-from solidgear.trains.assembly.shaft import JUDGE
 from solidgear.core.system.parts import Part, Placed
 from solidgear.core.system.system import System
+from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.shaft import JUDGE
 
 #: modes above those asked for that are looked at: the gap to the highest one counts, and near modes
 #: share a bar

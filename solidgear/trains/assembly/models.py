@@ -17,10 +17,10 @@ from solidgear.core.ladder.registry import LADDER
 from solidgear.core.reduction.craig_bampton import craig_bampton
 from solidgear.core.reduction.rubin import rubin
 from solidgear.core.scene import Scene
-from solidgear.trains.file.gears import Pair
-from solidgear.trains.file.train import Train
-from solidgear.trains.file.housing import HOUSING
-from solidgear.trains.load.contact import Contact
+from solidgear.core.system.gear_mesh import MeshVector
+from solidgear.core.system.links import Link, PortInertia, grounded, mesh_spring, torsion_spring
+from solidgear.core.system.parts import Inertia, Part, Placed, RigidBody
+from solidgear.core.system.system import System
 from solidgear.trains.assembly.gear_bodies import gear_cautions
 from solidgear.trains.assembly.housing import (
     housing_cautions,
@@ -34,10 +34,10 @@ from solidgear.trains.assembly.local import local_teeth, mesh_port
 from solidgear.trains.assembly.shaft import JUDGE, LUMPED, RIGID, ShaftModel, checked_model, lumped
 from solidgear.trains.assembly.space import overlaps
 from solidgear.trains.assembly.stages import StageAtWork, stages_at_work
-from solidgear.core.system.gear_mesh import MeshVector
-from solidgear.core.system.links import Link, PortInertia, grounded, mesh_spring, torsion_spring
-from solidgear.core.system.parts import Inertia, Part, Placed, RigidBody
-from solidgear.core.system.system import System
+from solidgear.trains.file.gears import Pair
+from solidgear.trains.file.housing import HOUSING
+from solidgear.trains.file.train import Train
+from solidgear.trains.load.contact import Contact
 
 REDUCTIONS = {"rubin": rubin, "craig_bampton": craig_bampton}
 #: free modes of a shaft that are kept: with residuals, enough for 1e-5 to 4 kHz, as the bound shows

@@ -14,10 +14,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from solidgear.core.errors import SolidgearError
-from solidgear.trains.file.planetary import PlanetMesh
-from solidgear.trains.file.train import PerTurn
 from solidgear.trains.assembly.kinematics import MESH_ORDERS, mesh_harmonics, shaft_harmonics
 from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.file.planetary import PlanetMesh
+from solidgear.trains.file.train import PerTurn
 from solidgear.trains.modes.modes import TrainMode, train_modes
 from solidgear.trains.response.respond import Drive
 

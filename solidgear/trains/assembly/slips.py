@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from solidgear.core.ladder import build
-from solidgear.trains.file.planetary import PlanetMesh
+from solidgear.core.loading import SHAFT
 from solidgear.guards import Probe, data
 from solidgear.guards.notice import slip_in_units
-from solidgear.core.loading import SHAFT
 from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.file.planetary import PlanetMesh
 
 #: ranges that a slip of 1000 in the data of a mesh leaves: ISO 6336 puts some 20 N/(mm um) into a steel
 #: mesh, 0.1 of E times the face width, and a face is 0.1 to 3 lever arms wide; errors of teeth are

@@ -16,10 +16,10 @@ from math import ceil, cos, pi, sin
 import numpy as np
 
 from solidgear.core.scene import Scene
-from solidgear.trains.file.gears import Pair
-from solidgear.trains.file.train import Train
 from solidgear.guards.bearings import width_of
 from solidgear.trains.assembly.layout import Place
+from solidgear.trains.file.gears import Pair
+from solidgear.trains.file.train import Train
 
 #: m; less is how numbers are typed
 LEAST = 1e-5

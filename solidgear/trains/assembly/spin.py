@@ -14,10 +14,10 @@ from solidgear.core.body import as_supports
 from solidgear.core.judge.at_rest import opened_words
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.solve.spin import couplings, opened
+from solidgear.core.system.system import System
 from solidgear.trains.assembly.meshes import mesh_bars
 from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.modes.naming import mode_names
-from solidgear.core.system.system import System
 
 
 def fastest_turns(workshop: Workshop) -> float:

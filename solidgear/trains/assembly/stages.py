@@ -15,19 +15,19 @@ import numpy as np
 
 from solidgear.core.reduction.superelement import PortMotion
 from solidgear.core.scene import Scene
+from solidgear.core.solve.families import FAMILIES
+from solidgear.core.system.links import BearingSpring, Link, RowSpring
+from solidgear.core.system.parts import Part, Placed
+from solidgear.core.system.system import System
+from solidgear.trains.assembly.housing import ring_port
+from solidgear.trains.assembly.layout import Place, sun_ways
 from solidgear.trains.file.gears import Pair
 from solidgear.trains.file.planetary import MATES, PlanetMesh, Stage
 from solidgear.trains.file.train import Train
-from solidgear.core.solve.families import FAMILIES
 from solidgear.trains.load.contact import Contact
-from solidgear.trains.assembly.housing import ring_port
-from solidgear.trains.assembly.layout import Place, sun_ways
-from solidgear.core.system.links import BearingSpring, Link, RowSpring
-from solidgear.core.system.parts import Part, Placed
 from solidgear.trains.system.planetary import PlanetaryStage
 from solidgear.trains.system.planetary_members import CentralMember, Planet, weights
 from solidgear.trains.system.planetary_modes import IN_PLANE, NAMES, OUT_OF_PLANE, patterns
-from solidgear.core.system.system import System
 
 #: N/m and N m/rad, of a ring that is part of the ground
 FIXED = 1e20

@@ -15,15 +15,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from solidgear.core.machine.threads import pinned
-from solidgear.trains.file.planetary import Stage, with_carrier_turned
-from solidgear.trains.file.train import Train
-from solidgear.trains.assembly.models import Workshop
-from solidgear.trains.load.operation import OperatingState, with_settled_bearings
-from solidgear.trains.load.planet_loads import centrifugal, weights
-from solidgear.trains.assembly.stages import StageAtWork
-from solidgear.trains.system.carrier_turn import FixedSupport, carrier_turn
 from solidgear.core.system.port_forces import port_forces
 from solidgear.core.system.system import System
+from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.stages import StageAtWork
+from solidgear.trains.file.planetary import Stage, with_carrier_turned
+from solidgear.trains.file.train import Train
+from solidgear.trains.load.operation import OperatingState, with_settled_bearings
+from solidgear.trains.load.planet_loads import centrifugal, weights
+from solidgear.trains.system.carrier_turn import FixedSupport, carrier_turn
 
 #: motions of a port that no free rotation of a shaft is a part of
 HELD = [0, 1, 2, 3, 5]

@@ -11,14 +11,14 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from solidgear.core.errors import SceneError, listed, nearest
-from solidgear.cuts.cylindrical import cylindrical_problems, rolling_fields
 from solidgear.core.scene.model import Scene
-from solidgear.trains.file.operation import OperatingPoint
 from solidgear.core.scene.stations import Status
-from solidgear.trains.file.tooth_fit import fit_problems
-from solidgear.trains.file.tables import Mesh
 from solidgear.core.scene.typed import Model
 from solidgear.core.scene.units import TYPED, Inertia, Mass, PitchAngle, PositiveLength, SpiralAngle
+from solidgear.cuts.cylindrical import cylindrical_problems, rolling_fields
+from solidgear.trains.file.operation import OperatingPoint
+from solidgear.trains.file.tables import Mesh
+from solidgear.trains.file.tooth_fit import fit_problems
 
 #: relative, of inertias: the last of three digits
 ROUNDED = 5e-3

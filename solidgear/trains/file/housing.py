@@ -14,10 +14,10 @@ from pydantic import BeforeValidator, Field, InstanceOf, model_validator
 from solidgear.core.errors import SceneError, listed, nearest
 from solidgear.core.scene.bearing_stiffness import Matrix
 from solidgear.core.scene.housing_matrices import HousingMatrices
-from solidgear.trains.file.mesh_cycle import Vector
 from solidgear.core.scene.stations import Status
 from solidgear.core.scene.typed import Model
 from solidgear.core.scene.units import TYPED, Loss, Mass, quantity
+from solidgear.trains.file.mesh_cycle import Vector
 
 if TYPE_CHECKING:
     from solidgear.trains.file.train import Train

@@ -11,8 +11,8 @@ from math import fsum
 from typing import TYPE_CHECKING
 
 from solidgear.core.errors import SceneError
-from solidgear.trains.file.layout import outward
 from solidgear.core.scene.units import TYPED
+from solidgear.trains.file.layout import outward
 
 if TYPE_CHECKING:
     from solidgear.trains.file.train import Train

@@ -18,17 +18,17 @@ from pydantic import model_validator
 
 from solidgear.core.errors import SceneError, near, show
 from solidgear.core.scene.file import load
-from solidgear.trains.file.gears import Member, Shaft
 from solidgear.core.scene.housing_matrices import ARRAYS, read_matrices
 from solidgear.core.scene.model import Scene
-from solidgear.trains.file.operation import Operation
-from solidgear.trains.file.planetary import Planetary
 from solidgear.core.scene.toml_file import name_of, parse, with_table_paths
-from solidgear.trains.file.train import SHORT, SIDES, Train
-from solidgear.trains.file.housing import HOUSING, TrainHousing
-from solidgear.trains.file.tables import Losses, Mesh, Rotor, TrainAsk
 from solidgear.core.scene.typed import Model, Problems
 from solidgear.core.scene.units import TYPED
+from solidgear.trains.file.gears import Member, Shaft
+from solidgear.trains.file.housing import HOUSING, TrainHousing
+from solidgear.trains.file.operation import Operation
+from solidgear.trains.file.planetary import Planetary
+from solidgear.trains.file.tables import Losses, Mesh, Rotor, TrainAsk
+from solidgear.trains.file.train import SHORT, SIDES, Train
 
 #: reads the scene of a side from a file, given whether the shaft stands alone
 ReadShaft = Callable[[str, Path, bool], Scene]

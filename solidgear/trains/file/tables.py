@@ -8,7 +8,6 @@ from typing import Annotated, Any
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from solidgear.core.errors import SceneError
-from solidgear.trains.file.mesh_cycle import LineCycle, StiffnessCycle, Vector
 from solidgear.core.scene.rules import MOST_MODES
 from solidgear.core.scene.stations import Status
 from solidgear.core.scene.typed import Model
@@ -27,6 +26,7 @@ from solidgear.core.scene.units import (
     Tolerance,
     TorsionSpring,
 )
+from solidgear.trains.file.mesh_cycle import LineCycle, StiffnessCycle, Vector
 
 #: nodal diameters; ports hold those below, and finer waves than the last are shorter than teeth
 FIRST_HARMONIC, LAST_HARMONIC = 2, 32

@@ -14,7 +14,11 @@ import numpy as np
 from pydantic import model_validator
 
 from solidgear.core.errors import SceneError, SolidgearError, listed
+from solidgear.core.scene.model import Scene
+from solidgear.core.scene.stations import Bearing
+from solidgear.core.scene.typed import Model
 from solidgear.trains.file.gears import HeadInertia, Member, Pair, Shaft, pair_problems
+from solidgear.trains.file.housing import TrainHousing, housing_problems
 from solidgear.trains.file.layout import (
     PerTurn,
     ends_of,
@@ -23,7 +27,6 @@ from solidgear.trains.file.layout import (
     turns_of,
     with_flanks,
 )
-from solidgear.core.scene.model import Scene
 from solidgear.trains.file.operation import (
     OperatingPoint,
     Operation,
@@ -32,10 +35,7 @@ from solidgear.trains.file.operation import (
 )
 from solidgear.trains.file.planetary import Planetary, PlanetMesh, Stage, stage_of
 from solidgear.trains.file.power import carried_of, flows_of, share_problems
-from solidgear.core.scene.stations import Bearing
-from solidgear.trains.file.housing import TrainHousing, housing_problems
 from solidgear.trains.file.tables import Losses, Mesh, Rotor, TrainAsk
-from solidgear.core.scene.typed import Model
 
 #: names of the shafts, and of what turns with them, in a file of the short form
 SHORT = {"engine": "pinion", "load": "gear"}

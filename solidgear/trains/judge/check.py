@@ -15,16 +15,18 @@ from solidgear.core.errors import SolidgearError
 from solidgear.core.ladder import build
 from solidgear.core.ladder.meshes import HARMONIC
 from solidgear.core.machine.threads import pinned
-from solidgear.trains.file.gears import Pair
-from solidgear.trains.file.planetary import PlanetMesh
-from solidgear.trains.file.tooth_fit import fit_line, fit_of
-from solidgear.trains.file.train import Train
-from solidgear.guards.check import check_scene
 from solidgear.guards import Probe
+from solidgear.guards.check import check_scene
 from solidgear.trains.assembly.housing import housing_facts
 from solidgear.trains.assembly.layout import senses, senses_sentence
 from solidgear.trains.assembly.local import undriven
 from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.shaft import JUDGE
+from solidgear.trains.assembly.slips import mesh_unit_slips
+from solidgear.trains.file.gears import Pair
+from solidgear.trains.file.planetary import PlanetMesh
+from solidgear.trains.file.tooth_fit import fit_line, fit_of
+from solidgear.trains.file.train import Train
 from solidgear.trains.modes.modes import (
     RESOLVED,
     free_motions,
@@ -32,8 +34,6 @@ from solidgear.trains.modes.modes import (
     unpublished_lines,
     wrench_lines,
 )
-from solidgear.trains.assembly.shaft import JUDGE
-from solidgear.trains.assembly.slips import mesh_unit_slips
 
 #: a loss factor below this gives peaks whose height is a matter of the loss alone
 LITTLE_LOSS = 1e-3

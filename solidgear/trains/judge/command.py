@@ -11,15 +11,15 @@ from typing import Annotated
 import typer
 
 from solidgear.show.command import caution, command, say
-from solidgear.show.options import Shown, refuse
-from solidgear.trains.options import Reduced, TrainFile, mix
 from solidgear.show.folder import held
+from solidgear.show.options import Shown, refuse
 from solidgear.show.table import Column, Table, text
-from solidgear.trains.page.page import write_train
-from solidgear.trains.page.tables import mix_words
 from solidgear.show.viewer import viewer_fragment
 from solidgear.trains.judge.comparison import compare_train as compared
 from solidgear.trains.modes.modes import unpublished_lines
+from solidgear.trains.options import Reduced, TrainFile, mix
+from solidgear.trains.page.page import write_train
+from solidgear.trains.page.tables import mix_words
 
 
 @command

@@ -11,19 +11,19 @@ from time import perf_counter
 from typing import Any
 
 from solidgear.core.machine.environment import environment
-from solidgear.show.turning import Turned
 from solidgear.core.scene.bearing_stiffness import stiffness_entries
+from solidgear.show.turning import Turned
+from solidgear.trains.assembly.housing import housing_hz
+from solidgear.trains.assembly.layout import senses
+from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.orders import OrderMap, order_map
 from solidgear.trains.file.gears import Pair
 from solidgear.trains.file.planetary import Stage
 from solidgear.trains.file.train import Train
-from solidgear.trains.assembly.housing import housing_hz
 from solidgear.trains.judge.judge import JUDGE, MIXED, Verdict, charted_mixes, judge_train
-from solidgear.trains.assembly.layout import senses
-from solidgear.trains.response.loudest import Loudest, loudest
-from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.modes.modes import TrainModes, train_modes
-from solidgear.trains.assembly.orders import OrderMap, order_map
 from solidgear.trains.modes.pictures import draw_modes, turning_pair
+from solidgear.trains.response.loudest import Loudest, loudest
 from solidgear.trains.response.response import TrainResponse
 
 #: modes that are drawn

@@ -22,15 +22,15 @@ import numpy as np
 from solidgear.core.errors import SolidgearError
 from solidgear.core.ladder.model import BEAM
 from solidgear.core.ladder.registry import LADDER
-from solidgear.trains.file.planetary import error_of
 from solidgear.trains.assembly.meshes import mesh_bars
 from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.shaft import JUDGE, LUMPED, checked_model, ladder_place, mix_label
+from solidgear.trains.assembly.slips import unit_slips
+from solidgear.trains.file.planetary import error_of
 from solidgear.trains.modes.naming import driven, mode_names
 from solidgear.trains.modes.pairing import BEYOND, modes_and_motions, partners
 from solidgear.trains.response.respond import Drive, respond
 from solidgear.trains.response.response import TrainResponse
-from solidgear.trains.assembly.shaft import JUDGE, LUMPED, checked_model, ladder_place, mix_label
-from solidgear.trains.assembly.slips import unit_slips
 
 #: models of one shaft that are mixed, cheapest first
 MIXED = (*LADDER.of(BEAM), JUDGE)

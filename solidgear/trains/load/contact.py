@@ -13,7 +13,6 @@ import numpy as np
 
 from solidgear.core.errors import SceneError, SolidgearError
 from solidgear.core.frames import rotation
-from solidgear.trains.file.gears import Pair
 from solidgear.core.system.contact_cells import ContactWrench, contact_wrench
 from solidgear.core.system.gear_mesh import (
     MeshVector,
@@ -22,6 +21,7 @@ from solidgear.core.system.gear_mesh import (
     mesh_point,
     to_gear_frame,
 )
+from solidgear.trains.file.gears import Pair
 
 #: a typed line of action with six digits
 UNIT = 1e-6

@@ -6,13 +6,13 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 
+from solidgear.bearings.bearing_life import BearingLife, left_open, life_of
 from solidgear.bearings.duty import DutyLife, DutyPoint, duty_life
 from solidgear.bearings.solved import AS_STATED
 from solidgear.core.errors import SolidgearError
+from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.train import Train
-from solidgear.bearings.bearing_life import BearingLife, left_open, life_of
-from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.load.operation import Operating, OperatingState
 
 

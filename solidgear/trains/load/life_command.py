@@ -8,12 +8,12 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from solidgear.show.command import say
 from solidgear.bearings.life_command import plain_life
 from solidgear.core.errors import SolidgearError
+from solidgear.core.loading import load_train
+from solidgear.show.command import say
 from solidgear.show.table import Column, Table
 from solidgear.show.words import engineering, percent
-from solidgear.core.loading import load_train
 from solidgear.trains.load.life import TrainBearingLife, train_lives
 
 

@@ -8,11 +8,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from solidgear.trains.file.operation import OperatingPoint
+from solidgear.core.system.system import System
 from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.assembly.stages import StageAtWork
+from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.system.planetary_members import Planet
-from solidgear.core.system.system import System
 
 #: of the weight of all planets at their distance from the axis
 ROUNDING = 1e-9

@@ -8,18 +8,18 @@ import numpy as np
 
 from solidgear.core.errors import SolidgearError
 from solidgear.core.frames import DOF_NAMES
-from solidgear.trains.file.housing import HOUSING
-from solidgear.trains.load.contact import Contact
+from solidgear.core.system.system import System
 from solidgear.trains.assembly.housing import free_directions, seat_motion
 from solidgear.trains.assembly.local import local_lines, undriven, waves_of
 from solidgear.trains.assembly.meshes import mesh_bars, mesh_limit
 from solidgear.trains.assembly.models import Workshop
-from solidgear.trains.modes.naming import OVALISING, driven, mode_names
 from solidgear.trains.assembly.shaft import JUDGE, mix_label
 from solidgear.trains.assembly.spin import spin_cautions
-from solidgear.trains.load.strain import mounts_together
 from solidgear.trains.assembly.turn import frequencies_over_a_turn
-from solidgear.core.system.system import System
+from solidgear.trains.file.housing import HOUSING
+from solidgear.trains.load.contact import Contact
+from solidgear.trains.load.strain import mounts_together
+from solidgear.trains.modes.naming import OVALISING, driven, mode_names
 
 #: a frequency whose bound is above this is not resolved by the reduction
 RESOLVED = 1e-3

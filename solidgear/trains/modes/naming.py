@@ -17,14 +17,14 @@ import numpy as np
 
 from solidgear.core.body import Body
 from solidgear.core.frames import shift
-from solidgear.trains.file.housing import HOUSING
 from solidgear.core.solve.circumference import circumference_of
 from solidgear.core.solve.families import FAMILIES
+from solidgear.core.system.modes import SystemModes
+from solidgear.core.system.system import System
 from solidgear.trains.assembly.housing import housing_energy
 from solidgear.trains.assembly.local import waves_of
 from solidgear.trains.assembly.models import Workshop
-from solidgear.core.system.modes import SystemModes
-from solidgear.core.system.system import System
+from solidgear.trains.file.housing import HOUSING
 
 #: a share of the kinetic energy that names a mode alone
 ALONE = 0.4

@@ -15,17 +15,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solidgear.trains.file.housing import HOUSING
-from solidgear.core.solve.neighbours import best_assignment
 from solidgear.core.judge.beside import all_pairs
 from solidgear.core.judge.change import BarredMode, ModePair
+from solidgear.core.solve.neighbours import best_assignment
+from solidgear.core.system.modes import SystemModes
+from solidgear.core.system.system import System
 from solidgear.trains.assembly.housing import BOX
 from solidgear.trains.assembly.meshes import mesh_bars
 from solidgear.trains.assembly.models import Workshop
-from solidgear.trains.modes.naming import driven, mode_names
+from solidgear.trains.file.housing import HOUSING
 from solidgear.trains.load.strain import strain_shares
-from solidgear.core.system.modes import SystemModes
-from solidgear.core.system.system import System
+from solidgear.trains.modes.naming import driven, mode_names
 
 #: two modes whose motions of the ports are less similar than this are different
 ALIKE = 0.3

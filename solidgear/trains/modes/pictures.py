@@ -14,16 +14,16 @@ from solidgear.core.body import Body
 from solidgear.core.body.surface import Surface
 from solidgear.core.errors import SolidgearError, listed
 from solidgear.core.ladder.registry import LADDER
+from solidgear.core.system.modes import SystemModes
+from solidgear.core.system.system import System
 from solidgear.show.folder import prepare
 from solidgear.show.page_parts import data_uri
 from solidgear.show.render import RenderJob, RenderResult, render_modes
 from solidgear.show.turning import Member, Turned, together
 from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.shaft import mix_label
 from solidgear.trains.modes.naming import mode_names
 from solidgear.trains.modes.pairing import BEYOND, modes_and_motions, partners
-from solidgear.trains.assembly.shaft import mix_label
-from solidgear.core.system.modes import SystemModes
-from solidgear.core.system.system import System
 
 #: phases of a vibration that a picture shows, degrees
 PHASES = (0, 60, 120, 180)

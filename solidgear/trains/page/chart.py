@@ -20,9 +20,9 @@ from solidgear.show.panel import (
     readout,
 )
 from solidgear.show.plot import BETWEEN, NARROW, WIDE, Chart, in_columns
-from solidgear.trains.page.tables import turned
 from solidgear.show.units import ENGINEERING, Units, plain
 from solidgear.show.words import hertz
+from solidgear.trains.page.tables import turned
 
 COLOURS = ("#00805e", "#0072b2", "#c98a00", "#b3305c", "#5a3e8c", "#444444", "#1f9bb8", "#8a6d3b")
 #: of two responses beside each other, told apart by everyone

@@ -10,21 +10,21 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from solidgear.core.machine.whole_file import whole
 from solidgear.compare.page import input_tables
-from solidgear.trains.page import tables as train_tables
+from solidgear.core.machine.whole_file import whole
 from solidgear.show.folder import begun
-from solidgear.trains.response.order_chart import order_chart
 from solidgear.show.page_parts import Contents, data_uri, template
 from solidgear.show.plot import Make, page_svg
 from solidgear.show.run_tables import pairs_of
 from solidgear.show.sheet_files import write_charts, write_json
 from solidgear.show.sketch_page import sketch_svg
 from solidgear.show.table import Table
-from solidgear.trains.page.chart import columns_chart, response_chart
-from solidgear.trains.page.files import crossings, over_frequency
 from solidgear.show.units import ENGINEERING, Units, units_named
 from solidgear.show.words import capital, seconds
+from solidgear.trains.page import tables as train_tables
+from solidgear.trains.page.chart import columns_chart, response_chart
+from solidgear.trains.page.files import crossings, over_frequency
+from solidgear.trains.response.order_chart import order_chart
 
 
 def write_train(

@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 
 from solidgear.core.errors import SolidgearError
-from solidgear.trains.file.train import PerTurn, Train
-from solidgear.trains.response.spectrum import Spectrum
 from solidgear.trains.assembly.kinematics import SLIP, angles_of, settled_angles, train_orders
 from solidgear.trains.assembly.models import Workshop
-from solidgear.trains.modes.modes import TrainMode
+from solidgear.trains.file.train import PerTurn, Train
 from solidgear.trains.load.operation import Operating
+from solidgear.trains.modes.modes import TrainMode
+from solidgear.trains.response.spectrum import Spectrum
 
 NOT_OURS = "not ours"
 #: share of a natural frequency within which an order is listed

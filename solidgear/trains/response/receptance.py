@@ -16,8 +16,8 @@ from solidgear.core.errors import SolidgearError, show
 from solidgear.core.frames import DOF_NAMES
 from solidgear.trains.assembly.components import FORCE_UNITS, MOTION_UNITS
 from solidgear.trains.assembly.models import Workshop
-from solidgear.trains.response.respond import Drive
 from solidgear.trains.assembly.shaft import mix_label
+from solidgear.trains.response.respond import Drive
 
 #: a motion this much smaller than reciprocal motions of both ends allow is rounding
 NOTHING = 1e-12

@@ -8,15 +8,15 @@ from typing import Annotated, Any
 import typer
 
 from solidgear.show.command import caution, command, say
-from solidgear.show.options import Shown
-from solidgear.trains.command import end_of, print_peaks
-from solidgear.trains.options import Driven, Reduced, TrainFile
 from solidgear.show.folder import held
-from solidgear.trains.page.files import write_receptance
+from solidgear.show.options import Shown
+from solidgear.trains.assembly.slips import unit_slips
+from solidgear.trains.command import end_of, print_peaks
 from solidgear.trains.judge.comparison import train_data
 from solidgear.trains.modes.modes import unpublished_lines
+from solidgear.trains.options import Driven, Reduced, TrainFile
+from solidgear.trains.page.files import write_receptance
 from solidgear.trains.response.receptance import receptance as between
-from solidgear.trains.assembly.slips import unit_slips
 
 END = "as PORT:COMPONENT, such as gear.gear:z, in the axes of the port's own shaft."
 

@@ -16,22 +16,22 @@ import numpy as np
 from solidgear.core.body import as_supports
 from solidgear.core.errors import SolidgearError, show
 from solidgear.core.machine.threads import pinned
-from solidgear.trains.file.planetary import error_of
-from solidgear.trains.file.tables import ErrorTable
+from solidgear.core.system.modes import SystemModes
+from solidgear.core.system.steady import SteadyState, peaks, stands_out
+from solidgear.core.system.system import System
 from solidgear.trains.assembly.components import FORCE_UNITS, MOTION_UNITS, six_columns
 from solidgear.trains.assembly.housing import housing_amplitudes, housing_columns, seat_motion
 from solidgear.trains.assembly.local import local_lines
 from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.spin import spin_cautions
+from solidgear.trains.assembly.stages import mesh_row, phases_of
+from solidgear.trains.file.planetary import error_of
+from solidgear.trains.file.tables import ErrorTable
 from solidgear.trains.modes.modes import refuse_unresolved
 from solidgear.trains.modes.naming import mode_names
 from solidgear.trains.modes.parting import parting_lines
 from solidgear.trains.response.response import OrderCurve, Peak, TrainResponse
 from solidgear.trains.response.speeds import highest_speed
-from solidgear.trains.assembly.spin import spin_cautions
-from solidgear.trains.assembly.stages import mesh_row, phases_of
-from solidgear.core.system.modes import SystemModes
-from solidgear.core.system.steady import SteadyState, peaks, stands_out
-from solidgear.core.system.system import System
 
 #: readings of the losses of a file: the three kinds, and the thesis's C = zeta K to the letter
 DAMPING = ("hysteretic", "viscous", "modal", "literal")

@@ -10,12 +10,12 @@ from typing import Annotated
 
 import typer
 
-from solidgear.show.command import Group, say
 from solidgear.core.errors import SceneError, SolidgearError, show
-from solidgear.show import speed_tables
-from solidgear.trains.file.train import Train
 from solidgear.core.scene.units import quantity
-from solidgear.trains.response.spectrum import read_spectrum
+from solidgear.show import speed_tables
+from solidgear.show.command import Group, say
+from solidgear.trains.file.train import Train
+from solidgear.trains.modes.modes import TrainMode
 from solidgear.trains.response.at_speed import (
     NEAR,
     AtSpeed,
@@ -23,7 +23,7 @@ from solidgear.trains.response.at_speed import (
     refuse_share,
     turns_of_pinion,
 )
-from solidgear.trains.modes.modes import TrainMode
+from solidgear.trains.response.spectrum import read_spectrum
 
 #: rows of tables on a terminal
 MOST, MOST_NEAR = 30, 10

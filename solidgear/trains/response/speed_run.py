@@ -8,9 +8,9 @@ from functools import cached_property
 
 import numpy as np
 
-from solidgear.core.errors import SolidgearError
 from solidgear.backlash.solver.run_up import FEWEST_CYCLES, MOST_CYCLES, RunUp, run_up
 from solidgear.backlash.torque import Backlash, Range
+from solidgear.core.errors import SolidgearError
 
 
 @dataclass(frozen=True, eq=False)

@@ -36,10 +36,10 @@ from solidgear.core.errors import SolidgearError, listed
 from solidgear.core.frames import rotation
 from solidgear.core.springs import root_of
 from solidgear.core.system.matrices import frozen, spd
+from solidgear.core.system.system import System
 from solidgear.trains.system.planetary import ONE_LINE, PlanetaryStage
 from solidgear.trains.system.planetary_members import ACROSS
 from solidgear.trains.system.planetary_modes import CENTRAL
-from solidgear.core.system.system import System
 
 #: rad; of a free motion, less is rounding
 TURNS = 1e-9

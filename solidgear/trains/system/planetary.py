@@ -42,6 +42,7 @@ from solidgear.core.system.gear_mesh import MeshVector, cylindrical_mesh
 from solidgear.core.system.links import BearingSpring, Link, RowSpring
 from solidgear.core.system.matrices import not_negative
 from solidgear.core.system.parts import Part, Placed
+from solidgear.core.system.system import System
 from solidgear.trains.system.planetary_members import CentralMember, Planet, body_of, check_member
 from solidgear.trains.system.planetary_modes import CENTRAL, SAME, PlanetaryMode, named_modes
 from solidgear.trains.system.planetary_turning import (
@@ -50,7 +51,6 @@ from solidgear.trains.system.planetary_turning import (
     turning_modes,
     turning_terms,
 )
-from solidgear.core.system.system import System
 
 #: relative to the distance of both axes, of two lines of action that are typed to be one
 ONE_LINE = 1e-6

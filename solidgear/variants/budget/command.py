@@ -8,15 +8,15 @@ from typing import Annotated
 
 import typer
 
-from solidgear.show.command import command, say
-from solidgear.show.arguments import load
-from solidgear.show.options import Run, SceneFile
 from solidgear.core.errors import SolidgearError, listed
 from solidgear.core.judge.answer import asked_for
-from solidgear.variants.budget.chart import budget_chart
+from solidgear.show.arguments import load
+from solidgear.show.command import command, say
 from solidgear.show.open_words import budget as table
+from solidgear.show.options import Run, SceneFile
 from solidgear.show.plot import check_ending
 from solidgear.variants.budget.budget import budget as worked_out
+from solidgear.variants.budget.chart import budget_chart
 
 
 @command

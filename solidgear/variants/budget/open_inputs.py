@@ -18,12 +18,12 @@ from solidgear.core.body import Body
 from solidgear.core.judge.correlation import pair_modes
 from solidgear.core.judge.quantities import measure
 from solidgear.core.ladder import build
+from solidgear.core.loading import SHAFT
 from solidgear.core.quantity import STIFFNESS, Quantity
 from solidgear.core.scene import Scene
 from solidgear.core.scene.uncertain import with_scaled_entry
 from solidgear.core.solve.modes import ModeSet, modes
 from solidgear.core.solve.statics import condense
-from solidgear.core.loading import SHAFT
 
 BEARINGS, LOAD, MATERIAL = "bearings", "load", "material"
 INSIDE, CLEARANCE, PRELOAD = ".inside", ".clearance", ".preload"

@@ -10,10 +10,10 @@ from typing import Annotated
 import typer
 
 from solidgear.show.command import NOT_REACHED, command, say
-from solidgear.show.options import AUTO, BY_MODEL, AutoChoice, Run, relative
 from solidgear.show.folder import held
-from solidgear.variants.optimise.tables import designs, write_optimum
+from solidgear.show.options import AUTO, BY_MODEL, AutoChoice, Run, relative
 from solidgear.variants.optimise.optimise import optimise as optimised
+from solidgear.variants.optimise.tables import designs, write_optimum
 
 
 @command

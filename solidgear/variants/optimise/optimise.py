@@ -18,13 +18,13 @@ import numpy as np
 from solidgear.core.errors import SolidgearError, nearest
 from solidgear.variants.optimise.optimum import Design, Optimum
 from solidgear.variants.optimise.searching import searched
+from solidgear.variants.optimise.wishes import Wish, limit_of, wish_of
 from solidgear.variants.sweep import design
 from solidgear.variants.sweep.amounts import in_si
 from solidgear.variants.sweep.entries import Entry
 from solidgear.variants.sweep.scene_task import STATICS, SceneTask
 from solidgear.variants.sweep.scene_variants import scene_variants
 from solidgear.variants.sweep.spans import plain_number
-from solidgear.variants.optimise.wishes import Wish, limit_of, wish_of
 
 #: of a range: how near two designs are one, and how near to its end an optimum is at the end
 SAME, AT_END = 1e-6, 1e-6

@@ -8,8 +8,8 @@ from typing import Any, ClassVar
 
 from solidgear.core.display import Displayed
 from solidgear.core.judge.change import Change
-from solidgear.variants.sweep.bearing_task import without_bars
 from solidgear.variants.optimise.wishes import Wish
+from solidgear.variants.sweep.bearing_task import without_bars
 
 
 @dataclass(frozen=True)

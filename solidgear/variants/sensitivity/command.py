@@ -10,10 +10,10 @@ from typing import Annotated
 import typer
 
 from solidgear.show.command import command, say
-from solidgear.show.options import Fixed, SceneFile, Shown, options
-from solidgear.variants.sensitivity import tables as sensitivity
 from solidgear.show.folder import held
+from solidgear.show.options import Fixed, SceneFile, Shown, options
 from solidgear.show.units import units_named
+from solidgear.variants.sensitivity import tables as sensitivity
 from solidgear.variants.sensitivity.run import sensitivities as derived
 
 

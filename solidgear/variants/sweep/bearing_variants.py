@@ -15,12 +15,12 @@ from typing import Any
 from solidgear.bearings.solved import solved
 from solidgear.core.body import Supports, as_supports
 from solidgear.core.errors import SceneError, SolidgearError
+from solidgear.core.loading import load, scene_of, shaft
 from solidgear.core.scene import Bearing, Feature, PointMass, Port, Scene, Segment
-from solidgear.parts.body_file import BodyFile
 from solidgear.core.scene.outline import Outline
 from solidgear.core.scene.paths import Keys, Tables, entries, entry
 from solidgear.core.scene.sprung import resprung
-from solidgear.core.loading import load, scene_of, shaft
+from solidgear.parts.body_file import BodyFile
 from solidgear.variants.sweep.design import Design
 from solidgear.variants.sweep.entries import Entry
 from solidgear.variants.sweep.file_variants import OWN

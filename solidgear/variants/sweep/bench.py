@@ -7,10 +7,10 @@ from collections.abc import Hashable, Mapping
 from typing import Any
 
 from solidgear.core.scene import Scene
-from solidgear.trains.file.train import Train
 from solidgear.trains.assembly.models import Workshop
-from solidgear.trains.load.operation import Operating
 from solidgear.trains.assembly.shaft import ShaftModel, checked_model
+from solidgear.trains.file.train import Train
+from solidgear.trains.load.operation import Operating
 
 #: unknowns of the bodies that are kept, about 1 kB each
 UNKNOWNS = 300_000

@@ -11,8 +11,8 @@ import numpy as np
 from solidgear.show.panel import Axis, Panel, Series, readout
 from solidgear.show.plot import NARROW, WIDE, Chart, in_columns
 from solidgear.show.table import NUMBER, Column, Table, text
-from solidgear.trains.page.chart import COLOURS
 from solidgear.show.units import ENGINEERING, Units, plain
+from solidgear.trains.page.chart import COLOURS
 
 #: px; names at the right ends of curves, and the least distance of two
 NAMES, APART = 150.0, 13.0

@@ -11,11 +11,23 @@ from typing import Annotated
 
 import typer
 
+from solidgear.app.settled import ended, over_the_sweep
+from solidgear.core.errors import SolidgearError
+from solidgear.core.ladder import build
+from solidgear.core.ladder.registry import LADDER
+from solidgear.core.scene.toml_file import is_train, parse
+from solidgear.guards.check import cautions
+from solidgear.show.arguments import load
 from solidgear.show.command import Progress as Steps
 from solidgear.show.command import caution, command, say
-from solidgear.show.arguments import load
-from solidgear.app.settled import ended, over_the_sweep
 from solidgear.show.options import AUTO, MODEL, Chosen, Run, options, refuse, relative
+from solidgear.trains.assembly.shaft import JUDGE, mix_label
+from solidgear.trains.options import Pair, Reduced, of_shafts
+from solidgear.variants.sweep.bearing_sweep import sweep as swept
+from solidgear.variants.sweep.bearing_variants import BearingVariants, bearing_variants
+from solidgear.variants.sweep.chart import sweep_table
+from solidgear.variants.sweep.choice import bars_of_rows, settled_for_sweep
+from solidgear.variants.sweep.file_task import Swept
 from solidgear.variants.sweep.rows_command import (
     FEW,
     Rows,
@@ -28,21 +40,9 @@ from solidgear.variants.sweep.rows_command import (
     rows_there,
     solved,
 )
-from solidgear.trains.options import Pair, Reduced, of_shafts
-from solidgear.core.errors import SolidgearError
-from solidgear.core.ladder import build
-from solidgear.core.ladder.registry import LADDER
-from solidgear.variants.sweep.chart import sweep_table
-from solidgear.core.scene.toml_file import is_train, parse
-from solidgear.guards.check import cautions
-from solidgear.variants.sweep.bearing_sweep import sweep as swept
-from solidgear.variants.sweep.bearing_variants import BearingVariants, bearing_variants
-from solidgear.variants.sweep.choice import bars_of_rows, settled_for_sweep
-from solidgear.variants.sweep.file_task import Swept
 from solidgear.variants.sweep.scene_task import scene_task
 from solidgear.variants.sweep.train_task import ASKED, MODES, MOST_MODES, PARTS, train_task
 from solidgear.variants.sweep.train_variants import shafts_in
-from solidgear.trains.assembly.shaft import JUDGE, mix_label
 
 #: relative, of frequencies of a shaft
 TOLERANCE = 1e-6

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from solidgear.core.loading import scene_of
 from solidgear.core.scene import Scene
 from solidgear.core.scene.toml_file import parse
-from solidgear.core.loading import scene_of
 from solidgear.variants.sweep.design import Design
 from solidgear.variants.sweep.entries import Entry
 from solidgear.variants.sweep.file_variants import OWN, FileVariants, in_own_file

@@ -13,8 +13,17 @@ import numpy as np
 from solidgear.core.errors import SolidgearError, nearest, show
 from solidgear.core.models.limits import number
 from solidgear.core.scene import Scene
+from solidgear.strength.deflection.misalignment import measured_names, misalignment
+from solidgear.trains.assembly.layout import contacts
+from solidgear.trains.assembly.models import KEPT
+from solidgear.trains.assembly.shaft import JUDGE, LUMPED, checked_model
+from solidgear.trains.assembly.turn import over_a_turn, stages_over_a_turn
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.train import Train
+from solidgear.trains.load.operation import SHAFT, OperatingState, with_settled_bearings
+from solidgear.trains.modes.modes import refuse_unresolved
+from solidgear.trains.modes.parting import joint_name, parting_frequency, teeth_relief
+from solidgear.trains.response.respond import Drive
 from solidgear.variants.sweep.bearing_task import BARS, BOUND
 from solidgear.variants.sweep.bench import Bench
 from solidgear.variants.sweep.curves import force_of, misaligned
@@ -22,15 +31,6 @@ from solidgear.variants.sweep.design import Design
 from solidgear.variants.sweep.file_task import FileTask
 from solidgear.variants.sweep.file_variants import plain
 from solidgear.variants.sweep.train_variants import TrainVariants, train_variants
-from solidgear.trains.assembly.layout import contacts
-from solidgear.strength.deflection.misalignment import measured_names, misalignment
-from solidgear.trains.assembly.models import KEPT
-from solidgear.trains.modes.modes import refuse_unresolved
-from solidgear.trains.load.operation import SHAFT, OperatingState, with_settled_bearings
-from solidgear.trains.modes.parting import joint_name, parting_frequency, teeth_relief
-from solidgear.trains.response.respond import Drive
-from solidgear.trains.assembly.shaft import JUDGE, LUMPED, checked_model
-from solidgear.trains.assembly.turn import over_a_turn, stages_over_a_turn
 
 #: what a row may tell, by the commands that tell the same of one train
 MODES, RESPONSE, DEFLECTION = "system-modes", "response", "deflect"

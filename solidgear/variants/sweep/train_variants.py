@@ -11,20 +11,20 @@ from typing import Any
 import numpy as np
 
 from solidgear.core.errors import SolidgearError, listed
+from solidgear.core.loading import scene_of
 from solidgear.core.scene import Scene
 from solidgear.core.scene.file import KEYS
-from solidgear.trains.file.operation import OperatingPoint
 from solidgear.core.scene.paths import Tables, with_entry
 from solidgear.core.scene.toml_file import parse
-from solidgear.trains.file.train import SHORT, SIDES, Train
-from solidgear.trains.file.reading import train_of
+from solidgear.trains.assembly.layout import contacts
 from solidgear.trains.file.housing import HOUSING
-from solidgear.core.loading import scene_of
+from solidgear.trains.file.operation import OperatingPoint
+from solidgear.trains.file.reading import train_of
+from solidgear.trains.file.train import SHORT, SIDES, Train
+from solidgear.trains.load.operation import named_point
 from solidgear.variants.sweep.design import Design
 from solidgear.variants.sweep.entries import Entry, Place
 from solidgear.variants.sweep.file_variants import OWN, POINT, FileVariants
-from solidgear.trains.assembly.layout import contacts
-from solidgear.trains.load.operation import named_point
 
 #: table of operating points
 OPERATION = "operation"

@@ -19,9 +19,9 @@ from solidgear.core.judge.ties import SCENE
 from solidgear.core.ladder.model import SOLID
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.models.kinds import CYCLIC
-from solidgear.cuts.solid.featured import featured_body, meshed
 from solidgear.core.models.solid.plan import tetrahedra_plan
 from solidgear.core.scene.closed_form import mass_properties
+from solidgear.cuts.solid.featured import featured_body, meshed
 from validation.campaign.case import Case, Run
 from validation.campaign.cases.commands import spoken
 from validation.campaign.rows import CLAIM, Cost, Found, Row

@@ -6,12 +6,12 @@ import argparse
 from functools import partial
 from typing import Any
 
+from solidgear.compare.comparison import compare
 from solidgear.core.judge.quantities import JUDGED, size
 from solidgear.core.ladder import build
 from solidgear.core.quantity import QUANTITIES
 from solidgear.core.scene import Scene
 from solidgear.guards.check import check_scene
-from solidgear.compare.comparison import compare
 from validation.campaign.case import Case, Run
 from validation.campaign.rows import (
     AGREES,

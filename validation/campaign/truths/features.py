@@ -31,13 +31,13 @@ from solidgear.core.judge.sequence_bars import RIGID_EDGE
 from solidgear.core.judge.solving import Answer, answer_of_body, solve
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.meshing.corners import SHOULDER
-from solidgear.cuts.solid.cuts import mirror_plane
-from solidgear.cuts.sector.body import sector
-from solidgear.cuts.solid.featured import featured_body, meshed
 from solidgear.core.models.solid.plan import tetrahedra_plan
 from solidgear.core.quantity import QUANTITIES
 from solidgear.core.scene.shaft import resolved
 from solidgear.core.solve.mixtures import mixtures
+from solidgear.cuts.sector.body import sector
+from solidgear.cuts.solid.cuts import mirror_plane
+from solidgear.cuts.solid.featured import featured_body, meshed
 
 #: of the plain part, and a coarser one whose distance tells how sure it is
 PLAIN = {"order": 5, "layers": 3, "edge_layers": 2, "relative_size": 4.0}

@@ -11,9 +11,9 @@ import scipy.linalg as sla
 
 from solidgear.core.scene import Bearing, Material, Port, Scene, Segment
 from solidgear.core.scene.point_mass import PointMass
-from solidgear.trains.file.train import Train
-from solidgear.trains.file.reading import ShortFile
 from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.file.reading import ShortFile
+from solidgear.trains.file.train import Train
 from validation.manual.case import Answer, Case, Model, Reference, references
 
 RAO = (

@@ -9,9 +9,9 @@ from __future__ import annotations
 import numpy as np
 
 from solidgear.core.errors import SolidgearError
-from solidgear.variants.sensitivity.harmonic import HarmonicAdjoint, Push
 from solidgear.core.scene.coned import coned
 from solidgear.core.scene.outline import TOUCH
+from solidgear.variants.sensitivity.harmonic import HarmonicAdjoint, Push
 
 
 class Motion:

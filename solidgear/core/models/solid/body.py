@@ -19,14 +19,14 @@ from solidgear.core.meshing.tetrahedra import tetrahedra
 from solidgear.core.models.kinds import BODIES, CYCLIC, PARTS
 from solidgear.core.models.options import thick_enough
 from solidgear.core.models.solid.block import body_of, free_block, mesh_facts, mirrored, seat_facets
-from solidgear.cuts.solid.featured import featured_body, meshed
 from solidgear.core.models.solid.mesh import _isoparametric
-from solidgear.parts.part_body import part_body
 from solidgear.core.models.solid.plan import hexahedra_layout, tetrahedra_of, tetrahedra_plan
-from solidgear.parts.rectangular import block_body
 from solidgear.core.scene.attached import attached_stations
 from solidgear.core.scene.closed_form import volume_of
 from solidgear.core.scene.shaft import feature_labels, resolved, without_axis
+from solidgear.cuts.solid.featured import featured_body, meshed
+from solidgear.parts.part_body import part_body
+from solidgear.parts.rectangular import block_body
 
 
 def solid(

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from solidgear.cuts.solid.cuts import fine_lines
 from solidgear.core.meshing.element_size import rough_cells
 from solidgear.core.meshing.grading import Grading
 from solidgear.core.meshing.layout import layout
 from solidgear.core.models.kinds import CUTS
 from solidgear.core.models.limits import countable
 from solidgear.core.scene.shaft import resolved
+from solidgear.cuts.solid.cuts import fine_lines
 
 
 def hexahedra_layout(

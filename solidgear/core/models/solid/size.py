@@ -9,17 +9,17 @@ import numpy as np
 
 from solidgear.core.elements import SOLVED_AS
 from solidgear.core.kernel.room import assemblable
-from solidgear.cuts.solid.meshing import FeaturedMesh, submesh
 from solidgear.core.meshing.hexahedra import straight_hexahedra
 from solidgear.core.models.kinds import BODIES, CUTS, CYCLIC
 from solidgear.core.models.size import Size, coupled, size_of_mesh
 from solidgear.core.models.solid.body import _tets
-from solidgear.cuts.solid.featured import meshed
 from solidgear.core.models.solid.mesh import basis_of
 from solidgear.core.models.solid.plan import hexahedra_layout, tetrahedra_plan
-from solidgear.parts.rectangular import block_mesh
 from solidgear.core.scene.attached import attached_stations
 from solidgear.core.scene.shaft import resolved
+from solidgear.cuts.solid.featured import meshed
+from solidgear.cuts.solid.meshing import FeaturedMesh, submesh
+from solidgear.parts.rectangular import block_mesh
 
 
 def solid_size(

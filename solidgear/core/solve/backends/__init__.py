@@ -22,9 +22,9 @@ import numpy as np
 import scipy.sparse as sp
 
 from solidgear.core.solve.backends.cholmod import Cholmod
-from solidgear.petsc.mumps import Mumps
 from solidgear.core.solve.backends.pardiso import Pardiso
 from solidgear.core.solve.backends.superlu import SuperLU
+from solidgear.petsc.mumps import Mumps
 
 BACKENDS = {back.name: back for back in (Pardiso, Cholmod, Mumps, SuperLU)}
 #: those that factor in single precision, and those that keep a factor in files
