@@ -15,18 +15,16 @@ PACKAGE = ROOT / "solidgear"
 WITH_EXAMPLES = sorted(p for p in PACKAGE.rglob("*.py") if ">>>" in p.read_text())
 #: a second and more; the tests of their rooms do the same by default
 DEAR = {
-    PACKAGE / "scene" / "body_file.py",
-    *(
-        PACKAGE / "studies" / name
-        for name in (
-            "comparison.py",
-            "stress/shaft.py",
-            "sweep/choice.py",
-            "sweep/file_task.py",
-            "train/check.py",
-            "train/nonlinear.py",
-        )
-    ),
+    PACKAGE / name
+    for name in (
+        "parts/body_file.py",
+        "compare/comparison.py",
+        "strength/stress/shaft.py",
+        "variants/sweep/choice.py",
+        "variants/sweep/file_task.py",
+        "trains/judge/check.py",
+        "backlash/train.py",
+    )
 }
 NOUNS = [name for name in sg.__all__ if callable(getattr(sg, name))]
 

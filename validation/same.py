@@ -47,13 +47,13 @@ bearing geometry/gearbox_catalogue.toml
 stress geometry/pinion_filleted.toml --load z=2\\ kN --json
 stress geometry/gearbox_output.toml --out OUT
 deflect geometry/gearbox_catalogue.toml
-deflect geometry/axle_straddle.toml --out OUT
+deflect geometry/axle_straddle.toml --torque 100\\ N*m --out OUT
 deflect geometry/reducer.toml --json
 sensitivities geometry/pinion_overhung.toml
 sensitivities geometry/gearbox_catalogue.toml -f timoshenko
 budget geometry/gearbox_catalogue.toml
-sweep geometry/pinion_overhung.toml --vary segment.shaft.length=60\\ mm,70\\ mm --out OUT.csv
-sweep geometry/pinion_overhung.toml --vary bearing.front.scale=0.5,1,2 --out OUT.csv
+sweep geometry/pinion_overhung.toml --vary segment.1.length=19\\ mm,20\\ mm --out OUT.csv
+sweep geometry/pinion_overhung.toml --vary bearing.1.scale=0.5,1,2 --out OUT.csv
 optimise geometry/shaft_stepped.toml -f timoshenko --vary segment.middle.diameter=30\\ mm:60\\ mm --goal max\\ bending\\ 1
 system-modes geometry/axle_straddle.toml
 system-modes geometry/gearbox_two_stage.toml --json
@@ -61,7 +61,7 @@ system-modes geometry/gearbox_housed.toml
 response geometry/axle_straddle.toml --out OUT
 response geometry/reducer.toml
 judge-system geometry/axle_straddle.toml
-nonlinear geometry/axle_straddle.toml
+nonlinear geometry/axle_straddle.toml --backlash 100\\ um
 receptance geometry/axle_straddle.toml --from gear.gear:z --to pinion.pinion:x --out OUT
 scenes
 new OUT

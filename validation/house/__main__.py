@@ -29,7 +29,7 @@ ADDITIONS = {
     "quantity": r"\bk_theta\b|C_thy",
 }
 #: rooms whose module constants are colours and sizes of pages
-PAGES = ("report", "show")
+PAGES = ("show",)
 
 
 def figures(tree: Path) -> dict:
@@ -73,9 +73,7 @@ def _structure(files: Sequence[Source]) -> dict:
         "circles of modules as they run": structure.circles(running),
         "circles of modules as they are read": structure.circles(read),
         "circles of rooms as they are read": structure.circles(structure.between_rooms(read)),
-        "arrows up as the source is read": structure.arrows_up(
-            structure.between_rooms(read), MAY_IMPORT
-        ),
+        "arrows up as the source is read": structure.arrows_up(read, MAY_IMPORT),
         "modules with one importer": len(single),
         "of these in its own folder": len(home),
         "lines of these": sum(lines[module] for module in home),

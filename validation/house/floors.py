@@ -1,33 +1,71 @@
-"""Rooms of the package from the ground up, and what each may import."""
+"""Rooms of the package from the ground up: each imports those before it, and no other."""
 
-GROUND = {"errors", "elements", "factoring", "frames", "display", "quantity", "springs"}
-
-#: room: what it may import, from the ground up
-MAY_IMPORT = {
-    "errors": set(),
-    "frames": {"errors"},
-    "factoring": set(),
-    "elements": set(),
-    "springs": {"errors"},
-    "display": set(),
-    "quantity": {"frames"},
-    "machine": GROUND,
-    "scene": GROUND,
-    "body": GROUND,
-    "meshing": GROUND | {"machine", "scene"},
-    "solve": GROUND | {"machine", "body"},
-    "kernel": GROUND | {"machine", "body", "meshing"},
-    "models": GROUND | {"machine", "scene", "body", "meshing", "solve", "kernel"},
-    "bounds": GROUND | {"scene", "body", "meshing", "solve", "kernel", "models"},
-    "ladder": GROUND | {"machine", "scene", "meshing", "solve", "kernel", "models", "bounds"},
-    "reduction": GROUND | {"machine", "body", "solve"},
-    "bearings": GROUND | {"scene", "body", "solve"},
-    "system": GROUND | {"machine", "scene", "body", "reduction", "bearings"},
-    "nonlinear": GROUND | {"machine", "system"},
-    "judge": GROUND
-    | {"machine", "scene", "body", "meshing", "solve", "models", "bounds", "ladder", "reduction"},
-    "report": GROUND | {"machine", "body", "judge"},
-    "studies": GROUND
-    | {"machine", "scene", "body", "meshing", "solve", "models", "bounds", "ladder", "reduction"}
-    | {"kernel", "bearings", "system", "nonlinear", "judge", "report"},
+GROUND = {
+    "core.errors",
+    "core.frames",
+    "core.elements",
+    "core.factoring",
+    "core.quantity",
+    "core.springs",
+    "core.display",
+    "core.machine",
 }
+#: rooms of the core: what each may import
+CORE = {
+    "core.errors": set(),
+    "core.elements": set(),
+    "core.factoring": set(),
+    "core.display": set(),
+    "core.frames": {"core.errors"},
+    "core.springs": {"core.errors"},
+    "core.quantity": {"core.frames"},
+    "core.machine": GROUND - {"core.machine"},
+}
+#: further rooms of the core, from the ground up
+CORE_FLOORS = (
+    "core.scene",
+    "core.body",
+    "core.meshing",
+    "core.solve",
+    "core.kernel",
+    "core.models",
+    "core.bounds",
+    "core.ladder",
+    "core.reduction",
+    "core.system",
+    "core.judge",
+    "core.loading",
+)
+#: how results are shown, then a room a question, then the command line
+FEATURES = (
+    "show",
+    "petsc",
+    "parts",
+    "cuts",
+    "bearings",
+    "guards",
+    "trains",
+    "strength",
+    "variants",
+    "measured",
+    "backlash",
+    "compare",
+    "app",
+)
+
+
+def room_of(module: str) -> str:
+    """Return the room of a module: of the core its part, else the first name below the package."""
+    names = module.split(".")[1:]
+    return ".".join(names[:2]) if names[:1] == ["core"] else ".".join(names[:1])
+
+
+def floors() -> dict[str, set[str]]:
+    """Return for each room the rooms that it may import."""
+    below = dict(CORE)
+    for room in (*CORE_FLOORS, *FEATURES):
+        below[room] = {*below}
+    return below
+
+
+MAY_IMPORT = floors()

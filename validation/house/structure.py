@@ -10,6 +10,7 @@ import numpy as np
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import connected_components
 
+from validation.house.floors import room_of
 from validation.house.source import Source
 
 Graph = dict[str, set[str]]
@@ -58,22 +59,19 @@ def between_rooms(arrows: Graph) -> Graph:
     """Return the graph of rooms, of an import graph of modules."""
     rooms: Graph = defaultdict(set)
     for module, targets in arrows.items():
-        rooms[_room(module)] |= {_room(target) for target in targets} - {_room(module)}
+        rooms[room_of(module)] |= {room_of(target) for target in targets} - {room_of(module)}
     return {room: targets - {""} for room, targets in rooms.items() if room}
 
 
-def _room(module: str) -> str:
-    """Return the first name below the package, empty for the package itself."""
-    return module.partition(".")[2].partition(".")[0]
-
-
-def arrows_up(rooms: Graph, floors: dict[str, set[str]]) -> list[str]:
-    """Return the arrows between rooms that a table of what each may import does not allow."""
+def arrows_up(arrows: Graph, floors: dict[str, set[str]]) -> list[str]:
+    """Return the imports between modules that a table of what each room may import forbids."""
     return sorted(
-        f"{room} -> {target}"
-        for room, targets in rooms.items()
-        if room in floors
-        for target in targets - floors[room]
+        f"{module} -> {target}"
+        for module, targets in arrows.items()
+        for target in targets
+        if (room := room_of(module)) in floors
+        and (below := room_of(target)) not in ("", "core", room)
+        and below not in floors[room]
     )
 
 

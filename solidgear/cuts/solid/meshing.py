@@ -91,8 +91,9 @@ def featured_mesh(
     share = turn / (2 * pi)
     volume, sizes_around = share * volume_of(outline), []
     if around_axis:
+        # slow to import, and seldom needed
         from solidgear.cuts.sector import drawing as sector_drawing
-        from solidgear.cuts.sector import meshing as sector  # slow to import, and seldom needed
+        from solidgear.cuts.sector import meshing as sector
 
         volume = sector.volume_of_sector(outline, around_axis, 1)
         sizes_around = sector.sizes_around(outline.segments, around_axis, refinement)
