@@ -207,9 +207,8 @@ class Solved(Chosen):
             return ""
         if self.on_two_meshes:
             if scene.body is not None and scene.body.one_mesh:
-                from solidgear.core.judge.coarser_mesh import (
-                    no_bar,  # start-up: for mesh files alone
-                )
+                # start-up: for mesh files alone
+                from solidgear.core.judge.coarser_mesh import no_bar
 
                 return no_bar(scene, body, options(self.pairs))
             return "there is no coarser mesh beside the one that was set"
