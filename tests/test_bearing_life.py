@@ -18,7 +18,6 @@ from solidgear.bearings.duty import DutyPoint, duty_life
 from solidgear.bearings.equivalent import equivalent_load, factors, static_load
 from solidgear.bearings.geometry import Inside, inner_geometry
 from solidgear.bearings.life import life, life_factor, reference_viscosity, reliability_factor
-from solidgear.bearings.lubrication import Lubrication
 from solidgear.bearings.rating import (
     fatigue_limit,
     rated,
@@ -30,6 +29,7 @@ from solidgear.bearings.reference_life import damage, edge_stress, raceways
 from solidgear.bearings.roller import RollerRow
 from solidgear.bearings.rolling import RollingBearing
 from solidgear.core.errors import SceneError
+from solidgear.core.scene.lubrication import Lubrication
 
 SCENE = "geometry/gearbox_catalogue.toml"
 RPM = math.pi / 30

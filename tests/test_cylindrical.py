@@ -8,9 +8,9 @@ import pytest
 
 import solidgear as sg
 from solidgear.core.errors import SceneError
-from solidgear.cuts.cylindrical import working_cylinders
 from solidgear.trains.assembly.layout import contacts
 from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.file.cylindrical import working_cylinders
 from solidgear.trains.load.operation import at_point
 from solidgear.trains.modes.modes import train_modes
 

@@ -14,7 +14,7 @@ import pytest
 from rich.console import Console
 
 import solidgear as sg
-from solidgear.compare.page import charts, input_tables
+from solidgear.compare.page import charts
 from solidgear.compare.recording import recorded
 from solidgear.core.errors import SolidgearError
 from solidgear.core.judge.record import SCHEMA, Record
@@ -25,6 +25,7 @@ from solidgear.show.terminal import matrix_table, modes_table
 from solidgear.show.units import ENGINEERING
 from solidgear.show.viewer import END, START, TURNED
 from solidgear.show.words import engineering, hertz, percent
+from solidgear.trains.page import input_tables
 from tests.made_up_run import STIFFNESS, fixture_results
 from tests.plain import final_table, render_page, verdict_text, write_report
 

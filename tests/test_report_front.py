@@ -10,7 +10,6 @@ import pytest
 
 import solidgear as sg
 from solidgear.compare.page import front
-from solidgear.compare.page.input_tables import scene_facts
 from solidgear.core.errors import SolidgearError
 from solidgear.core.judge.record import Record
 from solidgear.show.terminal import matrix_table
@@ -25,6 +24,7 @@ from solidgear.show.units import (
     units_named,
 )
 from solidgear.show.viewer import END, START, TURNED
+from solidgear.trains.page.input_tables import scene_facts
 from tests.made_up_run import fixture_results
 from tests.plain import final_table, render_page
 from tests.test_report import shown, text_of

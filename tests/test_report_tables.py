@@ -4,10 +4,10 @@ from dataclasses import fields
 
 import solidgear as sg
 from solidgear.compare.page import evidence_tables
-from solidgear.compare.page.input_tables import bearings, scene_facts
 from solidgear.core.judge.bars import ErrorBar
 from solidgear.core.judge.record import BarRecord, Record
 from solidgear.show.units import US
+from solidgear.trains.page.input_tables import bearings, scene_facts
 
 CATALOGUE = sg.load("geometry/gearbox_catalogue.toml").as_dict()
 GIVEN = sg.load("geometry/shaft_stepped.toml").as_dict()

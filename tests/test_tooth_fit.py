@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 
 from solidgear.core.errors import SceneError
-from solidgear.cuts.cylindrical import working_cylinders
 from solidgear.trains.assembly.gear_bodies import gear_cautions
 from solidgear.trains.assembly.layout import contacts
+from solidgear.trains.file.cylindrical import working_cylinders
 from solidgear.trains.file.reading import load_train
 from solidgear.trains.file.tooth_fit import ToothFit, fit_cautions, fit_of, wheel_cautions
 

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from solidgear.compare.comparison import compare
-from solidgear.compare.verdict import judge, percent, trusted
 from solidgear.core.body.mode_names import ModeName
 from solidgear.core.judge.bars import ErrorBar
 from solidgear.core.judge.deviations import BEYOND, OPEN, WITHIN, deviations, gap_verdict
@@ -15,6 +14,7 @@ from solidgear.core.judge.record import GuardRecord, LevelRecord
 from solidgear.core.judge.solution import Solution
 from solidgear.core.judge.solving import Answer, Statics
 from solidgear.core.judge.ties import SCENE, SECTION
+from solidgear.core.judge.verdict import judge, percent, trusted
 from solidgear.core.quantity import Quantity
 from solidgear.core.scene import Ask, Bearing, Scene, Segment
 from solidgear.core.solve.modes import Mode, ModeSet

@@ -27,7 +27,6 @@ import numpy as np
 import solidgear as sg
 from solidgear.core.models.beam import body as beam_body
 from solidgear.core.models.harmonic import body as harmonic_body
-from solidgear.core.models.harmonic.motion import Motion
 from solidgear.core.quantity import COMPLIANCE, Quantity
 from solidgear.core.scene import Scene
 from solidgear.core.scene.file import scene_of
@@ -36,6 +35,7 @@ from solidgear.core.scene.toml_file import parse
 from solidgear.variants.sensitivity.beam import BeamAdjoint
 from solidgear.variants.sensitivity.entries import around, numbers, put
 from solidgear.variants.sensitivity.harmonic import HarmonicAdjoint
+from solidgear.variants.sensitivity.harmonic_motion import Motion
 from validation.campaign.scenes.shafts import random_scene
 from validation.common import toml
 

@@ -7,15 +7,6 @@ from typing import Annotated
 
 import typer
 
-from solidgear.app.settled import (
-    SECOND_MESH,
-    bar_lines,
-    beyond,
-    ended,
-    heading,
-    unjudged,
-    without_bar,
-)
 from solidgear.bearings.life_command import speed_of
 from solidgear.core.body import as_supports
 from solidgear.core.errors import SolidgearError, listed, show
@@ -33,6 +24,15 @@ from solidgear.guards.check import cautions
 from solidgear.show.arguments import load
 from solidgear.show.command import caution, command, say
 from solidgear.show.options import Run, SceneFile, Solved, options
+from solidgear.show.settled import (
+    SECOND_MESH,
+    bar_lines,
+    beyond,
+    ended,
+    heading,
+    unjudged,
+    without_bar,
+)
 from solidgear.show.terminal import modes_table
 from solidgear.show.words import by_plane
 from solidgear.variants.budget.budget import beside

@@ -9,7 +9,6 @@ from typing import Annotated, Any
 import numpy as np
 import typer
 
-from solidgear.app.settled import SECOND_MESH, bar_lines, ended, heading, largest_bar
 from solidgear.core.errors import SolidgearError
 from solidgear.core.frames import DOF_NAMES
 from solidgear.core.judge.coarser_mesh import static_bars
@@ -23,6 +22,7 @@ from solidgear.show.arguments import load
 from solidgear.show.command import caution, command, say
 from solidgear.show.open_words import table as open_table
 from solidgear.show.options import SceneFile, Shown, Solved, options
+from solidgear.show.settled import SECOND_MESH, bar_lines, ended, heading, largest_bar
 from solidgear.show.table import Column, Table
 from solidgear.show.terminal import matrix_table
 from solidgear.show.units import units_named

@@ -12,6 +12,7 @@ import typer
 from solidgear.backlash import train as study
 from solidgear.backlash.files import lead, mixes, over_force, write_nonlinear
 from solidgear.backlash.results import BacklashStudy
+from solidgear.backlash.speed_run import ramp_of, speed_run
 from solidgear.core.errors import SceneError, SolidgearError, show
 from solidgear.core.scene.units import quantity
 from solidgear.show.command import caution, command, say
@@ -25,7 +26,6 @@ from solidgear.trains.file.planetary import named_pair
 from solidgear.trains.judge.comparison import train_data
 from solidgear.trains.modes.modes import unpublished_lines
 from solidgear.trains.options import Mix, Reduced, TrainFile, mix
-from solidgear.trains.response.speed_run import ramp_of, speed_run
 
 #: speeds of a sweep in time, and mean forces of a map: each takes seconds
 MOST_RUNS = 200

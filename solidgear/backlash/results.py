@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 
 from solidgear.backlash.apart import branch_data, branch_sentences
+from solidgear.backlash.speed_run import SpeedRun
 from solidgear.backlash.torque import AtForce, Backlash, Jump, Range, Teeth
 from solidgear.backlash.train import InTime
 from solidgear.trains.file.layout import PerTurn
 from solidgear.trains.file.train import Train
-from solidgear.trains.response.speed_run import SpeedRun
 
 #: of motions that repeat themselves otherwise than every mesh period
 WANDERS = "From {0} the periodic motion is unstable: {1} comes in, and a sweep may leave it there."

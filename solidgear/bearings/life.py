@@ -39,10 +39,10 @@ import numpy as np
 from solidgear.bearings.catalogue import Catalogue
 from solidgear.bearings.catalogued import Catalogued
 from solidgear.bearings.equivalent import Equivalent, equivalent_load, static_load
-from solidgear.bearings.lubrication import Lubrication
 from solidgear.bearings.rating import ROW_POWER, STATIC_PRESSURE, Ratings, ratings
 from solidgear.bearings.reference_life import Damage, Ring, damage, raceways
 from solidgear.bearings.row import Contacts
+from solidgear.core.scene.lubrication import Lubrication
 
 #: powers of the load in the basic life, of balls and of rollers
 LIFE_POWER = {True: 3.0, False: 10 / 3}

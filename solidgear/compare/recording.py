@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import TYPE_CHECKING
 
-from solidgear.compare.verdict import Judgement, judge, percent, trusted
 from solidgear.core.frames import DOF_NAMES
 from solidgear.core.judge.at_rest import spin_caution
 from solidgear.core.judge.bars import ErrorBar
@@ -36,6 +35,7 @@ from solidgear.core.judge.record import (
 from solidgear.core.judge.solution import Solution
 from solidgear.core.judge.solving import ENOUGH, Answer, Statics
 from solidgear.core.judge.ties import SCENE
+from solidgear.core.judge.verdict import Judgement, judge, percent, trusted
 from solidgear.core.ladder.model import LUMPED, SOLID
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.machine.environment import environment

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from solidgear.compare.verdict import percent
 from solidgear.core.errors import listed
 from solidgear.core.judge.deviations import BEYOND, WITHIN, gap_verdict
 from solidgear.core.judge.quantities import change, judged
 from solidgear.core.judge.solution import Solution
 from solidgear.core.judge.ties import SCENE
+from solidgear.core.judge.verdict import percent
 from solidgear.core.ladder.model import SOLID
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.models.kinds import PARTS

@@ -9,14 +9,14 @@ from typing import Any
 import numpy as np
 
 from solidgear.core.judge.record import MacTable
-from solidgear.measured.chart import outline
 from solidgear.show.mode_charts import mac_panel
 from solidgear.show.panel import GREY, INK, PERCENT, Axis, Panel, Series, readout
 from solidgear.show.plot import WIDE, Chart
+from solidgear.show.sheet import Section
 from solidgear.show.sheet_files import write_files
 from solidgear.show.table import NUMBER, Column, Table, text
 from solidgear.show.words import hertz, percent
-from solidgear.trains.page.sheet import Section
+from solidgear.trains.response.measured_chart import outline
 
 #: looks of pairs by their verdict
 BOTH = {"measured": Series(INK), "computed": Series("#00805e")}

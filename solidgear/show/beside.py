@@ -11,11 +11,11 @@ from typing import Any
 
 from solidgear.show.folder import begun
 from solidgear.show.plot import Make
+from solidgear.show.sheet import Section, write_sheet
 from solidgear.show.sheet_files import write_charts, write_json
 from solidgear.show.table import Cell, Column, Table, text, word
 from solidgear.show.units import Units
 from solidgear.show.words import DASH, hertz, percent, seconds
-from solidgear.trains.page.sheet import Section, write_sheet
 
 #: letters of an entry of a file on a page and in a terminal
 LONG, SHORT = 60, 34

@@ -9,8 +9,8 @@ from typing import Any
 
 from solidgear.core.machine.whole_file import whole
 from solidgear.show.plot import WIDE, Make
+from solidgear.show.sheet import Section, write_sheet
 from solidgear.show.table import Table
-from solidgear.trains.page.sheet import Section, write_sheet
 
 
 def write_files(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from solidgear.cuts.sketch import MASS, draw_blend, draw_feature, draw_mass
+from solidgear.show.sketch_features import MASS, draw_blend, draw_feature, draw_mass
 from solidgear.show.sketch_pen import FILL, INK, Pen
 from solidgear.show.words import is_number
 

@@ -13,6 +13,7 @@ from solidgear.core.frames import DOF_NAMES
 from solidgear.show.command import caution, command, say
 from solidgear.show.folder import held
 from solidgear.show.options import UNITS, Shown
+from solidgear.show.sheet import write_sheet
 from solidgear.show.units import units_named
 from solidgear.show.viewer import viewer_fragment
 from solidgear.trains.assembly.orders import order_map
@@ -24,7 +25,6 @@ from solidgear.trains.modes.pictures import draw_modes, still_picture, turning_m
 from solidgear.trains.options import Driven, Mix, Reduced, TrainFile
 from solidgear.trains.page import tables as train_tables
 from solidgear.trains.page.files import write_response
-from solidgear.trains.page.sheet import write_sheet
 from solidgear.trains.page.tables import modes, peaks
 from solidgear.trains.response.loudest import loudest
 from solidgear.trains.response.respond import respond

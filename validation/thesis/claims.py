@@ -25,11 +25,11 @@ from solidgear.core.reduction.effective_mass import synthesise
 from solidgear.core.scene import Scene
 from solidgear.core.system.steady import peaks
 from solidgear.show.plot import Make
+from solidgear.show.sheet import Section, write_sheet
 from solidgear.show.words import capital
 from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.file.train import Train
 from solidgear.trains.modes.pairing import mac, modes_and_motions
-from solidgear.trains.page.sheet import Section, write_sheet
 from solidgear.trains.response.respond import Drive, respond
 from validation.common import ROOT, markdown, results_folder, show, write_rows
 from validation.thesis.lumped_pair import COMPONENTS, PairModes, diagonal_mass

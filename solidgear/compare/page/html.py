@@ -12,14 +12,7 @@ import logging
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from solidgear.compare.page import (
-    charts,
-    evidence_tables,
-    front,
-    input_tables,
-    point_tables,
-    result_tables,
-)
+from solidgear.compare.page import charts, evidence_tables, front, point_tables, result_tables
 from solidgear.compare.page.lumped import lumped_tables
 from solidgear.compare.race import tables as race_tables
 from solidgear.core.judge.record import Record, VerdictRecord
@@ -30,6 +23,7 @@ from solidgear.show.reading import model_name, reference_of
 from solidgear.show.units import Units, units_named
 from solidgear.show.viewer import TURNED, fragment_of
 from solidgear.show.words import capital, percent, seconds
+from solidgear.trains.page import input_tables
 
 log = logging.getLogger(__name__)
 

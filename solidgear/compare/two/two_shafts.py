@@ -18,15 +18,14 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from solidgear.compare.two import beside
+from solidgear.compare.two.beside import Beside, all_pairs
 from solidgear.compare.two.differences import Difference, scene_differences
 from solidgear.compare.two.two_shafts_page import write_two_shafts
 from solidgear.core.display import Displayed
-from solidgear.core.judge import beside
 from solidgear.core.judge.answer import LEAST_TOLERANCE
-from solidgear.core.judge.beside import Beside, all_pairs
 from solidgear.core.judge.change import BarredMode, Change, ModePair
 from solidgear.core.judge.correlation import pair_modes
-from solidgear.core.judge.one_shaft import OneShaft, Progress, one_shaft
 from solidgear.core.judge.open_record import OpenNumbers
 from solidgear.core.judge.quantities import in_order, judged, size
 from solidgear.core.ladder.registry import LADDER
@@ -34,6 +33,7 @@ from solidgear.core.machine.environment import environment
 from solidgear.core.machine.threads import pinned
 from solidgear.core.quantity import COMPLIANCE, QUANTITIES, Quantity
 from solidgear.core.solve.modes import ModeSet
+from solidgear.guards.one_shaft import OneShaft, Progress, one_shaft
 from solidgear.show.open_words import interval
 from solidgear.show.units import ENGINEERING, Units, units_named
 from solidgear.show.words import is_number, percent

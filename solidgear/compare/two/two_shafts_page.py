@@ -15,13 +15,13 @@ from solidgear.show.open_words import interval
 from solidgear.show.panel import GREY, Axis, Panel, Series, readout
 from solidgear.show.plot import BETWEEN, NARROW, WIDE, Chart, in_columns
 from solidgear.show.run_tables import pairs_of
+from solidgear.show.sheet import Section
 from solidgear.show.sketch import extent
 from solidgear.show.sketch_page import sketch_svg
 from solidgear.show.table import Cell, Column, Table, text, word
 from solidgear.show.units import ENGINEERING, Units, in_ascii
 from solidgear.show.words import hertz, is_number, percent
 from solidgear.trains.page.chart import PAIR
-from solidgear.trains.page.sheet import Section
 
 SECTIONS = "Both to one scale."
 

@@ -15,13 +15,13 @@ from solidgear.show import beside
 from solidgear.show.panel import INK, PERCENT, Axis, Panel, Series, readout, wrapped
 from solidgear.show.plot import NARROW, WIDE, Chart, Make
 from solidgear.show.run_tables import pairs_of
+from solidgear.show.sheet import Section
 from solidgear.show.table import Table
 from solidgear.show.units import Units, in_ascii
 from solidgear.show.words import hertz
 from solidgear.trains.page import tables as train_tables
 from solidgear.trains.page.chart import columns_chart, response_chart
 from solidgear.trains.page.files import over_frequency
-from solidgear.trains.page.sheet import Section
 
 #: a reaction is drawn if it has this share of the largest of its unit in either train
 LARGE = 0.2

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from solidgear.compare.verdict import Judgement, objections
 from solidgear.core.body import as_supports
 from solidgear.core.body.mode_names import ModeName
 from solidgear.core.errors import SolidgearError
@@ -20,6 +19,7 @@ from solidgear.core.judge.record import (
     ModelRecord,
     ModeRecord,
 )
+from solidgear.core.judge.verdict import Judgement, objections
 from solidgear.core.ladder.model import BEAM, LUMPED, SOLID
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.reduction.effective_mass import Synthesis, synthesise

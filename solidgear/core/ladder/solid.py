@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from solidgear.core.elements import ELEMENTS
 from solidgear.core.ladder.meshes import FREE, Sequence, fixed_refinements, levels
 from solidgear.core.ladder.model import Options, Series, features_of
+from solidgear.core.ladder.volume import PER_TETRAHEDRON, Volume
 from solidgear.core.models.kinds import BODIES, CUTS, CYCLIC, PARTS
 from solidgear.core.models.options import SOLID_OPTIONS
-from solidgear.parts.volume import PER_TETRAHEDRON, Volume
 
 if TYPE_CHECKING:
     from solidgear.core.body import Body

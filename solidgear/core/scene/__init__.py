@@ -1,11 +1,11 @@
 """The scene: shapes, supports, features and questions, as data only."""
 
 from solidgear.bearings.catalogue import BearingDisplacement, BearingLoad, Catalogue
-from solidgear.bearings.lubrication import Lubrication
 from solidgear.core.quantity import Quantity
 from solidgear.core.scene.ask import Ask
 from solidgear.core.scene.blends import Blend, Chamfer, Corner, Fillet
 from solidgear.core.scene.housing import Elastic, Housing
+from solidgear.core.scene.lubrication import Lubrication
 from solidgear.core.scene.model import Scene
 from solidgear.core.scene.parts import STEEL, Material, Segment, Strength
 from solidgear.core.scene.point_mass import PointMass

@@ -16,13 +16,13 @@ from pydantic import BeforeValidator, model_validator
 
 from solidgear.bearings.arrangement import Arrangement, Pair, read_pairs, readable_tables
 from solidgear.bearings.catalogue import BearingLoad
-from solidgear.bearings.lubrication import Lubrication
 from solidgear.core.errors import SceneError
 from solidgear.core.scene import rules
 from solidgear.core.scene.ask import Ask
 from solidgear.core.scene.blends import BLENDS
 from solidgear.core.scene.ends import seat_masses
 from solidgear.core.scene.housing import Housing, read_housing
+from solidgear.core.scene.lubrication import Lubrication
 from solidgear.core.scene.materials import by_name
 from solidgear.core.scene.model import Scene
 from solidgear.core.scene.parts import STEEL, Material, Segment

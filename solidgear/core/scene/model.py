@@ -14,7 +14,6 @@ from typing import Any, ClassVar
 from pydantic import model_validator
 
 from solidgear.bearings.catalogue import BearingLoad
-from solidgear.bearings.lubrication import Lubrication
 from solidgear.core.display import Displayed
 from solidgear.core.errors import SceneError
 from solidgear.core.scene import rules
@@ -23,6 +22,7 @@ from solidgear.core.scene.bearing_stiffness import stiffness_entries
 from solidgear.core.scene.blends import Blend, Corner
 from solidgear.core.scene.ends import seat_masses, snap_seats
 from solidgear.core.scene.housing import Housing
+from solidgear.core.scene.lubrication import Lubrication
 from solidgear.core.scene.outline import Outline
 from solidgear.core.scene.parts import STEEL, Material, Segment
 from solidgear.core.scene.patches import off_patches

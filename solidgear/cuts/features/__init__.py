@@ -6,9 +6,9 @@ from collections.abc import Iterator, Sequence
 from typing import TypeAlias, get_args
 
 from solidgear.core.errors import SceneError
+from solidgear.core.scene.feature import OnSegment
 from solidgear.core.scene.parts import Segment
 from solidgear.cuts.features.around import meeting_problems
-from solidgear.cuts.features.base import OnSegment
 from solidgear.cuts.features.bolt_circle import BoltCircle
 from solidgear.cuts.features.cross_hole import CrossHole
 from solidgear.cuts.features.flat import Flat

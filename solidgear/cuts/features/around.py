@@ -8,8 +8,8 @@ from itertools import combinations
 from typing import Any
 
 from solidgear.core.errors import SceneError
+from solidgear.core.scene.feature import FEWEST, SMALLEST
 from solidgear.core.scene.parts import Segment
-from solidgear.cuts.features.base import FEWEST, SMALLEST
 from solidgear.cuts.features.bolt_circle import BoltCircle
 from solidgear.cuts.features.toothed import Spline, Teeth
 

@@ -7,10 +7,10 @@ from collections.abc import Iterator, Sequence
 from typing import ClassVar, Literal
 
 from solidgear.core.errors import SceneError
+from solidgear.core.scene.feature import SMALLEST, Count, OnSegment
 from solidgear.core.scene.outline import TOUCH
 from solidgear.core.scene.parts import Segment
 from solidgear.core.scene.units import PositiveLength
-from solidgear.cuts.features.base import SMALLEST, Count, OnSegment
 
 
 class BoltCircle(OnSegment):

@@ -6,12 +6,12 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 from solidgear.core.errors import SceneError
+from solidgear.core.scene.feature import SMALLEST, OnSegment
 from solidgear.core.scene.outline import TOUCH
 from solidgear.core.scene.parts import Segment
 from solidgear.core.scene.places import Along, Places
 from solidgear.core.scene.typed import Model
 from solidgear.core.scene.units import Position, PositiveLength
-from solidgear.cuts.features.base import SMALLEST, OnSegment
 
 
 class Frame(NamedTuple):

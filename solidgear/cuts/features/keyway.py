@@ -7,10 +7,10 @@ from collections.abc import Iterator
 from typing import Any, Literal
 
 from solidgear.core.errors import SceneError
+from solidgear.core.scene.feature import SMALLEST
 from solidgear.core.scene.outline import TOUCH
 from solidgear.core.scene.parts import Segment
 from solidgear.core.scene.units import PositiveLength
-from solidgear.cuts.features.base import SMALLEST
 from solidgear.cuts.features.cut import Frame, Long
 
 

@@ -10,9 +10,9 @@ import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
 from solidgear.core.errors import SceneError
+from solidgear.core.scene.feature import SMALLEST, Count, OnSegment
 from solidgear.core.scene.parts import Segment
 from solidgear.core.scene.units import SignedAngle, quantity
-from solidgear.cuts.features.base import SMALLEST, Count, OnSegment
 
 #: least land between two teeth, and least top of a tooth, in pitches; smaller ones would need
 #: endless meshes

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 from solidgear.core.bounds.safety import REFINEMENT
 from solidgear.core.ladder.meshes import FREE, Sequence, fixed_refinements
 from solidgear.core.ladder.model import Options, Series
+from solidgear.core.ladder.volume import PER_TETRAHEDRON, Volume
 from solidgear.core.models.kinds import CYCLIC
 from solidgear.core.models.options import SECTOR_OPTIONS
-from solidgear.parts.volume import PER_TETRAHEDRON, Volume
 
 if TYPE_CHECKING:
     from solidgear.core.body import Body

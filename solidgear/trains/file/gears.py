@@ -15,7 +15,7 @@ from solidgear.core.scene.model import Scene
 from solidgear.core.scene.stations import Status
 from solidgear.core.scene.typed import Model
 from solidgear.core.scene.units import TYPED, Inertia, Mass, PitchAngle, PositiveLength, SpiralAngle
-from solidgear.cuts.cylindrical import cylindrical_problems, rolling_fields
+from solidgear.trains.file.cylindrical import cylindrical_problems, rolling_fields
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.tables import Mesh
 from solidgear.trains.file.tooth_fit import fit_problems

@@ -20,7 +20,7 @@ from math import acos, atan, copysign, cos, pi, sin, sqrt, tan
 from typing import TYPE_CHECKING
 
 from solidgear.core.errors import SceneError
-from solidgear.cuts.cylindrical import working_cylinders
+from solidgear.trains.file.cylindrical import working_cylinders
 
 if TYPE_CHECKING:
     from solidgear.trains.file.gears import Pair
@@ -167,7 +167,7 @@ def fit_of(pair: Pair) -> ToothFit | None:
     Raises
     ------
     SceneError
-        As :func:`solidgear.cuts.cylindrical.working_cylinders`.
+        As :func:`solidgear.trains.file.cylindrical.working_cylinders`.
     """
     pinion, gear, mesh = pair.pinion, pair.gear, pair.mesh
     module = pinion.module or gear.module

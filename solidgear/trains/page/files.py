@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.measured.chart import measured_chart
 from solidgear.show import speed_tables
 from solidgear.show.plot import Make
 from solidgear.show.sheet_files import write_files
@@ -19,6 +18,7 @@ from solidgear.show.table import Column, Table, exact, numbers
 from solidgear.show.units import ENGINEERING, Units, units_named
 from solidgear.trains.page import tables as train_tables
 from solidgear.trains.page.chart import columns_chart, receptance_chart, response_chart
+from solidgear.trains.response.measured_chart import measured_chart
 from solidgear.trains.response.order_chart import order_chart
 
 

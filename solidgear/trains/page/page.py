@@ -10,7 +10,6 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from solidgear.compare.page import input_tables
 from solidgear.core.machine.whole_file import whole
 from solidgear.show.folder import begun
 from solidgear.show.page_parts import Contents, data_uri, template
@@ -21,6 +20,7 @@ from solidgear.show.sketch_page import sketch_svg
 from solidgear.show.table import Table
 from solidgear.show.units import ENGINEERING, Units, units_named
 from solidgear.show.words import capital, seconds
+from solidgear.trains.page import input_tables
 from solidgear.trains.page import tables as train_tables
 from solidgear.trains.page.chart import columns_chart, response_chart
 from solidgear.trains.page.files import crossings, over_frequency

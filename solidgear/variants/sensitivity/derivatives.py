@@ -13,12 +13,12 @@ import numpy as np
 from solidgear.core.body import Body, as_supports
 from solidgear.core.errors import SolidgearError
 from solidgear.core.ladder import build
-from solidgear.core.models.harmonic.motion import Motion
 from solidgear.core.scene import STEEL, Scene
 from solidgear.core.scene.coned import coned
 from solidgear.variants.sensitivity.adjoint import Form, change_by_bodies, change_by_supports
 from solidgear.variants.sensitivity.beam import BeamAdjoint
 from solidgear.variants.sensitivity.harmonic import HarmonicAdjoint
+from solidgear.variants.sensitivity.harmonic_motion import Motion
 from solidgear.variants.sweep.bench import surface
 
 #: of how far nodes move between two meshes, that the one between may lie beside their middle

@@ -11,7 +11,6 @@ from typing import Annotated
 
 import typer
 
-from solidgear.app.settled import ended, over_the_sweep
 from solidgear.core.errors import SolidgearError
 from solidgear.core.ladder import build
 from solidgear.core.ladder.registry import LADDER
@@ -21,6 +20,7 @@ from solidgear.show.arguments import load
 from solidgear.show.command import Progress as Steps
 from solidgear.show.command import caution, command, say
 from solidgear.show.options import AUTO, MODEL, Chosen, Run, options, refuse, relative
+from solidgear.show.settled import ended, over_the_sweep
 from solidgear.trains.assembly.shaft import JUDGE, mix_label
 from solidgear.trains.options import Pair, Reduced, of_shafts
 from solidgear.variants.sweep.bearing_sweep import sweep as swept

@@ -16,8 +16,8 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 
 from solidgear.show.command import Group, console
 from solidgear.show.plot import FORMATS, check_ending
+from solidgear.show.sheet import write_sheet
 from solidgear.show.units import ENGINEERING
-from solidgear.trains.page.sheet import write_sheet
 from solidgear.variants.sweep.bearing_sweep import Summary
 from solidgear.variants.sweep.chart import sweep_chart, sweep_table
 from solidgear.variants.sweep.curves import Curves, chartable

@@ -7,9 +7,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from solidgear.compare.two.beside import Side
 from solidgear.compare.two.differences import ROUNDING
 from solidgear.core.body import Body, as_supports
-from solidgear.core.judge.beside import Side
 from solidgear.core.judge.change import BarredMode
 from solidgear.core.judge.quantities import Values, size
 from solidgear.core.judge.settle import Settled, bars_of_modes, settle
