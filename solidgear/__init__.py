@@ -34,11 +34,13 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING
 
+import solidgear.rooms  # noqa: F401  # what features add to the core
+
 __version__ = "0.1.0"
 
 _WHERE = {
     "load": "solidgear.core.loading",
-    "load_train": "solidgear.core.loading",
+    "load_train": "solidgear.trains.loading",
     "Train": "solidgear.trains.file.train",
     "Scene": "solidgear.core.scene",
     "Segment": "solidgear.core.scene",
@@ -63,14 +65,14 @@ _WHERE = {
     "BearingSpring": "solidgear.core.system",
     "RowSpring": "solidgear.core.system",
     "PortInertia": "solidgear.core.system",
-    "PlanetaryStage": "solidgear.core.system",
+    "PlanetaryStage": "solidgear.trains.system.planetary",
     "PlanetaryTeeth": "solidgear.core.system",
-    "CentralMember": "solidgear.core.system",
-    "FixedSupport": "solidgear.core.system",
-    "PlanetError": "solidgear.core.system",
-    "carrier_turn": "solidgear.core.system",
+    "CentralMember": "solidgear.trains.system.planetary_members",
+    "FixedSupport": "solidgear.trains.system.carrier_turn",
+    "PlanetError": "solidgear.trains.system.carrier_turn",
+    "carrier_turn": "solidgear.trains.system.carrier_turn",
     "elastic_ring": "solidgear.bearings.elastic_ring",
-    "Planet": "solidgear.core.system",
+    "Planet": "solidgear.trains.system.planetary_members",
     "MeshVector": "solidgear.core.system",
     "grounded": "solidgear.core.system",
     "mesh_spring": "solidgear.core.system",
@@ -149,7 +151,7 @@ if TYPE_CHECKING:
     from solidgear.core.errors import SceneError, SolidgearError
     from solidgear.core.judge.answer import answer
     from solidgear.core.ladder import build
-    from solidgear.core.loading import load, load_train
+    from solidgear.core.loading import load
     from solidgear.core.reduction.craig_bampton import craig_bampton
     from solidgear.core.reduction.rubin import rubin
     from solidgear.core.reduction.superelement import Superelement
@@ -169,15 +171,10 @@ if TYPE_CHECKING:
     from solidgear.core.solve.statics import condense
     from solidgear.core.system import (
         BearingSpring,
-        CentralMember,
-        FixedSupport,
         Inertia,
         MeshVector,
         Placed,
-        Planet,
-        PlanetaryStage,
         PlanetaryTeeth,
-        PlanetError,
         PortInertia,
         RigidBody,
         RowSpring,
@@ -189,7 +186,11 @@ if TYPE_CHECKING:
     from solidgear.show.viewer import turn
     from solidgear.strength.stress.shaft import shaft_stress
     from solidgear.trains.file.train import Train
+    from solidgear.trains.loading import load_train
     from solidgear.trains.system import carrier_turn
+    from solidgear.trains.system.carrier_turn import FixedSupport, PlanetError
+    from solidgear.trains.system.planetary import PlanetaryStage
+    from solidgear.trains.system.planetary_members import CentralMember, Planet
     from solidgear.variants.budget.budget import budget
     from solidgear.variants.optimise.optimise import optimise
     from solidgear.variants.sensitivity.run import sensitivities

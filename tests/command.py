@@ -6,7 +6,7 @@ import re
 
 from typer.testing import CliRunner
 
-from solidgear.show import command as app
+from solidgear.app import app
 
 
 def command(*words, **how):

@@ -21,7 +21,8 @@ from solidgear.core.ladder.harmonic import Harmonic
 from solidgear.core.ladder.meshes import Sequence
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.quantity import C_ZZ, FIRST_BENDING, K_ZZ, Quantity
-from solidgear.core.scene import Bearing, BoltCircle
+from solidgear.core.scene import Bearing
+from solidgear.cuts.features import BoltCircle
 from tests.command import command
 
 ROOT = Path(__file__).parent.parent

@@ -10,20 +10,10 @@ import pytest
 import solidgear as sg
 from solidgear.core.body import as_supports
 from solidgear.core.judge.quantities import measure, size
-from solidgear.core.scene import (
-    STEEL,
-    Bearing,
-    BoltCircle,
-    CrossHole,
-    Flat,
-    Keyway,
-    Port,
-    Scene,
-    Segment,
-    Teeth,
-)
+from solidgear.core.scene import STEEL, Bearing, Port, Scene, Segment
 from solidgear.core.scene.closed_form import mass_properties
 from solidgear.core.scene.outline import Outline
+from solidgear.cuts.features import BoltCircle, CrossHole, Flat, Keyway, Teeth
 from solidgear.cuts.sector.teeth import section_area, section_polar
 from validation.campaign.truths import reference as spectral_levels
 from validation.campaign.truths.corner_mesh import corner_mesh, singular_points

@@ -398,7 +398,7 @@ def test_modules_run_as_programs(tmp_path):
 def test_the_command_line_and_the_help_of_a_command_import_nothing_heavy():
     heavy = {"numpy", "scipy", "skfem", "gmsh", "matplotlib", "pyvista", "solidgear.core.scene"}
     code = (
-        "import atexit, sys; from solidgear.show.command import app; "
+        "import atexit, sys; from solidgear.app.application import app; "
         f"atexit.register(lambda: print(sorted({heavy} & set(sys.modules)))); app(['modes', '-h'])"
     )
     done = python("-c", code)

@@ -10,8 +10,9 @@ import typer
 from command import command
 from rich.console import Console
 
-from solidgear.show import command as app
-from solidgear.show.command import COMMANDS, GROUPS, Progress, _imported, console
+from solidgear.app import app
+from solidgear.app.application import COMMANDS, GROUPS, _imported
+from solidgear.show.command import Progress, console
 
 #: what rich would take for markup
 BRACKETS = re.compile(r"\[[^\[\]]+\]")

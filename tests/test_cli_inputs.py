@@ -11,7 +11,7 @@ import typer
 from typer.main import get_command
 from typer.testing import CliRunner
 
-from solidgear.show import command as app
+from solidgear.app import app
 from solidgear.show.command import command
 from solidgear.show.options import Run
 from solidgear.trains.options import Reduced

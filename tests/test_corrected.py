@@ -147,7 +147,7 @@ def test_a_stub_is_corrected_on_its_coarsest_mesh():
     one of the other plane. The change itself is 0.4 to 0.8 %, of which the square is left out.
     """
     from solidgear.core.models.solid.plan import tetrahedra_plan
-    from solidgear.core.scene import Flat
+    from solidgear.cuts.features import Flat
     from solidgear.cuts.solid.featured import featured_body, meshed
 
     stub = [
@@ -242,7 +242,7 @@ def test_compliance_grows_by_what_is_cut(scene, plain, body):
 @pytest.mark.slow
 def test_a_part_without_a_mirror_plane():
     """A flat and an oblique hole that share no plane: one block, against the 3D solid on a finer mesh."""
-    from solidgear.core.scene import CrossHole, Flat
+    from solidgear.cuts.features import CrossHole, Flat
 
     rod = sg.Segment.cylinder("rod", length=0.13, diameter=0.06)
     firm = {"kxx": 1e9, "kyy": 1e8, "kzz": 1e9}

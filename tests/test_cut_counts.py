@@ -7,10 +7,10 @@ from test_features import FLAT, KEY, mesh_of, shaft
 import solidgear as sg
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.models.solid.plan import tetrahedra_plan
-from solidgear.core.scene import CrossHole
 from solidgear.core.scene.closed_form import volume_of
 from solidgear.core.scene.outline import Outline
 from solidgear.cuts.corrected.mesh import meshed_cuts, sizes
+from solidgear.cuts.features import CrossHole
 from solidgear.cuts.solid.cuts import edge_size, feature_size
 from solidgear.cuts.solid.featured import meshed
 from solidgear.cuts.solid.meshing import submesh

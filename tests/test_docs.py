@@ -229,7 +229,7 @@ def test_every_mark_and_column_of_the_final_table_is_explained():
 def test_every_command_and_exit_code_is_listed():
     import typer.main
 
-    from solidgear.show import command as app
+    from solidgear.app import app
 
     page = (DOCS / "guide" / "commands.md").read_text()
     for name in typer.main.get_command(app).commands:

@@ -12,7 +12,8 @@ from solidgear.core.judge.solving import solve
 from solidgear.core.ladder.meshes import Sequence
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.quantity import ACROSS, QUANTITIES, Quantity
-from solidgear.core.scene import Fillet, Spline
+from solidgear.core.scene import Fillet
+from solidgear.cuts.features import Spline
 
 FINEST = {
     Quantity(name): value

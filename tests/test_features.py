@@ -16,7 +16,7 @@ from solidgear.core.meshing.quality import MeshError, check_mesh
 from solidgear.core.models.solid.mesh import _isoparametric
 from solidgear.core.models.solid.plan import tetrahedra_plan
 from solidgear.core.models.solid.seat_faces import Seats
-from solidgear.core.scene import CrossHole, Flat, Keyway
+from solidgear.cuts.features import CrossHole, Flat, Keyway
 from solidgear.cuts.solid.cuts import mirror_plane
 from solidgear.cuts.solid.featured import featured_body, meshed
 from solidgear.cuts.solid.halves import half_blocks

@@ -7,9 +7,10 @@ import pytest
 import solidgear as sg
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.loading import as_written
-from solidgear.core.scene import CrossHole, Fillet, Keyway, Port
+from solidgear.core.scene import Fillet, Port
 from solidgear.core.scene.closed_form import volume_of
 from solidgear.core.scene.filleted import filleted
+from solidgear.cuts.features import CrossHole, Keyway
 from solidgear.strength.stress.at_rest import _file_cautions, _settling
 from validation.step_parts import write_step
 

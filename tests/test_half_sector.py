@@ -14,7 +14,7 @@ import solidgear as sg
 from solidgear.core.frames import rotation
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.models.solid.matrices import _matrices
-from solidgear.core.scene import Spline
+from solidgear.cuts.features import Spline
 from solidgear.cuts.features.around import mirror_angle
 from solidgear.cuts.sector.body import meshed_sector, sector, whole
 from solidgear.cuts.sector.half import HalfSector, basis, half_sector_solid

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.core.scene import Flat
 from solidgear.core.solve.mixtures import TOSS_UP, mixtures
+from solidgear.cuts.features import Flat
 
 
 @pytest.fixture(scope="module")

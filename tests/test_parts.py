@@ -15,9 +15,9 @@ from solidgear.core.elements import ELEMENTS
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.machine.isolated import isolated
 from solidgear.core.meshing.placing import TURNS, Placing
-from solidgear.core.scene import Keyway
 from solidgear.core.scene.closed_form import volume_of
 from solidgear.core.scene.outline import Outline
+from solidgear.cuts.features import Keyway
 from solidgear.guards import check, round_part
 from solidgear.parts.mesh_file import mesh_from
 from solidgear.parts.own_mesh import solid_body

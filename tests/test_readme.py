@@ -40,7 +40,7 @@ def test_the_page_of_a_package_leads_nowhere_else():
 
 @pytest.mark.parametrize("text", [README, PAGE], ids=["README", "package"])
 def test_commands_that_are_named_exist(text):
-    from solidgear.show import command as app
+    from solidgear.app import app
 
     known = typer.main.get_command(app).commands
     named = set(re.findall(r"solidgear ([a-z-]+) (?=[\w.]*[A-Z_/\[-]|\w+\.toml)", text))

@@ -3,8 +3,9 @@
 import pytest
 
 import solidgear as sg
-from solidgear.core.scene import Fillet, Keyway
+from solidgear.core.scene import Fillet
 from solidgear.core.scene.closed_form import mass_properties
+from solidgear.cuts.features import Keyway
 from solidgear.guards.round_part import described
 from validation.step_parts import write_step
 

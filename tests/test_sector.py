@@ -14,9 +14,10 @@ from scipy.integrate import quad
 import solidgear as sg
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.models.solid.plan import tetrahedra_plan
-from solidgear.core.scene import BoltCircle, Fillet, Keyway, Spline, Teeth
+from solidgear.core.scene import Fillet
 from solidgear.core.scene.closed_form import volume_of
 from solidgear.core.scene.outline import Outline
+from solidgear.cuts.features import BoltCircle, Keyway, Spline, Teeth
 from solidgear.cuts.features.around import no_common_sector
 from solidgear.cuts.sector.body import meshed_sector, sector, whole
 from solidgear.cuts.sector.cyclic import Sector, basis, doubled

@@ -7,7 +7,7 @@ import pytest
 from typer.testing import CliRunner
 
 import solidgear as sg
-from solidgear.show import command as app
+from solidgear.app import app
 from solidgear.trains.assembly.meshes import mesh_bars
 from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.assembly.shaft import LUMPED

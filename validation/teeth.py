@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 
 import solidgear as sg
-from solidgear.core.scene import Teeth
+from solidgear.cuts.features import Teeth
 from solidgear.cuts.sector.body import sector
 from validation.common import ROOT, results_folder, write_rows
 

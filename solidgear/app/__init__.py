@@ -24,9 +24,9 @@ if _hears:
     signal.signal(signal.SIGINT, _interrupted)
 
 
+from solidgear.app.application import app
 from solidgear.core.errors import SolidgearError, for_terminal
 from solidgear.core.machine.interruptible import leave
-from solidgear.show.command import app
 
 if _hears:
     signal.signal(signal.SIGINT, signal.default_int_handler)

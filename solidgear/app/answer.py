@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -16,13 +15,10 @@ from solidgear.core.judge.answer import Answered, Step
 from solidgear.core.judge.answer import answer as solve
 from solidgear.core.judge.open_record import OpenNumbers
 from solidgear.core.judge.record import WhereRecord
-from solidgear.core.judge.settle import Settled
 from solidgear.core.judge.steps import ABOVE, BELOW
 from solidgear.core.judge.where import error_places
-from solidgear.core.ladder.model import BEAM
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.models.kinds import PARTS
-from solidgear.core.quantity import Quantity
 from solidgear.core.scene import Scene
 from solidgear.guards.bearings import misfits
 from solidgear.guards.data import facing_one_way
@@ -32,6 +28,7 @@ from solidgear.show.open_words import columns as ranges
 from solidgear.show.open_words import remark
 from solidgear.show.options import SceneFile, Shown, relative
 from solidgear.show.plot import check_ending
+from solidgear.show.settled import sentences
 from solidgear.show.table import Column, Table, text
 from solidgear.show.units import units_named
 from solidgear.show.words import bar_of, count, percent, seconds
@@ -138,28 +135,6 @@ def _solved(found: Answered) -> list[Step]:
     return [step for step in found.steps if step.unknowns is not None]
 
 
-def sentences(found: Answered | Settled) -> list[str]:
-    """Plain text of the choice: solids that could not answer and why, and whether the tolerance is kept.
-
-    Beams are passed over always, for they have no error of their own to show.
-    """
-    passed: dict[str, list[str]] = {}
-    for step in found.steps:
-        if not step.valid and LADDER[step.rung].family != BEAM:
-            passed.setdefault(step.why, []).append(step.rung)
-    lines = [f"Passed over: {', '.join(names)} ({why})." for why, names in passed.items()]
-    if found.missing:
-        lines.append(f"Not there: {_absent(found.missing)}.")
-    asked = f"{100 * found.tolerance:g} %"
-    if found.reached:
-        there = ", what is there" if found.missing else ""
-        lines.append(f"Within the {asked} asked{there}.")
-        return lines
-    why = next((step.why for step in found.steps if step.chosen and step.why), "")
-    lines.append(f"Not reached: {asked} was asked for{f'; {why}' if why else ''}.")
-    return lines
-
-
 def _of_round_part(scene: Scene, found: Answered) -> list[str]:
     """Remark that numbers are of the round part, where a mesh file is answered by a model of revolution."""
     body = scene.body
@@ -170,18 +145,6 @@ def _of_round_part(scene: Scene, found: Answered) -> list[str]:
         f"{percent(body.round_volume - 1)} from that of its mesh; the mesh itself is solved "
         f"by -f solid of stiffness and modes, {'and judged by compare' if body.coarser else 'without a bar'}."
     ]
-
-
-def _absent(missing: Sequence[Quantity]) -> str:
-    """Quantities that a scene does not have, each kind with why."""
-    free = [q for q in missing if not q.is_frequency]
-    modes = [q for q in missing if q.is_frequency]
-    one = len(free) == 1
-    whys = [
-        (free, f"{'a motion' if one else 'motions'} that no bearing resists"),
-        (modes, "no such mode among the lowest"),
-    ]
-    return "; ".join(f"{', '.join(names)} ({why})" for names, why in whys if names)
 
 
 def _places(scene: Scene, found: Answered) -> WhereRecord:

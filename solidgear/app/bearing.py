@@ -15,8 +15,8 @@ from solidgear.bearings.chart import BearingPanel, draw_bearings
 from solidgear.bearings.designation import boundary
 from solidgear.bearings.life_command import plain_life, print_life, speed_of
 from solidgear.bearings.rolling import UNITS
-from solidgear.bearings.study import BearingFacts, bearing_facts, over_load, with_load
-from solidgear.core.errors import SceneError, SolidgearError, show
+from solidgear.bearings.study import BearingFacts, bearing_facts, loaded_by, over_load
+from solidgear.core.errors import SolidgearError
 from solidgear.core.frames import DOF_NAMES
 from solidgear.core.loading import as_written, explained, shaft
 from solidgear.core.scene import Scene
@@ -84,32 +84,6 @@ def bearing(
         print_life(lives[fact.name])
     if out is not None:
         say(f"Chart: {out}")
-
-
-def loaded_by(scene: Scene, load: str, bearing: str | None = None) -> Scene:
-    """A scene under a load of the command line such as ``x=2 kN, z=-500 N``, on its port or on one
-    of its bearings; components that are none are refused.
-    """
-    try:
-        return with_load(scene, _components(load), bearing)
-    except SceneError as error:
-        raise SolidgearError(f"--load {show(load)}: {error}") from None
-
-
-def _components(text: str) -> dict[str, str | float]:
-    """Components of a load from ``x=2 kN, z=500``."""
-    found: dict[str, str | float] = {}
-    for part in text.split(","):
-        key, sep, value = (piece.strip() for piece in part.partition("="))
-        if not sep or not value:
-            raise SolidgearError(
-                f'--load {show(text)}: write components such as "x=2 kN, z=-500 N, thx=10 N*m"'
-            )
-        try:
-            found[key] = float(value)
-        except ValueError:
-            found[key] = value
-    return found
 
 
 def _draw(out: Path, scene: Scene, body, facts: Sequence[BearingFacts]) -> None:

@@ -136,3 +136,11 @@ def readable_tables(
         {**table, "catalogue": {**table["catalogue"], "holds": "+y"}} if k in turned else {**table}
         for k, table in enumerate(tables)
     ]
+
+
+class Pairs:
+    """The key ``arrangement`` as the reader of scene files asks for it."""
+
+    Words = Arrangement
+    read_pairs = staticmethod(read_pairs)
+    readable_tables = staticmethod(readable_tables)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from solidgear.bearings.catalogue import catalogue_of
 from solidgear.bearings.catalogued import Catalogued, End
 from solidgear.bearings.life import Life, life
 from solidgear.bearings.solved import AS_STATED, Choice, Solved, solved
@@ -81,7 +82,7 @@ def left_open(scenes: Iterable[Scene]) -> tuple[str, list[Choice]]:
     >>> label, len(corners)
     ('estimated insides and clearance classes', 4)
     """
-    data = [b.catalogue for scene in scenes for b in scene.bearings if b.catalogue is not None]
+    data = [d for scene in scenes for b in scene.bearings if (d := catalogue_of(b)) is not None]
     estimated = any(catalogue.estimated for catalogue in data)
     by_class = any(isinstance(catalogue.clearance, str) for catalogue in data)
     insides: tuple[End, ...] = ("softer", "stiffer") if estimated else ("middle",)
@@ -103,7 +104,7 @@ def life_of(
     inner ring, at the middle and at the corners of the unknown data; a speed of the shaft, rad/s,
     replaces that of the bearing or lubrication.
     """
-    data = bearing.catalogue
+    data = catalogue_of(bearing)
     assert data is not None
     turns = speed or data.speed or (oil.speed if oil else None) or 0.0
     lives = [life(data, rows, motion, oil, turns) for rows, motion in places]

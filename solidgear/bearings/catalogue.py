@@ -8,27 +8,29 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
 from solidgear.bearings.designation import boundary
 from solidgear.core.errors import SceneError, show
+from solidgear.core.scene.load import BearingLoad
 from solidgear.core.scene.typed import Model
 from solidgear.core.scene.units import (
     Angle,
     AxialSpring,
     Length,
-    Newtons,
     PositiveLength,
     PositiveLoad,
     RatingFactor,
     SignedAngle,
     Speed,
     TemperatureRise,
-    Torque,
     quantity,
 )
+
+if TYPE_CHECKING:
+    from solidgear.core.scene import Bearing
 
 Kind = Literal[
     "deep_groove",
@@ -55,43 +57,8 @@ PAIRED = ("tandem", "back_to_back", "face_to_face")
 WAYS = {"back_to_back": ("+y", "-y"), "face_to_face": ("-y", "+y")}
 #: other words of the field for arrangements
 _CALLED = {"o": "back_to_back", "db": "back_to_back", "x": "face_to_face", "df": "face_to_face"}
-#: names that people give a moment about the axis
-ABOUT_AXIS = ("thy", "my", "ty", "torque", "torsion", "moment")
 #: rolling elements of a row
 FEWEST, MOST = 3, 300
-
-
-class BearingLoad(Model):
-    """Load of the shaft on a bearing, or on the port: forces in N, moments in N m."""
-
-    x: Newtons = 0.0
-    y: Newtons = 0.0
-    z: Newtons = 0.0
-    #: thx, thz: moments; where none is given a bearing's ring is held against tilting
-    thx: Torque | None = None
-    thz: Torque | None = None
-
-    def __init__(self, /, **data: Any):
-        about = [key for key in data if key.lower() in ABOUT_AXIS]
-        if about:
-            raise SceneError(
-                "no bearing carries a moment about the axis of the shaft, which turns freely: write "
-                "forces x, y, z and tilting moments thx, thz alone; a torque is that of an "
-                '[operation] of a train, or of solidgear stress --drive "A=115 N*m"',
-                path=(about[0],),
-                value=show(data[about[0]]),
-            )
-        super().__init__(**data)
-
-    @property
-    def six(self) -> list[float]:
-        """(6,) load in the order (x, y, z, thx, thy, thz), N and N m."""
-        return [self.x, self.y, self.z, self.thx or 0.0, 0.0, self.thz or 0.0]
-
-    @property
-    def held_tilts(self) -> tuple[int, ...]:
-        """Tilts without a given moment, by their place among the six."""
-        return tuple(k for k, moment in ((3, self.thx), (5, self.thz)) if moment is None)
 
 
 class BearingDisplacement(Model):
@@ -447,3 +414,9 @@ def _fits(data: Catalogue) -> Iterator[SceneError]:
                 f"{data.element_diameter:.6g} m",
                 path=("elements",),
             )
+
+
+def catalogue_of(bearing: Bearing) -> Catalogue | None:
+    """Return the catalogue data of a bearing; None where its stiffness is given."""
+    data = bearing.catalogue
+    return data if isinstance(data, Catalogue) else None

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from solidgear.bearings.balance import Linear, Mounted
-from solidgear.bearings.catalogue import Preload
+from solidgear.bearings.catalogue import Preload, catalogue_of
 from solidgear.bearings.catalogued import Catalogued, End, catalogued, state
 from solidgear.bearings.equilibrium import Equilibrium, equilibrium
 from solidgear.core.errors import SceneError
@@ -99,7 +99,7 @@ def solved(
         settled = equilibrium(body, mounted(scene, bearings_made), loads, around, start)
     motion, tangent = {}, {}
     for name, k in places.items():
-        data = scene.bearings[k].catalogue
+        data = catalogue_of(scene.bearings[k])
         assert data is not None
         waits = settled is not None and data.load is None and data.displacement is None
         try:
@@ -131,7 +131,7 @@ def catalogued_bearings(scene: Scene, choice: Choice = AS_STATED) -> dict[str, C
 
     def make(name: str, preload_source: str, preload: Preload | None = None) -> Catalogued:
         bearing = scene.bearings[places[name]]
-        choice_here, data = choice.overrides.get(name, choice), bearing.catalogue
+        choice_here, data = choice.overrides.get(name, choice), catalogue_of(bearing)
         assert data is not None
         try:
             return catalogued(

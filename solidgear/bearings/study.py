@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solidgear.bearings.catalogue import Catalogue
+from solidgear.bearings.catalogue import Catalogue, catalogue_of
 from solidgear.bearings.catalogued import Catalogued
 from solidgear.bearings.row import Contacts
 from solidgear.bearings.solved import Choice, Solved, solved
 from solidgear.core.body import Body
-from solidgear.core.errors import SolidgearError
+from solidgear.core.errors import SceneError, SolidgearError, show
 from solidgear.core.scene import Bearing, BearingLoad, Scene
 
 #: why one row of a pair carries nothing
@@ -39,8 +39,9 @@ class BearingFacts:
     @property
     def data(self) -> Catalogue:
         """Catalogue data of the bearing."""
-        assert self.bearing.catalogue is not None
-        return self.bearing.catalogue
+        data = catalogue_of(self.bearing)
+        assert data is not None
+        return data
 
     @property
     def called(self) -> str:
@@ -193,3 +194,29 @@ def with_load(scene: Scene, load: dict[str, str | float], bearing: str | None) -
     data = catalogues[bearing].with_changes(load=new, displacement=None)
     changed = (b.with_changes(catalogue=data) if b.name == bearing else b for b in scene.bearings)
     return scene.with_changes(bearings=tuple(changed))
+
+
+def loaded_by(scene: Scene, load: str, bearing: str | None = None) -> Scene:
+    """A scene under a load of the command line such as ``x=2 kN, z=-500 N``, on its port or on one
+    of its bearings; components that are none are refused.
+    """
+    try:
+        return with_load(scene, _components(load), bearing)
+    except SceneError as error:
+        raise SolidgearError(f"--load {show(load)}: {error}") from None
+
+
+def _components(text: str) -> dict[str, str | float]:
+    """Components of a load from ``x=2 kN, z=500``."""
+    found: dict[str, str | float] = {}
+    for part in text.split(","):
+        key, sep, value = (piece.strip() for piece in part.partition("="))
+        if not sep or not value:
+            raise SolidgearError(
+                f'--load {show(text)}: write components such as "x=2 kN, z=-500 N, thx=10 N*m"'
+            )
+        try:
+            found[key] = float(value)
+        except ValueError:
+            found[key] = value
+    return found

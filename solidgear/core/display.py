@@ -10,26 +10,31 @@ import importlib
 import math
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from solidgear.show.table import Table
-
 TABLES = "solidgear.show.shown"
+
+
+class Table(Protocol):
+    """A table as the way to show builds it: text of a terminal, of a page, a data frame."""
+
+    def to_dataframe(self) -> Any: ...
+
+    def _repr_html_(self) -> str: ...
 
 
 class Displayed:
     """Base of results with a table and a picture."""
 
-    #: function of :mod:`solidgear.show.shown` that makes the table; the one of the picture has
-    #: ``_figure`` behind that name
+    #: function of :mod:`solidgear.show.shown` that makes the table, or ``module:function`` of the
+    #: room of the result; the one of the picture has ``_figure`` behind that name
     shown: ClassVar[str] = ""
 
     def table(self, *args: Any, **kwargs: Any) -> Table:
         """Return a table of the main numbers."""
-        return getattr(importlib.import_module(TABLES), self.shown)(self, *args, **kwargs)
+        return _shown(self.shown)(self, *args, **kwargs)
 
     def plot(self, *args: Any, **kwargs: Any) -> Any:
         """Return a picture, a matplotlib Figure.
@@ -39,7 +44,7 @@ class Displayed:
         TypeError
             Where there is nothing to draw.
         """
-        draw = getattr(importlib.import_module(TABLES), f"{self.shown}_figure", None)
+        draw = _shown(f"{self.shown}_figure")
         if draw is None:
             raise TypeError(f"a {type(self).__name__} has no picture; table() tells its numbers")
         return draw(self, *args, **kwargs)
@@ -55,6 +60,15 @@ class Displayed:
 
     def _repr_html_(self) -> str:
         return self.table()._repr_html_()
+
+
+def _shown(name: str) -> Any:
+    """Return the function that shows a result, ``module:name`` or a name in TABLES; None if there
+    is none.
+    """
+    module, _, function = name.rpartition(":")
+    room = importlib.import_module(f"solidgear.{module}" if module else TABLES)
+    return getattr(room, function, None)
 
 
 def plain(value: Any) -> Any:

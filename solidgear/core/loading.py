@@ -13,16 +13,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from solidgear.core.errors import SceneError, SolidgearError
+from solidgear.core.registry import addition
 from solidgear.core.scene import file
+from solidgear.core.scene.tables import parts
 from solidgear.core.scene.toml_file import parse, place_of
 
 if TYPE_CHECKING:
     from solidgear.core.body import Body
     from solidgear.core.scene import Scene
-    from solidgear.parts.body_file import BodyTable
-    from solidgear.parts.recognised import Recognised
-    from solidgear.trains.file.operation import OperatingPoint
-    from solidgear.trains.file.train import Train
 
 #: model on which bearings and shaft find their equilibrium: loads in a shaft depend little on how
 #: its shoulders are modelled
@@ -75,60 +73,13 @@ def scene_of(tables: Mapping[str, Any], path: str | os.PathLike, alone: bool = T
     scene = file.scene_of(dict(tables), os.fspath(path), part_of)
     if not alone or all(bearing.catalogue is None for bearing in scene.bearings):
         return scene
-    from solidgear.bearings.solved import solved  # start-up: not every file needs it
-
     with explained(path, tables):
-        return solved(scene, shaft(scene)).scene
+        return addition("settling", "solved")(scene, shaft(scene)).scene
 
 
-def load_train(path: str | os.PathLike, point: OperatingPoint | None = None) -> Train:
-    """Read a train file; the shafts it names lie relative to it, and the stiffness of their
-    catalogue bearings is worked out: at the first operating point of the train, or, without any, at
-    the load of each shaft's own file.
-
-    Parameters
-    ----------
-    path : str or path
-        A TOML file; ``geometry/axle_overhung.toml`` describes the format.
-    point : OperatingPoint, optional
-        At which bearings settle, in place of the points of the file.
-
-    Returns
-    -------
-    Train
-
-    Raises
-    ------
-    SceneError
-        The file, the key, the value as written, what would be right: one line for each problem.
-
-    Examples
-    --------
-    >>> import solidgear as sg
-    >>> train = sg.load_train("geometry/axle_straddle.toml")
-    >>> [bearing.name for bearing in train.pinion.scene.bearings]
-    ['0', '1', '2']
-    """
-    from solidgear.trains.file import reading as train_file  # start-up: not every file needs it
-
-    def scene(side: str, file: Path, alone: bool) -> Scene:
-        # one that is not settled by itself settles with its train
-        return load(file) if alone and point is None else as_written(file)
-
-    train = train_file.load_train(path, scene)
-    if point is None and not train.operation:
-        return train
-    from solidgear.trains.load.operation import at_point  # start-up: not every file needs it
-
-    with explained(path):
-        return at_point(train if point is None else train.with_changes(operation=(point,)))
-
-
-def part_of(table: BodyTable, folder: Path) -> Recognised:
-    """Read the part that a scene file names."""
-    from solidgear.parts.part import recognise  # start-up: not every file needs it
-
-    return recognise(table, folder)
+def part_of(table: Any, folder: Path) -> Any:
+    """Read the part that a scene file names; kept from scenes that have none."""
+    return parts().recognise(table, folder)
 
 
 @contextmanager
@@ -149,9 +100,7 @@ def shaft(scene: Scene) -> Body | None:
     """Return the body on which bearings settle, or None where no bearing waits for the load of the
     shaft.
     """
-    from solidgear.bearings.solved import wants_equilibrium  # start-up: not every file needs it
-
-    if not wants_equilibrium(scene):
+    if not addition("settling", "wants equilibrium")(scene):
         return None
     from solidgear.core.ladder import build  # start-up: not every file needs it
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import combinations
 
-from solidgear.bearings.catalogue import Catalogue
+from solidgear.bearings.catalogue import Catalogue, catalogue_of
 from solidgear.core.scene import Bearing, Scene
 from solidgear.core.scene.outline import TOUCH
 from solidgear.guards.notice import Notice, Notices
@@ -34,7 +34,7 @@ def misfits(scene: Scene) -> Iterator[str]:
     or the given inner dimensions.
     """
     on_axis = [b for b in scene.bearings if not b.patch]
-    catalogued = [(b, b.catalogue) for b in on_axis if b.catalogue is not None]
+    catalogued = [(b, data) for b in on_axis if (data := catalogue_of(b)) is not None]
     for bearing, data in catalogued:
         yield from _on_its_seat(scene, bearing, data)
         yield from _beside_steps(scene, bearing, data)

@@ -7,10 +7,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from solidgear.compare.two.beside import Side
-from solidgear.compare.two.differences import ROUNDING
 from solidgear.core.body import Body, as_supports
-from solidgear.core.judge.change import BarredMode
+from solidgear.core.judge.change import BarredMode, Side
 from solidgear.core.judge.quantities import Values, size
 from solidgear.core.judge.settle import Settled, bars_of_modes, settle
 from solidgear.core.judge.solving import answer_of_body
@@ -23,6 +21,8 @@ if TYPE_CHECKING:
     from solidgear.core.scene import Scene
 
 Progress = Callable[[str], None]
+#: relative, of a mass in closed form
+ROUNDING = 1e-12
 
 
 @dataclass(frozen=True, eq=False)

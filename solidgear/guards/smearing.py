@@ -45,7 +45,7 @@ def expected(scene: Scene) -> tuple[float, float]:
     Examples
     --------
     >>> import solidgear as sg
-    >>> from solidgear.core.scene import Teeth
+    >>> from solidgear.cuts.features import Teeth
     >>> pinion = sg.load("geometry/pinion_overhung.toml")
     >>> teeth = Teeth(name="teeth", segment="head", count=14)
     >>> [round(e, 3) for e in expected(pinion.with_changes(features=(teeth,)))]

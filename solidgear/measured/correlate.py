@@ -84,7 +84,7 @@ class Pair:
 class Correlation(Displayed):
     """Measured resonances paired with computed modes."""
 
-    shown: ClassVar[str] = "correlation"
+    shown: ClassVar[str] = "measured.tables:pairs"
 
     #: scene, title: of the scene and of the measurement
     scene: str

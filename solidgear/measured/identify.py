@@ -94,7 +94,7 @@ class Predicted:
 class Identification(Displayed):
     """Entries identified from measured resonances."""
 
-    shown: ClassVar[str] = "identification"
+    shown: ClassVar[str] = "measured.tables:entries"
 
     scene: str
     title: str

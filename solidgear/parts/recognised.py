@@ -6,13 +6,10 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from pydantic import Field, model_validator
-
 from solidgear.core.errors import SceneError, listed
 from solidgear.core.scene.parts import Material, Segment
-from solidgear.core.scene.typed import Model
-from solidgear.core.scene.units import Length, PositiveLength
-from solidgear.parts.body_file import BodyFile, BodyTable
+from solidgear.core.scene.seat import Seat
+from solidgear.parts.body_file import BodyFile, BodyTable, with_port
 
 if TYPE_CHECKING:
     from solidgear.core.scene.places import Places
@@ -24,20 +21,6 @@ LEAST_SEAT, WHOLE_SEAT = 0.5, 0.97
 MASS_CHECK = 1e-2
 #: relative difference of diameters that are one
 SAME_DIAMETER = 1e-3
-
-
-class Seat(Model):
-    """A stretch of a cylinder of the part, counted from the origin of the body."""
-
-    diameter: PositiveLength
-    from_: Length = Field(alias="from")
-    to: Length
-
-    @model_validator(mode="after")
-    def _long(self):
-        if self.to <= self.from_:
-            raise SceneError("must lie beyond from", path=("to",))
-        return self
 
 
 def mean_material(materials: Sequence[Material], shares: Sequence[tuple[int, float]]) -> Material:
@@ -167,10 +150,6 @@ def with_seats(part: Recognised, stations: Iterable, segments: Sequence[Segment]
     return part.body.model_copy(update={"remarks": (*part.body.remarks, *remarks)})
 
 
-#: reads the part that a table of a file in a folder names
-Reader = Callable[[BodyTable, Path], Recognised]
-
-
 def refuse_parts(table: BodyTable, folder: Path) -> Recognised:
     """Refuse a part from a file, where no reader is given."""
     raise SceneError(
@@ -178,3 +157,20 @@ def refuse_parts(table: BodyTable, folder: Path) -> Recognised:
         "segments",
         path=("body", table.key),
     )
+
+
+class Parts:
+    """The table ``body`` as the reader of scene files asks for it."""
+
+    Table = BodyTable
+    Body = BodyFile
+    with_port = staticmethod(with_port)
+    with_seats = staticmethod(with_seats)
+    refuse_parts = staticmethod(refuse_parts)
+
+    @staticmethod
+    def recognise(table: BodyTable, folder: Path) -> Recognised:
+        """Read the part that a table names."""
+        from solidgear.parts.part import recognise  # start-up: not every file needs it
+
+        return recognise(table, folder)

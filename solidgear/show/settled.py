@@ -6,11 +6,12 @@ from collections.abc import Mapping, Sequence
 
 import typer
 
-from solidgear.app.answer import sentences
 from solidgear.core.body import Body
 from solidgear.core.errors import listed
+from solidgear.core.judge.answer import Answered
 from solidgear.core.judge.quantities import in_words
 from solidgear.core.judge.settle import Settled, widest
+from solidgear.core.ladder.model import BEAM
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.quantity import Quantity
 from solidgear.core.scene import Scene
@@ -101,3 +102,37 @@ def ended(settled: Settled | None) -> None:
     """An exit code of its own where the tolerance is not kept."""
     if settled is not None and not settled.reached:
         raise typer.Exit(NOT_REACHED)
+
+
+def sentences(found: Answered | Settled) -> list[str]:
+    """Plain text of the choice: solids that could not answer and why, and whether the tolerance is kept.
+
+    Beams are passed over always, for they have no error of their own to show.
+    """
+    passed: dict[str, list[str]] = {}
+    for step in found.steps:
+        if not step.valid and LADDER[step.rung].family != BEAM:
+            passed.setdefault(step.why, []).append(step.rung)
+    lines = [f"Passed over: {', '.join(names)} ({why})." for why, names in passed.items()]
+    if found.missing:
+        lines.append(f"Not there: {_absent(found.missing)}.")
+    asked = f"{100 * found.tolerance:g} %"
+    if found.reached:
+        there = ", what is there" if found.missing else ""
+        lines.append(f"Within the {asked} asked{there}.")
+        return lines
+    why = next((step.why for step in found.steps if step.chosen and step.why), "")
+    lines.append(f"Not reached: {asked} was asked for{f'; {why}' if why else ''}.")
+    return lines
+
+
+def _absent(missing: Sequence[Quantity]) -> str:
+    """Quantities that a scene does not have, each kind with why."""
+    free = [q for q in missing if not q.is_frequency]
+    modes = [q for q in missing if q.is_frequency]
+    one = len(free) == 1
+    whys = [
+        (free, f"{'a motion' if one else 'motions'} that no bearing resists"),
+        (modes, "no such mode among the lowest"),
+    ]
+    return "; ".join(f"{', '.join(names)} ({why})" for names, why in whys if names)

@@ -9,18 +9,13 @@ import numpy as np
 
 from solidgear.core.frames import DOF_NAMES
 from solidgear.core.quantity import BLOCK_UNITS
-from solidgear.measured.tables import entries, pairs
 from solidgear.show.reading import mode_of
 from solidgear.show.sketch import draw
 from solidgear.show.table import Table
 from solidgear.show.words import bar_of, percent
-from solidgear.variants.optimise.tables import designs
 
 if TYPE_CHECKING:
     from solidgear.core.body import Body
-
-#: results that are told by a table of their pages
-correlation, identification, optimum = pairs, entries, designs
 
 #: shapes that a picture shows unless told otherwise
 MOST_SHAPES = 6

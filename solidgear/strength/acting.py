@@ -8,9 +8,9 @@ from typing import Annotated, Any
 
 import typer
 
-from solidgear.app.bearing import loaded_by
+from solidgear.bearings.study import loaded_by
 from solidgear.core.errors import SceneError, SolidgearError, show
-from solidgear.core.loading import as_written, load_train
+from solidgear.core.loading import as_written
 from solidgear.core.scene import Scene
 from solidgear.core.scene.toml_file import is_train
 from solidgear.show.command import Group
@@ -20,6 +20,7 @@ from solidgear.strength.deflection.tables import DOFS, LOAD_OF
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.train import Train
 from solidgear.trains.load.operation import named_point
+from solidgear.trains.loading import load_train
 
 AtRestFile = Annotated[
     Path, typer.Argument(help="Train or scene file (TOML), such as geometry/axle_overhung.toml.")

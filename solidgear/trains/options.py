@@ -11,7 +11,6 @@ import typer
 
 from solidgear.core.errors import SceneError, SolidgearError, listed, show
 from solidgear.core.ladder.registry import LADDER
-from solidgear.core.loading import load_train
 from solidgear.core.scene.toml_file import parse
 from solidgear.show.command import Group
 from solidgear.show.options import MODEL, options_by_name
@@ -21,6 +20,7 @@ from solidgear.trains.file.reading import as_written
 from solidgear.trains.file.tables import FIRST_HARMONIC, LAST_HARMONIC
 from solidgear.trains.file.train import Train
 from solidgear.trains.load.operation import at_point
+from solidgear.trains.loading import load_train
 
 TrainFile = Annotated[
     Path, typer.Argument(help="Train file (TOML), such as geometry/axle_overhung.toml.")

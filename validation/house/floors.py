@@ -9,6 +9,7 @@ GROUND = {
     "core.springs",
     "core.display",
     "core.machine",
+    "core.registry",
 }
 #: rooms of the core: what each may import
 CORE = {
@@ -16,6 +17,7 @@ CORE = {
     "core.elements": set(),
     "core.factoring": set(),
     "core.display": set(),
+    "core.registry": set(),
     "core.frames": {"core.errors"},
     "core.springs": {"core.errors"},
     "core.quantity": {"core.frames"},

@@ -22,8 +22,8 @@ from solidgear.bearings.catalogue import Catalogue
 from solidgear.bearings.catalogued import catalogued
 from solidgear.bearings.equilibrium import Equilibrium, equilibrium
 from solidgear.core.scene.file import scene_of
-from solidgear.core.system import CarrierTurn
 from solidgear.core.system.gear_mesh import line_of_action, mean_radius, mesh_point
+from solidgear.trains.system.carrier_turn import CarrierTurn
 
 PRESSURE = radians(20)
 #: of the face of a bevel gear, of its cone distance

@@ -24,13 +24,14 @@ from typing import NamedTuple
 import numpy as np
 
 import solidgear as sg
+from solidgear.bearings.catalogue import Catalogue
 from solidgear.bearings.catalogued import catalogued
 from solidgear.bearings.geometry import Inside
 from solidgear.bearings.hertz import LINE_POWER, line_constant, line_pressure
 from solidgear.bearings.kinds import SHARES
 from solidgear.bearings.rating import static_roller_rating
 from solidgear.bearings.solved import solved
-from solidgear.core.scene import Bearing, BearingLoad, Catalogue, Scene
+from solidgear.core.scene import Bearing, BearingLoad, Scene
 from validation.common import ROOT
 
 PAGE = Path(__file__).with_suffix(".md")

@@ -2,33 +2,18 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, Generic, TypeVar
 
 import numpy as np
 
 from solidgear.compare.two.differences import Difference
-from solidgear.core.judge.change import BarredMode, Change, ModePair
+from solidgear.core.judge.change import BarredMode, Change, ModePair, Side
 from solidgear.show.words import hertz, percent
 
 #: entries of the input that are named in a sentence
 NAMED = 3
-
-
-@dataclass(frozen=True, eq=False)
-class Side:
-    """A train or shaft of a comparison of two."""
-
-    letter: str  #: ``A`` or ``B``
-    name: str
-    cautions: tuple[str, ...]
-
-    @property
-    def label(self) -> str:
-        """Letter and name, as in legends."""
-        return f"{self.letter}: {self.name}"
 
 
 S = TypeVar("S", bound=Side)
@@ -62,29 +47,6 @@ class Beside(Generic[S, M]):
             if text not in shared
         ]
         return [*shared, *single]
-
-
-def all_pairs(
-    same_shape: Sequence[ModePair[M]],
-    first: Sequence[M],
-    second: Sequence[M],
-    label: Callable[[M], str],
-    highest: float = math.inf,
-) -> list[ModePair[M]]:
-    """Return all modes of two lists, both by ascending frequency, paired by shape, else by `label`
-    up to a frequency `highest`, Hz, or alone.
-    """
-    waiting: dict[str, list[M]] = {}
-    for mode in second:
-        if mode.frequency_hz <= highest and mode not in [p.b for p in same_shape]:
-            waiting.setdefault(label(mode), []).append(mode)
-    out = [*same_shape]
-    for mode in first:
-        if mode not in [p.a for p in same_shape]:
-            named = waiting.get(label(mode)) if mode.frequency_hz <= highest else None
-            out.append(ModePair(mode, named.pop(0) if named else None))
-    out += [ModePair(None, mode) for mode in second if mode not in [p.b for p in out]]
-    return sorted(out, key=lambda p: (p.a or p.b).frequency_hz)  # type: ignore[union-attr]  # never both
 
 
 def decibels(a: float, b: float) -> float | None:

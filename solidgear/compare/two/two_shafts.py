@@ -19,12 +19,12 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from solidgear.compare.two import beside
-from solidgear.compare.two.beside import Beside, all_pairs
+from solidgear.compare.two.beside import Beside
 from solidgear.compare.two.differences import Difference, scene_differences
 from solidgear.compare.two.two_shafts_page import write_two_shafts
 from solidgear.core.display import Displayed
 from solidgear.core.judge.answer import LEAST_TOLERANCE
-from solidgear.core.judge.change import BarredMode, Change, ModePair
+from solidgear.core.judge.change import BarredMode, Change, ModePair, all_pairs
 from solidgear.core.judge.correlation import pair_modes
 from solidgear.core.judge.open_record import OpenNumbers
 from solidgear.core.judge.quantities import in_order, judged, size

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from typing import Generic, TypeVar
 
@@ -109,3 +111,40 @@ class ModePair(Generic[M]):
     def within(self, highest: float) -> bool:
         """Return True where either mode lies below a frequency, Hz."""
         return any(m is not None and m.frequency_hz <= highest for m in (self.a, self.b))
+
+
+@dataclass(frozen=True, eq=False)
+class Side:
+    """A train or shaft of a comparison of two."""
+
+    letter: str  #: ``A`` or ``B``
+    name: str
+    cautions: tuple[str, ...]
+
+    @property
+    def label(self) -> str:
+        """Letter and name, as in legends."""
+        return f"{self.letter}: {self.name}"
+
+
+def all_pairs(
+    same_shape: Sequence[ModePair[M]],
+    first: Sequence[M],
+    second: Sequence[M],
+    label: Callable[[M], str],
+    highest: float = math.inf,
+) -> list[ModePair[M]]:
+    """Return all modes of two lists, both by ascending frequency, paired by shape, else by `label`
+    up to a frequency `highest`, Hz, or alone.
+    """
+    waiting: dict[str, list[M]] = {}
+    for mode in second:
+        if mode.frequency_hz <= highest and mode not in [p.b for p in same_shape]:
+            waiting.setdefault(label(mode), []).append(mode)
+    out = [*same_shape]
+    for mode in first:
+        if mode not in [p.a for p in same_shape]:
+            named = waiting.get(label(mode)) if mode.frequency_hz <= highest else None
+            out.append(ModePair(mode, named.pop(0) if named else None))
+    out += [ModePair(None, mode) for mode in second if mode not in [p.b for p in out]]
+    return sorted(out, key=lambda p: (p.a or p.b).frequency_hz)  # type: ignore[union-attr]  # never both

@@ -10,6 +10,7 @@ from solidgear.core.errors import SolidgearError, listed, nearest, show
 from solidgear.core.factoring import Factoring
 from solidgear.core.models.kinds import BODIES, CYCLIC
 from solidgear.core.models.options import FACTORING_OPTIONS, Option, checked
+from solidgear.core.registry import added
 
 if TYPE_CHECKING:
     from solidgear.core.body import Body
@@ -120,11 +121,10 @@ class Model:
     def unfit(self, scene: Any) -> str:
         """Return the reason why it does not model a scene; empty if it does."""
         from solidgear.core.scene.shaft import feature_labels
-        from solidgear.cuts.features import FEATURES
 
         features, with_smeared = features_of(scene), getattr(scene, "features", ())
         if self.for_features and not any(f.sort in self.holds for f in with_smeared):
-            kinds = sorted(kind for kind, cls in FEATURES.items() if cls.sort in self.holds)
+            kinds = sorted(kind for kind, cls in added("feature").items() if cls.sort in self.holds)
             return (
                 f"the {self.title} is made for features, and the scene has none of: "
                 f"{listed(kind.replace('_', ' ') for kind in kinds)}"

@@ -7,7 +7,7 @@ from solidgear.core.ladder.harmonic import Harmonic
 from solidgear.core.ladder.lumped import Lumped
 from solidgear.core.ladder.model import Ladder
 from solidgear.core.ladder.solid import Solid
-from solidgear.cuts.corrected.model import Corrected
-from solidgear.cuts.sector.model import Sector
+from solidgear.core.registry import added
 
-LADDER = Ladder(Lumped(), Euler(), Timoshenko(), Harmonic(), Corrected(), Sector(), Solid())
+_further = [model() for model in added("model").values()]
+LADDER = Ladder(Lumped(), Euler(), Timoshenko(), Harmonic(), *_further, Solid())

@@ -11,6 +11,7 @@ from solidgear.core.ladder.model import Options, Series, features_of
 from solidgear.core.ladder.volume import PER_TETRAHEDRON, Volume
 from solidgear.core.models.kinds import BODIES, CUTS, CYCLIC, PARTS
 from solidgear.core.models.options import SOLID_OPTIONS
+from solidgear.core.registry import addition
 
 if TYPE_CHECKING:
     from solidgear.core.body import Body
@@ -96,8 +97,7 @@ class Solid(Volume):
 
     def can_halve(self, scene: Any, options: Options) -> bool:
         """Return True where all cuts of a shaft have one mirror plane."""
-        from solidgear.cuts.solid.cuts import mirror_plane
-
+        mirror_plane = addition("question of features", "mirror plane")
         cuts = features_of(scene)
         return bool(cuts) and all(f.sort == CUTS for f in cuts) and mirror_plane(cuts) is not None
 
@@ -113,9 +113,7 @@ class Solid(Volume):
         """
         if CUTS not in {f.sort for f in features_of(scene)}:
             return super().limits(scene)
-        from solidgear.cuts.sector.body import not_together
-
-        return not_together(scene)
+        return addition("question of features", "not together")(scene)
 
     def given(self, scene: Any, options: Options) -> dict[str, Any]:
         """Return options with tetrahedra for features, fillets, chamfers or a part from a file,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from solidgear.core.ladder.model import SOLID, Model, Options
+from solidgear.core.registry import addition
 
 #: unknowns of a tetrahedron of second order, most of which it shares
 PER_TETRAHEDRON = 4.0
@@ -27,6 +28,4 @@ class Volume(Model):
         """Return the reason why the features of a scene have no sector that can be meshed; empty if
         they have.
         """
-        from solidgear.cuts.sector.body import no_sector
-
-        return no_sector(scene)
+        return addition("question of features", "no sector")(scene)

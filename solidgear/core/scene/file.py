@@ -8,20 +8,20 @@ that are sound by themselves.
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Annotated, Any, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, TypeAlias
 
 from pydantic import BeforeValidator, model_validator
 
-from solidgear.bearings.arrangement import Arrangement, Pair, read_pairs, readable_tables
-from solidgear.bearings.catalogue import BearingLoad
 from solidgear.core.errors import SceneError
 from solidgear.core.scene import rules
 from solidgear.core.scene.ask import Ask
 from solidgear.core.scene.blends import BLENDS
 from solidgear.core.scene.ends import seat_masses
+from solidgear.core.scene.feature_rules import FEATURES
 from solidgear.core.scene.housing import Housing, read_housing
+from solidgear.core.scene.load import BearingLoad
 from solidgear.core.scene.lubrication import Lubrication
 from solidgear.core.scene.materials import by_name
 from solidgear.core.scene.model import Scene
@@ -30,6 +30,7 @@ from solidgear.core.scene.places import Placed, Places
 from solidgear.core.scene.point_mass import PointMass
 from solidgear.core.scene.shapes import SHAPES, Cylinder, Shape, lay_out
 from solidgear.core.scene.stations import Attachment, Bearing, Port
+from solidgear.core.scene.tables import pairing, parts
 from solidgear.core.scene.toml_file import (
     FileOrder,
     describes_train,
@@ -40,9 +41,16 @@ from solidgear.core.scene.toml_file import (
 )
 from solidgear.core.scene.typed import Holds, Model, Problems
 from solidgear.core.scene.uncertain import with_ranges
-from solidgear.cuts.features import FEATURES
-from solidgear.parts.body_file import BodyTable, with_port
-from solidgear.parts.recognised import Reader, Recognised, refuse_parts, with_seats
+
+PAIRING, PARTS = pairing(), parts()
+if TYPE_CHECKING:
+    Arrangement: TypeAlias = Any
+    BodyTable: TypeAlias = Any
+else:
+    Arrangement, BodyTable = PAIRING.Words, PARTS.Table
+
+#: reads the part that a table of a file in some folder names
+Reader = Callable[[Any, Path], Any]
 
 Table = dict[str, Any]
 #: entries of the lists of a file
@@ -107,7 +115,7 @@ class ScenePartFile(SceneFile):
         return self
 
 
-def load(path: str | os.PathLike, part_of: Reader = refuse_parts) -> Scene:
+def load(path: str | os.PathLike, part_of: Reader = PARTS.refuse_parts) -> Scene:
     """Read a scene file, bearings of catalogue data without stiffness; `part_of` reads the part that
     a [body] names.
     """
@@ -115,7 +123,7 @@ def load(path: str | os.PathLike, part_of: Reader = refuse_parts) -> Scene:
     return scene_of(parse(file_path), file_path, part_of)
 
 
-def scene_of(raw: Table, file_path: str, part_of: Reader = refuse_parts) -> Scene:
+def scene_of(raw: Table, file_path: str, part_of: Reader = PARTS.refuse_parts) -> Scene:
     """Resolve the tables of a scene file; files that it names lie relative to `file_path`."""
     if describes_train(raw):
         raise SceneError(
@@ -154,7 +162,7 @@ class _Reading:
         self.raw, self.where = raw, file_path
         self.problems = Problems()
         self.file, self.spoilt = self._tables()
-        self.part: Recognised | None = None
+        self.part: Any = None
         if (body := self.file.body) is not None:
             self.part = self.problems.read(lambda: part_of(body, Path(file_path).parent))
             self.spoilt |= set() if self.part else {"body"}
@@ -170,11 +178,12 @@ class _Reading:
         file, place = self.file, self.places
         paired = None
         if "arrangement" not in self.spoilt:
-            paired = self.problems.read(lambda: read_pairs(file.arrangement, file.bearing))
+            paired = self.problems.read(lambda: PAIRING.read_pairs(file.arrangement, file.bearing))
         if paired is None:
             self.spoilt.add("arrangement")
         bearings = [
-            self._bearing(k, table) for k, table in enumerate(readable_tables(file.bearing, paired))
+            self._bearing(k, table)
+            for k, table in enumerate(PAIRING.readable_tables(file.bearing, paired))
         ]
         housing = None
         if (table := file.housing) is not None:
@@ -206,7 +215,7 @@ class _Reading:
             title=file.title,
             name=name_of(self.where),
             source=file.source,
-            body=with_seats(self.part, stations, self.segments) if self.part else None,
+            body=PARTS.with_seats(self.part, stations, self.segments) if self.part else None,
             housing_axial=housing if isinstance(housing, float) else None,
             housing=None if isinstance(housing, float) else housing,
             load=file.load,
@@ -223,7 +232,7 @@ class _Reading:
                 plural = "masses" if key == "mass" else f"{key}s"
                 raise SceneError(rules.too_many(plural, len(raw[key]), most), path=(key,))
         try:
-            return kind(**with_port(raw)), set()
+            return kind(**PARTS.with_port(raw)), set()
         except SceneError as error:
             problems = [
                 problem.located(raw, path=_drop_tag(problem.path)) for problem in error.problems
@@ -232,7 +241,7 @@ class _Reading:
         spoilt = {str(problem.path[0]) for problem in problems}
         sound = {key: value for key, value in raw.items() if key not in spoilt}
         needed = {"material": STEEL, "segment": [], "port": []}
-        return SceneFile(**{**needed, **with_port(sound)}), spoilt
+        return SceneFile(**{**needed, **PARTS.with_port(sound)}), spoilt
 
     def _name_datums(self) -> None:
         """Name the datums, from the file as it stands: a segment of a wrong length has its name."""
@@ -276,7 +285,7 @@ class _Reading:
 
     def _material(self) -> Material:
         """Return the material of parts without one."""
-        return self.file.material or self.part.usual_material()  # type: ignore[union-attr]
+        return self.file.material or self.part.usual_material()
 
     def _part_path(self, path: tuple) -> tuple:
         """Return the key of the file that an entry of a segment of the part comes from."""
@@ -295,7 +304,7 @@ class _Reading:
         return row
 
     @staticmethod
-    def _turned(rows: list[_Row], paired: list[Pair]) -> list[_Row]:
+    def _turned(rows: list[_Row], paired: list) -> list[_Row]:
         """Turn bearings of pairs as their arrangement says, once their places are known."""
         for pair in paired:
             if all(rows[k].thing for k in pair.bearings):

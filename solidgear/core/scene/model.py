@@ -9,11 +9,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
 
 from pydantic import model_validator
 
-from solidgear.bearings.catalogue import BearingLoad
 from solidgear.core.display import Displayed
 from solidgear.core.errors import SceneError
 from solidgear.core.scene import rules
@@ -21,18 +20,24 @@ from solidgear.core.scene.ask import Ask
 from solidgear.core.scene.bearing_stiffness import stiffness_entries
 from solidgear.core.scene.blends import Blend, Corner
 from solidgear.core.scene.ends import seat_masses, snap_seats
+from solidgear.core.scene.feature_rules import Feature
 from solidgear.core.scene.housing import Housing
+from solidgear.core.scene.load import BearingLoad
 from solidgear.core.scene.lubrication import Lubrication
 from solidgear.core.scene.outline import Outline
 from solidgear.core.scene.parts import STEEL, Material, Segment
 from solidgear.core.scene.patches import off_patches
 from solidgear.core.scene.point_mass import PointMass
 from solidgear.core.scene.stations import Bearing, Port
+from solidgear.core.scene.tables import parts
 from solidgear.core.scene.typed import Model
 from solidgear.core.scene.uncertain import Uncertain
 from solidgear.core.scene.units import AxialSpring
-from solidgear.cuts.features import Feature
-from solidgear.parts.body_file import BodyFile
+
+if TYPE_CHECKING:
+    BodyFile: TypeAlias = Any
+else:
+    BodyFile = parts().Body
 
 
 class Scene(Displayed, Model):

@@ -8,16 +8,16 @@ known, because the shaft that the words refer to is in doubt.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Annotated, Any, ClassVar, TypeVar
+from typing import Annotated, Any, ClassVar, Protocol, TypeVar
 
 from pydantic import AfterValidator, Field
 from pydantic.fields import FieldInfo
 
 from solidgear.core.errors import SceneError, listed, nearest
 from solidgear.core.scene.patches import Patch
+from solidgear.core.scene.seat import Seat
 from solidgear.core.scene.typed import Model, Problems, by_key, not_misspelt, unknown_keys
 from solidgear.core.scene.units import Length
-from solidgear.parts.recognised import Recognised, Seat
 
 #: in place of a place that is not known, m
 SOMEWHERE = 1.0
@@ -34,10 +34,18 @@ def plain_name(name: str) -> str:
 Name = Annotated[str, AfterValidator(plain_name)]
 
 
+class RoundPart(Protocol):
+    """A part from a file and the body of revolution inside it."""
+
+    body: Any
+
+    def span(self, seat: Seat) -> tuple[float, float]: ...
+
+
 class Places:
     """Places of the shaft of a file, by name."""
 
-    def __init__(self, attachment: Any, *, of_body: bool = False, part: Recognised | None = None):
+    def __init__(self, attachment: Any, *, of_body: bool = False, part: RoundPart | None = None):
         #: of all datums in the order of the file, also those whose place is in doubt; None where
         #: names of segments are in doubt themselves
         self.names: list[str] | None = ["start", "end"]

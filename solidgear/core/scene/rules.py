@@ -11,22 +11,14 @@ from typing import TYPE_CHECKING, Any
 
 from solidgear.core.errors import SceneError, listed, nearest, show
 from solidgear.core.quantity import AT, STIFFNESS, Quantity
+from solidgear.core.scene.feature_rules import feature_problems
 from solidgear.core.scene.outline import TOUCH, Outline, radii_of
 from solidgear.core.scene.units import TYPED
-from solidgear.cuts.features import feature_problems
 
 if TYPE_CHECKING:
-    from solidgear.bearings.catalogue import Catalogue
-    from solidgear.core.scene import (
-        Bearing,
-        Blend,
-        Corner,
-        Feature,
-        Material,
-        PointMass,
-        Port,
-        Segment,
-    )
+    from solidgear.core.scene import Bearing, Blend, Corner, Material, PointMass, Port, Segment
+    from solidgear.core.scene.feature import OnSegment
+    from solidgear.core.scene.tables import BearingData
 
 #: least diameter and least length of a part over the length of the shaft, least wall over the
 #: radius; thinner ones would need endless meshes or drown in rounding, and come from wrong units
@@ -169,7 +161,7 @@ def problems_between(
     ports: Sequence[Port],
     bearings: Sequence[Bearing],
     masses: Sequence[PointMass],
-    features: Sequence[Feature],
+    features: Sequence[OnSegment],
     blends: Sequence[Blend],
     complete: bool = True,
 ) -> Iterator[SceneError]:
@@ -209,7 +201,7 @@ def preload_problems(bearings: Sequence[Bearing]) -> Iterator[SceneError]:
     )
 
 
-def _two_preloads(rows: Sequence[tuple[int, Bearing, Catalogue]]) -> Iterator[SceneError]:
+def _two_preloads(rows: Sequence[tuple[int, Bearing, BearingData]]) -> Iterator[SceneError]:
     """Yield a problem of a pair with two preloads that differ, which no shaft at rest has."""
     forces = [data.preload.force or 0.0 for *_, data in rows if data.preload is not None]
     if all(forces) and not isclose(forces[0], forces[1], rel_tol=TYPED):

@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
-from solidgear.bearings.catalogue import Catalogue
 from solidgear.core.errors import SceneError, show
 from solidgear.core.frames import DOF_NAMES
+from solidgear.core.registry import addition
 from solidgear.core.scene.bearing_stiffness import Matrix, refuse_two_stiffnesses
 from solidgear.core.scene.ends import check_face_words
 from solidgear.core.scene.housing import Elastic, elastic
 from solidgear.core.scene.patches import Patch, Point, fields_on_patch, patch_problems
 from solidgear.core.scene.places import Along, Placed, Places
+from solidgear.core.scene.seat import Seat
 from solidgear.core.scene.support import (
     HOLDS,
     Hold,
@@ -25,6 +26,7 @@ from solidgear.core.scene.support import (
     sliding,
     support_problems,
 )
+from solidgear.core.scene.tables import Absent
 from solidgear.core.scene.typed import Problems
 from solidgear.core.scene.units import (
     POSITION_DECIMALS,
@@ -35,7 +37,11 @@ from solidgear.core.scene.units import (
     Position,
     PositiveLength,
 )
-from solidgear.parts.recognised import Seat
+
+if TYPE_CHECKING:
+    from solidgear.core.scene.tables import BearingData as Catalogue
+else:
+    Catalogue = addition("table", "catalogue") or Absent
 
 Attachment = Literal["average", "rigid", "section"]
 Status = Literal["published", "identified", "assumed", "measured", "calculated", "estimated"]

@@ -8,15 +8,13 @@ from typing import Any, Literal, get_args, get_origin
 
 from pydantic.fields import FieldInfo
 
+from solidgear.core.registry import added
 from solidgear.core.scene.blends import BLENDS
+from solidgear.core.scene.feature_rules import FEATURES
 from solidgear.core.scene.file import SceneFile, ScenePartFile
 from solidgear.core.scene.paths import Keys
 from solidgear.core.scene.typed import Holds, Model
-from solidgear.cuts.features import FEATURES
-from solidgear.trains.file.reading import LongFile, ShortFile
 
-#: models that files are read into
-FILES = (SceneFile, ScenePartFile, ShortFile, LongFile)
 #: names of files and of materials, whatever they are read into
 NAMES = ("scene", "material")
 
@@ -37,7 +35,7 @@ def is_text(keys: Keys) -> bool:
 
 @lru_cache(maxsize=512)
 def _is_text(names: tuple[str, ...]) -> bool:
-    kinds: list[type[Model]] = [*FILES]
+    kinds: list[type[Model]] = [SceneFile, ScenePartFile, *added("file").values()]
     fields: list[FieldInfo] = []
     for name in names:
         fields = [field for kind in kinds if (field := kind.table_keys().get(name)) is not None]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import numpy as np
 
@@ -12,8 +12,17 @@ from solidgear.core.factoring import Factoring
 from solidgear.core.machine.interruptible import call
 from solidgear.core.solve.single import Refining
 
-if TYPE_CHECKING:
-    from solidgear.petsc.solver import Ranks
+
+class Ranks(Protocol):
+    """A matrix factored by ranks of processes, which find modes as well."""
+
+    steps: int  #: most iterations of a solution; 0 for a direct factor
+
+    def modes(
+        self, wanted: int, load, through, inner, free, tolerance: float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return the lowest eigenpairs of the matrix with springs."""
+
 
 # Unknowns from which on a call can take so long that Ctrl-C must be heard meanwhile; handing it
 # over costs 0.1 ms.

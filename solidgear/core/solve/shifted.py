@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from solidgear.core.body import Block, Body
 from solidgear.core.factoring import Factoring
 from solidgear.core.machine.memory import NoRoom, available_mb
+from solidgear.core.registry import addition
 from solidgear.core.solve.choice import USUAL
 from solidgear.core.solve.factor import Planned, factored, planned
 from solidgear.core.solve.factored import Factor
@@ -66,9 +67,7 @@ def _factored(body: Body) -> Factored:
 def _plan(block: Block, shift: float, factoring: Factoring) -> Planned:
     matrix = (block.stiffness + shift * block.mass).tocsr()
     if factoring.engine != "own":
-        from solidgear.petsc.solver import plan_on_ranks  # optional: PETSc
-
-        return plan_on_ranks(block, matrix, factoring)
+        return addition("engine", "ranks")(block, matrix, factoring)
     in_pieces = planned_by_symmetry(matrix, block.reflections) if factoring == USUAL else None
     return in_pieces or planned(
         matrix,

@@ -15,33 +15,16 @@ from solidgear.core.system.links import (
 from solidgear.core.system.modes import SystemModes
 from solidgear.core.system.parts import Inertia, Part, Placed, PlanarBody, RigidBody
 from solidgear.core.system.system import System
-from solidgear.trains.system.carrier_turn import (
-    CarrierTurn,
-    FixedSupport,
-    PlanetError,
-    carrier_turn,
-)
-from solidgear.trains.system.planetary import PlanetaryStage
-from solidgear.trains.system.planetary_members import CentralMember, Planet
-from solidgear.trains.system.planetary_modes import PlanetaryMode
 
 __all__ = [
-    "CarrierTurn",
-    "FixedSupport",
-    "PlanetError",
     "PlanetaryTeeth",
-    "carrier_turn",
     "BearingSpring",
     "HousedSprings",
     "Inertia",
     "Link",
     "MeshVector",
     "Part",
-    "CentralMember",
     "PlanarBody",
-    "Planet",
-    "PlanetaryMode",
-    "PlanetaryStage",
     "Placed",
     "PortInertia",
     "RigidBody",

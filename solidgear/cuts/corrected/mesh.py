@@ -6,9 +6,8 @@ from dataclasses import replace
 
 from solidgear.core.models.size import Size
 from solidgear.core.models.solid.plan import tetrahedra_plan, usual_size
-from solidgear.core.models.solid.size import cut_size
 from solidgear.core.scene.attached import attached_stations
-from solidgear.cuts.solid.featured import meshed
+from solidgear.cuts.solid.featured import cut_size, meshed
 from solidgear.cuts.solid.meshing import FeaturedMesh
 
 #: how many times smaller elements are at seat ends and shoulders

@@ -86,7 +86,7 @@ def no_common_sector(features: Sequence[Any], count: int | None = None) -> str:
 
     Examples
     --------
-    >>> from solidgear.core.scene import Spline
+    >>> from solidgear.cuts.features import Spline
     >>> a, b = (Spline(name=n, segment=n, count=c) for n, c in (("a", 12), ("b", 14)))
     >>> no_common_sector([a, b])[:32]
     '12 of spline "a" and 14 of splin'

@@ -36,7 +36,7 @@ class CrossHole(Cut):
 
     Examples
     --------
-    >>> from solidgear.core.scene import CrossHole
+    >>> from solidgear.cuts.features import CrossHole
     >>> hole = CrossHole(name="oil", segment="shaft", y="50 mm", diameter="8 mm")
     >>> [round(y, 3) for y in hole.reach(0.03)]
     [0.046, 0.054]

@@ -105,7 +105,7 @@ class Cut(OnSegment):
         A flat down to nearly the axis is nearly half of the cylinder:
 
         >>> from math import pi
-        >>> from solidgear.core.scene import Flat
+        >>> from solidgear.cuts.features import Flat
         >>> deep = Flat(name="flat", segment="rod", y=0.0, length=1.0, depth=0.1 - 1e-9)
         >>> round(deep.volume(0.1, 0.0) / (pi * 0.1**2), 6)
         0.5

@@ -22,7 +22,7 @@ class Keyway(Long):
 
     Examples
     --------
-    >>> from solidgear.core.scene import Keyway
+    >>> from solidgear.cuts.features import Keyway
     >>> key = Keyway(name="key", segment="shaft", y="120 mm", length="100 mm", width="25 mm",
     ...              depth="9 mm")
     >>> key.reach(0.045)

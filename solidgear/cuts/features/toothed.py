@@ -182,7 +182,7 @@ class Teeth(_Toothed):
 
     Examples
     --------
-    >>> from solidgear.core.scene import Teeth
+    >>> from solidgear.cuts.features import Teeth
     >>> teeth = Teeth(name="teeth", segment="head", count=14, addendum=0.9)
     >>> round(teeth.tip, 6), teeth.smeared
     (1.128571, True)

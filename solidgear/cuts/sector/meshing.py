@@ -69,7 +69,7 @@ def sectors_of(features: Iterable[Any]) -> int:
 
     Examples
     --------
-    >>> from solidgear.core.scene import BoltCircle, Teeth
+    >>> from solidgear.cuts.features import BoltCircle, Teeth
     >>> teeth = Teeth(name="teeth", segment="rim", count=42)
     >>> sectors_of([teeth, BoltCircle(name="b", segment="web", count=6, diameter=0.01, circle=0.1)])
     6

@@ -19,7 +19,7 @@ def outline(teeth: Any, count: int) -> tuple[np.ndarray, np.ndarray]:
 
     Examples
     --------
-    >>> from solidgear.core.scene import Teeth
+    >>> from solidgear.cuts.features import Teeth
     >>> angle, radius = outline(Teeth(name="t", segment="head", count=14), 14)
     >>> len(angle), bool(abs(angle[-1] - np.pi / 14) < 1e-12)
     (6, True)
@@ -47,7 +47,7 @@ def half_outline(teeth: Any, count: int) -> tuple[np.ndarray, np.ndarray]:
 
     Examples
     --------
-    >>> from solidgear.core.scene import Teeth
+    >>> from solidgear.cuts.features import Teeth
     >>> angle, radius = half_outline(Teeth(name="t", segment="head", count=14), 14)
     >>> len(angle), float(angle[0])
     (4, 0.0)
@@ -64,7 +64,7 @@ def section_area(teeth: Any) -> float:
 
     Examples
     --------
-    >>> from solidgear.core.scene import Teeth
+    >>> from solidgear.cuts.features import Teeth
     >>> low = Teeth(name="t", segment="s", count=300, addendum=1e-6, dedendum=1e-6)
     >>> abs(section_area(low) / pi - 1) < 1e-3
     True
@@ -80,7 +80,7 @@ def section_polar(teeth: Any) -> float:
 
     Examples
     --------
-    >>> from solidgear.core.scene import Teeth
+    >>> from solidgear.cuts.features import Teeth
     >>> low = Teeth(name="t", segment="s", count=300, addendum=1e-6, dedendum=1e-6)
     >>> abs(section_polar(low) / (pi / 2) - 1) < 1e-3
     True
@@ -113,7 +113,7 @@ def turn_at(y: np.ndarray, twists: list[tuple[Any, Any]]) -> np.ndarray:
     A lead of half a turn in a helix of 45 degrees:
 
     >>> from solidgear import Segment
-    >>> from solidgear.core.scene import Spline
+    >>> from solidgear.cuts.features import Spline
     >>> rod = Segment.cylinder("rod", length=0.1 * pi, diameter=0.2)
     >>> helix = Spline(name="h", segment="rod", count=20, spiral_angle="45 deg")
     >>> round(float(turn_at(np.array([1.0]), [(rod, helix)])[0] / pi), 6)

@@ -62,7 +62,7 @@ def edge_size(feature: Cut, radius: float, refinement: float) -> tuple[str, floa
 
     Examples
     --------
-    >>> from solidgear.core.scene import Flat
+    >>> from solidgear.cuts.features import Flat
     >>> flat = Flat(name="flat", segment="rod", y=0.1, length=0.03, depth=0.006)
     >>> round(edge_size(flat, 0.03, 1.0)[1], 12)
     0.001
@@ -101,7 +101,7 @@ def mirror_plane(features: tuple[Cut, ...]) -> int | None:
 
     Examples
     --------
-    >>> from solidgear.core.scene import CrossHole
+    >>> from solidgear.cuts.features import CrossHole
     >>> mirror_plane((CrossHole(name="oil", segment="rod", y=0.1, diameter=0.01),))
     0
     """

@@ -14,8 +14,9 @@ from solidgear.core.body import Block, Body
 from solidgear.core.kernel.room import assemblable
 from solidgear.core.meshing.quality import check_mesh
 from solidgear.core.models.kinds import CYCLIC
+from solidgear.core.models.size import Size, size_of_mesh
 from solidgear.core.models.solid.block import Facets, body_of, free_block, mesh_facts
-from solidgear.core.models.solid.mesh import SolidMesh, _isoparametric
+from solidgear.core.models.solid.mesh import SolidMesh, _isoparametric, basis_of
 from solidgear.core.models.solid.plan import tetrahedra_of
 from solidgear.core.models.solid.seat_faces import Seats
 from solidgear.core.scene.shaft import resolved
@@ -36,6 +37,11 @@ def meshed(scene, plan: dict, refinement: float, half: bool, edges: bool = False
         half=half,
         edges=edges,
     )
+
+
+def cut_body(scene: Any, wanted: Sequence, plan: dict, refinement: float, half: bool) -> Body:
+    """Build the free body of a scene with cuts; parameters as for :func:`meshed`."""
+    return featured_body(scene, wanted, meshed(scene, plan, refinement, half), refinement)
 
 
 def featured_body(
@@ -66,6 +72,22 @@ def featured_body(
         "pair_tolerance": 0.0,
     }
     return body_of(scene, wanted, blocks, facts, drawing)
+
+
+def cut_size_of(scene: Any, plan: dict, refinement: float, half: bool) -> Size:
+    """Mesh a scene with cuts and count; parameters as for :func:`meshed`."""
+    return cut_size(meshed(scene, plan, refinement, half))
+
+
+def cut_size(cut_mesh: FeaturedMesh) -> Size:
+    """Count a mesh without its cuts."""
+    mesh = submesh(cut_mesh.mesh, ~cut_mesh.cut)
+    if cut_mesh.plane is None:
+        return size_of_mesh(mesh, basis_of("tet10"))
+    halves = size_of_mesh(mesh, basis_of("tet10"), parts=2)
+    # of a node on the mirror plane one half has one component and the other two
+    on_plane = int((np.abs(mesh.doflocs[cut_mesh.plane]) < 1e-9).sum())
+    return replace(halves, unknowns=halves.unknowns - 3 * on_plane)
 
 
 def _facets(solid: SolidMesh, scene: Any) -> Facets:

@@ -58,7 +58,7 @@ def hole_places(
     Examples
     --------
     >>> from solidgear import Segment
-    >>> from solidgear.core.scene import BoltCircle
+    >>> from solidgear.cuts.features import BoltCircle
     >>> disc = Segment.cylinder("disc", length=0.02, diameter=0.2)
     >>> four = BoltCircle(name="b", segment="disc", count=4, diameter=0.01, circle=0.1)
     >>> [len(hole_places(four, disc, [], 0.0, t)) for t in (0.1, 1.6)]

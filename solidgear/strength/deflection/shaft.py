@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from solidgear.bearings.balance import Mounted
+from solidgear.bearings.catalogue import catalogue_of
 from solidgear.bearings.catalogued import Catalogued
 from solidgear.bearings.life import Life, life
 from solidgear.bearings.row import Contacts
-from solidgear.bearings.solved import AS_STATED, Choice, catalogued_bearings, mounted
+from solidgear.bearings.solved import AS_STATED, Choice, catalogued_bearings
 from solidgear.core.body import Body
 from solidgear.core.errors import SolidgearError
 from solidgear.core.frames import shift
@@ -21,7 +21,7 @@ from solidgear.core.reduction.rubin import rubin
 from solidgear.core.scene import Bearing, Scene
 from solidgear.core.solve.naming import Projection
 from solidgear.core.system.system import System
-from solidgear.trains.system.equilibrium import OnBearings, Seats, SystemEquilibrium
+from solidgear.trains.system.equilibrium import OnBearings, SystemEquilibrium, seats_of
 
 #: stations of a deflection line
 STATIONS = 81
@@ -33,8 +33,6 @@ SHAFT = "shaft"
 FEW = 6
 #: why numbers have no error bar
 WITHOUT_BAR = "each model is solved on its usual mesh alone; solidgear stiffness shows error bars"
-#: N/m and N m/rad of a held seat at rest: a millionth of a shaft's flexibility, and rounding as small
-FIRM = 1e15
 
 
 @dataclass(frozen=True, eq=False)
@@ -216,34 +214,6 @@ class ShaftAtRest:
         )
 
 
-def seats_of(part: str, scene: Scene, made: Mapping[str, Catalogued]) -> Seats:
-    """Return the bearings that a shaft rests on in a system, free stations left out; those of
-    catalogue data by ``part.name``.
-    """
-    catalogued = [b.name for b in scene.bearings if b.catalogue is not None]
-    by_name = {name: made[f"{part}.{name}"] for name in catalogued}
-    firm = scene.with_changes(bearings=tuple(map(_firm, scene.bearings)))
-    holding = tuple(bearing for bearing in mounted(firm, by_name) if _holds(bearing))
-    places = {b.name: b.y for b in scene.bearings}
-    housing = scene.housing or scene.housing_axial
-    return Seats(part, holding, tuple(places[bearing.port] for bearing in holding), housing)
-
-
-def _firm(bearing: Bearing) -> Bearing:
-    """Return a held seat with springs that Newton's search resolves beside those of the shaft."""
-    if bearing.hold is None:
-        return bearing
-    return bearing.with_changes(
-        hold=None, scale=1.0, matrix=np.minimum(bearing.stiffness, FIRM).tolist()
-    )
-
-
-def _holds(seat: Mounted) -> bool:
-    """Return False for a free station, whose stiffness is zero."""
-    stiffness = getattr(seat.bearing, "stiffness", None)
-    return stiffness is None or bool(np.any(stiffness))
-
-
 def shaft_deflection(
     part: str,
     model: str,
@@ -310,7 +280,7 @@ def _bearing(
         relative=relative,
         stiffness=state.tangent[end],
     )
-    rows, data = made.get(end), bearing.catalogue
+    rows, data = made.get(end), catalogue_of(bearing)
     if rows is None or data is None:
         return plain
     return replace(

@@ -16,7 +16,7 @@ from math import degrees
 
 import numpy as np
 
-from solidgear.bearings.catalogue import Catalogue
+from solidgear.bearings.catalogue import Catalogue, catalogue_of
 from solidgear.bearings.catalogued import Catalogued
 from solidgear.bearings.geometry import Geometry, inner_geometry
 from solidgear.bearings.passing import passing, working_angle
@@ -89,10 +89,10 @@ def train_orders(
         out += stage_orders(stage, turns, train.per_turn(stage.meshes[0]))
     for side, member in train.shafts.items():
         for bearing in member.scene.bearings:
-            if bearing.catalogue is not None:
+            if (data := catalogue_of(bearing)) is not None:
                 work_angles = (angles or {}).get(f"{side}.{bearing.name}", ())
                 name = f"{side} bearing {bearing.name}"
-                out += bearing_orders(name, bearing.catalogue, turns[side], work_angles)
+                out += bearing_orders(name, data, turns[side], work_angles)
     return tuple(out)
 
 

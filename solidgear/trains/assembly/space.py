@@ -15,6 +15,7 @@ from math import ceil, cos, pi, sin
 
 import numpy as np
 
+from solidgear.bearings.catalogue import catalogue_of
 from solidgear.core.scene import Scene
 from solidgear.guards.bearings import width_of
 from solidgear.trains.assembly.layout import Place
@@ -147,7 +148,7 @@ def _pieces(train: Train, side: str, scene: Scene, tips: dict[str, float]) -> li
 def _bearings(scene: Scene) -> Iterator[Piece]:
     """Yield bearings with catalogue data up to their outer diameter."""
     for bearing in scene.bearings:
-        if (data := bearing.catalogue) is not None:
+        if (data := catalogue_of(bearing)) is not None:
             half = width_of(data) / 2
             sizes = data.outer_diameter / 2, data.bore / 2
             outer, inner = ((size, size) for size in sizes)

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from solidgear.bearings.catalogue import BearingLoad
 from solidgear.core.errors import SceneError, listed, nearest
 from solidgear.core.frames import DOF_NAMES
+from solidgear.core.scene.load import BearingLoad
 from solidgear.core.scene.typed import Model
 from solidgear.core.scene.units import TYPED, Speed, Torque
 

@@ -10,11 +10,11 @@ from typing import Any
 
 from solidgear.bearings.life_command import plain_life
 from solidgear.core.errors import SolidgearError
-from solidgear.core.loading import load_train
 from solidgear.show.command import say
 from solidgear.show.table import Column, Table
 from solidgear.show.words import engineering, percent
 from solidgear.trains.load.life import TrainBearingLife, train_lives
+from solidgear.trains.loading import load_train
 
 
 def show_train(

@@ -25,7 +25,6 @@ from solidgear.bearings.solved import AS_STATED, Choice, catalogued_bearings
 from solidgear.core.errors import SceneError, SolidgearError, listed
 from solidgear.core.system.port_forces import port_forces
 from solidgear.core.system.system import System
-from solidgear.strength.deflection.shaft import seats_of
 from solidgear.trains.assembly.housing import housing_port
 from solidgear.trains.assembly.layout import force_on, mesh_forces, rotor_torques
 from solidgear.trains.assembly.models import Workshop
@@ -33,7 +32,13 @@ from solidgear.trains.assembly.stages import mesh_row
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.train import Train
 from solidgear.trains.load.planet_loads import carrier_torques, centrifugal_load
-from solidgear.trains.system.equilibrium import OnBearings, Seats, SystemEquilibrium, weight
+from solidgear.trains.system.equilibrium import (
+    OnBearings,
+    Seats,
+    SystemEquilibrium,
+    seats_of,
+    weight,
+)
 
 #: model of all shafts on which bearings settle: loads hang little on how shoulders are modelled
 SHAFT = "timoshenko"

@@ -15,8 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solidgear.compare.two.beside import all_pairs
-from solidgear.core.judge.change import BarredMode, ModePair
+from solidgear.core.judge.change import BarredMode, ModePair, all_pairs
 from solidgear.core.solve.neighbours import best_assignment
 from solidgear.core.system.modes import SystemModes
 from solidgear.core.system.system import System

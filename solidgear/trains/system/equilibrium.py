@@ -17,7 +17,7 @@ on all of a body, such as weight, motions of ports are exact as well (Galerkin).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -31,10 +31,13 @@ from solidgear.bearings.balance import (
     common_feet,
     pushed_out,
 )
+from solidgear.bearings.catalogued import Catalogued
 from solidgear.bearings.newton import NothingHolds
+from solidgear.bearings.solved import mounted
 from solidgear.core.errors import SolidgearError
 from solidgear.core.frames import DOF_NAMES
 from solidgear.core.machine.threads import pinned
+from solidgear.core.scene import Bearing, Scene
 from solidgear.core.scene.housing import Housing
 from solidgear.core.system.links import relative_motion
 from solidgear.core.system.system import System
@@ -44,6 +47,8 @@ UNBALANCED = 1e-9
 #: of the largest load that a bearing carries, one that is rounding: what is left of digits after a
 #: balance of very stiff and very soft springs
 ROUNDING = 1e-10
+#: N/m and N m/rad of a held seat at rest: a millionth of a shaft's flexibility, and rounding as small
+FIRM = 1e15
 
 
 @dataclass(frozen=True)
@@ -273,3 +278,31 @@ def _fall(part, gravity: np.ndarray) -> np.ndarray:
     motion, *_ = np.linalg.lstsq(rows, np.concatenate(wanted), rcond=UNBALANCED)
     miss = np.abs(rows @ motion - np.concatenate(wanted)).max()
     return free @ motion if miss <= 1e-6 * np.linalg.norm(gravity) else np.zeros(count)
+
+
+def seats_of(part: str, scene: Scene, made: Mapping[str, Catalogued]) -> Seats:
+    """Return the bearings that a shaft rests on in a system, free stations left out; those of
+    catalogue data by ``part.name``.
+    """
+    catalogued = [b.name for b in scene.bearings if b.catalogue is not None]
+    by_name = {name: made[f"{part}.{name}"] for name in catalogued}
+    firm = scene.with_changes(bearings=tuple(map(_firm, scene.bearings)))
+    holding = tuple(bearing for bearing in mounted(firm, by_name) if _holds(bearing))
+    places = {b.name: b.y for b in scene.bearings}
+    housing = scene.housing or scene.housing_axial
+    return Seats(part, holding, tuple(places[bearing.port] for bearing in holding), housing)
+
+
+def _firm(bearing: Bearing) -> Bearing:
+    """Return a held seat with springs that Newton's search resolves beside those of the shaft."""
+    if bearing.hold is None:
+        return bearing
+    return bearing.with_changes(
+        hold=None, scale=1.0, matrix=np.minimum(bearing.stiffness, FIRM).tolist()
+    )
+
+
+def _holds(seat: Mounted) -> bool:
+    """Return False for a free station, whose stiffness is zero."""
+    stiffness = getattr(seat.bearing, "stiffness", None)
+    return stiffness is None or bool(np.any(stiffness))

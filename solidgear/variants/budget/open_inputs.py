@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from solidgear.bearings.catalogue import catalogue_of
 from solidgear.bearings.clearance import clearance_range
 from solidgear.bearings.solved import Choice, solved, wants_equilibrium
 from solidgear.core.body import Body
@@ -74,7 +75,7 @@ def open_inputs(scene: Scene) -> tuple[OpenInput, ...]:
     """
     found = []
     for bearing in scene.bearings:
-        data = bearing.catalogue
+        data = catalogue_of(bearing)
         if data is None:
             continue
         path = f"bearing.{bearing.name}"

@@ -30,7 +30,7 @@ class Design:
 class Optimum(Displayed):
     """Result of a search."""
 
-    shown: ClassVar[str] = "optimum"
+    shown: ClassVar[str] = "variants.optimise.tables:designs"
 
     scene: str
     goal: Wish

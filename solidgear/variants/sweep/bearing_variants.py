@@ -16,7 +16,8 @@ from solidgear.bearings.solved import solved
 from solidgear.core.body import Supports, as_supports
 from solidgear.core.errors import SceneError, SolidgearError
 from solidgear.core.loading import load, scene_of, shaft
-from solidgear.core.scene import Bearing, Feature, PointMass, Port, Scene, Segment
+from solidgear.core.scene import Bearing, PointMass, Port, Scene, Segment
+from solidgear.core.scene.feature import OnSegment
 from solidgear.core.scene.outline import Outline
 from solidgear.core.scene.paths import Keys, Tables, entries, entry
 from solidgear.core.scene.sprung import resprung
@@ -46,7 +47,7 @@ class SeatedShaft:
     segments: tuple[Segment, ...]
     stations: tuple[Port | Bearing | PointMass, ...]
     outline: Outline[Segment]
-    features: tuple[Feature, ...] = ()
+    features: tuple[OnSegment, ...] = ()
     body: BodyFile | None = None
 
     @property

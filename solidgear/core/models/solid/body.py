@@ -16,17 +16,15 @@ from solidgear.core.kernel.room import assemblable
 from solidgear.core.meshing.hexahedra import hexahedra
 from solidgear.core.meshing.quality import check_mesh
 from solidgear.core.meshing.tetrahedra import tetrahedra
-from solidgear.core.models.kinds import BODIES, CYCLIC, PARTS
+from solidgear.core.models.kinds import BODIES, CUTS, CYCLIC, PARTS
 from solidgear.core.models.options import thick_enough
 from solidgear.core.models.solid.block import body_of, free_block, mesh_facts, mirrored, seat_facets
 from solidgear.core.models.solid.mesh import _isoparametric
 from solidgear.core.models.solid.plan import hexahedra_layout, tetrahedra_of, tetrahedra_plan
+from solidgear.core.registry import addition
 from solidgear.core.scene.attached import attached_stations
 from solidgear.core.scene.closed_form import volume_of
 from solidgear.core.scene.shaft import feature_labels, resolved, without_axis
-from solidgear.cuts.solid.featured import featured_body, meshed
-from solidgear.parts.part_body import part_body
-from solidgear.parts.rectangular import block_body
 
 
 def solid(
@@ -75,6 +73,7 @@ def solid(
     wanted = [*attached_stations(scene.stations, attachments)]
     features = resolved(scene)
     if without_axis(scene) and scene.body.kind == "block":
+        block_body = addition("solid body", "block")
         return block_body(scene, wanted, element=element, size=size, refinement=refinement)
     if features:
         if element != "tet10":
@@ -85,14 +84,13 @@ def solid(
         sizes: dict[str, Any] = {"size": size, "graded_size": graded_size}
         sizes["refinement"] = refinement
         if all(f.sort in (PARTS, BODIES) for f in features):
+            part_body = addition("solid body", PARTS)
             return part_body(scene, wanted, around=around, coarser=coarser, **sizes)
         if all(f.sort == CYCLIC for f in features):
-            from solidgear.cuts.sector.body import whole  # slow to import, and seldom needed
-
-            return whole(scene, wanted, **sizes)
+            return addition("solid body", CYCLIC)(scene, wanted, **sizes)
 
         plan = tetrahedra_plan(scene, wanted, around=around, **sizes)
-        return featured_body(scene, wanted, meshed(scene, plan, refinement, half), refinement)
+        return addition("solid body", CUTS)(scene, wanted, plan, refinement, half)
     tet = element.startswith("tet")
     if tet:
         mesh, segment, quality = _tets(

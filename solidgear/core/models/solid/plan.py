@@ -7,8 +7,8 @@ from solidgear.core.meshing.grading import Grading
 from solidgear.core.meshing.layout import layout
 from solidgear.core.models.kinds import CUTS
 from solidgear.core.models.limits import countable
+from solidgear.core.registry import addition
 from solidgear.core.scene.shaft import resolved
-from solidgear.cuts.solid.cuts import fine_lines
 
 
 def hexahedra_layout(
@@ -51,6 +51,7 @@ def tetrahedra_of(scene, plan: dict, refinement: float, *, edges: bool = False) 
     """
     radii = {s.name: s.outer0 for s in scene.segments}
     cuts = [f for f in resolved(scene) if f.sort == CUTS]
+    fine_lines = addition("question of features", "fine lines")
     fine = [fine_lines(f, radii[f.segment], refinement, edges) for f in cuts]
     sizes = {name: plan[name] for name in ("circles", "size", "graded_size")}
     return rough_cells(scene.outline, fine=fine, **sizes)

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
-
-import numpy as np
 
 from solidgear.core.elements import SOLVED_AS
 from solidgear.core.kernel.room import assemblable
@@ -15,11 +12,9 @@ from solidgear.core.models.size import Size, coupled, size_of_mesh
 from solidgear.core.models.solid.body import _tets
 from solidgear.core.models.solid.mesh import basis_of
 from solidgear.core.models.solid.plan import hexahedra_layout, tetrahedra_plan
+from solidgear.core.registry import addition
 from solidgear.core.scene.attached import attached_stations
 from solidgear.core.scene.shaft import resolved
-from solidgear.cuts.solid.featured import meshed
-from solidgear.cuts.solid.meshing import FeaturedMesh, submesh
-from solidgear.parts.rectangular import block_mesh
 
 
 def solid_size(
@@ -48,16 +43,14 @@ def solid_size(
     if file is not None and file.counts is not None:
         return _of_file(file)
     if BODIES in sorts:
-        mesh = block_mesh(scene, wanted, element, size, refinement)
+        mesh = addition("solid mesh", "block")(scene, wanted, element, size, refinement)
         return size_of_mesh(mesh, basis_of(element))
     if sorts == {CYCLIC}:
-        from solidgear.cuts.sector.body import whole_mesh  # slow to import, and seldom needed
-
-        mesh, _, _ = whole_mesh(scene, wanted, **sizes)
+        mesh, _, _ = addition("solid mesh", CYCLIC)(scene, wanted, **sizes)
         return size_of_mesh(mesh, basis_of("tet10"))
     if CUTS in sorts:
         plan = tetrahedra_plan(scene, wanted, around=around, **sizes)
-        return cut_size(meshed(scene, plan, refinement, half))
+        return addition("solid size", CUTS)(scene, plan, refinement, half)
     if element.startswith("tet"):
         mesh, _, _ = _tets(scene, wanted, element, around=around, **sizes)
         return size_of_mesh(mesh, basis_of(element))
@@ -67,17 +60,6 @@ def solid_size(
     mesh, _, _ = straight_hexahedra(scene, plan, turns)
     rigid = any(a == "rigid" for _, a in wanted)
     return size_of_mesh(mesh, basis_of(element), mirrors=not rigid)
-
-
-def cut_size(meshed: FeaturedMesh) -> Size:
-    """Count a mesh without its cuts."""
-    mesh = submesh(meshed.mesh, ~meshed.cut)
-    if meshed.plane is None:
-        return size_of_mesh(mesh, basis_of("tet10"))
-    halves = size_of_mesh(mesh, basis_of("tet10"), parts=2)
-    # of a node on the mirror plane one half has one component and the other two
-    on_plane = int((np.abs(mesh.doflocs[meshed.plane]) < 1e-9).sum())
-    return replace(halves, unknowns=halves.unknowns - 3 * on_plane)
 
 
 def _of_file(file: Any) -> Size:

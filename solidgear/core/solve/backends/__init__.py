@@ -17,16 +17,19 @@ superlu  SciPy's SuperLU, LU          unpivoted            a law: it has no sepa
 from __future__ import annotations
 
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
 
+from solidgear.core.registry import added
 from solidgear.core.solve.backends.cholmod import Cholmod
 from solidgear.core.solve.backends.pardiso import Pardiso
 from solidgear.core.solve.backends.superlu import SuperLU
-from solidgear.petsc.mumps import Mumps
 
-BACKENDS = {back.name: back for back in (Pardiso, Cholmod, Mumps, SuperLU)}
+BACKENDS: dict[str, Any] = {
+    back.name: back for back in (Pardiso, Cholmod, *added("back end").values(), SuperLU)
+}
 #: those that factor in single precision, and those that keep a factor in files
 SINGLE, OUT_OF_CORE = ("pardiso", "superlu"), ("pardiso", "mumps")
 INSTALL = {

@@ -1,0 +1,238 @@
+"""The application: its commands, each a function of the room of its question."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager, nullcontext
+from importlib import import_module
+from typing import Annotated, Any
+
+import typer
+from typer.core import TyperCommand, TyperGroup
+
+from solidgear.app.options_alone import options_alone
+from solidgear.core.machine.memory import one_command
+from solidgear.show.command import Progress
+
+HELP = ("-h", "--help")
+#: texts of commands and options that help prints
+HELP_TEXTS = ("help", "epilog", "short_help")
+
+#: commands by what they are for, in the order of the work, each with the line of its help
+GROUPS = {
+    "Start": {
+        "new": ("Write a short, commented scene that runs, or a train, to change into one's own."),
+        "scenes": ("List the scenes that come with solidgear, or copy them into a folder."),
+        "check": (
+            "Say what will be modelled and what will not hold, of a scene or a train; a "
+            "light mesh is the heaviest solved."
+        ),
+        "options": (
+            "List what --set takes: every builder option, its default, its limits and "
+            "what it means."
+        ),
+    },
+    "One shaft": {
+        "answer": (
+            "Numbers within a tolerance, each with its bar, from the cheapest model that "
+            "can show it."
+        ),
+        "stiffness": (
+            "6x6 stiffness and compliance at a lumped point, bearings included; 12x12 between two."
+        ),
+        "modes": ("Natural frequencies on the bearings, with the evidence for them."),
+        "compare": (
+            "Solve a scene with every model and write a report on which to trust; a train "
+            "as well, or two of a kind beside each other."
+        ),
+        "chart": (
+            "Chart error against cost: every model and element, uniform and graded, with "
+            "the Pareto front."
+        ),
+        "render": (
+            "Draw one mode shape off-screen, or all of them in a page where they can be turned."
+        ),
+        "bearing": (
+            "Bearings of catalogue data: stiffness at load, load of every element, "
+            "pressure, life; of a train with an [operation] their lives over its points."
+        ),
+        "stress": (
+            "Stress of shafts at rest: section forces, nominal stress, fillets by the "
+            "solid, DIN 743."
+        ),
+    },
+    "Design": {
+        "sweep": (
+            "Thousands of bearing sets on one body, or variants of a shaft or train, as "
+            "rows of a file."
+        ),
+        "sensitivities": (
+            "What would move a number: its derivatives by every number of the file, from "
+            "one solution."
+        ),
+        "optimise": ("The best design within ranges, as far as error bars tell designs apart."),
+        "budget": (
+            "Which unknown is worth measuring: what every open input of a scene leaves "
+            "open of its numbers."
+        ),
+    },
+    "Measured": {
+        "correlate": (
+            "Measured resonances beside computed modes: which is which, how sure, and how "
+            "far apart."
+        ),
+        "identify": ("Entries of a scene from measured resonances, and how sure they are."),
+    },
+    "Trains": {
+        "system-modes": (
+            "Natural frequencies of a geared rotor system, each with its name and its proven bound."
+        ),
+        "response": (
+            "Steady response to the transmission error: mesh force, reactions, motions, "
+            "and a chart."
+        ),
+        "receptance": (
+            "Receptance between any two ports of a train: table, chart, and peaks with their modes."
+        ),
+        "nonlinear": (
+            "Teeth with backlash: where they part, jumps over speed, and how far off the "
+            "linear answer is."
+        ),
+        "deflect": (
+            "Deflection of shafts under torque: displacements, misalignment of the gears, "
+            "bearing loads."
+        ),
+        "judge-system": (
+            "Comparison of a train with further mixes and reductions, and no folder "
+            "unless asked for."
+        ),
+    },
+}
+COMMANDS = {name: line for group in GROUPS.values() for name, line in group.items()}
+#: modules of commands, each in the room of its question
+MODULES = {
+    "new": "app.files",
+    "scenes": "app.files",
+    "check": "app.check",
+    "options": "app.files",
+    "answer": "app.answer",
+    "stiffness": "app.stiffness",
+    "modes": "app.modes",
+    "compare": "app.compare",
+    "chart": "compare.race.command",
+    "render": "app.render",
+    "bearing": "app.bearing",
+    "stress": "strength.stress.command",
+    "sweep": "variants.sweep.command",
+    "sensitivities": "variants.sensitivity.command",
+    "optimise": "variants.optimise.command",
+    "budget": "variants.budget.command",
+    "correlate": "measured.command",
+    "identify": "measured.command",
+    "system-modes": "trains.command",
+    "response": "trains.command",
+    "receptance": "trains.response.receptance_command",
+    "nonlinear": "backlash.command",
+    "deflect": "strength.deflection.command",
+    "judge-system": "trains.judge.command",
+}
+
+
+@contextmanager
+def _brackets(*parts: Any) -> Iterator[None]:
+    """While this lasts, the help of commands and options has its square brackets as typer prints them:
+    it takes them for markup, and leaves out what they hold.
+    """
+    from rich.markup import escape  # start-up: for help alone
+
+    plain = [(part, name, getattr(part, name, None)) for part in parts for name in HELP_TEXTS]
+    for part, name, text in plain:
+        if isinstance(text, str):
+            setattr(part, name, escape(text))
+    try:
+        yield
+    finally:
+        for part, name, text in plain:
+            if isinstance(text, str):
+                setattr(part, name, text)
+
+
+class Told(TyperCommand):
+    """A command whose help is printed as it is written."""
+
+    def format_help(self, ctx, formatter):
+        with _brackets(self, *self.params):
+            super().format_help(ctx, formatter)
+
+
+class Door(TyperGroup):
+    """The commands: a module is imported when one of its commands runs or is asked for its help."""
+
+    def format_help(self, ctx, formatter):
+        with _brackets(self, *self.params, *self.commands.values()):
+            super().format_help(ctx, formatter)
+
+    def resolve_command(self, ctx, args):
+        """The command itself, in place of the one that has only name and help."""
+        name, known, rest = super().resolve_command(ctx, args)
+        if not name:
+            return name, known, rest
+        with options_alone() if rest and rest[-1] in HELP else nullcontext():
+            return name, _imported(name), rest
+
+    def invoke(self, ctx):
+        """Run a command; typer would swallow Ctrl-C without a word."""
+        try:
+            with one_command():
+                return super().invoke(ctx)
+        except KeyboardInterrupt:
+            print("solidgear: interrupted", file=sys.stderr)
+            raise typer.Exit(130) from None
+
+
+def _imported(name: str) -> Any:
+    """A command with its options."""
+    module = import_module(f"solidgear.{MODULES[name]}")
+    alone = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
+    alone.command(name, cls=Told, help=COMMANDS[name])(getattr(module, name.replace("-", "_")))
+    return typer.main.get_command(alone)
+
+
+app = typer.Typer(
+    cls=Door,
+    no_args_is_help=True,
+    help="Shafts on their bearings, and trains of shafts that mesh, as lumped model, beam, "
+    "axisymmetric-harmonic solid and full 3D solid, side by side.",
+    epilog="Exit codes: 0 done; 1 refused or failed, in a sentence on standard error; 2 wrong usage; "
+    "3 the tolerance is not reached, or a part of what was asked has no answer: what is there has its "
+    "bars; 130 interrupted. "
+    "First steps: solidgear new my_shaft, then solidgear check my_shaft.toml.",
+    context_settings={"help_option_names": [*HELP]},
+    pretty_exceptions_enable=False,
+)
+for _group, _commands in GROUPS.items():
+    for _name, _words in _commands.items():
+        app.command(_name, help=_words, rich_help_panel=_group)(lambda: None)
+
+
+def _version(asked: bool) -> None:
+    if asked:
+        from importlib.metadata import version  # start-up: for this option alone
+
+        typer.echo(f"solidgear {version('solidgear')}")
+        raise typer.Exit
+
+
+@app.callback()
+def everywhere(
+    version: Annotated[
+        bool,
+        typer.Option("--version", callback=_version, is_eager=True, help="Print the version."),
+    ] = False,
+    quiet: Annotated[
+        bool, typer.Option("--quiet", "-q", help="No progress; give it before the command.")
+    ] = False,
+) -> None:
+    """Options of every command."""
+    Progress.silent = quiet

@@ -1,0 +1,45 @@
+"""Load of a shaft on a bearing or on the lumped point."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from solidgear.core.errors import SceneError, show
+from solidgear.core.scene.typed import Model
+from solidgear.core.scene.units import Newtons, Torque
+
+#: names that people give a moment about the axis
+ABOUT_AXIS = ("thy", "my", "ty", "torque", "torsion", "moment")
+
+
+class BearingLoad(Model):
+    """Load of the shaft on a bearing, or on the port: forces in N, moments in N m."""
+
+    x: Newtons = 0.0
+    y: Newtons = 0.0
+    z: Newtons = 0.0
+    #: thx, thz: moments; where none is given a bearing's ring is held against tilting
+    thx: Torque | None = None
+    thz: Torque | None = None
+
+    def __init__(self, /, **data: Any):
+        about = [key for key in data if key.lower() in ABOUT_AXIS]
+        if about:
+            raise SceneError(
+                "no bearing carries a moment about the axis of the shaft, which turns freely: write "
+                "forces x, y, z and tilting moments thx, thz alone; a torque is that of an "
+                '[operation] of a train, or of solidgear stress --drive "A=115 N*m"',
+                path=(about[0],),
+                value=show(data[about[0]]),
+            )
+        super().__init__(**data)
+
+    @property
+    def six(self) -> list[float]:
+        """(6,) load in the order (x, y, z, thx, thy, thz), N and N m."""
+        return [self.x, self.y, self.z, self.thx or 0.0, 0.0, self.thz or 0.0]
+
+    @property
+    def held_tilts(self) -> tuple[int, ...]:
+        """Tilts without a given moment, by their place among the six."""
+        return tuple(k for k, moment in ((3, self.thx), (5, self.thz)) if moment is None)

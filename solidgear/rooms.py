@@ -1,0 +1,67 @@
+"""What each room of a feature adds to the core.
+
+A further kind of cut, mesh, back end or file is a line here; :mod:`solidgear.core.registry` imports
+it when it is first needed.
+"""
+
+from __future__ import annotations
+
+from solidgear.core.registry import register
+
+#: kind of addition: its names, each with module and attribute below :mod:`solidgear`
+ADDITIONS = {
+    # tables of a scene file
+    "feature": {
+        "keyway": "cuts.features.keyway:Keyway",
+        "flat": "cuts.features.flat:Flat",
+        "cross_hole": "cuts.features.cross_hole:CrossHole",
+        "teeth": "cuts.features.toothed:Teeth",
+        "spline": "cuts.features.toothed:Spline",
+        "bolt_circle": "cuts.features.bolt_circle:BoltCircle",
+    },
+    "table": {
+        "catalogue": "bearings.catalogue:Catalogue",
+        "arrangement": "bearings.arrangement:Pairs",
+        "body": "parts.recognised:Parts",
+    },
+    "file": {
+        "long train": "trains.file.reading:LongFile",
+        "short train": "trains.file.reading:ShortFile",
+    },
+    # rules and questions of features
+    "rule of features": {"meeting": "cuts.features.around:meeting_problems"},
+    "question of features": {
+        "mirror plane": "cuts.solid.cuts:mirror_plane",
+        "fine lines": "cuts.solid.cuts:fine_lines",
+        "no sector": "cuts.sector.body:no_sector",
+        "not together": "cuts.sector.body:not_together",
+    },
+    # models and bodies
+    "model": {
+        "corrected": "cuts.corrected.model:Corrected",
+        "sector": "cuts.sector.model:Sector",
+    },
+    "solid body": {
+        "block": "parts.rectangular:block_body",
+        "part": "parts.part_body:part_body",
+        "cut": "cuts.solid.featured:cut_body",
+        "cyclic": "cuts.sector.body:whole",
+    },
+    "solid mesh": {
+        "block": "parts.rectangular:block_mesh",
+        "cyclic": "cuts.sector.body:whole_mesh",
+    },
+    "solid size": {"cut": "cuts.solid.featured:cut_size_of"},
+    # reading a file
+    "settling": {
+        "solved": "bearings.solved:solved",
+        "wants equilibrium": "bearings.solved:wants_equilibrium",
+    },
+    # solvers
+    "back end": {"mumps": "petsc.mumps:Mumps"},
+    "engine": {"ranks": "petsc.solver:plan_on_ranks"},
+}
+
+for kind, names in ADDITIONS.items():
+    for name, place in names.items():
+        register(kind, name, f"solidgear.{place}")
