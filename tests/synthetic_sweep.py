@@ -6,8 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from solidgear.variants.sweep.bearing_sweep import sweep
+from solidgear.variants.sweep.bearing_task import bearing_task
 from solidgear.variants.sweep.bearing_variants import bearing_variants
+from solidgear.variants.sweep.file_task import run
 from solidgear.variants.sweep.rows import RowFile
 from tests.command import command
 
@@ -29,9 +30,9 @@ def row(number):
 
 
 def write(out, upto=TOTAL, batch=30, plan=PLAN, **rest):
-    """Run a synthetic sweep; what was told, and the numbers it solved."""
-    told, solved = [], []
-    with RowFile(out, COLUMNS, plan, TOTAL, tell=told.append, **rest) as file:
+    """Run a synthetic sweep; the numbers it solved."""
+    solved = []
+    with RowFile(out, COLUMNS, plan, TOTAL, **rest) as file:
         todo = [i for i in range(TOTAL) if i not in file.done]
         for k in range(0, len(todo), batch):
             if todo[k] >= upto:
@@ -39,7 +40,7 @@ def write(out, upto=TOTAL, batch=30, plan=PLAN, **rest):
             file.append(map(row, todo[k : k + batch]))
             solved += todo[k : k + batch]
         file.finish()
-    return told, solved
+    return solved
 
 
 def stop(out, upto):
@@ -69,9 +70,9 @@ def right(tmp_path_factory):
 
 
 def light(out, **rest):
-    options = {"elements": 40}
     variants = bearing_variants(SCENE, [VARY])
-    return sweep(variants, out, fidelity="timoshenko", options=options, n=4, **rest)
+    task = bearing_task(variants, model="timoshenko", options={"elements": 40}, n=4)
+    return run(task, out, **rest)
 
 
 def call(out, *more):

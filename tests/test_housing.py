@@ -15,8 +15,9 @@ from solidgear.bearings.solved import solved
 from solidgear.core.body import as_supports
 from solidgear.core.scene import Bearing, Elastic, Housing
 from solidgear.core.springs import in_series
-from solidgear.variants.sweep.bearing_sweep import sweep
+from solidgear.variants.sweep.bearing_task import bearing_task
 from solidgear.variants.sweep.bearing_variants import bearing_variants
+from solidgear.variants.sweep.file_task import run
 from tests.command import table
 from tests.dense import relative, rigid_at, whole
 
@@ -248,7 +249,7 @@ def test_catalogue_bearings_settle_in_their_housing():
 def test_a_sweep_over_the_housing(shaft, tmp_path):
     out = tmp_path / "rows.csv"
     texts = ["housing.kzz=4e8,1e9", "bearing.B.kzz=3e8,5e8"]
-    sweep(bearing_variants(PATH, texts), out, fidelity="timoshenko", n=2)
+    run(bearing_task(bearing_variants(PATH, texts), model="timoshenko", n=2), out)
     rows = table(out)
     body = sg.build(shaft, "timoshenko")
     assert len(rows) == 4
@@ -275,7 +276,7 @@ def test_a_sweep_over_what_one_bearing_stands_in(shaft, tmp_path):
         "housing.scale=1,4",
     ]
     variants = bearing_variants(PATH, texts)
-    sweep(variants, out, fidelity="harmonic", options=COARSE["harmonic"], n=2)
+    run(bearing_task(variants, options=COARSE["harmonic"], n=2), out)
     rows = table(out)
     assert len(rows) == 16 and {row["how"] for row in rows} == {"reduced"}  # nothing factored anew
     body = sg.build(shaft, "harmonic", **COARSE["harmonic"])
@@ -303,7 +304,7 @@ def test_a_sweep_over_what_one_bearing_stands_in(shaft, tmp_path):
 def test_a_motion_that_was_rigid_gives_as_the_file_would_say(shaft, tmp_path):
     """An entry that the file leaves out: the row is the scene of a file that has it."""
     variants = bearing_variants(PATH, ["housing.kthz=1e6,2e6"])
-    sweep(variants, tmp_path / "b.csv", fidelity="timoshenko", n=2)
+    run(bearing_task(variants, model="timoshenko", n=2), tmp_path / "b.csv")
     row = table(tmp_path / "b.csv")[0]
     entries = shaft.housing.entries | {"kthz": 1e6}
     there = shaft.with_changes(housing=Housing(stiffness=entries, y=shaft.housing.y))
@@ -337,4 +338,4 @@ def test_what_a_housing_cannot_vary_is_refused_at_once(text, word):
 )
 def test_a_housing_that_a_file_would_be_refused_for_is_refused_as_a_variant(text, word):
     with pytest.raises(sg.SceneError, match=word):
-        bearing_variants(PATH, [text]).of(0)
+        bearing_variants(PATH, [text]).variant(0)

@@ -15,8 +15,9 @@ import solidgear as sg
 from solidgear.core.body import as_supports
 from solidgear.core.body.cache import Cache
 from solidgear.core.reduction.effective_mass import synthesise
-from solidgear.variants.sweep.bearing_sweep import sweep
+from solidgear.variants.sweep.bearing_task import bearing_task
 from solidgear.variants.sweep.bearing_variants import bearing_variants
+from solidgear.variants.sweep.file_task import run
 from tests.command import table
 from tests.dense import every, whole
 
@@ -230,7 +231,7 @@ def test_the_sweep_carries_masses(scene, tmp_path):
     options = LIGHT["harmonic"]
     vary = ["bearing.roller.scale=log:0.1:10:3"]
     variants = bearing_variants(DISC, vary)
-    sweep(variants, out, fidelity="harmonic", options=options, n=8)
+    run(bearing_task(variants, options=options, n=8), out)
     rows = table(out)
     body = sg.build(scene, "harmonic", **options)
     for row in rows:
@@ -258,7 +259,7 @@ def test_a_free_disc_leaves_rigid_motions_exact(tmp_path):
     assert found.names[0] == "rigid torsion" and found.frequency_hz[0] == 0.0
     out = tmp_path / "rows.csv"
     variants = bearing_variants(path, ["bearing.spindle.scale=1:2:2"])
-    sweep(variants, out, fidelity="timoshenko", n=10)
+    run(bearing_task(variants, model="timoshenko", n=10), out)
     row, *_ = table(out)
     wanted = every(found)[:11][1:]
     assert [float(row[f"f{k}_hz"]) for k in range(1, 11)] == pytest.approx(wanted, rel=1e-6)

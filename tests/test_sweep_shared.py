@@ -1,9 +1,11 @@
-"""The file of a sweep shared by two, left by a killed one, without room, or no file at all."""
+"""The file of a sweep shared by two, left by a killed one, without room, or no file of a sweep."""
 
 import errno
 import os
+import sqlite3
 import subprocess
 import sys
+from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -71,7 +73,7 @@ def test_a_killed_sweep_leaves_the_lock_and_its_rows(tmp_path):
         first.communicate()
     (tmp_path / f".rows.csv.{first.pid}.part").write_text("left over from a killed export")
     summary = light(out)
-    assert summary.skipped == done and summary.repairs == ()
+    assert summary.skipped == done
     assert out.read_bytes() == (tmp_path / "right.csv").read_bytes()
     names = ["rows.csv", "rows.csv.sqlite"]
     assert sorted(n for n in os.listdir(tmp_path) if "rows" in n) == names
@@ -105,11 +107,12 @@ def test_killed_while_it_writes_it_goes_on(moments, tmp_path, right):
         process.stdin.flush()
         process.kill()
         process.communicate()
-        with RowFile(out, COLUMNS, PLAN, TOTAL, tell=pytest.fail) as file:
+        with RowFile(out, COLUMNS, PLAN, TOTAL) as file:
             assert seen == list(range(before, before + rows))
             assert file.done in (set(range(before + rows)), set(range(before + rows + 1)))
             before = len(file.done)
-    assert write(out)[0] == [] and out.read_bytes() == right
+    write(out)
+    assert out.read_bytes() == right
 
 
 # --------------------------------------------------------------------------------- what cannot be
@@ -117,14 +120,13 @@ def test_a_full_disk_keeps_the_rows_before(tmp_path, right):
     out = tmp_path / "rows.csv"
     with pytest.raises(SolidgearError) as full, RowFile(out, COLUMNS, PLAN, TOTAL) as file:
         file.append(map(row, range(30)))
-        file._store._db.execute("PRAGMA max_page_count = 1")  # as many as there are
+        file._db.execute("PRAGMA max_page_count = 1")  # as many as there are
         file.append(map(row, range(30, TOTAL)))
     assert str(full.value) == (
         f"--out {out}: cannot be written (database or disk is full); 30 of 120 rows are kept, "
         "and the same command goes on from there"
     )
-    told, solved = write(out)
-    assert told == [] and solved == list(range(30, TOTAL)) and out.read_bytes() == right
+    assert write(out) == list(range(30, TOTAL)) and out.read_bytes() == right
 
 
 def test_no_room_for_the_file_keeps_the_rows(tmp_path, right, monkeypatch):
@@ -142,12 +144,13 @@ def test_no_room_for_the_file_keeps_the_rows(tmp_path, right, monkeypatch):
     assert out.read_bytes() == before  # whole, if old
     assert sorted(os.listdir(tmp_path)) == ["rows.csv", "rows.csv.sqlite"]
     monkeypatch.undo()
-    # killed between noting what the file will be and putting it there: either is right
+    # the file cannot take the place of the one before
     monkeypatch.setattr("solidgear.core.machine.whole_file.os.replace", _raise)
     with pytest.raises(SolidgearError, match="cannot be written"):
         write(out)
+    assert out.read_bytes() == before
     monkeypatch.undo()
-    assert write(out) == ([], []) and out.read_bytes() == right
+    assert write(out) == [] and out.read_bytes() == right
 
 
 def _raise(*_):
@@ -175,10 +178,53 @@ def test_a_folder_that_cannot_be_written_is_told():
     assert refused.exit_code == 1 and "cannot be written" in str(refused.exception)
 
 
-def test_a_store_taken_away_under_a_running_sweep_is_told(tmp_path):
+@pytest.mark.parametrize(
+    ("spoil", "says"),
+    [
+        ("CREATE TABLE mine (a)", "is no database of rows that this.*--overwrite"),
+        ("PRAGMA user_version = 1; CREATE TABLE rows (a)", "is no database of rows that this"),
+        (None, "is damaged beyond repair .file is not a database.; put back a copy.*--overwrite"),
+    ],
+    ids=["foreign", "older", "no database"],
+)
+def test_what_is_no_file_of_rows_is_not_touched_unless_overwritten(spoil, says, tmp_path, right):
+    out, database = tmp_path / "rows.csv", tmp_path / "rows.csv.sqlite"
+    if spoil is None:
+        database.write_bytes(b"garbage, and more of it than the head of a database" * 40)
+    else:
+        with closing(sqlite3.connect(database)) as db, db:
+            db.executescript(spoil)
+    before = database.read_bytes()
+    with pytest.raises(SolidgearError, match=says) as refused:
+        write(out)
+    assert one_sentence(refused.value)
+    assert database.read_bytes() == before and not out.exists()
+    assert write(out, overwrite=True) == list(range(TOTAL)) and out.read_bytes() == right
+
+
+def test_a_table_that_is_gone_is_written_again(tmp_path, right):
     out = tmp_path / "rows.csv"
-    told = pytest.raises(SolidgearError, match="was taken away or replaced")
-    with told, RowFile(out, COLUMNS, PLAN, TOTAL) as file:
-        file.append(map(row, range(10)))
-        (tmp_path / "rows.csv.sqlite").unlink()
-        file.append(map(row, range(10, 20)))
+    write(out)
+    out.unlink()
+    assert write(out) == [] and out.read_bytes() == right
+
+
+def test_a_parquet_file_is_made_when_all_rows_are_there(tmp_path):
+    parquet = pytest.importorskip("pyarrow.parquet")
+    out = tmp_path / "rows.parquet"
+    stop(out, 60)
+    assert not out.exists()
+    write(out)
+    assert parquet.read_table(out).to_pylist() == [row(i) for i in range(TOTAL)]
+
+
+def test_a_plan_with_a_number_that_is_none_is_the_same_plan(tmp_path):
+    plan = {**PLAN, "set": {"order": float("nan")}}
+    write(tmp_path / "rows.csv", plan=plan)
+    assert write(tmp_path / "rows.csv", plan=plan) == []
+
+
+def test_a_sweep_without_rows_leaves_no_file(tmp_path):
+    with RowFile(tmp_path / "rows.csv", COLUMNS, PLAN, TOTAL):
+        pass
+    assert not os.listdir(tmp_path)

@@ -8,9 +8,10 @@ import pytest
 
 import solidgear as sg
 from solidgear.core.errors import SceneError, SolidgearError
-from solidgear.variants.sweep.bearing_sweep import sweep
+from solidgear.variants.sweep.bearing_task import bearing_task
 from solidgear.variants.sweep.bearing_variants import bearing_variants
 from solidgear.variants.sweep.design import Design
+from solidgear.variants.sweep.file_task import run
 from solidgear.variants.sweep.scene_task import scene_task
 from tests.counted import from_the_start
 
@@ -19,10 +20,10 @@ SCENE = sg.load(PATH)
 GEAR = "geometry/gear_shaft.toml"
 
 
-def told(text, path=PATH):
+def values_of(text, path=PATH):
     """Values of the one column of a sweep."""
     variants = bearing_variants(path, [text])
-    return [value for k in range(len(variants)) for value in variants.told(k).values()]
+    return [value for k in range(len(variants)) for value in variants.varied(k).values()]
 
 
 @pytest.mark.parametrize(
@@ -39,7 +40,7 @@ def told(text, path=PATH):
     ],
 )
 def test_values(spec, values):
-    assert told(spec) == pytest.approx(values, rel=1e-14)
+    assert values_of(spec) == pytest.approx(values, rel=1e-14)
 
 
 def test_a_bearing_goes_by_name_first_and_by_number_else():
@@ -92,7 +93,7 @@ def test_the_same_quantity_twice_and_none_are_refused():
 
 def test_the_product_runs_its_last_entry_fastest():
     variants = bearing_variants(PATH, ["bearing.1.scale=1,2", "bearing.2.scale=3:5:3"])
-    rows = [list(variants.told(k).values()) for k in range(len(variants))]
+    rows = [list(variants.varied(k).values()) for k in range(len(variants))]
     assert rows == [[1, 3], [1, 4], [1, 5], [2, 3], [2, 4], [2, 5]]
 
 
@@ -127,7 +128,7 @@ def test_a_variant_is_the_scene_a_file_would_give():
             "bearing.1.kx_thz=1e8",
         ],
     )
-    got = variants.of(0)
+    got = variants.variant(0)
     second = (
         SCENE.bearings[1]
         .with_changes(y=0.23, matrix={**_entries(SCENE.bearings[1]), "kxx": 9e9})
@@ -157,7 +158,7 @@ def _entries(bearing):
 )
 def test_what_a_scene_file_would_refuse_is_refused_as_a_variant(text, word):
     with pytest.raises(SceneError, match=word):
-        bearing_variants(PATH, [text]).of(0)
+        bearing_variants(PATH, [text]).variant(0)
 
 
 def test_one_shaft_carries_all_seats_once_each_however_they_overlap():
@@ -205,16 +206,18 @@ def test_catalogue_bearings_that_move_carry_what_the_load_brings_them_there(tmp_
     swept = bearing_variants(GEARBOX, ["bearing.A.position=15 mm,20 mm"])
     for name in ("A", "B"):
         want = stiffness_at(there, name)
-        assert stiffness_at(swept.of(1), name) == pytest.approx(want, rel=1e-6)
+        assert stiffness_at(swept.variant(1), name) == pytest.approx(want, rel=1e-6)
         # the load is not what it was, by far more than the equilibrium leaves open
         here = stiffness_at(CATALOGUE, name)
         assert abs(want[0, 0] / here[0, 0] - 1) > 3e-3
-        assert stiffness_at(swept.of(0), name) == pytest.approx(here, rel=1e-6)
+        assert stiffness_at(swept.variant(0), name) == pytest.approx(here, rel=1e-6)
 
 
 def test_what_multiplies_a_catalogue_bearing_leaves_its_load_as_it_is():
     swept = bearing_variants(GEARBOX, ["bearing.A.position=15 mm,20 mm", "bearing.A.scale=1,2"])
-    (once, other), (twice, same) = ([b.stiffness for b in swept.of(k).bearings] for k in (2, 3))
+    (once, other), (twice, same) = (
+        [b.stiffness for b in swept.variant(k).bearings] for k in (2, 3)
+    )
     assert twice == pytest.approx(2 * once, rel=1e-12)
     assert same == pytest.approx(other, rel=1e-12)
 
@@ -222,7 +225,8 @@ def test_what_multiplies_a_catalogue_bearing_leaves_its_load_as_it_is():
 def test_a_sweep_says_at_which_load_catalogue_bearings_are_taken(tmp_path):
     def settling(path, *texts):
         variants = bearing_variants(path, texts)
-        return sweep(variants, tmp_path / "r.csv", fidelity="timoshenko", overwrite=True).settling
+        task = bearing_task(variants, model="timoshenko")
+        return run(task, tmp_path / "r.csv", overwrite=True).settling
 
     assert settling(GEARBOX, "bearing.A.position=15 mm,20 mm") == (
         "Catalogue bearings A, B: stiffness under [load], found anew for every variant."

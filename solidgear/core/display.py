@@ -7,12 +7,7 @@ imported by name when first needed, so that nothing below imports the report.
 from __future__ import annotations
 
 import importlib
-import math
-from collections.abc import Mapping
-from dataclasses import fields, is_dataclass
 from typing import Any, ClassVar, Protocol
-
-import numpy as np
 
 TABLES = "solidgear.show.shown"
 
@@ -69,25 +64,3 @@ def _shown(name: str) -> Any:
     module, _, function = name.rpartition(":")
     room = importlib.import_module(f"solidgear.{module}" if module else TABLES)
     return getattr(room, function, None)
-
-
-def plain(value: Any) -> Any:
-    """Return a result as data that JSON can hold: dataclasses by the fields that `repr` shows, arrays
-    as lists, infinite numbers as None.
-
-    Examples
-    --------
-    >>> plain({"load": np.array([1.0, 2.0]), "life": math.inf})
-    {'load': [1.0, 2.0], 'life': None}
-    """
-    if is_dataclass(value):
-        return {f.name: plain(getattr(value, f.name)) for f in fields(value) if f.repr}
-    if hasattr(value, "_asdict"):  # a named tuple
-        return plain(value._asdict())
-    if isinstance(value, Mapping):
-        return {key: plain(entry) for key, entry in value.items()}
-    if isinstance(value, np.ndarray):
-        return plain(value.tolist())
-    if isinstance(value, (list, tuple)):
-        return [plain(entry) for entry in value]
-    return None if isinstance(value, float) and not math.isfinite(value) else value

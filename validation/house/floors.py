@@ -8,6 +8,7 @@ GROUND = {
     "core.quantity",
     "core.springs",
     "core.display",
+    "core.plain",
     "core.machine",
     "core.registry",
 }
@@ -17,6 +18,7 @@ CORE = {
     "core.elements": set(),
     "core.factoring": set(),
     "core.display": set(),
+    "core.plain": set(),
     "core.registry": set(),
     "core.frames": {"core.errors"},
     "core.springs": {"core.errors"},

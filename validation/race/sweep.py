@@ -20,8 +20,9 @@ from pathlib import Path
 import numpy as np
 
 import solidgear as sg
-from solidgear.variants.sweep.bearing_sweep import sweep
+from solidgear.variants.sweep.bearing_task import bearing_task
 from solidgear.variants.sweep.bearing_variants import bearing_variants
+from solidgear.variants.sweep.file_task import run
 from validation.common import ROOT
 from validation.race.heat import Check, Clock, Heat, Sample
 from validation.race.process import spent
@@ -72,7 +73,7 @@ def model(heat: Heat, name: str) -> None:
             clock = Clock()
             found = clock.stage(
                 "sweep",
-                lambda: sweep(variants, path, fidelity=fidelity, options=options, n=MODES),
+                lambda: run(bearing_task(variants, model=fidelity, options=options, n=MODES), path),
             )
             sample = clock.sample()
             with path.open(newline="") as f:

@@ -1,4 +1,4 @@
-"""Chart of what every open input leaves open of every number: bars from its lowest to its highest."""
+"""Chart of the range of every number by every open input, from the lowest to the highest."""
 
 from __future__ import annotations
 
@@ -18,30 +18,24 @@ BAR, BETWEEN, NAMES, PLACE = 9.0, 10.0, 80.0, 230.0
 
 
 def budget_chart(
-    found: OpenNumbers, width: float = WIDE, asked: Iterable[str] = ()
+    ranges: OpenNumbers,
+    width: float = WIDE,  # px
+    asked: Iterable[str] = (),  # numbers; by default those that are judged
 ) -> Chart | None:
-    """Bars by every input and by all, a group for each number; None where nothing is open.
-
-    Parameters
-    ----------
-    width : float
-        px.
-    asked : iterable of str
-        Numbers; by default those that are judged.
-    """
-    shown = [one for name in (tuple(asked) or SHOWN) if (one := found.of(name)) is not None]
-    if not shown:
+    """Draw bars by every input and by all, a group for each number; None where nothing is open."""
+    numbers = [n for name in (tuple(asked) or SHOWN) if (n := ranges.of(name)) is not None]
+    if not numbers:
         return None
-    paths = [one.path for one in found.inputs]
+    paths = [open_input.path for open_input in ranges.inputs]
     series = {path: Series(COLOURS[k % len(COLOURS)]) for k, path in enumerate(paths)}
     series[ALL] = Series(GREY)
     thick = 0.84 / len(series)
     pieces: list[dict[str, Any]] = []
-    for k, one in enumerate(shown):
-        parts = {**{path: one.by_input[path] for path in paths}, ALL: one.total}
+    for k, number in enumerate(numbers):
+        parts = {**{path: number.by_input[path] for path in paths}, ALL: number.total}
         for i, (name, part) in enumerate(parts.items()):
             y = k + (i - (len(parts) - 1) / 2) * thick
-            words = readout(one.quantity, (name, interval(part), ""))
+            words = readout(number.quantity, (name, interval(part), ""))
             ends = {"x": part.low, "x2": part.high, "y": y - 0.45 * thick, "y2": y + 0.45 * thick}
             pieces.append({**ends, "name": name, "readout": words})
     low, high = min(p["x"] for p in pieces), max(p["x2"] for p in pieces)
@@ -50,11 +44,11 @@ def budget_chart(
         Axis("change of the number", (low - room, high + room), label=PERCENT),
         Axis(
             "",
-            (len(shown) - 0.5, -0.5),
-            ticks={float(k): one.quantity for k, one in enumerate(shown)},
+            (len(numbers) - 0.5, -0.5),
+            ticks={float(k): number.quantity for k, number in enumerate(numbers)},
             grid=False,
         ),
-        (BAR * len(series) + BETWEEN) * len(shown),
+        (BAR * len(series) + BETWEEN) * len(numbers),
         series=series,
         legend={"orient": "top", "columns": max(1, int(width / PLACE)), "symbolType": "square"},
         left=NAMES if width > NARROW else 0.8 * NAMES,
@@ -65,5 +59,5 @@ def budget_chart(
 
 
 def of_record(record: Record, width: float) -> Chart | None:
-    """The same of a record; None also where ranges have no parts."""
+    """Draw the chart of a record; None also where ranges have no parts."""
     return budget_chart(record.open, width)

@@ -1,4 +1,4 @@
-"""The command that tells which open input leaves how much of a number open."""
+"""Command ``budget``: the range of every number by every open input."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from solidgear.core.errors import SolidgearError, listed
 from solidgear.core.judge.answer import asked_for
 from solidgear.show.arguments import load
 from solidgear.show.command import command, say
-from solidgear.show.open_words import budget as table
+from solidgear.show.open_words import budget as budget_table
 from solidgear.show.options import Run, SceneFile
 from solidgear.show.plot import check_ending
-from solidgear.variants.budget.budget import budget as worked_out
+from solidgear.variants.budget.budget import budget as solve_budget
 from solidgear.variants.budget.chart import budget_chart
 
 
@@ -43,17 +43,17 @@ def budget(
     loaded = load(scene)
     names = asked_for(loaded, ask) if ask else ()
     with run.progress() as progress:
-        found = worked_out(loaded, samples=samples, seed=seed, progress=progress)
-    absent = [name for name in names if found.of(name) is None]
+        ranges = solve_budget(loaded, samples=samples, seed=seed, progress=progress)
+    absent = [name for name in names if ranges.of(name) is None]
     if absent:
         raise SolidgearError(f"--ask: no range is known of {listed(absent)}")
     if out is not None:
-        chart = budget_chart(found, asked=names)
+        chart = budget_chart(ranges, asked=names)
         if chart is not None:
             chart.write(out)
     if run.as_json:
-        print(json.dumps({"scene": loaded.name, **found.model_dump(mode="json")}, allow_nan=False))
+        print(json.dumps({"scene": loaded.name, **ranges.model_dump(mode="json")}, allow_nan=False))
         return
-    say(table(found, names))
+    say(budget_table(ranges, names))
     if out is not None:
         say(f"Chart: {out}")

@@ -1,4 +1,4 @@
-"""The command optimise: entries of a scene chosen for a goal."""
+"""Command ``optimise``: search for the entries of a scene that reach a goal best."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def optimise(
     run: Run,
 ) -> None:
     with held(out) if out else nullcontext(), run.progress() as progress:
-        found = optimised(
+        optimum = optimised(
             scene,
             vary or (),
             goal,
@@ -67,12 +67,12 @@ def optimise(
             tol=tol,
             progress=progress,
         )
-        files = write_optimum(out, found) if out else []
+        files = write_optimum(out, optimum) if out else []
     if run.as_json:
-        print(json.dumps(found.results, allow_nan=False))
+        print(json.dumps(optimum.results, allow_nan=False))
     else:
-        say(found.scene, designs(found), soft_wrap=False)
-        say(*found.sentences, soft_wrap=False)
-        say(*([f"Written: {', '.join(map(str, files))}"] if files else []), soft_wrap=False)
-    if found.best is None:
+        say(optimum.scene, designs(optimum), *optimum.sentences, soft_wrap=False)
+        if files:
+            say(f"Written: {', '.join(map(str, files))}", soft_wrap=False)
+    if optimum.best is None:
         raise typer.Exit(NOT_REACHED)

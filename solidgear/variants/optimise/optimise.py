@@ -1,7 +1,7 @@
-"""Entries of a scene chosen for a goal, as far as error bars tell one design from another.
+"""Search for the entries of a scene that reach a goal best, as far as error bars distinguish designs.
 
-Every design is read, meshed and solved as a variant of a sweep, its mesh refined until its bars are
-within the tolerance: it costs seconds, and its small jumps from mesh to mesh would spoil differences.
+Every design is read, meshed and solved as a variant of a sweep, its mesh refined until its error bars
+are within the tolerance: it costs seconds, and its small jumps from mesh to mesh would spoil differences.
 """
 
 from __future__ import annotations
@@ -17,16 +17,16 @@ import numpy as np
 
 from solidgear.core.errors import SolidgearError, nearest
 from solidgear.variants.optimise.optimum import Design, Optimum
-from solidgear.variants.optimise.searching import searched
+from solidgear.variants.optimise.searching import search_box
 from solidgear.variants.optimise.wishes import Wish, limit_of, wish_of
-from solidgear.variants.sweep import design
 from solidgear.variants.sweep.amounts import in_si
-from solidgear.variants.sweep.entries import Entry
+from solidgear.variants.sweep.design import Design as SweepDesign
+from solidgear.variants.sweep.entries import Entry, assignment
+from solidgear.variants.sweep.file_variants import SceneVariants, scene_variants
 from solidgear.variants.sweep.scene_task import STATICS, SceneTask
-from solidgear.variants.sweep.scene_variants import scene_variants
 from solidgear.variants.sweep.spans import plain_number
 
-#: of a range: how near two designs are one, and how near to its end an optimum is at the end
+#: of a range: distance of two designs that are the same, and of an optimum at the end from the end
 SAME, AT_END = 1e-6, 1e-6
 #: natural frequencies that a goal may be of
 MODES = 12
@@ -54,14 +54,14 @@ def optimise(
     goal : str
         ``max bending 1``, ``min C_zz``, ``min mass`` ...
     keep : iterable of str
-        Limits such as ``C_zz < 5 um/kN``, ``f1 > 600 Hz``, ``mass < 12 kg``; bars included.
+        Limits such as ``C_zz < 5 um/kN``, ``f1 > 600 Hz``, ``mass < 12 kg``; error bars included.
     keep_sum : iterable of str
-        ``PATH+PATH``: sums that stay what they are in the file.
+        ``PATH+PATH``: sums that stay as they are in the file.
     model : str, optional
-        Solve every design by it, such as ``timoshenko``, without bars; by default by the cheapest
-        mesh whose bars are within `tol`.
+        Solve every design by it, such as ``timoshenko``, without error bars; by default by the
+        cheapest mesh whose error bars are within `tol`.
     tol : float, optional
-        Relative, that bars of designs are brought to; a tenth of the tolerance of the scene by
+        Relative, to which error bars of designs are brought; a tenth of the tolerance of the scene by
         default.
 
     Returns
@@ -85,10 +85,10 @@ def optimise(
     (True, True, ('bearing.B.position',))
     """
     wanted, limits = wish_of(goal), tuple(map(limit_of, keep))
-    texts = tuple(map(_ends, vary))
-    drawn = design.Design(texts, one_at_a_time=True, keep_sum=tuple(keep_sum))
-    variants = scene_variants(Path(scene), drawn, "bearing.B.position=180 mm:240 mm")
-    base = variants.of(0)  # the file as it is
+    texts = tuple(map(_with_both_ends, vary))
+    design = SweepDesign(texts, one_at_a_time=True, keep_sum=tuple(keep_sum))
+    variants = scene_variants(Path(scene), design, "bearing.B.position=180 mm:240 mm")
+    base = variants.variant(0)  # the file as it is
     variants.refuse_hopeless()
     tol = base.ask.tolerance / 10 if tol is None else tol
     task = SceneTask(variants, model, tol, {}, MODES)
@@ -96,7 +96,7 @@ def optimise(
 
 
 class _Search:
-    """Designs by their places in the ranges of all entries, each between 0 and 1."""
+    """Designs by their coordinates in the ranges of all entries, each between 0 and 1."""
 
     def __init__(
         self,
@@ -106,83 +106,92 @@ class _Search:
         progress: Callable[[str], None],
     ):
         self.goal, self.keep, self.task, self.progress = goal, keep, task, progress
-        # the first of them is the one that is read next
-        self.variants, self.entries = task.variants, task.variants.entries
+        # the first variant is the design that is solved next
+        self.variants: SceneVariants = task.variants
+        self.entries = task.variants.entries
         self.designs: list[Design] = []
         self.places: list[np.ndarray] = []
 
     def run(self, title: str) -> Optimum:
         """Search from the file as it is, at its place in the ranges as far as it is in them."""
-        self._solved(np.full(len(self.entries), math.nan))
+        self._solve(np.full(len(self.entries), math.nan))
         self.places[0] = self._place_of_file()
         misses = [partial(self._shortfall, wish) for wish in self.keep]
         begin = np.nan_to_num(self.places[0], nan=0.5)
-        how = searched(len(self.entries), self._objective, misses, begin)
+        how = search_box(len(self.entries), self._objective, misses, begin)
         sound = [
-            one
-            for one, place in zip(self.designs, self.places)
+            design
+            for design, place in zip(self.designs, self.places)
             # the file as it is may lie outside of the ranges
-            if one.kept and one.value is not None and np.all(np.isfinite(place))
+            if design.kept and design.value is not None and np.all(np.isfinite(place))
         ]
         best = min(sound, key=self._loss, default=None)
-        at_end = () if best is None else self._at_end(best)
         return Optimum(
-            title, self.goal, self.keep, tuple(self.designs), best, at_end, how, self.task.model
+            title,
+            goal=self.goal,
+            keep=self.keep,
+            path=tuple(self.designs),
+            best=best,
+            at_end=() if best is None else self._at_end(best),
+            how=how,
+            model=self.task.model,
         )
 
-    def _loss(self, one: Design) -> float:
-        assert one.value is not None
-        return -one.value if self.goal.upward else one.value
+    def _loss(self, design: Design) -> float:
+        assert design.value is not None
+        return -design.value if self.goal.upward else design.value
 
     def _objective(self, place: np.ndarray) -> float:
-        """Goal relative to that of the file, to be made small; of a refused design worse than any."""
-        one = self._solved(place)
-        known = [abs(d.value) for d in self.designs if d.value is not None]
-        size = known[0] if known and known[0] else 1.0
-        if one.value is None:
-            return 2 * max(known, default=1.0) / size
-        return self._loss(one) / size
+        """Compute the goal relative to that of the file, to be minimised; a refused design is worse
+        than all others.
+        """
+        design = self._solve(place)
+        sizes = [abs(d.value) for d in self.designs if d.value is not None]
+        size = sizes[0] if sizes and sizes[0] else 1.0
+        if design.value is None:
+            return 2 * max(sizes, default=1.0) / size
+        return self._loss(design) / size
 
     def _shortfall(self, wish: Wish, place: np.ndarray) -> float:
-        return min(wish.missing(self._solved(place).row), 10.0)
+        return min(wish.missing(self._solve(place).row), 10.0)
 
-    def _solved(self, place: np.ndarray) -> Design:
-        """A design, or one that was solved as near as makes no difference."""
-        for one, there in zip(self.designs, self.places):
-            if np.array_equal(place, there) or np.all(abs(place - there) < SAME):
-                return one
+    def _solve(self, place: np.ndarray) -> Design:
+        """Solve a design, or return one that was solved at the same place."""
+        for design, solved in zip(self.designs, self.places):
+            if np.array_equal(place, solved) or np.all(abs(place - solved) < SAME):
+                return design
         number = len(self.designs)
         self.variants.values[0] = [_between(entry, x) for entry, x in zip(self.entries, place)]
         self.progress(f"design {number}")
         row = self.task.rows([0])[0]
-        told = self.goal.of(row)
+        goal = self.goal.value(row)
         kept = row["status"] == "ok" and all(wish.missing(row) <= 0 for wish in self.keep)
-        if row["status"] == "ok" and told is None:
+        if row["status"] == "ok" and goal is None:
             self._refuse_goal(row)
-        value, bar = told or (None, None)
-        one = Design(number, self.variants.told(0), value, bar, kept, row["status"], row)
-        self.designs.append(one)
+        value, bar = goal or (None, None)
+        design = Design(number, self.variants.varied(0), value, bar, kept, row["status"], row)
+        self.designs.append(design)
         self.places.append(place.copy())
-        return one
+        return design
 
     def _refuse_goal(self, row: dict[str, Any]) -> None:
-        named = [str(v) for k, v in row.items() if k.startswith("mode") and k != "model" and v]
-        has = [*map(str, STATICS), "mass", *named]
+        modes = [str(v) for k, v in row.items() if k.startswith("mode") and k != "model" and v]
+        names = [*map(str, STATICS), "mass", *modes]
         raise SolidgearError(
-            f"--goal {self.goal}: a design has no {self.goal.name}{nearest(self.goal.name, has)}; "
-            f"it has {', '.join(has)}"
+            f"--goal {self.goal}: a design has no {self.goal.name}{nearest(self.goal.name, names)}; "
+            f"it has {', '.join(names)}"
         )
 
     def _place_of_file(self) -> np.ndarray:
-        """Place of the file in the ranges; not a number beyond them."""
+        """Return the coordinates of the file in the ranges; not a number beyond them."""
         out = []
         for entry in self.entries:
-            low, high = (in_si(entry.put(value)) for value in (entry.values[0], entry.values[-1]))
-            there = in_si(entry.there)
-            if there is None or low is None or high is None or high == low:
+            low, high = (in_si(entry.written(end)) for end in (entry.values[0], entry.values[-1]))
+            value = in_si(entry.in_file)
+            if value is None or low is None or high is None or high == low:
                 out.append(math.nan)
                 continue
-            x = (there - low) / (high - low)
+            x = (value - low) / (high - low)
             out.append(x if 0 <= x <= 1 else math.nan)
         return np.array(out)
 
@@ -198,13 +207,12 @@ def _between(entry: Entry, x: float) -> float:
     return math.nan if math.isnan(x) else float(f"{low + x * (high - low):.9g}")
 
 
-def _ends(text: str) -> str:
-    """A range for two ends, in the words of sweeps."""
-    path, _, spec = text.partition("=")
+def _with_both_ends(text: str) -> str:
+    """Return ``PATH=LOW:HIGH`` as a sweep has it, with two values."""
+    form = 'PATH=LOW:HIGH, such as "bearing.B.position=180 mm:240 mm"'
+    path, spec = assignment(text, form)
     if spec.count(":") != 1:
-        raise SolidgearError(
-            f'--vary {text}: write PATH=LOW:HIGH, such as "bearing.B.position=180 mm:240 mm"'
-        )
+        raise SolidgearError(f"--vary {text}: write {form}")
     low, high = map(str.strip, spec.split(":"))
     if in_si(plain_number(low)) == in_si(plain_number(high)):
         raise SolidgearError(

@@ -1,10 +1,10 @@
-"""Search of a box for the least of a number that is dear and a little rough: a sample of the whole box
-first, searches from its best places, and a last step where the best stands.
+"""Search of a box for the least of a number that is costly and a little rough: a sample of the whole
+box first, searches from the best places of it, and a last step at the best.
 
 The sample has the corners of a small box and points of Sobol's sequence inside, the searches are those
 of SciPy that want no derivative: Brent's bounded scalar search for one coordinate without limits, and
 COBYQA (Ragonneau and Zhang 2024), a trust-region method with bounds and constraints, for all others.
-A box of one minimum costs little more than one search; that of several is told from it by the sample.
+A box of one minimum costs little more than one search; the sample shows whether there are several.
 """
 
 from __future__ import annotations
@@ -15,35 +15,25 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 #: coordinates of a box whose corners are all sampled
-CORNERED = 3
+MOST_CORNERED = 3
 #: points of the sample: on a line, and for each coordinate of other boxes (a power of two for two)
 LINE, INSIDE = 9, 8
-#: searches from the sample, how far apart they begin, and what one may cost for each coordinate
-STARTS, APART, MOST = 3, 0.25, 12
-#: of a range: where a search ends, where the last step does, and what is brought to an end of its range
+#: searches from the sample, distance of their beginnings, and most designs of one a coordinate
+STARTS, DISTANCE, MOST = 3, 0.25, 12
+#: of a range: last steps of a search and of the last one, and a distance that is moved to the end
 COARSE, FINE, NEAR = 1e-2, 1e-4, 2e-2
-#: of the number, for what misses a limit by all of it
+#: of the number, for a limit that is missed by all of it
 PENALTY = 2.0
 
-#: of a place in the unit box
+#: from a place in the unit box
 Number = Callable[[np.ndarray], float]
 
 
-def searched(dimension: int, goal: Number, misses: Sequence[Number], begin: np.ndarray) -> str:
-    """Look for the least of a number where no miss is above zero, each in units of its own size.
+def search_box(dimension: int, goal: Number, misses: Sequence[Number], begin: np.ndarray) -> str:
+    """Search the least of a number where no miss is above zero, each relative to a size of its own, from
+    a (dimension,) place `begin` and those of a sample; return the search in words.
 
-    Whoever gives the numbers keeps the places that they were asked for, of which the best is the
-    result.
-
-    Parameters
-    ----------
-    begin : (dimension,) ndarray
-        A place that searches begin at beside those of the sample.
-
-    Returns
-    -------
-    str
-        What was searched, in words.
+    The caller keeps the places that its numbers were asked for: the best of them is the result.
     """
     merit = _merit(goal, misses)
     places = _sample(dimension)
@@ -51,7 +41,7 @@ def searched(dimension: int, goal: Number, misses: Sequence[Number], begin: np.n
     if dimension == 1 and not misses:
         count = _on_the_line(goal, [float(place[0]) for place in places], merits)
         return f"{LINE} designs across the range, then Brent's method from {_best(count)}"
-    starts = _apart([begin, *places], [merit(begin), *merits])
+    starts = _distant([begin, *places], [merit(begin), *merits])
     best = min(starts, key=merit)
     for start in starts:
         best = min(best, _trust_region(goal, misses, start, 0.2, COARSE), key=merit)
@@ -69,7 +59,7 @@ def _best(count: int) -> str:
 
 
 def _merit(goal: Number, misses: Sequence[Number]) -> Number:
-    """The number, with what misses limits."""
+    """Return the number with a penalty for limits that are missed."""
 
     def merit(place: np.ndarray) -> float:
         missing = sum(max(0.0, miss(place)) for miss in misses)
@@ -79,20 +69,21 @@ def _merit(goal: Number, misses: Sequence[Number]) -> Number:
 
 
 def _sample(dimension: int) -> list[np.ndarray]:
-    """Places of a sample of the unit box."""
+    """Return the places of a sample of the unit box."""
     from scipy.stats import qmc  # slow to import, and few commands have a use for it
 
     if dimension == 1:
         return list(np.linspace(0.0, 1.0, LINE)[:, None])
-    corners = itertools.product((0.0, 1.0), repeat=dimension if dimension <= CORNERED else 0)
+    corners: list[np.ndarray] = []
+    if dimension <= MOST_CORNERED:
+        corners = [*map(np.array, itertools.product((0.0, 1.0), repeat=dimension))]
     inside = qmc.Sobol(dimension, scramble=False).random_base2(int(np.log2(INSIDE * dimension)))
-    # the sequence begins in a corner
-    return [*map(np.array, corners if dimension <= CORNERED else ()), *inside[1:]]
+    return [*corners, *inside[1:]]  # the sequence begins in a corner
 
 
 def _on_the_line(goal: Number, places: Sequence[float], values: Sequence[float]) -> int:
-    """Brent's search about every place of a line that is better than its neighbours, the best first;
-    how many there were.
+    """Run Brent's search about the places of a line that are better than their neighbours, the best
+    first, and return their number.
     """
     from scipy.optimize import minimize_scalar
 
@@ -110,11 +101,11 @@ def _on_the_line(goal: Number, places: Sequence[float], values: Sequence[float])
     return len(least)
 
 
-def _apart(places: Sequence[np.ndarray], merits: Sequence[float]) -> list[np.ndarray]:
-    """The best places that lie apart."""
+def _distant(places: Sequence[np.ndarray], merits: Sequence[float]) -> list[np.ndarray]:
+    """Return the best places that lie a distance from each other."""
     starts: list[np.ndarray] = []
     for k in np.argsort(merits, kind="stable"):
-        far = all(np.abs(places[k] - start).max() > APART for start in starts)
+        far = all(np.abs(places[k] - start).max() > DISTANCE for start in starts)
         if far and len(starts) < STARTS:
             starts.append(places[k])
     return starts
@@ -123,11 +114,11 @@ def _apart(places: Sequence[np.ndarray], merits: Sequence[float]) -> list[np.nda
 def _trust_region(
     goal: Number, misses: Sequence[Number], start: np.ndarray, first: float, last: float
 ) -> np.ndarray:
-    """Place at which COBYQA ends, by radii of its region."""
+    """Run COBYQA with a first and last radius of the region, and return its last place."""
     from scipy.optimize import NonlinearConstraint, minimize
 
     limits = [NonlinearConstraint(miss, -np.inf, 0.0) for miss in misses]
-    found = minimize(
+    result = minimize(
         goal,
         start,
         bounds=[(0.0, 1.0)] * len(start),
@@ -139,4 +130,4 @@ def _trust_region(
             "final_tr_radius": last,
         },
     )
-    return np.clip(found.x, 0.0, 1.0)
+    return np.clip(result.x, 0.0, 1.0)

@@ -12,7 +12,6 @@ from solidgear.show.sheet_files import write_files
 from solidgear.show.table import NUMBER, Column, Table, text
 
 KEPT, MISSED, BEST = "keeps every limit", "misses a limit", "best"
-#: looks of designs
 LOOKS = {
     KEPT: Series("#00805e"),
     MISSED: Series("#b3305c", "square"),
@@ -20,90 +19,87 @@ LOOKS = {
 }
 
 
-def designs(found: Any) -> Table:
-    """All designs in the order in which they were solved."""
-    columns = [Column("", lambda d: d.number, kind=NUMBER)]
-    columns += [
-        Column(label, partial(_value, label), "{:.6g}".format, kind=NUMBER)
-        for label in found.path[0].values
+def designs(optimum: Any) -> Table:
+    """Return the table of all designs in the order in which they were solved."""
+    labels = list(optimum.path[0].values)
+    columns = [
+        Column("", kind=NUMBER),
+        *(Column(label, write="{:.6g}".format, kind=NUMBER) for label in labels),
+        Column(optimum.goal.name, write="{:.6g}".format, kind=NUMBER),
+        Column("bar", write="{:.2g}".format, kind=NUMBER),
+        text(""),
     ]
-    columns += [
-        Column(found.goal.name, lambda d: d.value, "{:.6g}".format, kind=NUMBER),
-        Column("bar", lambda d: d.bar, "{:.2g}".format, kind=NUMBER),
-        text("", partial(_said, found)),
+    rows = [
+        [d.number, *d.values.values(), d.value, d.bar, _remark(optimum, d)] for d in optimum.path
     ]
     note = "SI. Design 0 is the file as it is."
-    return Table("Designs", columns, found.path, note, style="ruled")
+    return Table("Designs", columns, rows, note, style="ruled")
 
 
-def _value(label: str, one: Any) -> Any:
-    return one.values[label]
-
-
-def _said(found: Any, one: Any) -> str:
-    if one.status != "ok":
-        return str(one.status)[:60]
-    look = _look(found, one)
+def _remark(optimum: Any, design: Any) -> str:
+    if design.status != "ok":
+        return str(design.status)[:60]
+    look = _look(optimum, design)
     return "" if look == KEPT else look
 
 
-def _look(found: Any, one: Any) -> str:
-    if found.best is not None and one.number == found.best.number:
+def _look(optimum: Any, design: Any) -> str:
+    if optimum.best is not None and design.number == optimum.best.number:
         return BEST
-    return KEPT if one.kept else MISSED
+    return KEPT if design.kept else MISSED
 
 
-def designs_chart(found: Any, title: str, width: float = WIDE) -> Chart:
-    """The goal over the one entry that varies, or over the number of the design."""
-    told = [one for one in found.path if one.value is not None]
-    labels = list(found.path[0].values)
+def designs_chart(optimum: Any, title: str, width: float = WIDE) -> Chart:
+    """Draw the goal over the one entry that varies, or over the number of the design."""
+    solved = [design for design in optimum.path if design.value is not None]
+    labels = list(optimum.path[0].values)
     over = labels[0] if len(labels) == 1 else "design"
-    x = [one.values[over] if len(labels) == 1 else one.number for one in told]
-    low = min(one.value - (one.bar or 0.0) for one in told)
-    high = max(one.value + (one.bar or 0.0) for one in told)
+    x = [d.values[over] if len(labels) == 1 else d.number for d in solved]
+    low = min(d.value - (d.bar or 0.0) for d in solved)
+    high = max(d.value + (d.bar or 0.0) for d in solved)
     room = 0.08 * (high - low) or abs(high)
     edge = 0.03 * (max(x) - min(x)) or 1.0
     panel = Panel(
         Axis(over if len(labels) > 1 else f"{over}, SI", (min(x) - edge, max(x) + edge)),
-        Axis(f"{found.goal.name}, SI", (low - room, high + room)),
+        Axis(f"{optimum.goal.name}, SI", (low - room, high + room)),
         300.0,
         series=LOOKS,
         legend={"orient": "top"},
     )
     bars = [
-        {"x": a, "y": one.value - one.bar, "y2": one.value + one.bar}
-        for a, one in zip(x, told)
-        if one.bar
+        {"x": place, "y": design.value - design.bar, "y2": design.value + design.bar}
+        for place, design in zip(x, solved)
+        if design.bar
     ]
     panel.draw({"type": "rule", "color": GREY, "strokeWidth": 2}, bars)
     rows = []
-    for a, one in zip(x, told):
-        facts = [(label, f"{value:.6g}", "") for label, value in one.values.items()]
-        goal = (found.goal.name, f"{one.value:.6g}", "")
+    for place, design in zip(x, solved):
+        facts = [(label, f"{value:.6g}", "") for label, value in design.values.items()]
+        goal = (optimum.goal.name, f"{design.value:.6g}", "")
         rows.append(
             {
-                "x": a,
-                "y": one.value,
-                "name": _look(found, one),
-                "readout": readout(f"design {one.number}", *facts, goal),
+                "x": place,
+                "y": design.value,
+                "name": _look(optimum, design),
+                "readout": readout(f"design {design.number}", *facts, goal),
             }
         )
     panel.draw({"type": "point", "filled": True, "size": 60}, rows)
     return Chart([[panel]], width, title)
 
 
-def write_optimum(folder: Path, found: Any) -> list[Path]:
-    """Page, data, table and chart of a search."""
-    title = f"{found.scene}: {found.goal}"
+def write_optimum(folder: Path, optimum: Any) -> list[Path]:
+    """Write page, data, table and chart of a search into a folder."""
+    title = f"{optimum.scene}: {optimum.goal}"
     lead = "Every design solved by the cheapest mesh whose bars are within the tolerance."
     return write_files(
         folder,
         "optimum",
         title,
         lead,
-        [designs(found)],
-        found.results,
-        lines={"designs": designs(found)},
-        charts={"designs": partial(designs_chart, found, title)},
-        notes=found.sentences,
+        [designs(optimum)],
+        optimum.results,
+        lines={"designs": designs(optimum)},
+        charts={"designs": partial(designs_chart, optimum, title)},
+        notes=optimum.sentences,
     )

@@ -20,14 +20,14 @@ _FIRST = re.compile(r"f(?P<number>[1-9]\d*)")
 
 @dataclass(frozen=True)
 class Wish:
-    """A number of a design that is to be large or small, or to stay beyond a limit."""
+    """A number of a design that should be large or small, or stay beyond a limit."""
 
     name: str  #: ``mass``, a compliance or stiffness, ``f1``, or a mode such as ``bending 1``
     upward: bool  #: large is good
     limit: float | None = None  #: SI; None of a goal
 
-    def of(self, row: dict[str, Any]) -> tuple[float, float | None] | None:
-        """Value of a design and its bar, SI; None where it has no number, or no bar."""
+    def value(self, row: dict[str, Any]) -> tuple[float, float | None] | None:
+        """Return the value of a design and its error bar, SI; None where it has no number, or bar."""
         column = self._column(row)
         value = row.get(column)
         if value is None:
@@ -43,11 +43,13 @@ class Wish:
         return self.name
 
     def missing(self, row: dict[str, Any]) -> float:
-        """Amount missing to a limit, bar included, relative to it; none or less is kept."""
-        told = self.of(row)
-        if told is None or self.limit is None:
+        """Compute the distance beyond a limit, error bar included, relative to it; 0 and less is
+        kept.
+        """
+        number = self.value(row)
+        if number is None or self.limit is None:
             return math.inf
-        value, bar = told[0], told[1] or 0.0
+        value, bar = number[0], number[1] or 0.0
         short = self.limit - (value - bar) if self.upward else (value + bar) - self.limit
         return short / abs(self.limit or 1.0)
 
@@ -58,46 +60,45 @@ class Wish:
 
 
 def wish_of(text: str) -> Wish:
-    """A goal from ``max bending 1``."""
-    found = _GOAL.fullmatch(text)
-    if found is None:
+    """Read a goal such as ``max bending 1``."""
+    match = _GOAL.fullmatch(text)
+    if match is None:
         raise SolidgearError(
             f'--goal {show(text, 40)}: write "max NUMBER" or "min NUMBER", such as "max bending 1"'
         )
-    return Wish(found["name"], found["sense"].lower() == "max")
+    return Wish(match["name"], match["sense"].lower() == "max")
 
 
 def limit_of(text: str) -> Wish:
-    """A limit from ``C_zz < 5 um/kN``."""
-    found = _KEEP.fullmatch(text)
-    if found is None:
+    """Read a limit such as ``C_zz < 5 um/kN``."""
+    match = _KEEP.fullmatch(text)
+    if match is None:
         raise SolidgearError(
             f'--keep {show(text, 40)}: write NUMBER < VALUE, such as "C_zz < 5 um/kN" or "f1 > 600 Hz"'
         )
-    name = found["name"]
-    return Wish(name, found["sense"] == ">", _in_unit_of(name, found["value"], text))
+    name = match["name"]
+    return Wish(name, match["sense"] == ">", _limit_in_si(name, match["value"], text))
 
 
-def _in_unit_of(name: str, value: str, text: str) -> float:
-    """A limit in SI."""
-    if (plain := plain_number(value)) is not value:
-        return float(plain)
-    known = next((q for q in STATICS if str(q) == name), None)
+def _limit_in_si(name: str, value: str, text: str) -> float:
+    if (number := plain_number(value)) is not value:
+        return float(number)
+    static = next((q for q in STATICS if str(q) == name), None)
     try:
-        if known is None:
+        if static is None:
             return quantity(value, "mass" if name == "mass" else "frequency")
-        return _static(value, known.unit)
+        return _static_in_si(value, static.unit)
     except SceneError as error:
         raise SolidgearError(f"--keep {show(text, 40)}: {error}") from None
 
 
-def _static(value: str, wanted: str) -> float:
-    """A compliance or stiffness in SI, which any unit of its dimension will do for."""
-    found = amount(value)
-    if found is None:
+def _static_in_si(value: str, si_unit: str) -> float:
+    """Return a compliance or stiffness in SI, from any unit of its dimension."""
+    match = amount(value)
+    if match is None:
         raise SceneError(f"{show(value)} is no number with a unit")
-    number, unit = found.groups()
-    own, si = si_factor(unit), si_factor(wanted)
-    if own is None or si is None or own[2] != si[2]:
-        raise SceneError(f"{unit!r} is no unit of what is told in {wanted}")
-    return float(number) * own[0]
+    number, unit = match.groups()
+    factor, si = si_factor(unit), si_factor(si_unit)
+    if factor is None or si is None or factor[2] != si[2]:
+        raise SceneError(f"{unit!r} is no unit of what is told in {si_unit}")
+    return float(number) * factor[0]

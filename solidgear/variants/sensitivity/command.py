@@ -1,4 +1,4 @@
-"""The command sensitivities: what would move a number of a shaft."""
+"""Command ``sensitivities``: derivatives of numbers of a shaft by the entries of its file."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from solidgear.show.folder import held
 from solidgear.show.options import Fixed, SceneFile, Shown, options
 from solidgear.show.units import units_named
 from solidgear.variants.sensitivity import tables as sensitivity
-from solidgear.variants.sensitivity.run import sensitivities as derived
+from solidgear.variants.sensitivity.run import sensitivities as derive
 
 
 @command
@@ -44,16 +44,16 @@ def sensitivities(
     fixed: Fixed,
     run: Shown,
 ) -> None:
-    given = options(fixed.settings)
+    builder_options = options(fixed.settings)
     with held(out) if out else nullcontext(), run.progress() as progress:
-        found = derived(scene, fixed.name, of, by, progress=progress, **given)
-        shown = units_named(run.units)
-        files = sensitivity.write(out, found, shown) if out else []
+        result = derive(scene, fixed.name, of, by, progress=progress, **builder_options)
+        units = units_named(run.units)
+        files = sensitivity.write(out, result, units) if out else []
     if run.as_json:
-        print(json.dumps(found.as_dict(), allow_nan=False))
+        print(json.dumps(result.as_dict(), allow_nan=False))
         return
-    say(f"{found.title}, by the {found.model} model")
-    say(*(sensitivity.table(one, shown) for one in found.of))
-    say(*sensitivity.notes(found), soft_wrap=False)
+    say(f"{result.title}, by the {result.model} model")
+    say(*(sensitivity.table(number, units) for number in result.of))
+    say(*sensitivity.notes(result), soft_wrap=False)
     if files:
         say(f"Written: {', '.join(map(str, files))}")

@@ -1,5 +1,5 @@
-"""Derivatives of numbers of one body by what may change of its scene, from a scene on either side:
-springs and masses by their matrices, the shaft by what its model says of it.
+"""Derivatives of numbers of one body by changes of its scene, from a scene on either side: springs and
+masses by their matrices, the shaft by the derivatives of its model.
 """
 
 from __future__ import annotations
@@ -21,39 +21,28 @@ from solidgear.variants.sensitivity.harmonic import HarmonicAdjoint
 from solidgear.variants.sensitivity.harmonic_motion import Motion
 from solidgear.variants.sweep.bench import surface
 
-#: of how far nodes move between two meshes, that the one between may lie beside their middle
-BESIDE = 1e-2
+#: largest distance of a mesh from the middle of two others, relative to their own
+OFF_MIDDLE = 1e-2
 
 
 class Derivatives:
-    """Derivatives of the numbers of some forms.
-
-    Parameters
-    ----------
-    model : str
-    options : dict
-        That the body was built with.
-    """
+    """Derivatives of the numbers of forms of a body, which was built by a model with these options."""
 
     def __init__(
         self, scene: Scene, body: Body, forms: Sequence[Form], model: str, options: dict[str, Any]
     ):
         self.scene, self.body, self.forms = scene, body, forms
         self.model, self.options = model, options
-        self.there = as_supports(scene).rows(body)
+        self.rows = as_supports(scene).rows(body)
 
     def by(self, low: Scene, high: Scene, step: float) -> np.ndarray:
-        """(forms,) change of numbers from one scene to another, over a step.
-
-        Raises
-        ------
-        SolidgearError
-            If the mesh cannot follow.
+        """Compute (forms,) the change of numbers from one scene to another, over a step; SolidgearError
+        if the mesh cannot follow.
         """
         out = np.zeros(len(self.forms))
         if _springs(low) != _springs(high):
-            one, two = as_supports(low), as_supports(high)
-            out += [change_by_supports(form, self.there, one, two) / step for form in self.forms]
+            a, b = as_supports(low), as_supports(high)
+            out += [change_by_supports(form, self.rows, a, b) / step for form in self.forms]
         return out if surface(low) == surface(high) else out + self._shaft(low, high, step)
 
     def _shaft(self, low: Scene, high: Scene, step: float) -> np.ndarray:
@@ -61,16 +50,16 @@ class Derivatives:
             return self._beam.by(low, high, step)
         moves = _shape(low) != _shape(high)
         if self.model == "harmonic" and self._straight:
-            moved = Motion(self._harmonic, low, high, step)
-            return np.array([moved.derivative(push) for push in self._harmonic.pushes])
+            motion = Motion(self._harmonic, low, high, step)
+            return np.array([motion.derivative(push) for push in self._harmonic.pushes])
         if moves and self.model != "harmonic":
             raise SolidgearError(
                 f"the {self.model} model meshes every shape anew, and no mesh follows it"
             )
-        one, two = (build(scene, self.model, **self.options) for scene in (low, high))
+        a, b = (build(scene, self.model, **self.options) for scene in (low, high))
         if moves:
-            _follows(one, self.body, two)
-        return np.array([change_by_bodies(form, one, two) for form in self.forms]) / step
+            _check_middle(a, self.body, b)
+        return np.array([change_by_bodies(form, a, b) for form in self.forms]) / step
 
     @cached_property
     def _straight(self) -> bool:
@@ -85,25 +74,26 @@ class Derivatives:
         return BeamAdjoint(self.scene, self.body, self.forms)
 
 
-def _follows(low: Body, body: Body, high: Body) -> None:
-    """Refuse meshes of which one does not lie half way between the others."""
-    flats: list[Any] = [one.geometry.meridian for one in (low, body, high)]  # type: ignore[union-attr]
-    same = all(np.array_equal(flat.cells, flats[1].cells) for flat in flats)
-    if same:
-        one, at, two = (flat.points for flat in flats)
-        same = abs((one + two) / 2 - at).max() <= BESIDE * abs(two - one).max()
-    if not same:
+def _check_middle(low: Body, body: Body, high: Body) -> None:
+    """Refuse a mesh that does not lie half way between two others."""
+    bodies: tuple[Any, ...] = low, body, high
+    meridians = [b.geometry.meridian for b in bodies]
+    follows = all(np.array_equal(m.cells, meridians[1].cells) for m in meridians)
+    if follows:
+        a, middle, b = (m.points for m in meridians)
+        follows = abs((a + b) / 2 - middle).max() <= OFF_MIDDLE * abs(b - a).max()
+    if not follows:
         raise SolidgearError("the mesh changes with it")
 
 
 def _springs(scene: Scene) -> tuple:
-    """All that supports are made of."""
-    springs = [b.stiffness.tolist() for b in scene.bearings]
-    around = scene.housing and (scene.housing, [b.y for b in scene.bearings])
-    return springs, scene.masses, scene.housing_axial, around
+    """Return all that supports are made of."""
+    springs = [bearing.stiffness.tolist() for bearing in scene.bearings]
+    housing = scene.housing and (scene.housing, [bearing.y for bearing in scene.bearings])
+    return springs, scene.masses, scene.housing_axial, housing
 
 
 def _shape(scene: Scene) -> Hashable:
-    """All that a mesh is made of: the shaft but for its materials."""
-    bare = scene.with_changes(segments=[one.with_changes(material=STEEL) for one in scene.segments])
-    return surface(bare)
+    """Return all that a mesh is made of: the shaft but for its materials."""
+    segments = [segment.with_changes(material=STEEL) for segment in scene.segments]
+    return surface(scene.with_changes(segments=segments))

@@ -1,8 +1,8 @@
 """Sensitivities: derivatives of compliances, stiffnesses and natural frequencies by every number of
 a scene file, from one solution (:mod:`solidgear.variants.sensitivity.adjoint`).
 
-The file is read with each number a little smaller and larger; what then moves of shaft, seats,
-materials, bearings and masses is multiplied with what the asked numbers feel of it.
+The file is read with each number a little smaller and larger; the changes of shaft, seats, materials,
+bearings and masses are multiplied by the sensitivities of the numbers to them.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from solidgear.core.errors import SolidgearError, listed, nearest
 from solidgear.core.ladder import build
 from solidgear.core.loading import load
 from solidgear.core.machine.threads import pinned
+from solidgear.core.plain import plain
 from solidgear.core.quantity import Quantity
 from solidgear.core.scene import Scene
 from solidgear.core.scene.paths import label_of
@@ -27,38 +28,59 @@ from solidgear.variants.sensitivity.derivatives import Derivatives
 from solidgear.variants.sensitivity.entries import around, numbers
 from solidgear.variants.sweep.amounts import in_si
 
-#: what is asked for
+#: numbers by default
 USUAL = ("bending 1", "C_zz")
 #: models that have derivatives
 MODELS = ("harmonic", "timoshenko", "euler", "solid")
-#: of the strongest elasticity: what is below is symmetry and rounding, and given as zero
+#: of the strongest elasticity: smaller ones are symmetry and rounding, and given as zero
 NOTHING = 1e-9
-#: on bars of values and derivatives
+#: words on error bars of values and derivatives
 BARS = "from_coarser_mesh is the distance from a coarser mesh where there is one: no proven bound"
 
 
 @dataclass(frozen=True)
 class Derivative:
-    """Of one number by one entry of the file."""
+    """Derivative of one number by one entry of the file."""
+
+    plain_names = (
+        "path",
+        "written",
+        "at",
+        ("derivative", "by"),
+        "elasticity",
+        ("from_coarser_mesh", "apart"),
+        ("one_sided", "side"),
+    )
 
     path: str  #: as in :mod:`solidgear.core.scene.paths`
     written: str  #: the entry as the file has it
     at: float  #: the entry in SI
-    unit: str  #: that the file gives it in; empty for SI
+    unit: str  #: of the entry in the file; empty for SI
     by: float  #: derivative, SI over SI
     elasticity: float  #: relative change of the number over that of the entry
     apart: float | None = None  #: distance of the elasticity from that on a coarser mesh
-    side: str = ""  #: the only way that the entry may go, and that the derivative is for
+    side: str = ""  #: ``larger`` or ``smaller`` if the file allows no other side
 
     @property
     def by_unit(self) -> float:
         """Derivative by one unit of the file."""
-        return self.by * ((in_si(f"1 {self.unit}") or 1.0) if self.unit else 1.0)
+        if not self.unit:
+            return self.by
+        return self.by * (in_si(f"1 {self.unit}") or 1.0)
 
 
 @dataclass(frozen=True)
 class OfNumber:
     """Derivatives of one number, the strongest first."""
+
+    plain_names = (
+        "name",
+        "value",
+        "unit",
+        ("from_coarser_mesh", "apart"),
+        ("mean_of_pair", "pair"),
+        "derivatives",
+    )
 
     name: str
     value: float  #: SI
@@ -68,62 +90,34 @@ class OfNumber:
     derivatives: tuple[Derivative, ...]
 
     def __getitem__(self, path: str) -> Derivative:
-        for one in self.derivatives:
-            if one.path == path:
-                return one
-        known = [one.path for one in self.derivatives]
-        raise SolidgearError(f"there is no derivative by {path}{nearest(path, known)}")
+        by_path = {derivative.path: derivative for derivative in self.derivatives}
+        if path not in by_path:
+            raise SolidgearError(f"there is no derivative by {path}{nearest(path, [*by_path])}")
+        return by_path[path]
 
 
 @dataclass(frozen=True)
 class Sensitivities:
     """Derivatives of some numbers by entries of a scene file."""
 
+    plain_names = ("title", "model", "of", "without", "bars", "notes")
+    bars = BARS
+
     title: str
     model: str
     of: tuple[OfNumber, ...]
     without: dict[str, str]  #: entries without a derivative, and why
-    notes: tuple[str, ...]  #: what was held fixed, and how sure derivatives are
+    notes: tuple[str, ...]  #: sentences on bearings held fixed, and on errors of derivatives
 
     def __getitem__(self, name: str) -> OfNumber:
-        for one in self.of:
-            if one.name == name:
-                return one
-        raise SolidgearError(
-            f"{name} was not asked for; there are {listed([o.name for o in self.of])}"
-        )
+        by_name = {number.name: number for number in self.of}
+        if name not in by_name:
+            raise SolidgearError(f"{name} was not asked for; there are {listed([*by_name])}")
+        return by_name[name]
 
     def as_dict(self) -> dict[str, Any]:
         """Plain data in SI."""
-        return {
-            "title": self.title,
-            "model": self.model,
-            "of": [
-                {
-                    "name": one.name,
-                    "value": one.value,
-                    "unit": one.unit,
-                    "from_coarser_mesh": one.apart,
-                    "mean_of_pair": one.pair,
-                    "derivatives": [
-                        {
-                            "path": d.path,
-                            "written": d.written,
-                            "at": d.at,
-                            "derivative": d.by,
-                            "elasticity": d.elasticity,
-                            "from_coarser_mesh": d.apart,
-                            "one_sided": d.side,
-                        }
-                        for d in one.derivatives
-                    ],
-                }
-                for one in self.of
-            ],
-            "without": self.without,
-            "bars": BARS,
-            "notes": list(self.notes),
-        }
+        return plain(self)
 
 
 @pinned
@@ -154,12 +148,12 @@ def sensitivities(
         Numbers such as ``"C_zz"``, ``"K_thx@pinion"`` or ``"bending 1"``; by default first bending
         and the compliance ``C_zz``.
     by : sequence of str, optional
-        Paths of entries, or what they begin with, such as ``"bearing.A"``; by default all numbers of
+        Paths of entries, or their beginnings, such as ``"bearing.A"``; by default all numbers of
         materials, segments, bearings, masses, housing and ports.
     coarser : bool
-        Whether to derive on a coarser mesh as well, which tells how far mesh moves a derivative.
+        Whether to derive on a coarser mesh as well, which shows how far a mesh moves a derivative.
     progress : callable
-        Told what is being done.
+        Called with a sentence at every step.
     **options
         Of the model, such as ``order=7``.
 
@@ -188,53 +182,67 @@ def sensitivities(
     where = os.fspath(file)
     scene, tables = load(where), parse(where)
     _supported(scene, model)
-    asked = [Quantity(name) for name in of or USUAL[: 1 if model == "solid" else 2]]
-    if model == "solid" and not all(one.is_frequency for one in asked):
-        static = next(one for one in asked if not one.is_frequency)
+    quantities = [Quantity(name) for name in of or USUAL[: 1 if model == "solid" else 2]]
+    if model == "solid" and not all(quantity.is_frequency for quantity in quantities):
+        static = next(quantity for quantity in quantities if not quantity.is_frequency)
         raise SolidgearError(f"derivatives of {static} are for bodies of revolution; ask for modes")
     moves = [*numbers(tables, by)]
     levels: list[dict[str, Any]] = [{}]
     if coarser and model != "solid":
         levels.append(_coarser(scene, model, options))
-    found = []
-    for more in levels:
-        mesh = f" ({', '.join(f'{k} {v}' for k, v in more.items())})" if more else ""
+    meshes = []
+    for level in levels:
+        mesh = f" ({_mesh_words(level)})" if level else ""
         progress(f"{scene.name}: {model}{mesh}")
-        found.append(Derived(scene, model, asked, {**options, **more}))
-    rows: list[list[Derivative]] = [[] for _ in asked]
+        meshes.append(SolvedMesh(scene, model, quantities, {**options, **level}))
+    rows: list[list[Derivative]] = [[] for _ in quantities]
     without: dict[str, str] = {}
     for keys in moves:
         path = label_of(keys, tables)
         try:
             sides = around(scene, tables, keys, where)
-            fine, *rest = [d.by(sides.low, sides.high, sides.step).tolist() for d in found]
+            fine, *coarse = [m.by(sides.low, sides.high, sides.step).tolist() for m in meshes]
         except SolidgearError as error:
-            without[path] = _plainly(error)
+            without[path] = _reason(error)
             continue
-        for k, value in enumerate(found[0].values):
+        for k, value in enumerate(meshes[0].values):
             scale = sides.at / value
-            apart = abs(rest[0][k] - fine[k]) * abs(scale) if rest else None
-            told = path, sides.written, sides.at, sides.unit, fine[k], fine[k] * scale
-            rows[k].append(Derivative(*told, apart, sides.side))
-    first = found[0]
-    coarse = found[-1].values if len(found) > 1 else [None] * len(asked)
-    given = [
-        OfNumber(str(q), v, q.unit, pair, None if w is None else abs(v - w), _ranked(r))
-        for q, v, w, pair, r in zip(asked, first.values, coarse, first.pairs, rows)
-    ]
-    return Sensitivities(
-        scene.title or scene.name, model, tuple(given), without, (*_notes(scene, levels, given),)
+            rows[k].append(
+                Derivative(
+                    path,
+                    written=sides.written,
+                    at=sides.at,
+                    unit=sides.unit,
+                    by=fine[k],
+                    elasticity=fine[k] * scale,
+                    apart=abs(coarse[0][k] - fine[k]) * abs(scale) if coarse else None,
+                    side=sides.side,
+                )
+            )
+    first, last = meshes[0], meshes[-1]
+    of_numbers = tuple(
+        OfNumber(
+            str(quantity),
+            value=first.values[k],
+            unit=quantity.unit,
+            pair=first.pairs[k],
+            apart=abs(first.values[k] - last.values[k]) if len(meshes) > 1 else None,
+            derivatives=_ranked(rows[k]),
+        )
+        for k, quantity in enumerate(quantities)
     )
+    notes = tuple(_notes(scene, levels, of_numbers))
+    return Sensitivities(scene.title or scene.name, model, of_numbers, without, notes)
 
 
 def _ranked(rows: list[Derivative]) -> tuple[Derivative, ...]:
-    """The strongest first; what is nothing beside it, and not by a length of zero, is zero."""
+    """Return the strongest first; negligible ones, unless by a length of zero, as zero."""
     least = NOTHING * max((abs(d.elasticity) for d in rows), default=0.0)
-    kept = [
+    cleaned = [
         replace(d, by=0.0, elasticity=0.0) if d.at and abs(d.elasticity) <= least else d
         for d in rows
     ]
-    return tuple(sorted(kept, key=lambda d: -abs(d.elasticity)))
+    return tuple(sorted(cleaned, key=lambda d: -abs(d.elasticity)))
 
 
 def _supported(scene: Scene, model: str) -> None:
@@ -243,9 +251,9 @@ def _supported(scene: Scene, model: str) -> None:
             f"the {model} model has no derivatives; ask {', '.join(MODELS[:-1])} or {MODELS[-1]}"
         )
     if model != "solid" and (scene.body is not None or scene.features):
-        what = "a part from a file" if scene.body is not None else scene.features[0].name
+        part = "a part from a file" if scene.body is not None else scene.features[0].name
         raise SolidgearError(
-            f"{what}: derivatives by the {model} model are for shafts of segments; the solid model "
+            f"{part}: derivatives by the {model} model are for shafts of segments; the solid model "
             "has those by springs, masses and materials"
         )
 
@@ -256,13 +264,17 @@ def _coarser(scene: Scene, model: str, options: dict[str, Any]) -> dict[str, Any
     return {"elements": max(1, build(scene, model, **options).mesh["elements"] // 2)}
 
 
-def _plainly(error: SolidgearError) -> str:
-    """The reason alone, of an error that may name file and key."""
+def _mesh_words(level: dict[str, Any]) -> str:
+    return ", ".join(f"{key} {value}" for key, value in level.items())
+
+
+def _reason(error: SolidgearError) -> str:
+    """Return the reason alone, of an error that may name file and key."""
     return str(getattr(error, "reason", "") or error).splitlines()[0]
 
 
-class Derived:
-    """Numbers of one body and what they feel."""
+class SolvedMesh:
+    """Numbers of a scene on one mesh, with their derivatives."""
 
     def __init__(self, scene: Scene, model: str, numbers: Sequence[Quantity], options: dict):
         self.scene, self.model = scene, model
@@ -274,23 +286,21 @@ class Derived:
         shapes = None
         if any(q.is_frequency for q in numbers):
             shapes = modes(self.body, scene, n=scene.ask.modes)
-        for wanted in numbers:
-            if wanted.is_frequency:
+        for number in numbers:
+            if number.is_frequency:
                 assert shapes is not None
-                mode = shapes.named(str(wanted))
+                mode = shapes.named(str(number))
                 if mode is None:
                     names = listed(list(map(str, shapes.names)))
-                    raise SolidgearError(f"{wanted}: no such mode was found; there are {names}")
+                    raise SolidgearError(f"{number}: no such mode was found; there are {names}")
                 self.values.append(mode.frequency_hz)
                 self.forms.append(mode_form(self.body, self.supports, mode))
                 self.pairs.append(mode.multiplicity > 1)
                 continue
-            points = wanted.points_among([p.name for p in scene.ports])
+            points = number.points_among([port.name for port in scene.ports])
             if len(points) > 1:
-                raise SolidgearError(f"{wanted}: terms between points have no derivatives here")
-            value, form = entry_form(
-                self.body, self.supports, wanted, (*points, scene.port.name)[0]
-            )
+                raise SolidgearError(f"{number}: terms between points have no derivatives here")
+            value, form = entry_form(self.body, self.supports, number, (*points, scene.port.name)[0])
             self.values.append(value)
             self.forms.append(form)
             self.pairs.append(False)
@@ -298,10 +308,10 @@ class Derived:
 
 
 def _notes(scene: Scene, levels: list[dict], of: Sequence[OfNumber]) -> Iterator[str]:
-    held = [b.name for b in scene.bearings if b.catalogue is not None]
-    if held:
-        yield f"The stiffness of catalogue bearings ({listed(held)}) is held fixed."
-    pairs = [one.name for one in of if one.pair]
+    fixed = [b.name for b in scene.bearings if b.catalogue is not None]
+    if fixed:
+        yield f"The stiffness of catalogue bearings ({listed(fixed)}) is held fixed."
+    pairs = [number.name for number in of if number.pair]
     if pairs:
         yield f"{listed(pairs)}: derivative of the mean of the pair."
     for side in ("larger", "smaller"):
@@ -309,5 +319,5 @@ def _notes(scene: Scene, levels: list[dict], of: Sequence[OfNumber]) -> Iterator
         if paths:
             yield f"One-sided, for {side} entries, as the file allows no others: {listed(paths)}."
     if len(levels) > 1:
-        mesh = ", ".join(f"{key} {value}" for key, value in levels[1].items())
+        mesh = _mesh_words(levels[1])
         yield f"Mesh: distance from the derivative on a coarser mesh ({mesh}); no proven bound."

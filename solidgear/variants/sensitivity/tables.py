@@ -14,9 +14,9 @@ from solidgear.show.table import Column, Table, text
 from solidgear.show.units import Units
 from solidgear.show.words import percent
 
-#: rows of a table and bars of a chart: what comes behind moves the number little
+#: most rows of a table and bars of a chart; further entries move the number little
 MOST = 15
-#: of the number, below which nothing is told of the mesh
+#: smallest distance from the derivative on a coarser mesh that is shown, of the number
 LEAST = 1e-4
 #: px; height of a bar, and of names on a wide and on a narrow page
 BAR, NAMES, NARROW_NAMES = 20.0, 250.0, 172.0
@@ -24,48 +24,40 @@ UP, DOWN = "a larger entry raises it", "a larger entry lowers it"
 
 
 def strongest(of: Any) -> list[Any]:
-    """Entries that move a number most."""
-    return [one for one in of.derivatives if one.elasticity][:MOST]
+    """Return the derivatives by the entries that move a number most."""
+    return [derivative for derivative in of.derivatives if derivative.elasticity][:MOST]
 
 
 def table(of: Any, units: Units, rows: Sequence[Any] | None = None) -> Table:
-    """Entries that move one number."""
+    """Return the table of the entries that move one number."""
     shown = strongest(of) if rows is None else rows
-    unit = units.unit(of.unit)
     columns: list[Column] = [
         text("entry of the file", lambda d: d.path),
         text("as written", lambda d: d.written),
         Column("for 1 % more", lambda d: d.elasticity / 100, percent),
-        Column(
-            "by its unit", lambda d: f"{_signed(units, d.by_unit, of.unit)} {_per(unit, d.unit)}"
-        ),
+        Column("by its unit", lambda d: _by_unit(d, of.unit, units)),
     ]
-    apart = [d.apart / 100 for d in shown if d.apart is not None]
-    if max(apart, default=0.0) >= LEAST:
+    distances = [d.apart / 100 for d in shown if d.apart is not None]
+    if max(distances, default=0.0) >= LEAST:
         columns.append(Column("mesh", lambda d: d.apart and d.apart / 100, _mesh))
-    rest = [d for d in of.derivatives if d not in shown]
-    still = sum(not d.elasticity for d in rest)
+    others = [d for d in of.derivatives if d not in shown]
+    without_effect = sum(not d.elasticity for d in others)
     note = []
-    if apart and max(apart) < LEAST:
+    if distances and max(distances) < LEAST:
         note.append(f"Mesh: below {percent(LEAST, signed=False)} everywhere.")
-    if len(rest) > still:
-        most = percent(abs(rest[0].elasticity) / 100, signed=False)
-        note.append(f"{len(rest) - still} more move it by {most} or less.")
-    if still:
-        note.append(f"Without effect: {still}.")
+    if len(others) > without_effect:
+        most = percent(abs(others[0].elasticity) / 100, signed=False)
+        note.append(f"{len(others) - without_effect} more move it by {most} or less.")
+    if without_effect:
+        note.append(f"Without effect: {without_effect}.")
     value = units.text(of.value, of.unit)
     return Table(f"What would move {of.name} ({value})", columns, shown, " ".join(note))
 
 
-def _per(unit: str, own: str) -> str:
-    """Unit of a derivative."""
-    return f"{unit} per {own or '1 in SI'}"
-
-
-def _signed(units: Units, value: float, si: str) -> str:
-    """A change, to four digits with its sign."""
-    here = units.value(value, si) or 0.0
-    return f"{here:+.4g}"
+def _by_unit(derivative: Any, unit: str, units: Units) -> str:
+    """Return a derivative by one unit of the file, to four digits with its sign."""
+    value = units.value(derivative.by_unit, unit) or 0.0
+    return f"{value:+.4g} {units.unit(unit)} per {derivative.unit or '1 in SI'}"
 
 
 def _mesh(share: float) -> str:
@@ -74,8 +66,8 @@ def _mesh(share: float) -> str:
     return f"+- {percent(share, signed=False)}"
 
 
-def lines(found: Any) -> Table:
-    """All derivatives for other programs, in SI."""
+def lines(result: Any) -> Table:
+    """Return the table of all derivatives for other programs, in SI."""
     heads = (
         "number",
         "value",
@@ -91,10 +83,10 @@ def lines(found: Any) -> Table:
     )
     rows = [
         (
-            one.name,
-            one.value,
-            one.unit,
-            one.apart,
+            number.name,
+            number.value,
+            number.unit,
+            number.apart,
             d.path,
             d.written,
             d.at,
@@ -103,14 +95,14 @@ def lines(found: Any) -> Table:
             d.apart,
             d.side,
         )
-        for one in found.of
-        for d in one.derivatives
+        for number in result.of
+        for d in number.derivatives
     ]
     return Table("sensitivities", [Column(head, write=repr) for head in heads], rows)
 
 
 def chart(of: Any, width: float = WIDE) -> Chart | None:
-    """Bars of the change of one number for one per cent of each entry."""
+    """Draw bars of the change of one number for one per cent of each entry."""
     rows = strongest(of)
     if not rows:
         return None
@@ -145,23 +137,25 @@ def chart(of: Any, width: float = WIDE) -> Chart | None:
     return Chart([[panel]], width)
 
 
-def write(folder: Path, found: Any, units: Units) -> list[Path]:
+def write(folder: Path, result: Any, units: Units) -> list[Path]:
     """Write page, CSV, JSON and charts into a folder."""
-    charts = {f"sensitivities_{k}": partial(chart, one) for k, one in enumerate(found.of, start=1)}
+    charts = {
+        f"sensitivities_{k}": partial(chart, number) for k, number in enumerate(result.of, start=1)
+    }
     return write_files(
         folder,
         "sensitivities",
-        f"{found.title}: sensitivities",
-        f"By the {found.model} model.",
-        [table(one, units) for one in found.of],
-        found.as_dict(),
-        lines={"sensitivities": lines(found)},
+        f"{result.title}: sensitivities",
+        f"By the {result.model} model.",
+        [table(number, units) for number in result.of],
+        result.as_dict(),
+        lines={"sensitivities": lines(result)},
         charts=charts,
-        notes=notes(found),
+        notes=notes(result),
     )
 
 
-def notes(found: Any) -> list[str]:
-    """Entries held, accuracy of derivatives, and entries without any."""
-    without = [f"No derivative by {path}: {why}." for path, why in found.without.items()]
-    return [*found.notes, *without]
+def notes(result: Any) -> list[str]:
+    """Return sentences on entries held, accuracy of derivatives, and entries without any."""
+    without = [f"No derivative by {path}: {why}." for path, why in result.without.items()]
+    return [*result.notes, *without]

@@ -1,4 +1,4 @@
-"""Numbers as people write them, with a unit or without one, of whatever dimension."""
+"""Numbers as people write them, with a unit or without one, of any dimension."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)", re.S
 
 
 def in_si(value: object) -> float | None:
-    """A number, or a text with a unit, in SI; None for what is neither.
+    """Return a number, or a text with a unit, in SI; None for any other value.
 
     Examples
     --------
@@ -22,7 +22,7 @@ def in_si(value: object) -> float | None:
         return float(value)
     if not isinstance(value, str):
         return None
-    if not (found := amount(value)) or not found[2]:
+    if not (match := amount(value)) or not match[2]:
         return None
     for dimension in DIMENSIONS:
         try:
@@ -33,5 +33,5 @@ def in_si(value: object) -> float | None:
 
 
 def amount(word: object) -> re.Match[str] | None:
-    """Number and unit of a text."""
+    """Match number and unit of a text."""
     return _NUMBER.fullmatch(word.strip()) if isinstance(word, str) else None

@@ -1,160 +1,344 @@
-"""Solution of one bearing set: statics at the lumped point and first modes, as a row."""
+"""Rows of a sweep of bearings alone: the body once, its reduction once, then a small problem a row,
+with statics at the lumped point and the first modes.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
-from typing import Any
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any, ClassVar
 
+from solidgear.bearings.solved import waiting
 from solidgear.core.body import Body
-from solidgear.core.errors import SolidgearError
+from solidgear.core.errors import SolidgearError, listed
 from solidgear.core.frames import DOF_NAMES
 from solidgear.core.judge.quantities import size
-from solidgear.core.machine.threads import pinned
+from solidgear.core.ladder import build
+from solidgear.core.ladder.registry import LADDER
+from solidgear.core.models.limits import number
 from solidgear.core.quantity import Quantity
-from solidgear.core.reduction.moments import Reduced
+from solidgear.core.reduction.moments import LEVELS, Reduced, reduce
 from solidgear.core.solve.modes import modes
 from solidgear.core.solve.statics import condense
-from solidgear.variants.sweep.bearing_variants import BearingVariants
+from solidgear.variants.sweep.bearing_variants import BearingVariants, SeatedShaft
+from solidgear.variants.sweep.file_task import BARS, BOUND, Task, without_bars
 from solidgear.variants.sweep.ritz import Seats, ritz_modes
+from solidgear.variants.sweep.rows import RowFile
 
-#: Entries of the stiffness and the compliance that a row holds.
+#: entries of the stiffness and the compliance that a row holds
 ENTRIES = {
     name: (i, i) for i, name in enumerate(2 * d if i < 3 else d for i, d in enumerate(DOF_NAMES))
 } | {"x_thz": (0, 5), "z_thx": (2, 3)}
-
-
-#: bound of what the reduction leaves of natural frequencies, relative, and words on all other bars
-BOUND, BARS = "reduction_bound", "bars"
-
-
-def without_bars(model: str) -> str:
-    """Words on numbers of a mesh that nothing was told of."""
-    return f"none: the {model} mesh was given; -f auto judges its own"
-
-
-def columns(variants: BearingVariants, n: int, barred: bool) -> dict[str, type]:
-    """Names and types of the columns of a row, in order."""
-
-    def with_bar(name: str) -> dict[str, type]:
-        names = [name, f"{name} bar"] if barred else [name]
-        return dict.fromkeys(names, float)
-
-    out: dict[str, type] = {"variant": int, **variants.columns}
-    out |= {"status": str, "how": str, BOUND: float, BARS: str, "rigid_modes": int}
-    for kind in "KC":
-        for name in ENTRIES:
-            out |= with_bar(f"{kind}_{name}")
-    for k in range(1, n + 1):
-        out |= with_bar(f"f{k}_hz") | {f"mode{k}": str}
-    return out
+#: most elastic shapes of a row, two columns each; a basis that holds as many is no small problem
+MOST_SHAPES = 1000
+#: variants that the basis is tried on before the run
+PROBES = 24
+#: sets of seats whose small problems are kept
+KEPT = 50
 
 
 @dataclass(frozen=True)
-class Task:
-    """Everything that is needed to turn variants into rows; small, so that it can be sent to other
-    processes.
-    """
+class SweptBearings:
+    """Account of a sweep of bearings."""
+
+    path: Path
+    total: int  #: number of variants
+    skipped: int  #: rows that were there before
+    refused: int = 0  #: variants without numbers, of this run
+    full: int = 0  #: variants whose modes were solved on the body itself, of this run
+    #: unknowns, seats, basis: of the body; seats on it; unknowns of the largest small problem. Zero
+    #: if there was nothing left to do.
+    unknowns: int = 0
+    seats: int = 0
+    basis: int = 0
+    #: seconds_once, seconds_each: wall seconds for body and reduction, and per variant of this run
+    seconds_once: float = 0.0
+    seconds_each: float = 0.0
+    #: reasons why variants were refused, and how many for that reason, of this run
+    whys: dict[str, int] = field(default_factory=dict)
+    #: sentence on the load at which the stiffness of catalogue bearings is taken
+    settling: str = ""
+
+
+@dataclass(eq=False)
+class BearingTask(Task[SweptBearings]):
+    """Turns bearing sets on one body into rows; other processes get the small operators alone."""
+
+    batch: ClassVar[tuple[int, int]] = 50, 50
 
     variants: BearingVariants
-    #: from small to large, tried one after the other while the bound of a variant exceeds the
-    #: tolerance
-    bases: tuple[Reduced, ...]
-    n: int  #: elastic shapes wanted, twins counted twice
-    tolerance: float  #: relative error of a frequency that is let pass
-    #: relative, of the mesh, by the names of numbers and modes; empty where none is known
-    bars: Mapping[str, float] = field(default_factory=dict)
-    said: str = ""  #: where they come from, or why there are none
+    model: str
+    options: Mapping[str, Any]  #: of the builder of the model
+    n: int  #: elastic shapes, twins counted twice
+    tolerance: float  #: relative error of frequencies against the same body solved in full
+    #: relative error bars of the mesh by the names of numbers and modes; None where it has none
+    bars: Mapping[str, float] | None = None
+    judged_on: int = 0  #: number of bearing sets that these are the largest over
+    #: from small to large, tried one after the other while the bound of a row exceeds the tolerance
+    bases: tuple[Reduced, ...] = ()
 
-    @pinned
-    def rows(self, indices: Iterable[int]) -> list[dict[str, Any]]:
-        """Rows of some variants.
+    def __post_init__(self) -> None:
+        self.body: Body | None = None
+        self.seats = self.full = 0
+        self.whys = Counter[str]()
 
-        A row comes from the first basis that does for it, so it does not depend on which rows were
-        solved before: a sweep that was stopped gives the same digits as one that was not.
+    @property
+    def columns(self) -> dict[str, type]:
+        out: dict[str, type] = {"how": str, BOUND: float, BARS: str, "rigid_modes": int}
+        for kind in "KC":
+            for name in ENTRIES:
+                out |= self._with_bar(f"{kind}_{name}")
+        for k in range(1, self.n + 1):
+            out |= self._with_bar(f"f{k}_hz") | {f"mode{k}": str}
+        return out
+
+    def _with_bar(self, name: str) -> dict[str, type]:
+        return {name: float} if self.bars is None else {name: float, f"{name} bar": float}
+
+    @property
+    def plan(self) -> dict[str, Any]:
+        scene = self.variants.scene.as_dict()
+        return {
+            "scene": {
+                key: scene[key] for key in scene if key not in ("title", "name", "source", "ask")
+            },
+            "fidelity": self.model,
+            "set": {
+                key: list(value) if isinstance(value, tuple) else value
+                for key, value in self.options.items()
+            },
+            "n": self.n,
+            "tolerance": self.tolerance,
+        }
+
+    # ------------------------------------------------------------------------------ before the rows
+    def prepare(self, file: RowFile, progress: Callable[[str], None]) -> None:
+        """Build the body with all seats, and a basis that does for some variants or the largest."""
+        shaft = self.variants.shaft()
+        self.seats = self._checked_seats(shaft)
+        progress(f"body with {self.seats} seats")
+        self.body = build(shaft, self.model, **self.options)
+        progress(f"reducing {self.body.size} unknowns")
+        self.bases = (reduce(self.body, self.n, file.basis or 0),)
+        if file.basis is None:
+            # probes are of all variants: the basis is the same after an interruption
+            total = len(self.variants)
+            self._enlarge_for(range(total)[:: max(1, total // PROBES)])
+            file.basis = self.bases[0].level
+
+    def _checked_seats(self, shaft: SeatedShaft) -> int:
+        """Return the number of seats, which one body must carry."""
+        scene = self.variants.scene
+        seats, most = len(shaft.stations) - len(scene.ports), LADDER[self.model].most_seats
+        if most is not None and seats > most:
+            raise SolidgearError(
+                f"{seats} different seats are more than the {most} one {self.model} body carries; "
+                "vary fewer positions, sweep them in parts, or use a cheaper model"
+            )
+        attachments = self.options.get("attachments") or ()
+        kinds = attachments if isinstance(attachments, (tuple, list)) else (attachments,)
+        if "rigid" in kinds and seats > len(scene.bearings):
+            raise SolidgearError(
+                "attachments: a rigid seat stiffens the shaft wherever it is meshed, so seats "
+                "cannot be rigid in a sweep of positions"
+            )
+        return seats
+
+    def _enlarge_for(self, probes: Iterable[int]) -> None:
+        """Begin with a basis that does for some variants, or with the largest."""
+        while any(map(self.weak, self.rows(probes))) and (basis := self._larger_basis()):
+            self.bases = (basis,)
+
+    def _larger_basis(self) -> Reduced | None:
+        assert self.body is not None
+        level = self.bases[-1].level + 1
+        return reduce(self.body, self.n, level) if level < len(LEVELS) else None
+
+    # -------------------------------------------------------------------------------------- rows
+    def numbers(self, index: int) -> dict[str, Any]:
+        """Return the numbers of a variant by the first basis that does for it, which does not depend
+        on the variants before: a sweep that was stopped gives the same digits as one that was not.
         """
-        seats: dict[tuple[int, ...], Seats] = {}
-        return [self._first_that_does(i, seats) for i in indices]
-
-    def _first_that_does(self, index: int, seats: dict[tuple[int, ...], Seats]) -> dict[str, Any]:
+        scene, supports = self.variants.supports(index)
+        frame = self.bases[0].frame
+        static = condense(frame, supports, scene.port.name)
+        ports = tuple(frame.port_index(name) for name in supports.ports)
         for basis in self.bases:
-            row = self._row(index, basis, seats)
-            if not self.weak(row):
+            seats = self._seats_at(basis, ports)
+            shapes = ritz_modes(basis, seats, supports, self.n, self.tolerance)
+            if shapes.error_bound <= self.tolerance:
                 break
-        return row
-
-    def _row(
-        self, index: int, basis: Reduced, seats: dict[tuple[int, ...], Seats]
-    ) -> dict[str, Any]:
-        row: dict[str, Any] = {"variant": index, **self.variants.told(index)}
-        frame = basis.frame
-        try:
-            scene, supports = self.variants.supports(index)
-            static = condense(frame, supports, scene.port.name)
-            ports = tuple(frame.port_index(name) for name in supports.ports)
-            place = (basis.level, *ports)
-            if place not in seats:
-                seats[place] = Seats(basis, ports)
-            found = ritz_modes(basis, seats[place], supports, self.n, self.tolerance)
-        except SolidgearError as error:
-            return row | {"status": self.variants.status(error, index), "how": ""}
-        row |= {
-            "status": "ok",
+        numbers: dict[str, Any] = {
             "how": "reduced",
-            BOUND: found.error_bound,
-            BARS: self.said,
+            BOUND: shapes.error_bound,
+            BARS: self._words_on_bars,
             "rigid_modes": supports.unresisted(frame).shape[1],
         }
-        row |= {
-            f"{kind}_{name}": float(m[at])
-            for kind, m in (("K", static.stiffness), ("C", static.compliance))
-            for name, at in ENTRIES.items()
-        }
-        row |= self._static_bars(row)
-        return row | self._modal(found.frequency_hz, found.names)
+        for kind, matrix in (("K", static.stiffness), ("C", static.compliance)):
+            numbers |= {f"{kind}_{name}": float(matrix[ij]) for name, ij in ENTRIES.items()}
+        numbers |= self._bars_of_statics(numbers)
+        return numbers | self._columns_of_modes(shapes.frequency_hz, shapes.names)
 
-    def _static_bars(self, row: Mapping[str, Any]) -> dict[str, Any]:
-        """Bars of the entries of a row, in their units."""
-        out = {}
+    def _seats_at(self, basis: Reduced, ports: tuple[int, ...]) -> Seats:
+        key = (basis.level, *ports)
+        seats = self._seats.get(key)
+        if seats is None:
+            if len(self._seats) >= KEPT:
+                self._seats.clear()
+            seats = self._seats[key] = Seats(basis, ports)
+        return seats
+
+    @cached_property
+    def _seats(self) -> dict[tuple[int, ...], Seats]:
+        return {}
+
+    @property
+    def _words_on_bars(self) -> str:
+        if self.bars is None:
+            return without_bars(self.model)
+        return f"of the mesh: the largest over {self.judged_on} bearing sets"
+
+    def _bars_of_statics(self, numbers: Mapping[str, Any]) -> dict[str, float]:
+        """Return the error bars of the entries of a row, in their units."""
+        bars, out = self.bars or {}, {}
         for kind in "KC":
-            values = {_quantity(kind, name): row[f"{kind}_{name}"] for name in ENTRIES}
-            for name, quantity in zip(ENTRIES, values):
-                if quantity in self.bars:
-                    width = self.bars[quantity] * size(values, quantity)
-                    out[f"{kind}_{name} bar"] = width
+            names = {name: Quantity(f"{kind}_{name.replace('_', ',')}") for name in ENTRIES}
+            values = {quantity: numbers[f"{kind}_{name}"] for name, quantity in names.items()}
+            for name, quantity in names.items():
+                if quantity in bars:
+                    out[f"{kind}_{name} bar"] = bars[quantity] * size(values, quantity)
         return out
 
-    def _modal(self, frequency_hz: Iterable[float], names: Iterable[str]) -> dict[str, Any]:
-        """Natural frequencies of a row with their bars and names."""
-        out: dict[str, Any] = {}
+    def _columns_of_modes(
+        self, frequency_hz: Iterable[float], names: Iterable[str]
+    ) -> dict[str, Any]:
+        """Return the natural frequencies of a row with their bars and names."""
+        bars, out = self.bars or {}, dict[str, Any]()
         for k, (f, name) in enumerate(zip(frequency_hz, names), start=1):
             out |= {f"f{k}_hz": float(f), f"mode{k}": name}
-            if name in self.bars:
-                out[f"f{k}_hz bar"] = self.bars[name] * float(f)
+            if name in bars:
+                out[f"f{k}_hz bar"] = bars[name] * float(f)
         return out
 
-    def weak(self, row: dict[str, Any]) -> bool:
-        """Tell whether the error bound of a row exceeds the tolerance."""
+    # ------------------------------------------------------------------------------ after the rows
+    def weak(self, row: Mapping[str, Any]) -> bool:
+        """True if the error bound of a row exceeds the tolerance."""
         return row["status"] == "ok" and not row[BOUND] <= self.tolerance
 
-    def in_full(self, row: dict[str, Any], body: Body) -> dict[str, Any]:
-        """A row with its modes solved on the body itself."""
-        _, supports = self.variants.supports(row["variant"])
-        found = modes(body, supports, self.n, ovalising=False)
+    def checked(self, row: dict[str, Any]) -> dict[str, Any]:
+        """Return a row within the tolerance: of a larger basis, or solved on the body itself."""
+        if row["status"] != "ok":
+            self.whys[row["status"]] += 1
+            return row
+        if self.weak(row):
+            row = self._again(row)  # there may be a larger basis by now
+        while self.weak(row) and (basis := self._larger_basis()):
+            self.bases = (*self.bases, basis)
+            row = self._again(row)
+        if self.weak(row):
+            self.full += 1
+            row |= self._modes_in_full(row["variant"])
+        return row
+
+    def _again(self, row: Mapping[str, Any]) -> dict[str, Any]:
+        return self.rows([row["variant"]])[0]
+
+    def _modes_in_full(self, index: int) -> dict[str, Any]:
+        """Return the columns of the modes of a variant, solved on the body itself."""
+        assert self.body is not None
+        _, supports = self.variants.supports(index)
+        solved = modes(self.body, supports, self.n, ovalising=False)
         shapes = [
-            (m.frequency_hz, m.name)
-            for m in found.modes
-            if not m.name.rigid
-            for _ in range(m.multiplicity)
+            (mode.frequency_hz, str(mode.name))
+            for mode in solved.modes
+            if not mode.name.rigid
+            for _ in range(mode.multiplicity)
         ][: self.n]
+        frequencies = [frequency for frequency, _ in shapes]
         # the residual bounds the error of an eigenvalue, twice that of a frequency
-        return (
-            row
-            | {"how": "full", BOUND: found.evidence["residual"] / 2}
-            | self._modal([f for f, _ in shapes], [str(name) for _, name in shapes])
+        return {
+            "how": "full",
+            BOUND: solved.evidence["residual"] / 2,
+            **self._columns_of_modes(frequencies, [name for _, name in shapes]),
+        }
+
+    def result(self, file: RowFile, skipped: int, seconds: tuple[float, float]) -> SweptBearings:
+        total, (once, rows) = len(self.variants), seconds
+        account = SweptBearings(file.path, total, skipped, settling=_settling(self.variants))
+        if self.body is None:
+            return account
+        return replace(
+            account,
+            refused=self.whys.total(),
+            full=self.full,
+            unknowns=self.body.size,
+            seats=self.seats,
+            basis=self.bases[-1].size,
+            seconds_once=once,
+            seconds_each=rows / (total - skipped),
+            whys=dict(self.whys),
         )
 
 
-def _quantity(kind: str, name: str) -> Quantity:
-    """Name of an entry among compared numbers."""
-    return Quantity(f"{kind}_{name.replace('_', ',')}")
+def _settling(variants: BearingVariants) -> str:
+    """Return the sentence on the load at which the stiffness of catalogue bearings is taken."""
+    names = waiting(variants.scene)
+    if not names:
+        return ""
+    which = f"Catalogue {'bearing' if len(names) == 1 else 'bearings'} {', '.join(names)}"
+    factors = [entry.label for entry in variants.entries if variants.multiplies(entry)]
+    text = "stiffness under [load]"
+    if len(factors) < len(variants.entries):
+        text += ", found anew for every variant"
+    if not factors:
+        return f"{which}: {text}."
+    return f"{which}: {text}; {listed(factors)} multiplies it and leaves the loads as they are."
+
+
+def bearing_task(
+    variants: BearingVariants,
+    *,
+    model: str = "harmonic",
+    options: Mapping[str, Any] | None = None,
+    n: int | None = None,
+    tolerance: float = 1e-6,
+    bars: Mapping[str, float] | None = None,
+    judged_on: int = 0,
+) -> BearingTask:
+    """Statics and first modes of many bearing sets on one body.
+
+    Parameters
+    ----------
+    model, options
+        As for :func:`solidgear.core.ladder.build`.
+    n : int, optional
+        Elastic shapes, twins counted twice; as many as the scene asks for by default.
+    tolerance : float
+        Relative error of frequencies against the same body solved in full. A variant whose bound
+        exceeds it makes the basis larger, and where that does not do it is solved in full.
+    bars : mapping of str to float, optional
+        Relative, of the mesh, by the names of numbers and modes, as of
+        :func:`solidgear.variants.sweep.choice.bars_of_rows`; bars stand in columns beside numbers.
+    judged_on : int
+        Bearing sets that these are the largest over.
+
+    Raises
+    ------
+    SolidgearError
+        Values that no variant can have; too many seats are refused by the run.
+
+    Examples
+    --------
+    >>> from solidgear.variants.sweep.bearing_variants import bearing_variants
+    >>> sets = bearing_variants("geometry/shaft_stepped.toml", ["bearing.A.scale=1,2"])
+    >>> [*bearing_task(sets, model="timoshenko", n=1).columns][-2:]
+    ['f1_hz', 'mode1']
+    """
+    n = variants.scene.ask.modes if n is None else n
+    number("sweep", "n", n, least=1, below=MOST_SHAPES + 1, whole=True)
+    number("sweep", "tolerance", tolerance, above=0, below=1)
+    variants.first_sound()
+    return BearingTask(variants, model, dict(options or {}), n, tolerance, bars, judged_on)

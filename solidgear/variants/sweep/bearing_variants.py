@@ -1,6 +1,6 @@
-"""The bearing sets of a sweep as scenes of a file, and the one shaft that carries all their seats.
+"""Bearing sets of a sweep as scenes of a file, and the one shaft that carries all their seats.
 
-What varies is read by the paths and rules of every sweep over a file; here places of seats are read
+Entries are read by the paths and rules of every sweep over a file; here places of seats are read
 once each, and springs from the tables of their bearings alone.
 """
 
@@ -24,10 +24,9 @@ from solidgear.core.scene.sprung import resprung
 from solidgear.parts.body_file import BodyFile
 from solidgear.variants.sweep.design import Design
 from solidgear.variants.sweep.entries import Entry
-from solidgear.variants.sweep.file_variants import OWN
-from solidgear.variants.sweep.scene_variants import SceneVariants, scene_variants
+from solidgear.variants.sweep.file_variants import MAIN, SceneVariants, scene_variants
 
-#: keys of a bearing that its springs are made of, and those of the housing of all
+#: keys of a bearing that make its springs, and those of the housing of all
 SPRINGS = ("stiffness", "matrix", "axial_series", "housing", "scale")
 HOUSING = ("stiffness", "matrix", "axial", "scale")
 POSITION = "position"
@@ -39,9 +38,8 @@ KEPT = 200
 
 @dataclass(frozen=True)
 class SeatedShaft:
-    """A shaft with every seat that a sweep may use, as builders see a scene.
-
-    A `Scene` refuses seats that overlap; here only one of them carries a bearing at a time.
+    """A shaft with every seat that a sweep may use, which builders take as a scene; seats may overlap,
+    as only one of them carries a bearing at a time.
     """
 
     segments: tuple[Segment, ...]
@@ -52,7 +50,7 @@ class SeatedShaft:
 
     @property
     def plain(self) -> SeatedShaft:
-        """The same shaft as its segments alone."""
+        """Shaft of the segments alone."""
         return replace(self, features=(), body=None)
 
     @property
@@ -67,47 +65,50 @@ class BearingVariants(SceneVariants):
 
     @cached_property
     def scene(self) -> Scene:
-        """The file as it is."""
+        """Scene of the file as it is."""
         return load(self.path)
 
     @cached_property
     def moves(self) -> list[int]:
-        """Places of the entries that move seats."""
-        return [k for k, one in enumerate(self.entries) if one.keys[-1] == POSITION]
+        """Indices of the entries that move seats."""
+        return [k for k, varying in enumerate(self.entries) if varying.keys[-1] == POSITION]
 
     @cached_property
     def _placed(self) -> dict[tuple[float, ...], Scene | SceneError]:
-        """Scene, or why there is none, for every placement of the seats that occurs, catalogue
-        bearings without their stiffness.
+        """Scene, or the error of it, for every placement of seats that occurs; catalogue bearings
+        without stiffness.
         """
         moving = [self.entries[k] for k in self.moves]
         out: dict[tuple[float, ...], Scene | SceneError] = {}
         for key in dict.fromkeys(map(tuple, self.values[:, self.moves].tolist())):
             try:
-                out[key] = scene_of(self.put(OWN, moving, key), self.path, alone=False)
+                out[key] = scene_of(self.put(MAIN, moving, key), self.path, alone=False)
             except SceneError as error:
                 out[key] = error
         return out
 
-    def of(self, index: int) -> Scene:
+    def variant(self, index: int) -> Scene:
         row = self.values[index].tolist()
         placed = self._placed[tuple(row[k] for k in self.moves)]
         if isinstance(placed, SceneError):
             raise placed
         springs = [k for k in range(len(row)) if k not in self.moves]
         if springs:
-            tables = self.put(OWN, [self.entries[k] for k in springs], [row[k] for k in springs])
-            touched = [place.keys for k in springs for place in self.entries[k].places]
-            placed = resprung(placed, tables, touched)
+            varied = [self.entries[k] for k in springs]
+            tables = self.put(MAIN, varied, [row[k] for k in springs])
+            keys = [place.keys for varying in varied for place in varying.places]
+            placed = resprung(placed, tables, keys)
         if all(bearing.catalogue is None for bearing in placed.bearings):
             return placed
         return self._at_load(placed, row)
 
     def _at_load(self, scene: Scene, row: Sequence[float]) -> Scene:
-        """A scene whose catalogue bearings carry what the load of the scene brings them; what it is
-        multiplied by has no part in it.
+        """Return a scene whose catalogue bearings are stiff as under the load of the scene, which the
+        factors of their stiffness do not change.
         """
-        key = tuple(v for one, v in zip(self.entries, row) if not self.multiplies(one))
+        key = tuple(
+            value for varying, value in zip(self.entries, row) if not self.multiplies(varying)
+        )
         if key not in self._at_rest:
             if len(self._at_rest) >= KEPT:
                 self._at_rest.clear()
@@ -129,29 +130,25 @@ class BearingVariants(SceneVariants):
     def __getstate__(self) -> dict[str, Any]:
         return {key: value for key, value in self.__dict__.items() if key != "_at_rest"}
 
-    def multiplies(self, one: Entry) -> bool:
+    def multiplies(self, varying: Entry) -> bool:
         """True for an entry that multiplies catalogue bearings alone."""
         return all(
             place.keys[0] == "bearing"
             and place.keys[2:] == ("scale",)
             and self.scene.bearings[int(place.keys[1])].catalogue is not None
-            for place in one.places
+            for place in varying.places
         )
 
     def supports(self, index: int) -> tuple[Scene, Supports]:
-        """Scene of one variant, and its springs on the ports of the :meth:`shaft`. Raises like
-        :meth:`of`.
+        """Return the scene of a variant, and springs on ports of the :meth:`shaft`; raises like
+        :meth:`variant`.
         """
-        scene = self.of(index)
+        scene = self.variant(index)
         return scene, as_supports(scene).on_stations(scene.stations, _port_name)
 
     def shaft(self) -> SeatedShaft:
-        """The shaft with the seats of all placements that can be.
-
-        Raises
-        ------
-        SolidgearError
-            If nothing can be solved, or a rigid seat is to move.
+        """Return the shaft with the seats of all placements that can be solved; SolidgearError if
+        there is none, or a rigid seat is to move.
         """
         placed = [scene for scene in self._placed.values() if isinstance(scene, Scene)]
         if not placed:
@@ -159,11 +156,11 @@ class BearingVariants(SceneVariants):
                 f"no variant can be solved; the first one is refused: {next(iter(self._placed.values()))}"
             )
         for k in self.moves:
-            one = self.entries[k]
-            moved = [self.scene.bearings[int(place.keys[1])] for place in one.places]
-            if len(one.values) > 1 and any(bearing.attachment == "rigid" for bearing in moved):
+            varying = self.entries[k]
+            moved = [self.scene.bearings[int(place.keys[1])] for place in varying.places]
+            if len(varying.values) > 1 and any(b.attachment == "rigid" for b in moved):
                 raise SolidgearError(
-                    f"{one.label}: a rigid seat stiffens the shaft wherever it is meshed, so it "
+                    f"{varying.label}: a rigid seat stiffens the shaft wherever it is meshed, so it "
                     "cannot move in one body; use attachment 'average' or 'section'"
                 )
         seats = {
@@ -172,21 +169,21 @@ class BearingVariants(SceneVariants):
             for b in scene.bearings
         }
         ordered = sorted(seats.values(), key=lambda b: b.y)
-        own = (m for m in self.scene.masses if m.on is None)
+        masses = (mass for mass in self.scene.masses if mass.on is None)
         return SeatedShaft(
             self.scene.segments,
-            (self.scene.port, *ordered, *own, *self.scene.further_ports),
-            self.scene.outline,
-            self.scene.features,
-            self.scene.body,
+            stations=(self.scene.port, *ordered, *masses, *self.scene.further_ports),
+            outline=self.scene.outline,
+            features=self.scene.features,
+            body=self.scene.body,
         )
 
 
 def bearing_variants(
     path: Path | str, vary: Iterable[str], sample: int | None = None, seed: int = 0
 ) -> BearingVariants | None:
-    """Points of a sweep over springs and positions of bearings, all combinations or a sample of them;
-    None where something else varies, or hangs on a bearing that moves.
+    """Return the points of a sweep over springs and positions of bearings, all combinations or a sample
+    of them; None if another entry varies, or a place is counted from a bearing that moves.
 
     Examples
     --------
@@ -197,27 +194,22 @@ def bearing_variants(
     True
     """
     design = Design(tuple(vary), sample, seed)
-    found = scene_variants(Path(path), design, "bearing.1.kxx=log:1e8 N/m:1e10 N/m:9")
-    tables = found.files[OWN]
-    keys = [place.keys for one in found.entries for place in one.places]
-    if not all(one.numeric for one in found.entries) or not all(map(_of_bearings, keys)):
+    variants = scene_variants(Path(path), design, "bearing.1.kxx=log:1e8 N/m:1e10 N/m:9")
+    tables, varied, values = variants.files[MAIN], variants.entries, variants.values
+    keys = [place.keys for varying in varied for place in varying.places]
+    if not all(varying.numeric for varying in varied) or not all(map(_of_bearings, keys)):
         return None
-    if _hangs_on(
-        tables, [entry((*key[:2], "name"), tables) for key in keys if key[-1] == POSITION]
-    ):
+    moved = [entry((*key[:2], "name"), tables) for key in keys if key[-1] == POSITION]
+    if _counted_from(tables, moved):
         return None
-    if sample is None:
-        return BearingVariants(*_fields(found))
-    # every seat is meshed: a position is one of those listed
-    listed = tuple(
-        replace(one, spacing="list") if one.keys[-1] == POSITION else one for one in found.entries
-    )
-    drawn = design.drawn(listed)
-    return BearingVariants(*_fields(replace(found, entries=listed, values=drawn)))
-
-
-def _fields(found: SceneVariants) -> tuple[Any, ...]:
-    return found.path, found.files, found.entries, found.values, found.kept, found.design
+    if sample is not None:
+        # every seat is meshed: a position is one of those listed
+        varied = tuple(
+            replace(varying, spacing="list") if varying.keys[-1] == POSITION else varying
+            for varying in varied
+        )
+        values = design.drawn(varied)
+    return BearingVariants(variants.path, variants.files, varied, values, variants.sums, design)
 
 
 def _of_bearings(keys: Keys) -> bool:
@@ -227,8 +219,8 @@ def _of_bearings(keys: Keys) -> bool:
     return keys[0] == "bearing" and (keys[2] in SPRINGS or keys[2:] == (POSITION,))
 
 
-def _hangs_on(tables: Tables, names: Sequence[Any]) -> bool:
-    """True where the place of something that is no bearing is counted from one of some bearings."""
+def _counted_from(tables: Tables, names: Sequence[Any]) -> bool:
+    """True where a place that is not of a bearing is counted from one of these bearings."""
     middles = {f"bearing.{name}" for name in names}
     return any(
         keys[-1] in DATUMS and keys[0] != "bearing" and entry(keys, tables) in middles
@@ -237,8 +229,8 @@ def _hangs_on(tables: Tables, names: Sequence[Any]) -> bool:
 
 
 def settled_anew(scene: Scene) -> Scene:
-    """A scene whose catalogue bearings carry what its load brings them: a tangent is that of a load,
-    and where a seat moves, loads move with it.
+    """Return a scene with catalogue bearings stiff as under its load: their stiffness depends on the
+    load, and where a seat moves, loads move with it.
     """
     try:
         return solved(scene, shaft(scene)).scene
@@ -249,12 +241,12 @@ def settled_anew(scene: Scene) -> Scene:
 
 
 def _port_name(station: Port | Bearing | PointMass) -> str:
-    """Name of the port of a station in the shaft of a sweep: seats of bearings are shared."""
+    """Return the port of a station in the shaft of a sweep, whose seats bearings share."""
     return seat_name(station) if isinstance(station, Bearing) else station.name
 
 
 def seat_name(bearing: Bearing) -> str:
-    """Name of the port a bearing sits on: bearings of any stiffness share it if they hold the same
-    surface alike.
+    """Return the name of the port of a bearing, which all share that hold the same surface the same
+    way.
     """
     return f"seat at {bearing.y!r} m, {bearing.lo!r} to {bearing.hi!r} m, {bearing.attachment}"

@@ -1,4 +1,4 @@
-"""The shafts of a sweep of trains, each meshed and reduced once for all variants that share it."""
+"""Shafts of a sweep of trains, each meshed and reduced once for all variants that share it."""
 
 from __future__ import annotations
 
@@ -19,38 +19,26 @@ TRAINS = 2
 
 
 class Bench:
-    """Models of shafts and trains at rest, kept from variant to variant.
-
-    Parameters
-    ----------
-    settings : mapping
-        As of :class:`solidgear.trains.assembly.models.Workshop`.
-
-    Attributes
-    ----------
-    made : int
-        Shafts that were meshed and reduced.
-    """
+    """Models of shafts and trains at rest, kept from variant to variant; parameters as of a workshop."""
 
     def __init__(self, reduction: str, kept: int, settings: Mapping[Any, Mapping]):
-        self._how = reduction, kept, settings
+        self._reduction = reduction, kept, settings
         self._models: OrderedDict[Hashable, ShaftModel] = OrderedDict()
         self._trains: OrderedDict[Hashable, Operating] = OrderedDict()
-        self.made = 0
+        self.made = 0  #: shafts that were meshed and reduced
 
     def workshop(self, train: Train, *models: str) -> Workshop:
-        """Workshop of a train that has the bodies of its shafts by these models."""
-        shop = Workshop(train, *self._how)
+        """Return a workshop of a train with the bodies of all shafts by these models."""
+        shop = Workshop(train, *self._reduction)
         for side, model in shop.models_by_shaft(models).items():
             kind, base = checked_model(model)
             shop.add_model(self._shaft(shop, side, base or kind))
         return shop
 
     def operating(self, key: Hashable, train: Train, *models: str) -> Operating:
-        """A train to be put at rest, its shafts by these models; the key is alike for trains that
-        differ in operating points alone.
+        """Return a train to be put at rest, with shafts by these models; the key is the same for
+        trains that differ in operating points alone.
         """
-
         key = key, *models
         if key not in self._trains:
             if len(self._trains) >= TRAINS:
@@ -64,23 +52,24 @@ class Bench:
         if key not in self._models:
             self._make_room(side, model)
             self.made += 1
-            found = shop.shaft_model(side, model)
-            found.body.cache.clear()  # its factors, which nothing asks for again
-            self._models[key] = found
+            shaft = shop.shaft_model(side, model)
+            shaft.body.cache.clear()  # factors, which nothing asks for again
+            self._models[key] = shaft
         self._models.move_to_end(key)
         return self._models[key]
 
     def _make_room(self, side: str, model: str) -> None:
-        """Let go of what was asked for longest ago, for another like the last of its kind."""
-        like = [m.unknowns for m in self._models.values() if (m.side, m.model) == (side, model)]
-        sizes = [one.unknowns for one in self._models.values()]
-        while sizes and sum(sizes) + sum(like[-1:]) > UNKNOWNS:
+        """Drop the shafts used longest ago, for another as large as the last of this side and model."""
+        shafts = self._models.values()
+        expected = [m.unknowns for m in shafts if (m.side, m.model) == (side, model)][-1:]
+        sizes = [shaft.unknowns for shaft in shafts]
+        while sizes and sum(sizes) + sum(expected) > UNKNOWNS:
             self._models.popitem(last=False)
             sizes.pop(0)
 
 
 def surface(scene: Scene) -> Hashable:
-    """All that a body is made of: the shaft, and the places that it is held and loaded at."""
+    """Return all that a body is made of: the shaft, and the places at which it is held and loaded."""
     stations = (
         (type(s), s.name, s.y, s.lo, s.hi, s.attachment, getattr(s, "face", None))
         for s in scene.stations

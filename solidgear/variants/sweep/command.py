@@ -1,11 +1,10 @@
-"""Command ``sweep``: one body, many bearing sets; or many variants of the file of a shaft or train."""
+"""Command ``sweep``: bearing sets on one body, or variants of the file of a shaft or train."""
 
 from __future__ import annotations
 
 import json
 import sys
 from collections.abc import Mapping
-from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
 
@@ -14,6 +13,7 @@ import typer
 from solidgear.core.errors import SolidgearError
 from solidgear.core.ladder import build
 from solidgear.core.ladder.registry import LADDER
+from solidgear.core.plain import plain
 from solidgear.core.scene.toml_file import is_train, parse
 from solidgear.guards.check import cautions
 from solidgear.show.arguments import load
@@ -23,19 +23,18 @@ from solidgear.show.options import AUTO, MODEL, Chosen, Run, options, refuse, re
 from solidgear.show.settled import ended, over_the_sweep
 from solidgear.trains.assembly.shaft import JUDGE, mix_label
 from solidgear.trains.options import Pair, Reduced, of_shafts
-from solidgear.variants.sweep.bearing_sweep import sweep as swept
+from solidgear.variants.sweep.bearing_task import bearing_task
 from solidgear.variants.sweep.bearing_variants import BearingVariants, bearing_variants
 from solidgear.variants.sweep.chart import sweep_table
 from solidgear.variants.sweep.choice import bars_of_rows, settled_for_sweep
 from solidgear.variants.sweep.file_task import Swept
 from solidgear.variants.sweep.rows_command import (
     FEW,
+    OfTrain,
     Rows,
-    Told,
-    checked_chart,
-    drawn,
-    ended_rows,
-    record_of,
+    check_chart,
+    draw_chart,
+    end_rows,
     refusals,
     rows_there,
     solved,
@@ -78,7 +77,7 @@ def sweep(
         ),
     ] = TOLERANCE,
     pair: Pair,
-    told: Told,
+    train_rows: OfTrain,
     reduced: Reduced,
     run: Run,
 ) -> None:
@@ -88,133 +87,122 @@ def sweep(
             "--tol": model.tol is not None,
             "--tolerance": tolerance != TOLERANCE,
         }
-        instead = "its models are those of --pinion and --gear"
-        refuse(of_shaft, f"one shaft, and {scene} is a train: {instead}")
-        _sweep_train(scene, vary or [], rows, pair, model.pairs, told, reduced, run)
+        models = "its models are those of --pinion and --gear"
+        refuse(of_shaft, f"one shaft, and {scene} is a train: {models}")
+        _sweep_train(scene, vary or [], rows, pair, model.pairs, train_rows, reduced, run)
         return
     of_train = {
         "--pinion": pair.pinion != MODEL,
         "--gear": pair.gear != MODEL,
         "--shaft": bool(pair.shafts),
-        "--mesh": bool(told.mesh),
-        "--ask": bool(told.ask),
-        "--every-point": told.every_point,
+        "--mesh": bool(train_rows.mesh),
+        "--ask": bool(train_rows.ask),
+        "--every-point": train_rows.every_point,
         **reduced.given,
     }
     refuse(of_train, f"a train, and {scene} is the scene of one shaft")
-    if not (rows.of_files or told.chart):
+    if not (rows.of_files or train_rows.chart):
         variants = bearing_variants(scene, vary or [], rows.sample, rows.seed)
         if variants is not None:
-            _sweep_shaft(variants, rows, model, tolerance, run)
+            _sweep_bearings(variants, rows, model, tolerance, run)
             return
     if tolerance != TOLERANCE:
         raise SolidgearError("--tolerance is that of one body for many bearing sets; give --tol")
-    _sweep_entries(scene, vary or [], rows, model, told.chart, run)
+    _sweep_scene(scene, vary or [], rows, model, train_rows.chart, run)
 
 
-def _sweep_shaft(
+def _sweep_bearings(
     variants: BearingVariants, rows: Rows, model: Chosen, tolerance: float, run: Run
 ) -> None:
     variants.first_sound()
-    loaded = load(variants.path)
+    scene = load(variants.path)
     # before a file of rows is begun
     settled = bars = None
-    if model.automatic(loaded):
+    if model.automatic(scene):
         with Steps(quiet=not sys.stderr.isatty()) as steps:
             settled = settled_for_sweep(variants, model.tol, progress=steps)
             steps("bars of natural frequencies")
-            bars = bars_of_rows(variants, settled, rows.n or loaded.ask.modes)
-        name, given = settled.rung, settled.options
+            bars = bars_of_rows(variants, settled, rows.n or scene.ask.modes)
+        name, builder_options = settled.rung, settled.options
     else:
         name = str(model.name)
-        given = LADDER[name].checked(options(model.pairs))
-    with rows.counted(run.as_json) as (show, tell):
-        found = swept(
-            variants,
-            fidelity=name,
-            options=given,
-            tolerance=tolerance,
-            bars=bars,
-            judged_on=settled.judged_on if settled else 0,
-            progress=show,
-            tell=tell,
-            out=rows.out,
-            n=rows.n,
-            jobs=rows.jobs,
-            dask=rows.dask,
-            overwrite=rows.overwrite,
-        )
+        builder_options = LADDER[name].checked(options(model.pairs))
+    task = bearing_task(
+        variants,
+        model=name,
+        options=builder_options,
+        n=rows.n,
+        tolerance=tolerance,
+        bars=bars,
+        judged_on=settled.judged_on if settled else 0,
+    )
+    result = rows.run(task, run.as_json)
     if run.as_json:
-        record = asdict(found)
+        record = plain(result)
         if settled is not None:
             record |= settled.as_dict()
         print(json.dumps(record, default=str))
         ended(settled)
         return
-    for sentence in cautions(loaded, build(loaded.plain, "timoshenko"), name):
+    for sentence in cautions(scene, build(scene.plain, "timoshenko"), name):
         print(caution(sentence), file=sys.stderr)
-    new = found.total - found.skipped
-    print(rows_there(found))
+    print(rows_there(result))
+    new = result.total - result.skipped
     if new:
         print(
             "Bearings alone vary: one body does for all, reduced to its seats.\n"
-            f"{found.unknowns} unknowns with {found.seats} seats solved once in "
-            f"{found.seconds_once:.1f} s; {new} variants of up to {found.basis} unknowns, "
-            f"{1e3 * found.seconds_each:.1f} ms each; {found.refused} refused, {found.full} solved in full."
+            f"{result.unknowns} unknowns with {result.seats} seats solved once in "
+            f"{result.seconds_once:.1f} s; {new} variants of up to {result.basis} unknowns, "
+            f"{1e3 * result.seconds_each:.1f} ms each; {result.refused} refused, "
+            f"{result.full} solved in full."
         )
-    for sentence in refusals(found):
-        print(sentence)
-    if found.settling:
-        print(found.settling)
-    for sentence in over_the_sweep(settled):
+    sentences = [*refusals(result), result.settling, *over_the_sweep(settled)]
+    for sentence in filter(None, sentences):
         print(sentence)
     ended(settled)
 
 
-def _sweep_entries(
+def _sweep_scene(
     scene: Path, vary: list[str], rows: Rows, model: Chosen, chart: Path | None, run: Run
 ) -> None:
-    """Sweep entries of a scene and tell of it."""
-    checked_chart(chart)
+    check_chart(chart)
     automatic = model.automatic()
-    with rows.counted(run.as_json) as (show, tell):
-        task = scene_task(
-            scene,
-            rows.design(vary),
-            model=None if automatic else str(model.name),
-            tolerance=model.tol,
-            options={} if automatic else options(model.pairs),
-            n=rows.n,
-        )
-        found = rows.made(task, chart, show, tell)
-    lead = f"Rows in {found.path.name}."
-    written = drawn(found.curves, scene.stem, lead, chart, found.cautions)
+    task = scene_task(
+        scene,
+        rows.design(vary),
+        model=None if automatic else str(model.name),
+        tolerance=model.tol,
+        options={} if automatic else options(model.pairs),
+        n=rows.n,
+    )
+    check_chart(chart, task)
+    result = rows.run(task, run.as_json)
+    lead = f"Rows in {result.path.name}."
+    chart_lines = draw_chart(result.curves, scene.stem, lead, chart, result.cautions)
     if run.as_json:
-        print(record_of(found, cautions=found.cautions))
-        ended_rows(found)
+        print(json.dumps(plain(result) | {"cautions": result.cautions}))
+        end_rows(result)
         return
-    if found.curves is not None and len(found.curves.x) <= FEW and found.curves.frequencies:
-        say(sweep_table(found.curves))
-    say(rows_there(found), *_work(found), *refusals(found), *written)
-    say(*map(caution, found.cautions))
-    ended_rows(found)
+    curves = result.curves
+    if curves is not None and len(curves.x) <= FEW and curves.frequencies:
+        say(sweep_table(curves))
+    say(rows_there(result))
+    if result.total > result.skipped:
+        say(solved(result))
+    say(_sentence_on_bars(result), *refusals(result), *chart_lines)
+    say(*map(caution, result.cautions))
+    end_rows(result)
 
 
-def _work(found: Swept) -> list[str]:
-    """Sentences on what was done in this run, and how sure the rows are."""
-    lines = []
-    if found.total > found.skipped:
-        lines.append(solved(found))
+def _sentence_on_bars(result: Swept) -> str:
     bars = [
         bar / hz
-        for bar, hz in zip(found.columns.get("f1_hz bar", []), found.columns["f1_hz"])
+        for bar, hz in zip(result.columns.get("f1_hz bar", []), result.columns["f1_hz"])
         if bar is not None and hz
     ]
-    if bars:
-        lines.append(f"Error bars are in columns beside the numbers; of f1 up to {max(bars):.2g}.")
-    else:
-        lines.append("A model that is given has no error bars; -f auto has.")
-    return lines
+    if not bars:
+        return "A model that is given has no error bars; -f auto has."
+    return f"Error bars are in columns beside the numbers; of f1 up to {max(bars):.2g}."
 
 
 def _sweep_train(
@@ -223,80 +211,78 @@ def _sweep_train(
     rows: Rows,
     pair: Pair,
     settings: list[str],
-    told: Told,
+    train_rows: OfTrain,
     reduced: Reduced,
     run: Run,
 ) -> None:
-    """Sweep a train and tell of it."""
-    checked_chart(told.chart)
+    check_chart(train_rows.chart)
     reduced.checked()
     mix = pair.of([*shafts_in(parse(str(train)))], train.stem)
-    with rows.counted(run.as_json) as (show, tell):
-        task = train_task(
-            train,
-            rows.design(vary),
-            models=mix,
-            mesh=told.mesh,
-            settings=of_shafts(settings, mix),
-            ask=told.ask or ASKED,
-            n=rows.n,
-            every_point=told.every_point,
-            max_frequency=reduced.max_frequency,
-            point=reduced.point,
-            reduction=reduced.reduction,
-            kept=reduced.kept,
-            local_harmonics=reduced.harmonics,
-        )
-        found = rows.made(task, told.chart, show, tell)
+    task = train_task(
+        train,
+        rows.design(vary),
+        models=mix,
+        mesh=train_rows.mesh,
+        settings=of_shafts(settings, mix),
+        ask=train_rows.ask or ASKED,
+        n=rows.n,
+        every_point=train_rows.every_point,
+        max_frequency=reduced.max_frequency,
+        point=reduced.point,
+        reduction=reduced.reduction,
+        kept=reduced.kept,
+        local_harmonics=reduced.harmonics,
+    )
+    check_chart(train_rows.chart, task)
+    result = rows.run(task, run.as_json)
     title = task.usual.title or task.usual.name
-    made = task.bench.made if rows.jobs == 1 and rows.dask is None else None
-    shafts = "" if made is None else f"{made} shafts meshed and reduced; "
-    cut, curves = task.cut(found.columns), found.curves
-    cautions = (*task.cautions, *_parting(found))
-    written = drawn(curves, title, _lead(found, mix), told.chart, cautions)
+    bodies = task.bench.made if rows.jobs == 1 and rows.dask is None else None
+    cut, curves = task.cut(result.columns), result.curves
+    sentences = (*task.cautions, *_caution_on_parting(result))
+    models = mix_label(mix)
+    lead = f"{models[0].upper()}{models[1:]}; rows in {result.path.name}."
+    chart_lines = draw_chart(curves, title, lead, train_rows.chart, sentences)
     if run.as_json:
-        print(record_of(found, bodies=made, cut=cut, title=title, cautions=cautions))
-        ended_rows(found)
+        more = {"bodies": bodies, "cut": cut, "title": title, "cautions": sentences}
+        print(json.dumps(plain(result) | more))
+        end_rows(result)
         return
-    say(f"{title}: {mix_label(mix)}")
+    say(f"{title}: {models}")
     if curves is not None and len(curves.x) <= FEW and (curves.mesh_force or curves.peak_hz):
         say(sweep_table(curves))
-    work = []
-    if found.total > found.skipped:
-        work.append(f"{shafts}{solved(found)}")
-    say(rows_there(found), *work, *refusals(found), *_limits(cut, told, mix))
-    say(*written, *map(caution, cautions))
-    ended_rows(found)
+    say(rows_there(result))
+    if result.total > result.skipped:
+        shafts = "" if bodies is None else f"{bodies} shafts meshed and reduced; "
+        say(f"{shafts}{solved(result)}")
+    say(*refusals(result), *_limits(cut, train_rows, mix))
+    say(*chart_lines, *map(caution, sentences))
+    end_rows(result)
 
 
-def _parting(found: Swept) -> list[str]:
-    """Sentence on rows whose teeth part."""
-    lowest = [hz for hz in found.columns.get(PARTS, []) if hz is not None]
+def _caution_on_parting(result: Swept) -> list[str]:
+    """Return the sentence on rows whose teeth part, if there are any."""
+    lowest = [hz for hz in result.columns.get(PARTS, []) if hz is not None]
     if not lowest:
         return []
     rows = "row" if len(lowest) == 1 else "rows"
     return [
-        f"in {len(lowest)} {rows} of {found.total} the dynamic mesh force passes the mean one, from "
+        f"in {len(lowest)} {rows} of {result.total} the dynamic mesh force passes the mean one, from "
         f"{min(lowest):.0f} Hz at the lowest (column {PARTS}): the teeth part, and peaks from there on "
         "do not hold; ask solidgear nonlinear of that variant"
     ]
 
 
-def _limits(cut: int, told: Told, mix: Mapping[str, str]) -> list[str]:
-    """Sentences on what rows do not tell."""
+def _limits(cut: int, train_rows: OfTrain, mix: Mapping[str, str]) -> list[str]:
+    """Return sentences on numbers that rows do not have."""
     lines = []
     if cut > 0:
         lines.append(
             f"Rows have up to {MOST_MODES + cut} natural frequencies, and columns for "
             f"{MOST_MODES}: give -n {MOST_MODES + cut} for all."
         )
-    if MODES in (told.ask or (MODES,)):
-        meshed = JUDGE in mix.values()
-        meshes = "; what the meshes leave, solidgear system-modes tells of one variant" * meshed
+    if MODES in (train_rows.ask or (MODES,)):
+        meshes = ""
+        if JUDGE in mix.values():
+            meshes = "; what the meshes leave, solidgear system-modes tells of one variant"
         lines.append(f"Column reduction_bound: what the reduction leaves, proven{meshes}.")
     return lines
-
-
-def _lead(found: Swept, mix: Mapping[str, str]) -> str:
-    models = mix_label(mix)
-    return f"{models[0].upper()}{models[1:]}; rows in {found.path.name}."

@@ -18,19 +18,19 @@ from solidgear.variants.sweep.file_variants import POINT, FileVariants
 MOST_CURVED = 5000
 #: units of misalignment that are angles; the others are lengths
 UNITS = dict.fromkeys(("shaft angle", "in plane", "across"), "rad moved")
-#: stiffness of a shaft that a table tells, and its units
+#: stiffness of a shaft in a table, and its units
 STATICS = {"K_zz": "N/m", "K_thx": "N m/rad"}
-#: what columns of mesh forces begin with
+#: beginning of the columns of mesh forces
 FORCE = "mesh_force"
 
 
 def force_of(mesh: str) -> str:
-    """Column of the force of a mesh at rest."""
+    """Return the column of the force of a mesh at rest."""
     return f"{FORCE}{mesh.removeprefix('mesh').replace(' ', '_')}"
 
 
 def misaligned(name: str) -> str:
-    """Column of a number of the misalignment."""
+    """Return the column of a number of the misalignment."""
     return f"misalignment_{name.replace(' ', '_')}"
 
 
@@ -41,7 +41,7 @@ class Curve:
     name: str
     unit: str  #: SI; ``m moved`` and ``rad moved`` are motions
     values: np.ndarray  #: (n,) not a number where a row has none
-    #: what is said of each value, such as the name of its mode; empty where nothing is
+    #: words on each value, such as the name of the mode; empty for none
     words: tuple[str, ...] = ()
 
 
@@ -49,14 +49,14 @@ class Curve:
 class Curves:
     """Curves over one number."""
 
-    #: over, unit: what varies, and in which unit it is told; an empty one is SI
+    #: over, unit: path of the entry that varies, and unit of `x`; an empty one is SI
     over: str
     unit: str
     log: bool
     x: np.ndarray  #: (n,) ascending
     labels: tuple[str, ...]  #: names of the rows where they have some, such as operating points
     frequencies: list[Curve]
-    statics: list[Curve]  #: stiffness at the lumped point of a shaft, to be told in a table
+    statics: list[Curve]  #: stiffness at the lumped point of a shaft, for a table
     mesh_force: list[Curve]  #: one for each mesh, or none
     misalignment: list[Curve]
     #: radial, axial: loads of bearings
@@ -75,105 +75,99 @@ class Curves:
 
 
 def chartable(variants: FileVariants) -> Entry:
-    """The one entry that curves go over; refused before a sweep begins where there is none.
+    """Return the one entry that curves go over; refuse a sweep without one before it begins.
 
     Raises
     ------
     SolidgearError
         If there are several, its values are words, or there are too many.
     """
-    several = [one for one in variants.entries if len(one.values) > 1]
+    several = [entry for entry in variants.entries if len(entry.values) > 1]
     if len(several) != 1:
-        named = listed(one.label for one in several) or "none"
+        labels = listed(entry.label for entry in several) or "none"
         raise SolidgearError(
-            f"a chart has curves over one number that varies, and here vary: {named}; leave --chart "
+            f"a chart has curves over one number that varies, and here vary: {labels}; leave --chart "
             "out, or give one of them several values and the others one"
         )
-    one = several[0]
-    if one.label != POINT and not one.numeric:
-        raise SolidgearError(f"a chart has curves over a number, and {one.label} varies by words")
+    entry = several[0]
+    if entry.label != POINT and not entry.numeric:
+        raise SolidgearError(f"a chart has curves over a number, and {entry.label} varies by words")
     if len(variants) > MOST_CURVED:
         raise SolidgearError(
             f"{len(variants)} variants are more than the {MOST_CURVED} that a chart shows"
         )
-    return one
+    return entry
 
 
 def curves_of(
-    columns: Mapping[str, list[Any]], variants: FileVariants, measured: Sequence[str] = ()
+    columns: Mapping[str, list[Any]], variants: FileVariants, misalignments: Sequence[str] = ()
 ) -> Curves | None:
-    """Curves of a finished sweep; None of one that has none.
-
-    Parameters
-    ----------
-    columns : mapping of str to list
-        Values of all rows by the names of columns; of operating points curves go over their torque.
-    measured : sequence of str
-        Names of the numbers of the misalignment of a train.
+    """Return the curves of the columns of all rows, over the torque where operating points vary; None
+    of a sweep that has none. `misalignments` names the numbers of the misalignment of a train.
     """
     try:
-        one = chartable(variants)
+        entry = chartable(variants)
     except SolidgearError:
         return None
-    of_points = one.label == POINT
-    x = _numbers(columns["torque" if of_points else one.label])
+    of_points = entry.label == POINT
+    over = "torque" if of_points else entry.label
+    x = _numbers(columns[over])
     order = np.argsort(x, kind="stable")
     order = order[np.isfinite(x[order])]
-    unit = "N m" if of_points else one.shown_in
+    unit = "N m" if of_points else entry.shown_in
     size = None if of_points or not unit else in_si(f"1 {unit}")
 
-    def told(name: str, column: str, si: str, *words: str) -> list[Curve]:
-        """The curve of a column; none where no row has a value."""
+    def curve(name: str, column: str, si: str, words: str | None = None) -> list[Curve]:
+        """Return the curve of a column, with the words of another; none where no row has a value."""
         values = _numbers(columns.get(column, []))
         if not np.isfinite(values).any():
             return []
-        said = zip(*([columns[word][k] for k in order] for word in words))
-        texts = tuple(", ".join(str(v) for v in row if v is not None) for row in said)
-        return [Curve(name, si, values[order], texts)]
+        texts = [] if words is None else [columns[words][k] for k in order]
+        return [Curve(name, si, values[order], tuple("" if t is None else str(t) for t in texts))]
 
-    modes = [column for column in columns if re.fullmatch(r"f\d+_hz", column)]
-    radial, axial = (
-        [
-            curve
+    def loads(ending: str) -> list[Curve]:
+        """Return the curves of the loads of all bearings in one direction."""
+        return [
+            line
             for column in columns
             if column.endswith(ending)
-            for curve in told(column.removesuffix(ending), column, "N")
+            for line in curve(column.removesuffix(ending), column, "N")
         ]
-        for ending in (".radial", ".axial")
-    )
+
+    modes = [column for column in columns if re.fullmatch(r"f\d+_hz", column)]
     return Curves(
-        over="torque" if of_points else one.label,
+        over=over,
         unit=unit,
-        log=one.spacing == "log",
+        log=entry.spacing == "log",
         x=x[order] / (size or 1.0),
         labels=tuple(str(columns[POINT][k]) for k in order) if of_points else (),
         frequencies=[
-            curve
+            line
             for column in modes
-            for curve in told(column[:-3], column, "Hz", f"mode{column[1:-3]}")
+            for line in curve(column[:-3], column, "Hz", f"mode{column[1:-3]}")
         ],
-        statics=[curve for name, si in STATICS.items() for curve in told(name, name, si)],
+        statics=[line for name, si in STATICS.items() for line in curve(name, name, si)],
         mesh_force=[
-            curve
+            line
             for column in columns
             if column.startswith(FORCE)
-            for curve in told(
+            for line in curve(
                 f"mesh force{column.removeprefix(FORCE).replace('_', ' ')}", column, "N"
             )
         ],
         misalignment=[
-            curve for name in measured for curve in told(name, misaligned(name), _unit_of(name))
+            line for name in misalignments for line in curve(name, misaligned(name), _unit_of(name))
         ],
-        radial=radial,
-        axial=axial,
-        peak_hz=told("largest peak", "peak1_hz", "Hz", "peak1_mode"),
-        peak_force=told("largest peak", "peak1_force", "N", "peak1_mode"),
+        radial=loads(".radial"),
+        axial=loads(".axial"),
+        peak_hz=curve("largest peak", "peak1_hz", "Hz", "peak1_mode"),
+        peak_force=curve("largest peak", "peak1_force", "N", "peak1_mode"),
     )
 
 
 def _unit_of(name: str) -> str:
-    """Unit of a number of the misalignment, of several meshes with the name of its own."""
-    return next((unit for what, unit in UNITS.items() if name.startswith(what)), "m moved")
+    """Return the unit of a number of the misalignment, whose name a mesh may follow."""
+    return next((unit for kind, unit in UNITS.items() if name.startswith(kind)), "m moved")
 
 
 def _numbers(values: Sequence[Any]) -> np.ndarray:

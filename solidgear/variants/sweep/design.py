@@ -1,5 +1,5 @@
-"""Designs of sweeps over entries of files: all combinations, one at a time, a Latin hypercube, or a
-table of one's own.
+"""Designs of sweeps over entries of files: all combinations, one at a time, a Latin hypercube, or the
+user's table.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -17,16 +17,24 @@ from solidgear.core.errors import SolidgearError
 from solidgear.core.scene.paths import Tables
 from solidgear.variants.sweep.entries import (
     Entry,
-    Kept,
+    KeptSum,
     Owner,
     entries_of,
     entries_of_table,
-    kept_of,
+    kept_sums,
 )
 from solidgear.variants.sweep.spans import product, sample
 
-#: entries that a study looks at beside those it was given, such as operating points
+#: from the entries that were asked for to those that vary beside them, such as operating points
 Further = Callable[[tuple[Entry, ...]], tuple[Entry, ...]]
+
+
+class DesignPoints(NamedTuple):
+    """Points of a design on some files."""
+
+    entries: tuple[Entry, ...]
+    values: np.ndarray  #: (n, entries) in every variant
+    sums: tuple[KeptSum, ...]
 
 
 @dataclass(frozen=True)
@@ -39,7 +47,7 @@ class Design:
     #: the file as it is, then each value of each entry with all others as in the file
     one_at_a_time: bool = False
     table: Path | None = None  #: of variants, in place of `vary`
-    keep_sum: tuple[str, ...] = ()  #: ``PATH+PATH``: sums that stay what they are in the file
+    keep_sum: tuple[str, ...] = ()  #: ``PATH+PATH``: sums that stay as they are in the file
 
     def points(
         self,
@@ -48,17 +56,8 @@ class Design:
         further: Further = lambda _: (),
         *,
         example: str,
-    ) -> tuple[tuple[Entry, ...], np.ndarray, tuple[Kept, ...]]:
-        """Entries that vary, (n, entries) their values in every variant, and sums that are kept.
-
-        Parameters
-        ----------
-        files : mapping of str to mapping
-            Tables by the name of their file.
-        further : callable
-            Gives entries that are looked at beside those that were asked for.
-        example : str
-            Of something to vary, told where nothing is.
+    ) -> DesignPoints:
+        """Return the points of the design on files by their names; an error shows the `example`.
 
         Raises
         ------
@@ -66,40 +65,43 @@ class Design:
             For texts and tables that cannot be read, designs that exclude each other, and too many
             variants.
         """
+        rows = None
         if self.table is None:
-            varied, values = entries_of(self.vary, files, owner), None
+            varied = entries_of(self.vary, files, owner)
         else:
-            self._alone()
-            varied, values = entries_of_table(self.table, files, owner)
-        kept = kept_of(self.keep_sum, files, owner, varied)
-        varied += (more := further(varied))
+            self._refuse_others()
+            varied, rows = entries_of_table(self.table, files, owner)
+        sums = kept_sums(self.keep_sum, files, owner, varied)
+        added = further(varied)
+        varied += added
         if not varied:
             raise SolidgearError(f'nothing is varied; give for example --vary "{example}"')
-        if values is not None:
-            turns = itertools.product(*(one.values for one in more))
-            rows = [(*row, *turn) for row, turn in itertools.product(values, turns)]
-            return varied, np.array(rows, float), kept
-        if self.one_at_a_time:
+        if rows is not None:
+            turns = [*itertools.product(*(entry.values for entry in added))]
+            values = np.array([(*row, *turn) for row in rows for turn in turns], float)
+        elif self.one_at_a_time:
             if self.sample is not None:
                 raise SolidgearError("give one of --sample and --one-at-a-time")
-            return varied, _in_turn(varied), kept
-        return varied, self.drawn(varied), kept
+            values = _one_at_a_time(varied)
+        else:
+            values = self.drawn(varied)
+        return DesignPoints(varied, values, sums)
 
     def drawn(self, varied: tuple[Entry, ...]) -> np.ndarray:
-        """(n, entries) all combinations of values, or points of the hypercube."""
+        """Return (n, entries) all combinations of values, or points of the hypercube."""
         if self.sample is None:
             return product(varied)
         return sample(varied, self.sample, self.seed)
 
-    def _alone(self) -> None:
-        others = {
+    def _refuse_others(self) -> None:
+        options = {
             "--vary": self.vary,
             "--sample": self.sample,
             "--one-at-a-time": self.one_at_a_time,
         }
-        given = [option for option, value in others.items() if value]
-        if given:
-            raise SolidgearError(f"--table {self.table}: says all variants; leave out {given[0]}")
+        for option, value in options.items():
+            if value:
+                raise SolidgearError(f"--table {self.table}: says all variants; leave out {option}")
 
     @property
     def plan(self) -> dict[str, Any] | None:
@@ -114,11 +116,11 @@ class Design:
         return out or None
 
 
-def _in_turn(varied: tuple[Entry, ...]) -> np.ndarray:
-    """The file as it is, then one entry after the other."""
+def _one_at_a_time(varied: tuple[Entry, ...]) -> np.ndarray:
+    """Return the file as it is, then one entry after the other."""
     rows = [[math.nan] * len(varied)]
-    for k, one in enumerate(varied):
-        for value in one.values:
+    for k, entry in enumerate(varied):
+        for value in entry.values:
             rows.append([math.nan] * len(varied))
             rows[-1][k] = value
     return np.array(rows, float)

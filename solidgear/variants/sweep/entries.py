@@ -2,8 +2,8 @@
 
 VALUES are ``a:b:n``, ``log:a:b:n`` or a list ``a,b,c``; a number is plain (SI) or has a unit. A list
 may hold texts as well, such as designations; in quotes a number is a text too. ``PATH+PATH=VALUES``
-gives several entries the same value. What is put into the tables of the file is what a person would
-have written there, so that all rules of the file apply.
+gives several entries the same value. A value goes into the tables of the file as a person would have
+written it there, so that all rules of the file apply.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from solidgear.core.errors import SceneError, SolidgearError, did_you_mean, near, nearest
 from solidgear.core.scene.paths import (
@@ -37,13 +37,13 @@ Owner = Callable[[str], tuple[str, str]]
 class Place(NamedTuple):
     """Place of an entry."""
 
-    file: str  #: which of several files holds it
+    file: str  #: name of the file, of several, that holds it
     path: str  #: within that file
-    keys: Keys  #: where in the tables of the file as it is
+    keys: Keys  #: in the tables of the file as it is
 
     @property
     def label(self) -> str:
-        """The path with the name of its file."""
+        """Path with the name of the file."""
         return f"{self.file}.{self.path}".removeprefix(".")
 
 
@@ -52,41 +52,41 @@ class Entry(Span):
     """One entry of a file that varies, or several with one value."""
 
     places: tuple[Place, ...]
-    there: object = None  #: what the file holds at the first of them
+    in_file: object = None  #: value that the file holds at the first of them
     unit: str = ""  #: of the values of a range, as the user wrote it; empty of plain numbers
-    whole: bool = False  #: whether the values of a range are whole numbers
-    #: what is put in of a list, whose `values` count from 0; empty of a range
+    integers: bool = False  #: whether the values of a range are whole numbers
+    #: values of a list as they are written, whose `values` count from 0; empty of a range
     words: tuple[str | float | bool, ...] = ()
     text: bool = False  #: whether its values are words, whatever they look like
 
     @property
     def file(self) -> str:
-        """Index of the file, of several, that holds the first of them."""
+        """Name of the file, of several, that holds the first of them."""
         return self.places[0].file
 
     @property
     def keys(self) -> Keys:
-        """Path of that in the tables of its file."""
+        """Keys of the first of them in the tables of its file."""
         return self.places[0].keys
 
     def is_in(self, file: str) -> bool:
-        """Tell whether any of them stands in a file."""
+        """True if any of them stands in a file."""
         return any(place.file == file for place in self.places)
 
-    def put(self, value: float) -> str | float | bool:
-        """Text written into a file for a value."""
+    def written(self, value: float) -> str | float | bool:
+        """Return a value as it is written into a file."""
         if self.words:
             return self.words[int(value)]
-        plain = (self.whole or self.unit) and value == int(value) and abs(value) < 1e15
-        number = int(value) if plain else value
+        round_number = value == int(value) and abs(value) < 1e15
+        number = int(value) if round_number and (self.integers or self.unit) else value
         return f"{number!r} {self.unit}" if self.unit else number
 
     @property
     def shown_in(self) -> str:
-        """Unit that its numbers are read in, as the user wrote it; empty for SI."""
+        """Unit of its numbers, as the user wrote it; empty for SI."""
         if self.text:
             return ""
-        units = {found[2] if (found := amount(word)) else "" for word in self.words}
+        units = {match[2] if (match := amount(word)) else "" for word in self.words}
         return self.unit or (units.pop() if len(units) == 1 else "")
 
     @property
@@ -94,15 +94,23 @@ class Entry(Span):
         """True where every value is a number."""
         return not self.text and all(in_si(word) is not None for word in self.words)
 
-    def told(self, value: float) -> str | float | None:
-        """A value as a row tells it: SI, or a text of a list that has any; that of the file where the
-        value is none.
+    def in_row(self, value: float) -> str | float | None:
+        """Return a value as a row has it: SI, or a text of a list that has any; the value of the file
+        for one that is not a number.
         """
-        put = self.there if math.isnan(value) else self.put(value)
-        if put is None or isinstance(put, (list, Mapping)):
+        written = self.in_file if math.isnan(value) else self.written(value)
+        if written is None or isinstance(written, (list, Mapping)):
             return None
-        number = in_si(put) if self.numeric else None
-        return number if number is not None else str(put)
+        number = in_si(written) if self.numeric else None
+        return number if number is not None else str(written)
+
+
+def assignment(text: str, form: str) -> tuple[str, str]:
+    """Split ``PATH=VALUES`` into path and values; an error shows the `form` that is wanted."""
+    path, equals, values = text.partition("=")
+    if not equals or not path.strip() or not values.strip():
+        raise SolidgearError(f"--vary {text}: write {form}")
+    return path.strip(), values
 
 
 def entries_of(
@@ -118,41 +126,28 @@ def entries_of(
     """
     out: list[Entry] = []
     for text in texts:
-        path, equals, spec = text.partition("=")
-        if not equals or not path.strip() or not spec.strip():
-            raise SolidgearError(
-                f'--vary {text}: write PATH=VALUES, such as "mesh.stiffness=log:1e8 N/m:1e9 N/m:5"'
-            )
+        path, spec = assignment(text, 'PATH=VALUES, such as "mesh.stiffness=log:1e8 N/m:1e9 N/m:5"')
         try:
-            places = _places(path.strip(), files, owner)
-            there = entry(places[0].keys, files[places[0].file])
-            of_words = _is_text(places, there)
-            listed = of_words or ":" not in spec
-            values = _listed(spec.split(","), of_words) if listed else _range(spec)
+            places = _places(path, files, owner)
+            in_file = entry(places[0].keys, files[places[0].file])
+            as_text = _has_words(places, in_file)
+            if as_text or ":" not in spec:
+                values = _listed(spec.split(","), as_text)
+            else:
+                values = _range(spec)
         except SceneError as error:
             raise SolidgearError(f"--vary {text}: {error}") from None
-        made = Entry(
-            label="+".join(one.label for one in places),
-            places=places,
-            there=there,
-            text=of_words,
-            **values,
-        )
-        _once(f"--vary {text}", [*out, made])
-        out.append(made)
+        out.append(_entry(places, in_file, as_text, values))
+        _refuse_twice(f"--vary {text}", out)
     return tuple(out)
 
 
 def entries_of_table(
     path: Path, files: Mapping[str, Tables], owner: Owner
 ) -> tuple[tuple[Entry, ...], list[list[float]]]:
-    """Entries that a table of one's own varies, and the values of its rows.
+    """Read a CSV file with paths as heads and a variant a row: entries, and the values of its rows.
 
-    Parameters
-    ----------
-    path : Path
-        A CSV file: paths as heads, a variant a row, what is to be written into the file in its
-        cells; an empty one leaves an entry as it is.
+    Cells hold the text to be written into the file; an empty one leaves an entry as it is.
 
     Raises
     ------
@@ -173,37 +168,42 @@ def entries_of_table(
     for k, head in enumerate(heads):
         try:
             places = _places(head.strip(), files, owner)
-            there = entry(places[0].keys, files[places[0].file])
+            in_file = entry(places[0].keys, files[places[0].file])
         except SceneError as error:
             raise SolidgearError(f"--table {path}: {head}: {error}") from None
         cells = [row[k].strip() if k < len(row) else "" for row in rows]
-        text = _is_text(places, there)
-        listed = _listed([cell for cell in cells if cell], text)
-        words = listed["words"]
-        label = "+".join(one.label for one in places)
-        out.append(Entry(label=label, places=places, there=there, text=text, **listed))
-        _once(f"--table {path}", out)
+        as_text = _has_words(places, in_file)
+        values = _listed([cell for cell in cells if cell], as_text)
+        out.append(_entry(places, in_file, as_text, values))
+        _refuse_twice(f"--table {path}", out)
         columns.append(
-            [float(words.index(_word(cell, text))) if cell else math.nan for cell in cells]
+            [values["words"].index(_word(cell, as_text)) if cell else math.nan for cell in cells]
         )
-    return tuple(out), [list(row) for row in zip(*columns)]
+    return tuple(out), [list(map(float, row)) for row in zip(*columns)]
+
+
+def _entry(
+    places: tuple[Place, ...], in_file: object, as_text: bool, values: dict[str, Any]
+) -> Entry:
+    label = "+".join(place.label for place in places)
+    return Entry(label=label, places=places, in_file=in_file, text=as_text, **values)
 
 
 def _places(path: str, files: Mapping[str, Tables], owner: Owner) -> tuple[Place, ...]:
-    """Places that a path stands for, or several with a plus between them."""
+    """Return the places that a path stands for, several with a plus between them."""
 
     def place(path: str) -> Place:
         file, within = owner(path)
         keys = keys_of(within, files[file])
         return Place(file, label_of(keys, files[file]), keys)
 
-    if "+" not in path or _holds(path, files, owner):
+    if "+" not in path or _is_held(path, files, owner):
         return (place(path),)
     return tuple(place(part.strip()) for part in path.split("+"))
 
 
-def _holds(path: str, files: Mapping[str, Tables], owner: Owner) -> bool:
-    """Tell whether a file holds an entry of that path: names may have a plus."""
+def _is_held(path: str, files: Mapping[str, Tables], owner: Owner) -> bool:
+    """True if a file holds an entry of that path: names may have a plus."""
     try:
         file, within = owner(path)
         return entry(keys_of(within, files[file]), files[file]) is not None
@@ -211,20 +211,20 @@ def _holds(path: str, files: Mapping[str, Tables], owner: Owner) -> bool:
         return False
 
 
-def _once(where: str, varied: Sequence[Entry]) -> None:
+def _refuse_twice(where: str, varied: Sequence[Entry]) -> None:
     """Refuse an entry that varies twice."""
-    seen: set[tuple[str, Keys]] = set()
-    for place in (place for one in varied for place in one.places):
-        if (place.file, place.keys) in seen:
+    places: set[tuple[str, Keys]] = set()
+    for place in (place for varying in varied for place in varying.places):
+        if (place.file, place.keys) in places:
             raise SolidgearError(
                 f"{where}: {place.label} is varied already; give all its values in one list"
             )
-        seen.add((place.file, place.keys))
+        places.add((place.file, place.keys))
 
 
 @dataclass(frozen=True)
-class Kept:
-    """A sum of entries of one file that stays what it is in the file: the last of them gives way."""
+class KeptSum:
+    """A sum of entries of one file that stays as it is in the file: the last of them gives way."""
 
     places: tuple[Place, ...]  #: the one that gives way last
     total: float
@@ -234,19 +234,19 @@ class Kept:
         """Path of the entry that gives way."""
         return self.places[-1].label
 
-    def left(self, tables: Tables) -> float:
-        """Remainder for the last entry, SI."""
-        left = self.total - sum(_number_at(place, tables) for place in self.places[:-1])
-        return float(f"{left:.12g}")
+    def remainder(self, tables: Tables) -> float:
+        """Compute the last entry, SI."""
+        remainder = self.total - sum(_number_at(place, tables) for place in self.places[:-1])
+        return float(f"{remainder:.12g}")
 
     def put(self, tables: Tables) -> Tables:
-        """Tables with the last entry given what is left."""
-        return replace_entry(tables, keys_of(self.places[-1].path, tables), self.left(tables))
+        """Return tables with the last entry put in."""
+        return replace_entry(tables, keys_of(self.places[-1].path, tables), self.remainder(tables))
 
 
-def kept_of(
+def kept_sums(
     texts: Iterable[str], files: Mapping[str, Tables], owner: Owner, varied: Sequence[Entry]
-) -> tuple[Kept, ...]:
+) -> tuple[KeptSum, ...]:
     """Read all ``PATH+PATH`` texts of sums that are kept.
 
     Raises
@@ -255,7 +255,7 @@ def kept_of(
         Fewer than two entries, of more than one file, no numbers, or none or all of them vary.
     """
     out = []
-    moved = {(place.file, place.keys) for one in varied for place in one.places}
+    moved = {(place.file, place.keys) for entry in varied for place in entry.places}
     for text in texts:
         try:
             places = _places(text.strip(), files, owner)
@@ -269,7 +269,7 @@ def kept_of(
                 "segment.a.length+segment.b.length, all but one of which vary; that one gives way"
             )
         fixed = [place for place in places if place not in free]
-        out.append(Kept((*fixed, *free), sum(numbers)))
+        out.append(KeptSum((*fixed, *free), sum(numbers)))
     return tuple(out)
 
 
@@ -281,67 +281,77 @@ def _number_at(place: Place, tables: Tables) -> float:
 
 
 def put_in(tables: Tables, file: str, varied: Sequence[Entry], row: Sequence[float]) -> Tables:
-    """Tables of a file, or of one that takes its place, with the values of its entries put in."""
-    for one, value in zip(varied, row):
-        for place in one.places:
+    """Return the tables of a file, or of one in its place, with the values of its entries."""
+    for varying, value in zip(varied, row):
+        for place in varying.places:
             if place.file == file and not math.isnan(value):
-                tables = replace_entry(tables, keys_of(place.path, tables), one.put(value))
+                tables = replace_entry(tables, keys_of(place.path, tables), varying.written(value))
     return tables
 
 
-def hinted(error: SceneError, path: str, files: Mapping[str, Tables]) -> str:
-    """Sentence of an error about a path; of an unknown key with the entry that its last word stands
-    for, as likely as not, among those of the same thing, else with that of the whole path.
+def explained(error: SceneError, path: str, files: Mapping[str, Tables]) -> str:
+    """Return the sentence of an error about a path; an unknown key with the likeliest entry of the
+    same thing by its last word, else with the likeliest by the whole path.
     """
-    known = [
+    before, unknown, _ = error.sentence.partition("unknown key")
+    if not unknown:
+        return error.sentence
+    labels = [
         f"{file}.{label_of(keys, tables)}".removeprefix(".")
         for file, tables in files.items()
         for keys in entries(tables)
     ]
-    said, unknown, _ = error.sentence.partition("unknown key")
     thing, _, word = path.rpartition(".")
-    beside = {label.rpartition(".")[2]: label for label in known if label.startswith(f"{thing}.")}
-    if not unknown:
-        return error.sentence
-    hint = did_you_mean(beside.get(near(word, beside))) if beside else nearest(path, known)
-    return f"{said}{unknown}{hint}" if hint else error.sentence
+    of_thing = {
+        label.rpartition(".")[2]: label for label in labels if label.startswith(f"{thing}.")
+    }
+    if of_thing:
+        hint = did_you_mean(of_thing.get(near(word, of_thing)))
+    else:
+        hint = nearest(path, labels)
+    return f"{before}{unknown}{hint}" if hint else error.sentence
 
 
-def _range(spec: str) -> dict:
-    """Fields of an entry that goes over a range."""
+def _range(spec: str) -> dict[str, Any]:
+    """Return the fields of an entry that goes over a range."""
     units: list[str] = []
     ends: list[str] = []
 
     def read(text: str) -> float:
-        found = amount(text)
-        if found is None:
+        match = amount(text)
+        if match is None:
             raise SceneError(f"{text!r} is no number, with or without a unit")
-        ends.append(found[1])
-        units.append(found[2])
-        own, first = in_si(text if found[2] else float(found[1])), units[0]
-        one = in_si(f"1 {first}") if first else 1.0
-        if own is None or one is None:
-            raise SceneError(f"{found[2]!r} is no known unit")
-        if bool(found[2]) != bool(first):
+        number, unit = match.groups()
+        ends.append(number)
+        units.append(unit)
+        value, first = in_si(text if unit else float(number)), units[0]
+        of_first = in_si(f"1 {first}") if first else 1.0
+        if value is None or of_first is None:
+            raise SceneError(f"{unit!r} is no known unit")
+        if bool(unit) != bool(first):
             raise SceneError("give both ends with a unit, or none")
-        return float(found[1]) if found[2] == first else own / one
+        return float(number) if unit == first else value / of_first
 
     values, spacing = spread(spec, read)
-    whole = all(re.fullmatch(r"[+-]?\d+", end) for end in ends)
-    whole &= all(value == int(value) for value in values)
-    fields = {"values": tuple(dict.fromkeys(values)), "spacing": spacing, "unit": units[0]}
-    return fields | {"whole": whole}
+    integers = all(re.fullmatch(r"[+-]?\d+", end) for end in ends)
+    integers &= all(value == int(value) for value in values)
+    return {
+        "values": tuple(dict.fromkeys(values)),
+        "spacing": spacing,
+        "unit": units[0],
+        "integers": integers,
+    }
 
 
-def _is_text(places: Sequence[Place], there: object) -> bool:
-    """True for an entry of words, by the format of files or by what a file holds there."""
-    own = isinstance(there, str) and in_si(there) is None
-    return own or any(is_text(place.keys) for place in places)
+def _has_words(places: Sequence[Place], in_file: object) -> bool:
+    """True for an entry of words, by the format of files or by the value in the file."""
+    word_in_file = isinstance(in_file, str) and in_si(in_file) is None
+    return word_in_file or any(is_text(place.keys) for place in places)
 
 
-def _listed(cells: Iterable[str], text: bool) -> dict:
-    """Fields of an entry with a list of values, of which a number may be a text."""
-    words = tuple(dict.fromkeys(_word(part.strip(), text) for part in cells))
+def _listed(cells: Iterable[str], as_text: bool) -> dict[str, Any]:
+    """Return the fields of an entry with a list of values, of which a number may be a text."""
+    words = tuple(dict.fromkeys(_word(cell.strip(), as_text) for cell in cells))
     return {"words": words, "values": tuple(map(float, range(len(words)))), "spacing": "list"}
 
 

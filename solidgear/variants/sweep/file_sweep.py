@@ -11,7 +11,6 @@ from typing import Any
 from solidgear.core.scene.toml_file import is_train
 from solidgear.variants.sweep.design import Design
 from solidgear.variants.sweep.file_task import FileTask, Swept, run
-from solidgear.variants.sweep.rows import tell_in_log
 from solidgear.variants.sweep.scene_task import scene_task
 from solidgear.variants.sweep.train_task import train_task
 
@@ -30,7 +29,6 @@ def sweep(
     dask: str | None = None,
     overwrite: bool = False,
     progress: Callable[[int, int, str], None] = lambda done, total, text: None,
-    tell: Callable[[str], None] = tell_in_log,
     **how: Any,
 ) -> Swept:
     """Solve many variants of the file of a shaft or of a train.
@@ -51,8 +49,9 @@ def sweep(
         ``PATH+PATH``: sums that stay what they are in the file.
     out : path, optional
         Keeps the rows; the same sweep goes on from there.
-    jobs, dask, overwrite, progress, tell
-        As of :func:`solidgear.variants.sweep.file_task.run`.
+    jobs, dask, overwrite, progress
+        As of :func:`solidgear.variants.sweep.file_task.run`; `progress` is called with the number of
+        rows that are there, of rows in all, and the present step.
     **how
         Of a shaft those of :func:`solidgear.variants.sweep.scene_task.scene_task`, of a train those
         of :func:`solidgear.variants.sweep.train_task.train_task`, such as ``model`` and ``n``.
@@ -78,12 +77,10 @@ def sweep(
     True
     """
     texts = (vary,) if isinstance(vary, str) else tuple(vary)
-    own = None if table is None else Path(table)
-    design = Design(texts, sample, seed, one_at_a_time, own, tuple(keep_sum))
+    variants = None if table is None else Path(table)
+    design = Design(texts, sample, seed, one_at_a_time, variants, tuple(keep_sum))
     make: Callable[..., FileTask] = train_task if is_train(Path(file)) else scene_task
     task = make(Path(file), design, **how)
     with tempfile.TemporaryDirectory() as folder:
         rows = Path(folder) / "rows.csv" if out is None else Path(out)
-        return run(
-            task, rows, jobs=jobs, dask=dask, overwrite=overwrite, progress=progress, tell=tell
-        )
+        return run(task, rows, jobs=jobs, dask=dask, overwrite=overwrite, progress=progress)

@@ -1,4 +1,4 @@
-"""Rows of a sweep over entries of files, made and kept."""
+"""The runner of sweeps: a task turns variants into rows, and :func:`run` makes and keeps them."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Generic, TypeVar
 
 import numpy as np
 
@@ -19,22 +19,32 @@ from solidgear.core.machine.threads import pinned
 from solidgear.core.models.limits import number
 from solidgear.variants.sweep.curves import Curves, curves_of
 from solidgear.variants.sweep.file_variants import FileVariants
-from solidgear.variants.sweep.rows import RowFile, tell_in_log
+from solidgear.variants.sweep.rows import RowFile
 from solidgear.variants.sweep.workers import Rows, workers
 
-#: variants that are sent to another process at once
-SENT = 8
+#: columns of rows: the largest relative error that a reduction leaves in natural frequencies, and
+#: words on all other error bars
+BOUND, BARS = "reduction_bound", "bars"
 
-#: told rows that are there, rows in all, and what is being done
+#: called with the number of rows that are there, of rows in all, and the present step
 Progress = Callable[[int, int, str], None]
 
 
-class FileTask:
-    """Everything that turns variants of files into rows: a dataclass, whose fields alone are sent to
-    other processes.
-    """
+def without_bars(model: str) -> str:
+    """Return the words on numbers of a model that was given, which have no error bars."""
+    return f"none: the {model} mesh was given; -f auto judges its own"
+
+
+#: result of a task
+R = TypeVar("R")
+
+
+class Task(Generic[R]):
+    """Turns variants into rows: a dataclass, whose fields alone are sent to other processes."""
 
     variants: FileVariants
+    #: most variants in one transaction: solved in this process, and by others
+    batch: ClassVar[tuple[int, int]] = 1, 8
 
     @property
     def columns(self) -> dict[str, type]:
@@ -43,39 +53,42 @@ class FileTask:
 
     @property
     def plan(self) -> dict[str, Any]:
-        """Facts that rows depend on beside what varies, as data for JSON."""
+        """Facts that rows depend on beside the entries that vary, as data for JSON."""
         raise NotImplementedError
 
-    @property
-    def cautions(self) -> tuple[str, ...]:
-        """Sentences on what does not fit together in variants that can be solved."""
-        return self.variants.cautions
-
-    @property
-    def measured(self) -> tuple[str, ...]:
-        """Names of the numbers of a misalignment."""
-        return ()
+    def prepare(self, file: RowFile, progress: Callable[[str], None]) -> None:
+        """Solve all that rows share, in this process and before the first of them."""
 
     def numbers(self, index: int) -> dict[str, Any]:
-        """Numbers of a variant, whatever was solved before it; SolidgearError if it has none."""
+        """Return the numbers of a variant, whatever was solved before it; SolidgearError if none."""
         raise NotImplementedError
 
     @pinned
     def rows(self, indices: Iterable[int]) -> Rows:
-        """Rows of some variants."""
+        """Return the rows of some variants."""
         return [self._row(index) for index in indices]
 
     def _row(self, index: int) -> dict[str, Any]:
-        row: dict[str, Any] = {"variant": index, **self.variants.told(index)}
+        row: dict[str, Any] = {"variant": index, **self.variants.varied(index)}
         try:
-            found = self.numbers(index)
+            numbers = self.numbers(index)
         except SolidgearError as error:
             return row | {"status": self.variants.status(error, index)}
-        return row | {"status": "ok"} | found
+        return row | {"status": "ok"} | numbers
+
+    def checked(self, row: dict[str, Any]) -> dict[str, Any]:
+        """Return a row of any process as it goes into the file, in this process."""
+        return row
+
+    def result(self, file: RowFile, skipped: int, seconds: tuple[float, float]) -> R:
+        """Return the result of a run: `skipped` rows were there before, wall seconds are until the
+        first row and from there on.
+        """
+        raise NotImplementedError
 
     def __getstate__(self) -> dict[str, Any]:
-        own = dataclasses.fields(self)  # type: ignore[arg-type]
-        return {field.name: getattr(self, field.name) for field in own}
+        fields = dataclasses.fields(self)  # type: ignore[arg-type]
+        return {field.name: getattr(self, field.name) for field in fields}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -91,18 +104,17 @@ class Swept(Displayed):
     """
 
     shown: ClassVar[str] = "swept"
+    plain_names = ("path", "total", "skipped", "refused", "whys", "seconds")
 
     #: values of all rows by the names of columns, SI; None where a row has none. Bars stand beside
     #: numbers as ``f1_hz bar``, in the same unit.
     columns: dict[str, list[Any]]
-    varied: tuple[str, ...]  #: columns of what varies
+    varied: tuple[str, ...]  #: columns of the entries that vary
     curves: Curves | None  #: where one number varies
     path: Path  #: file that they were written to; of a sweep from Python without one it is gone
     skipped: int  #: rows that were there before
     seconds: float  #: wall seconds of this run
-    #: what was found damaged in the files and how it was mended, a sentence each
-    repairs: tuple[str, ...]
-    #: what does not fit together in variants that were solved, a sentence each
+    #: sentences on data that contradict each other in variants that were solved
     cautions: tuple[str, ...] = ()
 
     def __len__(self) -> int:
@@ -120,7 +132,7 @@ class Swept(Displayed):
 
     @property
     def total(self) -> int:
-        """Variants."""
+        """Number of variants."""
         return len(self)
 
     @property
@@ -130,7 +142,7 @@ class Swept(Displayed):
 
     @property
     def refused(self) -> int:
-        """Variants that have no numbers."""
+        """Number of variants that have no numbers."""
         return sum(self.whys.values())
 
     def to_dataframe(self) -> Any:
@@ -140,21 +152,46 @@ class Swept(Displayed):
         return pandas.DataFrame(self.columns)
 
 
+class FileTask(Task[Swept]):
+    """Turns variants of files, each solved by itself, into rows."""
+
+    @property
+    def cautions(self) -> tuple[str, ...]:
+        """Sentences on data that contradict each other in variants that can be solved."""
+        return self.variants.cautions
+
+    @property
+    def misalignments(self) -> tuple[str, ...]:
+        """Names of the numbers of a misalignment."""
+        return ()
+
+    def result(self, file: RowFile, skipped: int, seconds: tuple[float, float]) -> Swept:
+        columns = file.by_column()
+        return Swept(
+            columns,
+            varied=tuple(self.variants.columns),
+            curves=curves_of(columns, self.variants, self.misalignments),
+            path=file.path,
+            skipped=skipped,
+            seconds=sum(seconds),
+            cautions=self.cautions,
+        )
+
+
 def run(
-    task: FileTask,
-    out: Path,
+    task: Task[R],
+    out: Path | str,
     *,
     jobs: int = 1,
     dask: str | None = None,
     overwrite: bool = False,
     progress: Progress = lambda done, total, text: None,
-    tell: Callable[[str], None] = tell_in_log,
-) -> Swept:
-    """Solve the variants whose rows are not there yet.
+) -> R:
+    """Solve the variants whose rows are not there yet, and return the result of the task.
 
     Parameters
     ----------
-    out : Path
+    out : path
         ``.csv`` or ``.parquet``. Rows already there from the same sweep are kept and not solved
         again.
     jobs : int
@@ -163,10 +200,6 @@ def run(
         Address of a Dask scheduler, whose workers have solidgear installed.
     overwrite : bool
         Discard rows that are there.
-    progress : callable
-        Called with rows that are there, rows in all, and what is being done.
-    tell : callable
-        Called with a sentence for every damage to the files that was found and mended.
 
     Raises
     ------
@@ -179,23 +212,17 @@ def run(
     team, total = workers(jobs, dask), len(task.variants)
     columns = {"variant": int, **task.variants.columns, "status": str, **task.columns}
     plan = {**task.plan, **task.variants.plan, "version": __version__}
-    with RowFile(out, columns, plan, total, overwrite, tell) as file:
+    with RowFile(Path(out), columns, plan, total, overwrite) as file:
         skipped = len(file.done)
         todo = task.variants.in_turn(k for k in range(total) if k not in file.done)
+        if todo:
+            task.prepare(file, lambda text: progress(skipped, total, text))
         progress(skipped, total, "solving")
-        size = 1 if jobs == 1 and dask is None else max(1, min(SENT, len(todo) // (4 * jobs)))
-        for rows in team(lambda: task, [todo[k : k + size] for k in range(0, len(todo), size)]):
-            file.append(rows)
+        ready = time.perf_counter()
+        most = task.batch[0] if jobs == 1 and dask is None else task.batch[1]
+        size = max(1, min(most, len(todo) // (4 * jobs)))
+        for rows in team(task, [todo[k : k + size] for k in range(0, len(todo), size)]):
+            file.append(map(task.checked, rows))
             progress(len(file.done), total, "solving")
         file.finish()
-        values = file.by_column()
-    return Swept(
-        values,
-        tuple(task.variants.columns),
-        curves_of(values, task.variants, task.measured),
-        file.path,
-        skipped,
-        time.perf_counter() - start,
-        tuple(file.repairs),
-        task.cautions,
-    )
+        return task.result(file, skipped, (ready - start, time.perf_counter() - ready))

@@ -44,37 +44,31 @@ from solidgear.core.solve.coupling import decoupled, groups
 from solidgear.core.solve.naming import ALIKE, quarter_turn_change
 from solidgear.core.springs import root_of
 
-#: As in `solidgear.core.solve.modes.modes`: relative change of an eigenvalue below which couplings
-#: between blocks are left out.
+#: as in `solidgear.core.solve.modes.modes`: relative change of an eigenvalue below which couplings
+#: between blocks are left out
 COUPLING = 1e-6
 
 
 @dataclass(frozen=True)
 class RitzModes:
-    """Lowest elastic modes of one variant."""
+    """Lowest elastic modes of a variant."""
 
     frequency_hz: np.ndarray  #: (n,) ascending, twins twice
-    names: tuple[str, ...]  #: such as ``bending 1``; twins share theirs
+    names: tuple[str, ...]  #: such as ``bending 1``; twins share a name
     #: largest relative error of these frequencies against the body itself; infinite where nothing
     #: can be promised
     error_bound: float
 
 
 class Seats:
-    """Bearing-independent part of the small problems on one set of occupied seats.
-
-    Parameters
-    ----------
-    ports : tuple of int
-        Indices of the occupied ports.
-    """
+    """Bearing-independent part of the small problems on seats that are occupied, by port indices."""
 
     def __init__(self, reduced: Reduced, ports: tuple[int, ...]):
         self._blocks = [_Occupied(block, ports) for block in reduced.blocks]
         self._groups: dict[tuple[int, ...], _Together] = {}
 
     def group(self, blocks: tuple[int, ...]) -> _Together:
-        """Blocks that bearings couple."""
+        """Return blocks that bearings couple."""
         if blocks not in self._groups:
             self._groups[blocks] = _Together([self._blocks[b] for b in blocks])
         return self._groups[blocks]
@@ -120,10 +114,9 @@ class _Together:
         self.families = {str(name): names == name for name in dict.fromkeys(names) if name}
 
     def resisted(self, null: np.ndarray, heavy: np.ndarray) -> np.ndarray | None:
-        """Orthonormal basis without the rigid motions ``null`` (6, k) that no spring resists; None
-        if there are none.
-
-        What is left is orthogonal to them with the masses on ports, ``shift m = heavy heavy'``.
+        """Return an orthonormal basis without the rigid motions ``null`` (6, k) that no spring resists,
+        orthogonal to them with the masses on ports, ``shift m = heavy heavy'``; None if there are
+        none.
         """
         free = np.vstack([turn @ null[c] for turn, c in zip(self.turns, self.components)])
         norm = np.linalg.norm(free, axis=0)
@@ -132,9 +125,9 @@ class _Together:
             return None
         q, s, _ = np.linalg.svd(free)
         if heavy.shape[1]:
-            gone = np.zeros((len(self.mass), int((s > 1e-6).sum())))
-            gone[self.rigid] = q[:, : gone.shape[1]]
-            return sla.null_space((gone + heavy @ (heavy.T @ gone)).T)
+            motions = np.zeros((len(self.mass), int((s > 1e-6).sum())))
+            motions[self.rigid] = q[:, : motions.shape[1]]
+            return sla.null_space((motions + heavy @ (heavy.T @ motions)).T)
         basis = np.eye(len(self.mass))
         basis[np.ix_(self.rigid, self.rigid)] = q
         return np.delete(basis, self.rigid[: int((s > 1e-6).sum())], axis=1)
@@ -154,15 +147,10 @@ class _Group:
 def ritz_modes(
     reduced: Reduced, seats: Seats, supports: Supports, n: int, slack: float
 ) -> RitzModes:
-    """Lowest ``n`` elastic modes on some bearings.
+    """Solve for the lowest ``n`` elastic modes on bearings, with the seats of their ports in order.
 
-    Parameters
-    ----------
-    seats : Seats
-        Of the ports of ``supports``, in their order.
-    slack : float
-        Modes that may lie among the first ``n`` by less than this, relative, are no reason to
-        distrust the count.
+    A mode that may lie among the first ``n`` by less than ``slack``, relative, is no reason to
+    distrust the count.
     """
     frame = reduced.frame
     spring, _ = decoupled(frame, supports, COUPLING)
@@ -175,8 +163,7 @@ def ritz_modes(
             if twin in solved
             else _solve(reduced, seats, supports, spring, group, null)
         )
-    # A block without port motions is an ovalising one, which stands for its cosine and its sine
-    # form.
+    # a block without port motions is an ovalising one, of a cosine and a sine form
     parts = [
         part
         for group, part in solved.items()
@@ -204,78 +191,81 @@ def ritz_modes(
 
 
 def _twin(reduced, supports, spring, group):
-    """The group that a lone block repeats in the other plane, if its springs are mirrored too."""
+    """Return the group that a lone block repeats in the other plane, if springs are mirrored too."""
     mirror = reduced.blocks[group[0]].mirror
     if len(group) != 1 or mirror is None:
         return None
     m = len(supports.ports)
-    mine, theirs = (
-        component_rows(range(m), reduced.blocks[b].components) for b in (group[0], mirror[0])
+    rows, mirrored = (
+        component_rows(range(m), reduced.blocks[k].components) for k in (group[0], mirror[0])
     )
     sign = np.tile(mirror[1], m)
     for matrix in (spring, supports.masses):
-        a, b = matrix[np.ix_(mine, mine)], matrix[np.ix_(theirs, theirs)] * np.outer(sign, sign)
+        a = matrix[np.ix_(rows, rows)]
+        b = matrix[np.ix_(mirrored, mirrored)] * np.outer(sign, sign)
         if np.abs(a - b).max(initial=0.0) > 1e-14 * np.abs(b).max(initial=0.0):
             return None
     return (mirror[0],)
 
 
 def _solve(reduced: Reduced, seats: Seats, supports: Supports, spring, group, null) -> _Group:
-    held_by = seats.group(tuple(group))
-    at = np.concatenate([component_rows(range(len(supports.ports)), c) for c in held_by.components])
-    held, heavy = (
-        held_by.motions.T @ root_of(matrix[np.ix_(at, at)]) for matrix in (spring, supports.masses)
+    blocks = seats.group(tuple(group))
+    rows = np.concatenate(
+        [component_rows(range(len(supports.ports)), c) for c in blocks.components]
     )
-    mass, defect = held_by.mass, held_by.defect
-    basis = held_by.resisted(null, np.sqrt(reduced.shift) * heavy)
+    stiff, heavy = (
+        blocks.motions.T @ root_of(matrix[np.ix_(rows, rows)])
+        for matrix in (spring, supports.masses)
+    )
+    mass, defect = blocks.mass, blocks.defect
+    basis = blocks.resisted(null, np.sqrt(reduced.shift) * heavy)
     if basis is not None:
-        held, heavy = basis.T @ held, basis.T @ heavy
+        stiff, heavy = basis.T @ stiff, basis.T @ heavy
         mass, defect = basis.T @ mass @ basis, basis.T @ defect @ basis
     total = mass + heavy @ heavy.T if heavy.shape[1] else mass
-    both = np.hstack([held, np.sqrt(reduced.shift) * heavy]) if heavy.shape[1] else held
-    left, s, _ = np.linalg.svd(both, full_matrices=False)
-    half = np.eye(len(mass)) + left @ ((1 / np.sqrt(1 + s * s) - 1)[:, None] * left.T)
+    both = np.hstack([stiff, np.sqrt(reduced.shift) * heavy]) if heavy.shape[1] else stiff
+    u, s, _ = np.linalg.svd(both, full_matrices=False)
+    half = np.eye(len(mass)) + u @ ((1 / np.sqrt(1 + s * s) - 1)[:, None] * u.T)
     small = half @ total @ half
     theta, vector = np.linalg.eigh((small + small.T) / 2)
     theta, vector = theta[::-1], vector[:, ::-1]
     good = theta > 0
     theta, shape = theta[good], half @ vector[:, good]
     value = 1 / theta - reduced.shift
-    # What the shift leaves of an eigenvalue below a thousandth of it is less than a direct Ritz
-    # step gives.
+    # an eigenvalue below a thousandth of the shift loses more digits than in a direct Ritz step
     soft = value < 1e-3 * reduced.shift
     if soft.any():
-        value[soft] = _soft(shape[:, soft], mass, held, heavy, reduced.shift)
+        value[soft] = _soft(shape[:, soft], mass, stiff, heavy, reduced.shift)
     full = shape if basis is None else basis @ shape
-    weight = full * (held_by.mass @ full)
-    share = {name: weight[own].sum(axis=0) for name, own in held_by.families.items()}
-    return _Group(value, theta, shape.T @ defect @ shape, held_by.cut, share)
+    weight = full * (blocks.mass @ full)
+    share = {name: weight[members].sum(axis=0) for name, members in blocks.families.items()}
+    return _Group(value, theta, shape.T @ defect @ shape, blocks.cut, share)
 
 
-def _soft(shape, mass, held, heavy, shift) -> np.ndarray:
-    """Ritz values of nearly rigid modes, with the rigid part split off exactly (as in
+def _soft(shape, mass, stiff, heavy, shift) -> np.ndarray:
+    """Compute Ritz values of nearly rigid modes, with the rigid part split off exactly (as in
     :mod:`solidgear.core.solve.modes`).
     """
-    # Rigid shapes are those whose energy in A is sigma times their mass, alone.
+    # rigid shapes alone have sigma times their mass as energy in A
     rigid = np.abs(np.diag(mass) * shift - 1) < 1e-9
     r = int(rigid.sum())
-    rest = np.where(
+    elastic = np.where(
         rigid[:, None], 0.0, shape / np.sqrt(np.einsum("ij,ij->j", shape, mass @ shape))
     )
-    w, v = np.linalg.eigh(rest.T @ mass @ rest)
+    w, v = np.linalg.eigh(elastic.T @ mass @ elastic)
     keep = w > 1e-18
-    rest = rest @ (v[:, keep] / np.sqrt(w[keep]))
-    small = np.zeros((r + rest.shape[1],) * 2)
-    small[r:, r:] = rest.T @ rest - shift * rest.T @ mass @ rest
-    basis = np.hstack([np.eye(len(mass))[:, rigid] * np.sqrt(shift), rest])
-    reach, moved = held.T @ basis, heavy.T @ basis
+    elastic = elastic @ (v[:, keep] / np.sqrt(w[keep]))
+    small = np.zeros((r + elastic.shape[1],) * 2)
+    small[r:, r:] = elastic.T @ elastic - shift * elastic.T @ mass @ elastic
+    basis = np.hstack([np.eye(len(mass))[:, rigid] * np.sqrt(shift), elastic])
+    reach, moved = stiff.T @ basis, heavy.T @ basis
     total = np.eye(len(small)) + moved.T @ moved if heavy.shape[1] else None
     return sla.eigh(small + reach.T @ reach, total, eigvals_only=True)[: shape.shape[1]]
 
 
 def _bound(part: _Group, count: int, last: float, shift: float, slack: float) -> float:
-    """Largest relative frequency error of the first ``count`` modes of a group, the last of all
-    groups being ``last``.
+    """Bound the largest relative frequency error of the first ``count`` modes of a group; ``last`` is
+    the last eigenvalue of all groups.
     """
     t = 1 / (last + shift)
     if t <= part.cut:
@@ -291,8 +281,8 @@ def _bound(part: _Group, count: int, last: float, shift: float, slack: float) ->
 
 
 def _paired(reduced: Reduced, supports: Supports) -> Callable[[str], bool]:
-    """Tells whether symmetry promises twins to a family, as
-    :meth:`solidgear.core.solve.naming.Names.pairs` has it.
+    """Return a function that is true for a family to which symmetry promises twins, as in
+    :meth:`solidgear.core.solve.naming.Names.pairs`.
     """
     whole, bends = len(reduced.blocks) == 1, quarter_turn_change(supports) <= ALIKE
 
@@ -305,8 +295,8 @@ def _paired(reduced: Reduced, supports: Supports) -> Callable[[str], bool]:
 
 
 def _names(family: Sequence[str], promised: Callable[[str], bool]) -> tuple[str, ...]:
-    """Names as :mod:`solidgear.core.solve.naming` gives them, by the families of modes in ascending order: of
-    two twins the first stands for both.
+    """Return names as of :mod:`solidgear.core.solve.naming` by the families of modes in ascending order; two
+    twins share that of the first.
     """
     firsts: list[int] = []
     waiting: dict[str, int] = {}
@@ -314,6 +304,6 @@ def _names(family: Sequence[str], promised: Callable[[str], bool]) -> tuple[str,
         firsts.append(waiting.pop(name, k))
         if firsts[-1] == k and promised(name):
             waiting[name] = k
-    own = list(dict.fromkeys(firsts))
-    named = dict(zip(own, numbered(family[k] for k in own)))
-    return tuple(named[k] for k in firsts)
+    distinct = list(dict.fromkeys(firsts))
+    names = dict(zip(distinct, numbered(family[k] for k in distinct)))
+    return tuple(names[k] for k in firsts)

@@ -1,201 +1,217 @@
-"""The file that a sweep makes: written whole from its rows, which are kept in a store beside it.
+"""Rows of a sweep in an SQLite file, and the table that is written whole from them.
 
-For ``--out rows.csv`` the rows are in ``rows.csv.sqlite``, batch by batch as they come
-(:mod:`solidgear.variants.sweep.store`).  ``rows.csv`` is made from it, in order of the rows: whenever there
-are twice as many, when the sweep is stopped, and when all are there.  A Parquet file is made when
-all are there.  The file always takes the place of the one before in one step.
-
-A file that was changed by anybody else is set aside under another name and written anew; a file
-that has no store beside it is not touched.
+For ``--out rows.csv`` the rows are in ``rows.csv.sqlite``, one transaction a batch. ``rows.csv`` is
+written in order of the rows whenever there are twice as many, when the sweep is stopped and when it
+ends; a Parquet file when it ends.
 """
 
 from __future__ import annotations
 
 import csv
 import glob
-import hashlib
 import io
-import logging
+import json
 import math
-import os
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, nullcontext, suppress
 from pathlib import Path
 from typing import Any
 
 from solidgear.core.errors import SolidgearError
 from solidgear.core.machine.whole_file import whole
-from solidgear.variants.sweep.store import Store, StoreError
 
-tell_in_log: Callable[[str], None] = logging.getLogger(__name__).warning
+try:
+    import sqlite3
+except ImportError:  # left out of some builds of Python
+    raise SolidgearError(
+        "a sweep keeps its rows in SQLite, which this Python was built without; use one that has it"
+    ) from None
+
+#: marks of our databases ("gear" in ASCII) and of their tables; others are refused
+APPLICATION, SCHEMA = 0x67656172, 2
+TABLES = f"""
+PRAGMA application_id = {APPLICATION};
+PRAGMA user_version = {SCHEMA};
+CREATE TABLE facts (name TEXT PRIMARY KEY, value TEXT NOT NULL);
+CREATE TABLE rows (variant INTEGER PRIMARY KEY, line TEXT NOT NULL);
+"""
+DAMAGED = (sqlite3.SQLITE_NOTADB, sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_ERROR)
 
 
 class RowFile:
-    """Rows of one sweep, to be used in a ``with`` statement.
-
-    Parameters
-    ----------
-    path : Path
-        ``.csv`` or ``.parquet``.
-    columns : mapping of str to type
-        Names and types, the first one being the number of the row, from 0.
-    plan : mapping
-        What the rows depend on, JSON-serialisable; rows of another plan are never mixed in.
-    total : int
-        Rows there are to be.
-    overwrite : bool
-        Start anew whatever is there.
-    tell : callable
-        Called with a sentence for everything that was found damaged and mended.
-
-    Attributes
-    ----------
-    done : set of int
-        Rows that are there already.
-    repairs : list of str
-        What was found damaged and how it was mended, a sentence each.
+    """Rows of one sweep, to be used in a ``with`` statement by one process at a time.
 
     Raises
     ------
     SolidgearError
         For another suffix, a missing package, a folder that cannot be written, a file that another
-        process is writing, rows of another plan, or a store that is damaged beyond repair.
+        process is writing, rows of another plan, or a file that is no database of rows.
     """
 
     def __init__(
         self,
         path: Path,
-        columns: Mapping[str, type],
-        plan: Mapping[str, Any],
-        total: int,
+        columns: Mapping[str, type],  # the first is the number of the row, from 0
+        plan: Mapping[str, Any],  # all that rows depend on, JSON-serialisable
+        total: int,  # number of rows of the finished sweep
         overwrite: bool = False,
-        tell: Callable[[str], None] = tell_in_log,
     ):
-        self.path, self.columns, self._total, self._tell = Path(path), dict(columns), total, tell
+        self.path, self.columns, self.total = Path(path), dict(columns), total
         if self.path.suffix not in (".csv", ".parquet"):
             raise SolidgearError(f"--out {self.path}: the name must end in .csv or .parquet")
         self._parquet = self.path.suffix == ".parquet"
         if self._parquet:
             _pyarrow()
-        self.done: set[int] = set()
-        self.repairs: list[str] = []
-        beside = self.path.with_name(self.path.name + ".sqlite")
+        self.done: set[int] = set()  #: numbers of the rows that are there
+        self._exported = 0  # rows in the table, as far as this run has written it
+        self._database = self.path.with_name(self.path.name + ".sqlite")
         with self._writing():
             self.path.parent.mkdir(parents=True, exist_ok=True)
-            for place in (self.path, beside):
+            for place in (self.path, self._database):
                 if place.exists() and not place.is_file():
                     raise SolidgearError(
                         f"--out {self.path}: {place} is there and is no file; choose another name"
                     )
-            self._store = Store(beside, {"columns": list(columns), **plan}, overwrite)
-        self.done = self._store.done
-        try:
-            with self._writing():
-                self._compare(overwrite)
-        except BaseException:
-            self._store.close()
-            raise
-
-    @property
-    def basis(self) -> int | None:
-        """Level of the basis that rows begin with, None as long as nobody has found it out."""
-        return self._store.facts.get("basis")
-
-    @basis.setter
-    def basis(self, level: int) -> None:
-        with self._writing():
-            self._store.note("basis", level)
-
-    @property
-    def _written_as(self) -> list[str]:
-        """Digests of the file: of the last one written, before it of one that may have stayed."""
-        return self._store.facts.get("file", {}).get("digests", [])
+            self._db = self._locked(overwrite)
+            try:
+                self._begin(json.dumps({"columns": list(columns), **plan}, sort_keys=True))
+            except BaseException as error:
+                self._db.close()
+                raise self._refusal(error) from None
 
     def __enter__(self) -> RowFile:
         return self
 
-    def __exit__(self, kind, *_) -> None:
-        """Whatever happened, the rows that are there are in the file if it is a CSV file."""
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
         try:
             if self.done and not self._parquet:
                 with suppress(SolidgearError) if kind else nullcontext():
                     self.finish()
         finally:
-            self._store.close()
+            with suppress(sqlite3.Error, OSError):  # a full disk, say: the log is kept then
+                self._db.execute("PRAGMA journal_mode = DELETE")
+                if not self.done:
+                    self._database.unlink()  # not on Windows, which keeps a file that is open
+            self._db.close()
 
-    # ---------------------------------------------------------------------------- what is there
-    def _compare(self, overwrite: bool) -> None:
-        """Compare the file with the store."""
-        for left in self.path.parent.glob(f".{glob.escape(self.path.name)}.*.part"):
+    # ---------------------------------------------------------------------------------- opening
+    def _locked(self, overwrite: bool) -> sqlite3.Connection:
+        """Connect to the database under an exclusive lock, to a new one if rows are overwritten."""
+        self._database.open("ab").close()  # says why it cannot be written, which SQLite does not
+        db = sqlite3.connect(self._database.absolute(), timeout=0, isolation_level=None)
+        try:
+            db.execute("PRAGMA locking_mode = EXCLUSIVE")  # kept until the process ends
+            db.execute("BEGIN EXCLUSIVE")
+            db.execute("COMMIT")
+        except sqlite3.DatabaseError as error:
+            db.close()
+            if not overwrite or _has_code(error, sqlite3.SQLITE_BUSY):
+                raise self._refusal(error) from None
+        if not overwrite:
+            return db
+        db.close()
+        for ending in ("", "-wal", "-shm", "-journal"):
+            self._database.with_name(self._database.name + ending).unlink(missing_ok=True)
+        self.path.unlink(missing_ok=True)
+        return self._locked(overwrite=False)
+
+    def _begin(self, plan: str) -> None:
+        """Make the tables, or take the rows that are there if they are of this plan."""
+        marks = [self._value(f"PRAGMA {name}") for name in ("application_id", "user_version")]
+        if marks == [0, 0] and not self._value("SELECT count(*) FROM sqlite_master"):
+            self._db.executescript(TABLES)
+        elif marks != [APPLICATION, SCHEMA]:
+            raise SolidgearError(
+                f"{self._database}: is no database of rows that this version of solidgear reads; "
+                "choose another --out, or add --overwrite"
+            )
+        self._db.execute("PRAGMA journal_mode = WAL")
+        # synced now and then: a failure of the machine may cost the last batches, of the process none
+        self._db.execute("PRAGMA synchronous = NORMAL")
+        self.done = {number for (number,) in self._db.execute("SELECT variant FROM rows")}
+        for partial in self.path.parent.glob(f".{glob.escape(self.path.name)}.*.part"):
             with suppress(OSError):
-                left.unlink()  # of a process that was killed; nobody else writes here now
-        if overwrite:
-            self.path.unlink(missing_ok=True)
-        if self._store.repaired:
-            self._mended(self._store.repaired)
-        found = _digest(self.path)
-        if found and found not in self._written_as and not self.done:
+                partial.unlink()  # of a process that was killed; nobody else writes here now
+        if self.done:
+            self._refuse_other(plan)
+            return
+        if self.path.exists():
             raise SolidgearError(
                 f"{self.path}: is there already, and nothing beside it says that it came from this "
-                f"sweep (no rows in {self._store.path.name}); choose another --out, or add --overwrite"
+                f"sweep (no rows in {self._database.name}); choose another --out, or add --overwrite"
             )
-        up_to_date = found and found in self._written_as[-1:]
-        self._written = self._store.facts["file"]["rows"] if up_to_date else 0
+        self._db.execute("DELETE FROM facts")
+        self._db.execute("INSERT INTO facts VALUES ('plan', ?)", (plan,))
 
-    def _set_aside(self) -> str | None:
-        """Digest of the file as it was written last; one that was changed gets another name."""
-        found, beside = _digest(self.path), self._store.path.name
-        if self._written_as and not found:
-            self._mended(f"{self.path} was gone and is written anew from {beside}")
-        if not found or found in self._written_as:
-            return found
-        aside, count = self.path.with_name(self.path.name + ".changed"), 1
-        while aside.exists():
-            count += 1
-            aside = self.path.with_name(f"{self.path.name}.changed{count}")
-        os.replace(self.path, aside)
-        self._mended(
-            f"{self.path} does not match the record of what was written: what was there is now "
-            f"{aside.name}, and it is written anew from {beside}"
+    def _refuse_other(self, plan: str) -> None:
+        """Refuse rows of another plan, with the names in which it differs."""
+        text = self._fact("plan") or "{}"
+        if text == plan:
+            return
+        a, b = json.loads(text), json.loads(plan)
+        # as texts: a number that is none is not equal to itself
+        differing = [
+            name
+            for name in sorted({*a, *b})
+            if json.dumps(a.get(name), sort_keys=True) != json.dumps(b.get(name), sort_keys=True)
+        ]
+        # columns follow from the others; alone they differ between versions only
+        names = [name for name in differing if name != "columns"] or differing
+        raise SolidgearError(
+            f"{self.path}: holds the rows of another sweep (it differs in: {', '.join(names)}); "
+            "choose another --out, or add --overwrite"
         )
-        return None
 
-    def _mended(self, text: str) -> None:
-        self.repairs.append(text)
-        self._tell(text)
+    def _value(self, query: str) -> Any:
+        return self._db.execute(query).fetchall()[0][0]
+
+    def _fact(self, name: str) -> str | None:
+        row = self._db.execute("SELECT value FROM facts WHERE name = ?", (name,)).fetchone()
+        return None if row is None else row[0]
+
+    @property
+    def basis(self) -> int | None:
+        """Level of the basis that rows of bearings begin with; None as long as it is unknown."""
+        level = self._fact("basis")
+        return None if level is None else int(level)
+
+    @basis.setter
+    def basis(self, level: int) -> None:
+        with self._writing():
+            self._db.execute("INSERT OR REPLACE INTO facts VALUES ('basis', ?)", (str(level),))
 
     # ---------------------------------------------------------------------------------- writing
     def append(self, rows: Iterable[Mapping[str, Any]]) -> None:
-        """Add rows; they are on the disk when this returns."""
+        """Add rows; all are on the disk when this returns, or none."""
+        lines = [(row["variant"], self._line(row)) for row in rows]
         with self._writing():
-            self._store.append((row["variant"], self._line(row)) for row in rows)
+            with self._db:
+                self._db.execute("BEGIN")
+                self._db.executemany("INSERT INTO rows VALUES (?, ?)", lines)
+            self.done.update(number for number, _ in lines)
             # at every doubling, so that a sweep of any length writes each row about twice
-            if not self._parquet and len(self.done) >= 2 * self._written:
+            if not self._parquet and len(self.done) >= 2 * self._exported:
                 with suppress(OSError):  # such as a spreadsheet that has it open; it is tried again
                     self._export()
 
     def finish(self) -> None:
-        """Make the file of all rows that are there, unless it is up to date."""
-        if len(self.done) != self._written:
+        """Write the table of all rows that are there."""
+        if len(self.done) != self._exported:
             with self._writing():
                 self._export()
 
     def _export(self) -> None:
-        before = self._set_aside()
         with whole(self.path) as partial:
             if self._parquet:
                 self._write_parquet(partial)
             else:
                 self._write_csv(partial)
-            # If the process is killed here, either file may be found.
-            digests = [digest for digest in (before, _digest(partial)) if digest]
-            self._store.note("file", {"digests": digests, "rows": len(self.done)})
-        self._written = len(self.done)
+        self._exported = len(self.done)
 
     def _write_csv(self, partial: Path) -> None:
-        with partial.open("w", newline="", encoding="utf-8") as f:
-            f.write(_csv_line(self.columns) + "\n")
-            f.writelines(line + "\n" for line in self._store.lines())
+        with partial.open("w", newline="", encoding="utf-8") as file:
+            file.write(_csv_line(self.columns) + "\n")
+            file.writelines(line + "\n" for line in self._lines())
 
     def _write_parquet(self, partial: Path) -> None:
         arrow = _pyarrow()
@@ -207,27 +223,54 @@ class RowFile:
         arrow.parquet.write_table(arrow.table(data), partial)
 
     def by_column(self) -> dict[str, list[Any]]:
-        """Values of all rows that are there, in their order; None where a row has none."""
-        table = list(csv.reader(self._store.lines()))
+        """Return the values of all rows that are there, in order; None where a row has none."""
+        table = list(csv.reader(self._lines()))
         return {
             name: [kind(row[k]) if row[k] else None for row in table]
             for k, (name, kind) in enumerate(self.columns.items())
         }
 
-    def _line(self, row: Mapping[str, Any]) -> str:
-        return _csv_line(_text(row.get(name)) for name in self.columns)
+    def _lines(self) -> Iterator[str]:
+        return (line for (line,) in self._db.execute("SELECT line FROM rows ORDER BY variant"))
 
+    def _line(self, row: Mapping[str, Any]) -> str:
+        return _csv_line(_field(row.get(name)) for name in self.columns)
+
+    # --------------------------------------------------------------------------------- refusals
     @contextmanager
     def _writing(self) -> Iterator[None]:
+        """Turn errors of disk and database into a sentence with the number of rows that are kept."""
         try:
             yield
-        except (OSError, StoreError) as error:
+        except (OSError, sqlite3.Error) as error:
             reason = getattr(error, "strerror", None) or error
             kept = ""
             if self.done:
-                rows = f"{len(self.done)} of {self._total} rows"
+                rows = f"{len(self.done)} of {self.total} rows"
                 kept = f"; {rows} are kept, and the same command goes on from there"
             raise SolidgearError(f"--out {self.path}: cannot be written ({reason}){kept}") from None
+
+    def _refusal(self, error: BaseException) -> BaseException:
+        """Return an error of opening as a sentence, where it is one of the database."""
+        if _has_code(error, sqlite3.SQLITE_BUSY):
+            return SolidgearError(
+                f"{self._database}: is in use by another process, perhaps the same sweep; "
+                "wait for it to end, or choose another --out"
+            )
+        if _has_code(error, *DAMAGED):
+            return SolidgearError(
+                f"{self._database}: is damaged beyond repair ({error}); put back a copy, "
+                "or add --overwrite to solve all rows again"
+            )
+        return error
+
+
+def _has_code(error: BaseException, *codes: int) -> bool:
+    """True for an error of the database of one of these kinds."""
+    if not isinstance(error, sqlite3.DatabaseError):
+        return False
+    # the low byte is the kind, the others the place; an error of the binding itself has no code
+    return getattr(error, "sqlite_errorcode", sqlite3.SQLITE_ERROR) & 0xFF in codes
 
 
 def _csv_line(values: Iterable[Any]) -> str:
@@ -236,23 +279,14 @@ def _csv_line(values: Iterable[Any]) -> str:
     return text.getvalue()[:-1]
 
 
-def _text(value: Any) -> Any:
-    """Text of a CSV field: full precision, nothing for what does not exist."""
+def _field(value: Any) -> Any:
+    """Return a value as a CSV field: full precision, empty for None and what is not a number."""
     if value is None or (isinstance(value, float) and math.isnan(value)):
         return ""
     return float.__repr__(value) if isinstance(value, float) else value
 
 
-def _digest(path: Path) -> str | None:
-    """Of the bytes of a file; None where there is none."""
-    try:
-        with path.open("rb") as f:
-            return hashlib.file_digest(f, "sha256").hexdigest()
-    except FileNotFoundError:
-        return None
-
-
-def _pyarrow():
+def _pyarrow() -> Any:
     try:
         import pyarrow
         import pyarrow.parquet

@@ -1,15 +1,14 @@
-"""Rows that a sweep makes: options on them, a bar while they are made, and words on them."""
+"""Rows of a sweep: options, a progress bar while they are made, and sentences on them."""
 
 from __future__ import annotations
 
-import json
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
@@ -18,27 +17,25 @@ from solidgear.show.command import Group, console
 from solidgear.show.plot import FORMATS, check_ending
 from solidgear.show.sheet import write_sheet
 from solidgear.show.units import ENGINEERING
-from solidgear.variants.sweep.bearing_sweep import Summary
+from solidgear.variants.sweep.bearing_task import SweptBearings
 from solidgear.variants.sweep.chart import sweep_chart, sweep_table
 from solidgear.variants.sweep.curves import Curves, chartable
 from solidgear.variants.sweep.design import Design
-from solidgear.variants.sweep.file_task import FileTask, Swept, run
+from solidgear.variants.sweep.file_task import FileTask, R, Swept, Task, run
 
-#: rows that are told on the terminal as well
+#: rows that are printed on the terminal as well
 FEW = 40
 #: ending of a chart that is a page
 PAGE = ".html"
-#: reasons of refusals that are told
+#: reasons of refusals that are printed
 REASONS = 5
-#: told rows that are there, rows in all and what is done
-Show = Callable[[int, int, str], None]
-#: told a sentence on what was mended
-Tell = Callable[[str], None]
+#: called with the number of rows that are there, of rows in all, and the present step
+ShowRows = Callable[[int, int, str], None]
 
 
 @dataclass(frozen=True)
 class Rows(Group):
-    """Rows that a sweep makes, where to and by whom."""
+    """Options on the rows of a sweep, their file and the processes that make them."""
 
     out: Annotated[
         Path,
@@ -91,34 +88,37 @@ class Rows(Group):
         False
     )
 
-    def made(self, task: FileTask, chart: Path | None, show: Show, tell: Tell) -> Swept:
-        """Rows of variants of files; refused before where a chart of them cannot be drawn."""
-        if chart is not None:
-            chartable(task.variants)
-        return run(
-            task,
-            self.out,
-            jobs=self.jobs,
-            dask=self.dask,
-            overwrite=self.overwrite,
-            progress=show,
-            tell=tell,
-        )
+    def run(self, task: Task[R], silent: bool) -> R:
+        """Run a task with these options, and return the result of it."""
+        with self._counted(silent) as show:
+            return run(
+                task,
+                self.out,
+                jobs=self.jobs,
+                dask=self.dask,
+                overwrite=self.overwrite,
+                progress=show,
+            )
 
     @property
     def of_files(self) -> bool:
-        """Tell whether options are given that are for variants of files."""
+        """True where options are given that are for variants of files."""
         return bool(self.one_at_a_time or self.table or self.keep_sum)
 
     def design(self, vary: Sequence[str]) -> Design:
-        """Entries that vary, and in which combinations."""
-        sums = tuple(self.keep_sum or ())
-        drawn = self.sample, self.seed, self.one_at_a_time
-        return Design(tuple(vary), *drawn, self.table, sums)
+        """Return the entries that vary, and in which combinations."""
+        return Design(
+            tuple(vary),
+            sample=self.sample,
+            seed=self.seed,
+            one_at_a_time=self.one_at_a_time,
+            table=self.table,
+            keep_sum=tuple(self.keep_sum or ()),
+        )
 
     @contextmanager
-    def counted(self, silent: bool) -> Iterator[tuple[Show, Tell]]:
-        """A bar of the rows that are there, where there is a terminal; after Ctrl-C they are told."""
+    def _counted(self, silent: bool) -> Iterator[ShowRows]:
+        """Show a bar of the rows that are there, on a terminal; after Ctrl-C print their number."""
         terminal = console(stderr=True)
         bar = Progress(
             TextColumn("{task.description}", markup=False),
@@ -129,10 +129,6 @@ class Rows(Group):
             disable=silent or not terminal.is_terminal,
         )
         reached = [0, 0]
-
-        def tell(text: str) -> None:
-            terminal.print(f"solidgear: {text}", soft_wrap=True)
-
         try:
             with bar:
                 line = bar.add_task("reading", total=None)
@@ -141,7 +137,7 @@ class Rows(Group):
                     reached[:] = done, total
                     bar.update(line, completed=done, total=total, description=text)
 
-                yield show, tell
+                yield show
         except KeyboardInterrupt:
             if reached[0]:
                 print(
@@ -153,8 +149,8 @@ class Rows(Group):
 
 
 @dataclass(frozen=True)
-class Told(Group):
-    """Numbers that rows of a train tell."""
+class OfTrain(Group):
+    """Options on the numbers of rows of a train."""
 
     ask: Annotated[
         list[str] | None,
@@ -182,59 +178,55 @@ class Told(Group):
     ] = None
 
 
-def rows_there(found: Swept | Summary) -> str:
-    """Sentence on the rows that are there."""
-    path = str(found.path).encode("utf-8", "backslashreplace").decode()  # bytes that are no text
-    if found.skipped == found.total:
-        return f"{path}: all {found.total} rows were there already."
-    there = f"; {found.skipped} more were there already" if found.skipped else ""
-    return f"Wrote {found.total - found.skipped} rows to {path}{there}."
+def rows_there(result: Swept | SweptBearings) -> str:
+    """Return the sentence on the rows that are there."""
+    path = str(result.path).encode("utf-8", "backslashreplace").decode()  # bytes that are no text
+    if result.skipped == result.total:
+        return f"{path}: all {result.total} rows were there already."
+    before = f"; {result.skipped} more were there already" if result.skipped else ""
+    return f"Wrote {result.total - result.skipped} rows to {path}{before}."
 
 
-def solved(found: Swept) -> str:
-    """Sentence on what was done in this run."""
-    new = found.total - found.skipped
-    each = 1e3 * found.seconds / new
-    return f"{new} variants in {found.seconds:.1f} s, {each:.0f} ms each; {found.refused} refused."
+def solved(result: Swept) -> str:
+    """Return the sentence on the variants of this run and their time."""
+    new = result.total - result.skipped
+    each = 1e3 * result.seconds / new
+    return (
+        f"{new} variants in {result.seconds:.1f} s, {each:.0f} ms each; {result.refused} refused."
+    )
 
 
-def refusals(found: Swept | Summary) -> list[str]:
-    """Sentences on variants that were refused, if any were: a reason each, the commonest first."""
-    most = sorted(found.whys.items(), key=lambda why: -why[1])
-    told = [
-        f"Refused{f' ({count} variants)' if count > 1 else ''}: {why}"
-        for why, count in most[:REASONS]
-    ]
-    if len(most) > REASONS:
-        left = sum(count for _, count in most[REASONS:])
-        told.append(f"{left} more are refused for other reasons (column status).")
-    return told
+def refusals(result: Swept | SweptBearings) -> list[str]:
+    """Return a sentence a reason for which variants were refused, the commonest first."""
+    reasons = sorted(result.whys.items(), key=lambda why: -why[1])
+    sentences = []
+    for why, count in reasons[:REASONS]:
+        variants = f" ({count} variants)" if count > 1 else ""
+        sentences.append(f"Refused{variants}: {why}")
+    if len(reasons) > REASONS:
+        others = sum(count for _, count in reasons[REASONS:])
+        sentences.append(f"{others} more are refused for other reasons (column status).")
+    return sentences
 
 
-def record_of(found: Swept, **more: Any) -> str:
-    """The account as JSON, without the rows."""
-    kept = ("path", "total", "skipped", "refused", "whys", "seconds", "repairs")
-    return json.dumps({name: getattr(found, name) for name in kept} | more, default=str)
-
-
-def ended_rows(found: Swept) -> None:
-    """An exit code of its own where no variant could be solved."""
-    if found.refused == found.total:
+def end_rows(result: Swept) -> None:
+    """End with exit code 1 if no variant could be solved."""
+    if result.refused == result.total:
         raise typer.Exit(1)
 
 
-def checked_chart(file: Path | None) -> None:
-    """Refuse a chart of an unknown format before anything is solved."""
+def check_chart(file: Path | None, task: FileTask | None = None) -> None:
+    """Refuse a chart of an unknown format, or one of a task without curves, before the rows."""
     if file is not None:
         check_ending(file, (*FORMATS, PAGE))
+        if task is not None:
+            chartable(task.variants)
 
 
-def drawn(
+def draw_chart(
     curves: Curves | None, title: str, lead: str, file: Path | None, cautions: Sequence[str] = ()
 ) -> list[str]:
-    """Sentence on the curves, once they are drawn into a picture or a page; none if none was asked
-    for.
-    """
+    """Draw the curves into a picture or a page, and return the sentence on it; none without a file."""
     if file is None:
         return []
     if curves is None or curves.empty:
@@ -243,5 +235,5 @@ def drawn(
     if file.suffix.lower() != PAGE:
         return [f"Chart: {sweep_chart(curves, title).write(file)}"]
     charts = {"sweep": partial(sweep_chart, curves, "", ENGINEERING)}
-    told = [sweep_table(curves)]
-    return [f"Chart: {write_sheet(file, title, lead, told, charts=charts, cautions=cautions)}"]
+    tables = [sweep_table(curves)]
+    return [f"Chart: {write_sheet(file, title, lead, tables, charts=charts, cautions=cautions)}"]

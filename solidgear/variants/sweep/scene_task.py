@@ -1,4 +1,4 @@
-"""Rows of a sweep of scenes: numbers with their bars."""
+"""Rows of a sweep of scenes: numbers with their error bars."""
 
 from __future__ import annotations
 
@@ -17,12 +17,15 @@ from solidgear.core.models.limits import number
 from solidgear.core.quantity import QUANTITIES
 from solidgear.core.scene import Scene
 from solidgear.guards.one_shaft import mass_of, one_shaft
-from solidgear.variants.sweep.bearing_task import BARS, without_bars
 from solidgear.variants.sweep.bench import surface
 from solidgear.variants.sweep.design import Design
-from solidgear.variants.sweep.file_task import FileTask
-from solidgear.variants.sweep.file_variants import OWN, plain
-from solidgear.variants.sweep.scene_variants import SceneVariants, scene_variants
+from solidgear.variants.sweep.file_task import BARS, FileTask, without_bars
+from solidgear.variants.sweep.file_variants import (
+    MAIN,
+    SceneVariants,
+    scene_variants,
+    tables_for_plan,
+)
 
 #: static quantities of a row
 STATICS = tuple(q for q in QUANTITIES if not q.is_frequency)
@@ -32,12 +35,10 @@ MOST_MODES = 30
 
 @dataclass(frozen=True)
 class SceneTask(FileTask):
-    """Everything that turns variants of a scene into rows: each is read, meshed and solved for
-    itself.
-    """
+    """Turns variants of a scene into rows: each is read, meshed and solved by itself."""
 
     variants: SceneVariants
-    #: none for the cheapest mesh whose bars are within the tolerance, variant by variant
+    #: none for the cheapest mesh whose error bars are within the tolerance, variant by variant
     model: str | None
     tolerance: float | None  #: relative; that of the scene by default
     options: Mapping[str, Any]  #: of the builder of a model that is given
@@ -64,60 +65,60 @@ class SceneTask(FileTask):
 
     @property
     def plan(self) -> dict[str, Any]:
-        part = self.variants.of(self.first).body
+        part = self.variants.variant(self.first).body
         return {
-            "scene": plain(self.variants.tables(self.first)[OWN]),
+            "scene": tables_for_plan(self.variants.tables(self.first)[MAIN]),
             "part": part and part.model_dump(mode="json"),
             "model": self.model,
-            "set": plain(self.options),
+            "set": tables_for_plan(self.options),
             "tolerance": self.tolerance,
             "n": self.n,
         }
 
     def numbers(self, index: int) -> dict[str, Any]:
-        scene = self.variants.of(index)
+        scene = self.variants.variant(index)
         return self._settled(scene) if self.model is None else self._fixed(scene)
 
     def _settled(self, scene: Scene) -> dict[str, Any]:
-        """Numbers with bars, by the cheapest mesh."""
+        """Return numbers with error bars, by the cheapest mesh."""
         key = surface(scene)
         tol = scene.ask.tolerance if self.tolerance is None else self.tolerance
-        found = one_shaft(
+        shaft = one_shaft(
             scene.with_changes(ask=scene.ask.with_changes(modes=self.n)),
             tol,
             before=self._last.get(key),
         )
         self._last.clear()
-        self._last[key] = found.settled
+        self._last[key] = shaft.settled
         out: dict[str, Any] = {
-            "model": f"{found.settled.rung}, {found.settled.setting}",
-            "unknowns": found.settled.body.size,
-            "mass": found.mass,
-            "mass bar": found.mass_bar and found.mass_bar * found.mass,
+            "model": f"{shaft.settled.rung}, {shaft.settled.setting}",
+            "unknowns": shaft.settled.body.size,
+            "mass": shaft.mass,
+            "mass bar": shaft.mass_bar and shaft.mass_bar * shaft.mass,
         }
         for name in STATICS:
-            out |= {str(name): found.values.get(name), f"{name} bar": found.bar(name)}
-        elastic = [mode for mode in found.modes.modes if mode.frequency_hz > 0]
-        for k, mode in enumerate(map(found.seen, elastic[: self.n]), start=1):
+            out |= {str(name): shaft.values.get(name), f"{name} bar": shaft.bar(name)}
+        elastic = [mode for mode in shaft.modes.modes if mode.frequency_hz > 0]
+        for k, mode in enumerate(map(shaft.seen, elastic[: self.n]), start=1):
             out |= {f"f{k}_hz": mode.frequency_hz, f"f{k}_hz bar": mode.width}
             out[f"mode{k}"] = mode.name
         return out
 
     def _fixed(self, scene: Scene) -> dict[str, Any]:
-        """Numbers of one model on the mesh that was asked for, without bars."""
+        """Return numbers of one model on the mesh that was asked for, without error bars."""
         assert self.model is not None
         body: Body = build(scene, self.model, **self.options)
-        found = answer_of_body(body, as_supports(scene), [scene.port.name], self.n, ovalising=True)
-        mass, exact = mass_of(scene, body)
+        numbers = answer_of_body(body, as_supports(scene), [scene.port.name], self.n, ovalising=True)
+        mass, bar = mass_of(scene, body)
         out: dict[str, Any] = {
             "model": self.model,
             "unknowns": body.size,
             "mass": mass,
-            "mass bar": exact and exact * mass,
+            "mass bar": bar and bar * mass,
             BARS: without_bars(self.model),
         }
-        out |= {str(name): found.quantities.get(name) for name in STATICS}
-        elastic = [mode for mode in found.modes.modes if mode.frequency_hz > 0]
+        out |= {str(name): numbers.quantities.get(name) for name in STATICS}
+        elastic = [mode for mode in numbers.modes.modes if mode.frequency_hz > 0]
         for k, mode in enumerate(elastic[: self.n], start=1):
             out |= {f"f{k}_hz": mode.frequency_hz, f"mode{k}": str(mode.name)}
         return out
@@ -132,7 +133,7 @@ def scene_task(
     options: Mapping[str, Any] | None = None,
     n: int | None = None,
 ) -> SceneTask:
-    """Statics and natural frequencies of many variants of a scene, each with its bars.
+    """Return the task of statics and natural frequencies of variants of a scene, with error bars.
 
     Parameters
     ----------
@@ -143,8 +144,8 @@ def scene_task(
         ``segment.neck.diameter=30 mm:40 mm:5``. The change is made to the tables of the file, and
         every rule of the file applies.
     model : str, optional
-        None for the cheapest mesh whose bars are within the tolerance, variant by variant; of a
-        model that is given rows have no bars.
+        None for the cheapest mesh whose error bars are within the tolerance, variant by variant;
+        rows of a model that is given have none.
     tolerance : float, optional
         Relative; that of the scene by default.
     options : mapping, optional
@@ -165,9 +166,9 @@ def scene_task(
     >>> thin["C_zz"] > thick["C_zz"]
     True
     """
-    given = {} if model is None else LADDER[model].checked(dict(options or {}))
+    checked = {} if model is None else LADDER[model].checked(dict(options or {}))
     variants = scene_variants(scene, design, "segment.1.diameter=30 mm:40 mm:5")
     first, usual = variants.first_sound()
     n = usual.ask.modes if n is None else n
     number("sweep", "n", n, least=1, below=MOST_MODES + 1, whole=True)
-    return SceneTask(variants, model, tolerance, given, n, first)
+    return SceneTask(variants, model, tolerance, checked, n, first)

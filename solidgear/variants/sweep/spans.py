@@ -1,4 +1,4 @@
-"""Values of what varies in a study: ``a:b:n`` (n values, evenly), ``log:a:b:n`` (geometrically) or a
+"""Values of entries that vary in a study: ``a:b:n`` (n values, evenly), ``log:a:b:n`` (geometrically) or a
 list ``a,b,c``, their full product or a Latin hypercube.
 """
 
@@ -18,7 +18,7 @@ MOST = 10_000_000
 
 @dataclass(frozen=True, kw_only=True)
 class Span:
-    """Values of something that varies."""
+    """Values of an entry that varies."""
 
     label: str  #: name of its column, such as ``bearing.2.position``
     values: tuple[float, ...]
@@ -32,27 +32,26 @@ class Span:
         return self.spacing == "list"
 
     def draw(self, u: np.ndarray) -> np.ndarray:
-        """Values for numbers between 0 and 1."""
+        """Return (n,) values for numbers between 0 and 1."""
         if self.only_listed:
-            return np.array(self.values)[
-                np.minimum((u * len(self.values)).astype(int), len(self.values) - 1)
-            ]
+            places = np.minimum((u * len(self.values)).astype(int), len(self.values) - 1)
+            return np.array(self.values)[places]
         a, b = self.values[0], self.values[-1]
         return a + (b - a) * u if self.spacing == "linear" else a * (b / a) ** u
 
 
 def product(axes: Sequence[Span]) -> np.ndarray:
-    """(variants, axes) all combinations, the last axis running fastest."""
-    total = int(np.prod([float(len(a.values)) for a in axes]))
+    """Return (variants, axes) all combinations, the last axis running fastest."""
+    total = int(np.prod([float(len(axis.values)) for axis in axes]))
     if total > MOST:
         raise SolidgearError(
             f"{total} variants are more than the {MOST} a sweep takes; use fewer values, or draw some with --sample"
         )
-    return np.array(list(itertools.product(*(a.values for a in axes))), float)
+    return np.array(list(itertools.product(*(axis.values for axis in axes))), float)
 
 
 def sample(axes: Sequence[Span], count: int, seed: int) -> np.ndarray:
-    """(count, axes) a Latin hypercube over the ranges of the axes."""
+    """Return (count, axes) a Latin hypercube over the ranges of the axes."""
     if not 1 <= count <= MOST:
         raise SolidgearError(f"--sample {count}: give a whole number from 1 to {MOST}")
     if seed < 0:
@@ -64,17 +63,8 @@ def sample(axes: Sequence[Span], count: int, seed: int) -> np.ndarray:
 
 
 def spread(spec: str, read: Callable[[str], float]) -> tuple[list[float], str]:
-    """Values of a text ``a:b:n``, ``log:a:b:n`` or ``a,b,c``, and their spacing.
-
-    Parameters
-    ----------
-    read : callable
-        Value of one number.
-
-    Raises
-    ------
-    SceneError
-        For another text; as `read`.
+    """Return the values of a text ``a:b:n``, ``log:a:b:n`` or ``a,b,c``, and their spacing; `read`
+    gives the value of a number. SceneError for another text.
     """
     spacing, parts = "linear", [part.strip() for part in spec.split(":")]
     if parts[0] == "log":
@@ -88,13 +78,12 @@ def spread(spec: str, read: Callable[[str], float]) -> tuple[list[float], str]:
         raise SceneError(f"a:b:n needs a whole number n of 2 or more values, not {parts[2]!r}")
     if spacing == "log" and not a * b > 0:
         raise SceneError("a logarithmic range needs both ends above zero")
-    return (np.linspace if spacing == "linear" else np.geomspace)(
-        a, b, int(parts[2])
-    ).tolist(), spacing
+    spread_between = np.linspace if spacing == "linear" else np.geomspace
+    return spread_between(a, b, int(parts[2])).tolist(), spacing
 
 
 def plain_number(text: str) -> str | float:
-    """A number where a text is one, else the text."""
+    """Return a number where a text is one, else the text."""
     try:
         return float(text)
     except ValueError:

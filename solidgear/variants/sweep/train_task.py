@@ -1,4 +1,4 @@
-"""Solution of one variant of a sweep of trains, as a row."""
+"""Rows of a sweep of trains: natural frequencies, peaks of the mesh force, and numbers at rest."""
 
 from __future__ import annotations
 
@@ -24,34 +24,32 @@ from solidgear.trains.load.operation import SHAFT, OperatingState, with_settled_
 from solidgear.trains.modes.modes import refuse_unresolved
 from solidgear.trains.modes.parting import joint_name, parting_frequency, teeth_relief
 from solidgear.trains.response.respond import Drive
-from solidgear.variants.sweep.bearing_task import BARS, BOUND
 from solidgear.variants.sweep.bench import Bench
 from solidgear.variants.sweep.curves import force_of, misaligned
 from solidgear.variants.sweep.design import Design
-from solidgear.variants.sweep.file_task import FileTask
-from solidgear.variants.sweep.file_variants import plain
+from solidgear.variants.sweep.file_task import BARS, BOUND, FileTask
+from solidgear.variants.sweep.file_variants import tables_for_plan
 from solidgear.variants.sweep.train_variants import TrainVariants, train_variants
 
-#: what a row may tell, by the commands that tell the same of one train
+#: kinds of numbers of a row, by the commands that show the same of one train
 MODES, RESPONSE, DEFLECTION = "system-modes", "response", "deflect"
 ASKED = (MODES, RESPONSE, DEFLECTION)
-#: natural frequencies of a row, unless it is asked for so many
+#: natural frequencies of a row at most, by default and on request
 MOST_MODES = 20
-#: most that can be asked for
 MOST_SHAPES = 200
-#: words on bars of a row
+#: words on error bars of a row
 UNBARRED = "none: system-modes and response and deflect have those of one variant"
 #: peaks of the mesh force
 PEAKS = 3
 #: column of the lowest frequency at which the dynamic mesh force is larger than the mean one, Hz
 PARTS = "parts_from_hz"
-#: of a bearing, N, N and N m
-CARRIED = ("radial", "axial", "moment")
+#: loads of a bearing, N, N and N m
+LOADS = ("radial", "axial", "moment")
 
 
 @dataclass(frozen=True)
 class TrainTask(FileTask):
-    """Everything that turns variants of a train into rows."""
+    """Turns variants of a train into rows."""
 
     variants: TrainVariants
     models: Mapping[str, str]  #: by shaft, in the sequence of the file
@@ -62,36 +60,37 @@ class TrainTask(FileTask):
     reduction: str
     kept: int
     settings: Mapping[Any, Mapping]  #: builder options by (side, model)
-    mesh: str | None  #: whose transmission error drives the train; the first by default
+    mesh: str | None  #: the one whose transmission error drives the train; the first by default
     first: int  #: a variant that can be read
 
     @cached_property
     def bench(self) -> Bench:
-        """Things kept from row to row."""
+        """Shafts and trains kept from row to row."""
         return Bench(self.reduction, self.kept, self.settings)
 
     @cached_property
     def usual(self) -> Train:
         """Train of the first variant that can be read."""
-        return self.variants.of(self.first)
+        return self.variants.variant(self.first)
 
     @property
-    def measured(self) -> tuple[str, ...]:
+    def misalignments(self) -> tuple[str, ...]:
         return tuple(measured_names(self.usual))
 
     @property
     def cautions(self) -> tuple[str, ...]:
-        """Things that do not fit together in the usual train but can be solved."""
-        met = tuple(text for met in contacts(self.usual).values() for text in met.cautions)
-        return met + self.variants.cautions
+        """Sentences on data that contradict each other in trains that can be solved."""
+        meshes = contacts(self.usual).values()
+        of_meshes = tuple(text for mesh in meshes for text in mesh.cautions)
+        return of_meshes + self.variants.cautions
 
     @property
     def columns(self) -> dict[str, type]:
         train, out = self.usual, dict[str, type]()
         if train.operation:
-            out |= {"torque": float} | {force_of(one.name): float for one in train.joints}
+            out |= {"torque": float} | {force_of(joint.name): float for joint in train.joints}
         if train.operation and DEFLECTION in self.ask:
-            out |= dict.fromkeys(map(misaligned, self.measured), float)
+            out |= dict.fromkeys(map(misaligned, self.misalignments), float)
             out |= {once(stage.called): float for stage in stages_over_a_turn(train)}
             out |= dict.fromkeys(_loads(train), float)
         if train.operation:
@@ -109,73 +108,73 @@ class TrainTask(FileTask):
     @property
     def plan(self) -> dict[str, Any]:
         variants, usual = self.variants, self.usual
-        files = {name or "train": plain(t) for name, t in variants.tables(self.first).items()}
-        # what these files name
+        tables = variants.tables(self.first)
+        # further files that these name
         cells = [cell.model_dump() for mesh in usual.meshes for cell in mesh.contact_cells]
-        parts = [own.scene.body for own in usual.shafts.values()]
+        parts = [shaft.scene.body for shaft in usual.shafts.values()]
         return {
-            "files": files,
+            "files": {name or "train": tables_for_plan(tables[name]) for name in tables},
             "cells": cells,
             "parts": [part and part.model_dump(mode="json") for part in parts],
-            "scenes": {word: plain(tables) for word, tables in variants.scenes_in_turn()},
+            "scenes": {word: tables_for_plan(scene) for word, scene in variants.scenes_in_turn()},
             "point": variants.point,
             "models": [*self.models.values()],
             "mesh": self.mesh,
             "n": self.n,
             "max_frequency": self.max_frequency,
             "reduction": [self.reduction, self.kept],
-            "set": plain({" ".join(key): dict(own) for key, own in self.settings.items()}),
+            "set": tables_for_plan(
+                {" ".join(key): dict(options) for key, options in self.settings.items()}
+            ),
         }
 
     def cut(self, columns: Mapping[str, list[Any]]) -> int:
-        """Natural frequencies up to the highest frequency that the widest row has and no column
-        holds.
+        """Return the number of natural frequencies below the highest frequency without a column, of
+        the row that has most.
         """
         widest = max((count for count in columns.get("modes", []) if count), default=0)
         return max(0, widest - MOST_MODES) if self.n is None else 0
 
     def numbers(self, index: int) -> dict[str, Any]:
-        train = self.variants.of(index)
-        point = self.variants.at(index, train)
-        at, found = train, dict[str, Any]({BARS: UNBARRED})
+        train = self.variants.variant(index)
+        point = self.variants.operating_point(index, train)
+        numbers: dict[str, Any] = {BARS: UNBARRED}
         if point is not None:
-            at, rest = self._at_rest(index, train, point)
-            found |= rest
+            train, at_rest = self._at_rest(index, train, point)
+            numbers |= at_rest
         if {MODES, RESPONSE} & {*self.ask}:
-            found |= self._moving(at, found)
-        return found
+            numbers |= self._moving(train, numbers)
+        return numbers
 
     # ------------------------------------------------------------------------------ at rest
     def _at_rest(
         self, index: int, train: Train, point: OperatingPoint
     ) -> tuple[Train, dict[str, Any]]:
-        """A train whose bearings have settled at an operating point, and what is told of it there."""
+        """Return a train whose bearings have settled at an operating point, and its numbers there."""
         key, on_shafts = self.variants.beside_operation(index), (SHAFT,) * len(self.models)
         state = self.bench.operating(key, train, *on_shafts).at(point)
-        at = with_settled_bearings(train, state)
+        at_rest = with_settled_bearings(train, state)
         out: dict[str, Any] = {
             "torque": point.torque,
             **{force_of(name): force for name, force in state.mesh_forces.items()},
-            "unloaded": ", ".join(at.unloaded),
+            "unloaded": ", ".join(at_rest.unloaded),
         }
         if DEFLECTION in self.ask:
             models = tuple(map(statics_of, self.models.values()))
             operating = self.bench.operating(key, train, *models)
-            told = state if models == on_shafts else operating.at(point)
+            deflected = state if models == on_shafts else operating.at(point)
             shop = operating.workshop.on_flank(point.coast)
-            out |= {
-                misaligned(one.name): float(one.row @ told.coordinates)
-                for one in misalignment(shop, told.system)
-            }
-            turns = over_a_turn(operating.workshop, told, told.models)
-            out |= {once(turn.stage): max(one.once for one in turn.planets) for turn in turns}
-            out |= _carried(told)
-        return at, out
+            for measure in misalignment(shop, deflected.system):
+                out[misaligned(measure.name)] = float(measure.row @ deflected.coordinates)
+            for turn in over_a_turn(operating.workshop, deflected, deflected.models):
+                out[once(turn.stage)] = max(planet.once for planet in turn.planets)
+            out |= _bearing_loads(deflected)
+        return at_rest, out
 
     # ------------------------------------------------------------------------------ moving
     def _moving(self, train: Train, at_rest: Mapping[str, Any]) -> dict[str, Any]:
-        """Natural frequencies and peaks of the mesh force, and where the teeth part by what they
-        carry at rest.
+        """Return natural frequencies, peaks of the mesh force, and the frequency from which the teeth
+        part under their load at rest.
         """
         shop = self.bench.workshop(train, *self.models.values())
         drive = Drive(shop, *self.models.values(), mesh=self.mesh)
@@ -185,24 +184,24 @@ class TrainTask(FileTask):
         if MODES in self.ask:
             below = int((drive.system.elastic[0] <= 2 * np.pi * limit).sum())
             wanted = self.n or min(below, MOST_MODES)
-            found, names = drive.named_modes(max(wanted, drive.reach(limit)), bounded=wanted)
-            elastic = slice(found.rigid, found.rigid + wanted)
-            out |= {"rigid_modes": found.rigid, "modes": below}
-            out[BOUND] = float(found.error_bound[elastic].max(initial=0.0))
+            modes, names = drive.named_modes(max(wanted, drive.reach(limit)), bounded=wanted)
+            elastic = slice(modes.rigid, modes.rigid + wanted)
+            out |= {"rigid_modes": modes.rigid, "modes": below}
+            out[BOUND] = float(modes.error_bound[elastic].max(initial=0.0))
             for k, (hz, name) in enumerate(
-                zip(found.frequency_hz[elastic], names[elastic]), start=1
+                zip(modes.frequency_hz[elastic], names[elastic]), start=1
             ):
                 out |= {f"f{k}_hz": float(hz), f"mode{k}": name}
         if RESPONSE in self.ask:
             hz = drive.grid(limit)
-            largest = sorted(drive.curve(hz).peaks, key=lambda top: -top.force)[:PEAKS]
-            for k, top in enumerate(largest, start=1):
-                out |= {f"peak{k}_hz": top.frequency_hz, f"peak{k}_force": top.force}
-                out[f"peak{k}_mode"] = top.mode
+            largest = sorted(drive.curve(hz).peaks, key=lambda peak: -peak.force)[:PEAKS]
+            for k, peak in enumerate(largest, start=1):
+                out |= {f"peak{k}_hz": peak.frequency_hz, f"peak{k}_force": peak.force}
+                out[f"peak{k}_mode"] = peak.mode
             mean = at_rest.get(force_of(joint_name(drive.pair)))
             if mean is not None:
-                low = parting_frequency(hz, teeth_relief(drive, drive.over_cycle(hz, limit)), mean)
-                out |= {} if low is None else {PARTS: low}
+                lowest = parting_frequency(hz, teeth_relief(drive, drive.over_cycle(hz, limit)), mean)
+                out |= {} if lowest is None else {PARTS: lowest}
         return out
 
 
@@ -241,18 +240,19 @@ def train_task(
     mesh : str, optional
         Whose transmission error drives the train; the first by default.
     ask : iterable of str
-        Some of ``system-modes``, ``response`` and ``deflect``: what a row tells, all by default.
+        Kinds of numbers of a row: some of ``system-modes``, ``response`` and ``deflect``; all by
+        default.
     n : int, optional
         Elastic modes of a row; those up to the highest frequency by default.
     max_frequency : float, optional
         Hz; that of the file by default.
     point : str, optional
-        Operating point that is looked at, by its name or number; the first by default, or the one
-        that varies.
+        Operating point of all rows, by its name or number; the first by default, or the one that
+        varies.
     every_point : bool
         A row for each operating point of the file.
     reduction, kept, settings
-        As of :class:`solidgear.trains.assembly.models.Workshop`.
+        As for :class:`solidgear.trains.assembly.models.Workshop`.
     local_harmonics : sequence of int
         Of every mesh, in place of those of the file.
 
@@ -269,10 +269,11 @@ def train_task(
     >>> [row["status"] for row in task.rows(range(3))], task.bench.made
     (['ok', 'ok', 'ok'], 2)
     """
-    asked = _asked(ask)
-    given = {side: one for side, one in (("pinion", pinion), ("gear", gear)) if one is not None}
-    given |= models or {}
-    for model in given.values():
+    kinds = _kinds(ask)
+    by_side = {"pinion": pinion, "gear": gear}
+    chosen = {side: model for side, model in by_side.items() if model is not None}
+    chosen |= models or {}
+    for model in chosen.values():
         checked_model(model)
     if n is not None:
         number("sweep", "n", n, least=1, below=MOST_SHAPES + 1, whole=True)
@@ -281,56 +282,65 @@ def train_task(
     )
     first, usual = variants.first_sound()
     usual.named_mesh(mesh)
-    for side in given:
+    for side in chosen:
         usual.named_shaft(side)
-    mix = {side: given.get(side, JUDGE) for side in usual.shafts}
-    how = reduction, kept, dict(settings or {}), mesh
-    return TrainTask(variants, mix, asked, n, max_frequency, *how, first)
+    return TrainTask(
+        variants,
+        models={side: chosen.get(side, JUDGE) for side in usual.shafts},
+        ask=kinds,
+        n=n,
+        max_frequency=max_frequency,
+        reduction=reduction,
+        kept=kept,
+        settings=dict(settings or {}),
+        mesh=mesh,
+        first=first,
+    )
 
 
-def _asked(ask: Iterable[str]) -> tuple[str, ...]:
-    """Kinds of numbers that rows tell, in the usual order."""
-    given = list(ask)
-    for word in given:
+def _kinds(ask: Iterable[str]) -> tuple[str, ...]:
+    """Return the kinds of numbers of rows, in the usual order."""
+    kinds = list(ask)
+    for word in kinds:
         if word not in ASKED:
             raise SolidgearError(
                 f"--ask {show(word, 40)}: a row tells what {', '.join(ASKED)} tell"
                 f"{nearest(word, ASKED)}"
             )
-    if not given:
+    if not kinds:
         raise SolidgearError(f"--ask: name one or more of {', '.join(ASKED)}")
-    return tuple(word for word in ASKED if word in given)
+    return tuple(word for word in ASKED if word in kinds)
 
 
 def statics_of(model: str) -> str:
-    """Model that a shaft is put at rest by: a lumped one has no bearings of its own, and the body it
-    comes from takes its place.
+    """Return the model of a shaft at rest: in place of a lumped one, which has no bearings, that of its
+    body.
     """
     kind, base = checked_model(model)
     return base if kind in LUMPED else model
 
 
 def once(stage: str) -> str:
-    """Column of what the largest mesh force of a planet varies by once a turn of its carrier."""
+    """Return the column of the amplitude of the mesh force of a planet once a turn of the carrier."""
     return f"once_a_turn_{stage.replace(' ', '_')}"
 
 
 def _loads(train: Train) -> Iterator[str]:
-    """Columns of what every bearing carries."""
-    for side, own in train.shafts.items():
-        for name in _bearings(own.scene):
-            yield from (f"{side}.{name}.{what}" for what in CARRIED)
+    """Yield the columns of the loads of every bearing."""
+    for side, shaft in train.shafts.items():
+        for name in _loaded_bearings(shaft.scene):
+            yield from (f"{side}.{name}.{load}" for load in LOADS)
 
 
-def _bearings(scene: Scene) -> list[str]:
-    """Bearings of a shaft that can carry."""
+def _loaded_bearings(scene: Scene) -> list[str]:
+    """Return the names of the bearings of a shaft that can carry a load."""
     return [b.name for b in scene.bearings if b.catalogue is not None or np.any(b.stiffness)]
 
 
-def _carried(state: OperatingState) -> dict[str, float]:
-    """Load of every bearing: across the shaft, along it and against tilting."""
+def _bearing_loads(state: OperatingState) -> dict[str, float]:
+    """Return the load of every bearing: across the shaft, along it and against tilting."""
     out: dict[str, float] = {}
     for end, load in state.equilibrium.load.items():
         values = np.hypot(load[0], load[2]), load[1], np.hypot(load[3], load[5])
-        out |= {f"{end}.{what}": float(value) for what, value in zip(CARRIED, values)}
+        out |= {f"{end}.{name}": float(value) for name, value in zip(LOADS, values)}
     return out

@@ -11,19 +11,19 @@ from solidgear.core.machine.threads import usable_cores
 Rows = list[dict[str, Any]]
 
 
-class Task(Protocol):
-    """Something that turns variants into rows; sent to other processes."""
+class RowSolver(Protocol):
+    """Task that turns variants into rows; sent to other processes."""
 
     def rows(self, indices: Iterable[int]) -> Rows:
-        """Rows of some variants."""
+        """Return the rows of some variants."""
 
 
-#: Takes a function that gives the current task, and lists of variants; yields their rows in order.
-Workers = Callable[[Callable[[], Task], Sequence[Sequence[int]]], Iterator[Rows]]
+#: takes a task and lists of variants; yields their rows in order
+Workers = Callable[[RowSolver, Sequence[Sequence[int]]], Iterator[Rows]]
 
 
 def workers(jobs: int = 1, dask: str | None = None) -> Workers:
-    """Choose who works.
+    """Return the workers that were asked for.
 
     Raises
     ------
@@ -33,16 +33,16 @@ def workers(jobs: int = 1, dask: str | None = None) -> Workers:
     """
     if dask:
         return _dask(dask)
-    return _here if jobs == 1 else _joblib(jobs)
+    return _in_this_process if jobs == 1 else _joblib(jobs)
 
 
-def _rows(task: Task, part: Sequence[int]) -> Rows:
+def _rows(task: RowSolver, part: Sequence[int]) -> Rows:
     return task.rows(part)
 
 
-def _here(task, parts):
+def _in_this_process(task: RowSolver, parts: Sequence[Sequence[int]]) -> Iterator[Rows]:
     for part in parts:
-        yield task().rows(part)
+        yield task.rows(part)
 
 
 def _joblib(jobs: int) -> Workers:
@@ -58,10 +58,10 @@ def _joblib(jobs: int) -> Workers:
             f"--jobs {jobs} needs joblib: pip install 'solidgear[sweep]', or use --jobs 1"
         ) from None
 
-    def run(task, parts):
-        # Parts are sent as places fall free, so that later ones get a basis enlarged meanwhile.
+    def run(task: RowSolver, parts: Sequence[Sequence[int]]) -> Iterator[Rows]:
+        # the task is sent with every part as places fall free, with a basis enlarged meanwhile
         yield from Parallel(n_jobs=jobs, return_as="generator")(
-            delayed(_rows)(task(), part) for part in parts
+            delayed(_rows)(task, part) for part in parts
         )
 
     return run
@@ -81,9 +81,9 @@ def _dask(address: str) -> Workers:
             f"--dask {address}: no Dask scheduler answers there ({type(error).__name__})"
         ) from None
 
-    def run(task, parts):
+    def run(task: RowSolver, parts: Sequence[Sequence[int]]) -> Iterator[Rows]:
         with client:
-            shared = client.scatter(task(), broadcast=True)
+            shared = client.scatter(task, broadcast=True)
             futures = [client.submit(_rows, shared, part, pure=False) for part in parts]
             try:
                 for future in futures:
