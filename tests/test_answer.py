@@ -226,7 +226,7 @@ def test_what_a_finer_mesh_finds_less_sure_again_is_solved_on(scenes):
     def level(c, k):
         refinement.levels.append(Numbers({C_ZZ: c, K_ZZ: k}, left))
         solver.judge()
-        return list(solver.asked())
+        return list(solver.next_quantities())
 
     level(1.0, 1.1)
     assert level(1.0, 1.0) == ["K_zz"]  # C_zz has not moved
@@ -342,7 +342,7 @@ def test_a_climb_ends_where_no_mesh_makes_bars_narrow_enough():
     stuck.levels[0] = Numbers({C_ZZ: c_zz, C_YY: c_yy * 1.01}, {})
     stuck.judge()
     assert not stuck.in_vain()
-    assert FamilySolver(stuck).asked() == ("C_yy",)
+    assert FamilySolver(stuck).next_quantities() == ("C_yy",)
 
 
 def test_what_heavy_meshes_cost_is_told_before_they_are_made(monkeypatch):

@@ -47,7 +47,7 @@ def bearing_lives(
     scene: Scene, body: Body | None = None, speed: float | None = None
 ) -> list[BearingLife]:
     """Compute the life of every catalogue bearing of a scene at its load; `body` is the shaft, needed
-    where bearings settle under its load, and `speed` that of the shaft, rad/s, in place of the speeds
+    where bearings settle under the load, and `speed` that of the shaft, rad/s, in place of the speeds
     of bearings and lubrication.
 
     Examples

@@ -141,6 +141,64 @@ def _conformity(value: Any) -> Any:
 class Catalogue(Model):
     """A bearing by its catalogue data; numbers in SI, or texts with units.
 
+    Attributes
+    ----------
+    kind : str
+        deep_groove, angular_contact, cylindrical, tapered, needle, spherical (rollers) or
+        thrust_ball.
+    designation : str
+        Such as ``6208-2RS1/C3``: gives kind, bore, outer_diameter, width and a class of clearance
+        where these are left out; seals, cages and tolerances are read and ignored.
+    bore, outer_diameter, width : float
+        Boundary dimensions, m; the bore of a drawn cup is the diameter under its rollers.
+    load_rating, static_rating : float or None
+        Basic dynamic and static radial load rating, N; of a pair those of one bearing, of a thrust
+        bearing its axial ones.
+    fatigue_limit : float or None
+        Fatigue load limit C_u, N, of the same.
+    rating_factor : float or None
+        b_m of ISO 281; where none is given that of its kind.
+    elements : int or None
+        Rolling elements of one row.
+    element_diameter, element_length, pitch_diameter : float or None
+        Of the rolling elements and their circle, m; of tapered rollers the mean diameter.
+    contact_angle : float or None
+        From the radial plane, rad.
+    conformity : (float, float) or None
+        Groove radius over ball diameter, inner and outer; of spherical rollers over twice the radius
+        of their contour.
+    profile : {'logarithmic', 'straight'}
+        Of rollers that are no barrels, by ISO/TS 16281.
+    arrangement : str
+        single, double_row (of bearings that hold no shaft along y, or both ways), tandem,
+        back_to_back (or "O") or face_to_face (or "X"): two rows in this one bearing.
+    row_distance : float or None
+        Of the rows' middles, m; the width where not given.
+    holds : {'+y', '-y'} or None
+        Direction in which single rows and tandems with a contact angle keep the shaft from moving;
+        these have to tell it, as their mounting decides it, or `arrangement` of the scene does.
+    clearance : float or str
+        Radial internal clearance, m, or a class of ISO 5753-1, taken in its middle.
+    shaft_interference, housing_interference : float
+        Of the fits, on the diameter, m.
+    inner_ring_warmer : float
+        K above the outer ring.
+    preload : Preload or None
+        Along y; a text with a unit in a file: ``"500 N"`` or ``"10 um"``.
+    preload_spring : float or None
+        N/m, of the spring by which the upper row of a pair is preloaded.
+    speed : float
+        Of the inner ring, rad/s; of balls, whose inertia it brings in.
+    load : BearingLoad or None
+        At which the stiffness is taken.
+    displacement : BearingDisplacement or None
+        At which the stiffness is taken.
+
+    Raises
+    ------
+    SceneError
+        Data that contradict each other, one sentence each.
+
     Examples
     --------
     >>> data = Catalogue(designation="6208", load={"z": "2 kN"})
@@ -149,50 +207,31 @@ class Catalogue(Model):
     """
 
     kind: Kind
-    #: such as ``6208-2RS1/C3``: gives kind, bore, outer_diameter, width and a class of clearance
-    #: where these are left out; seals, cages and tolerances are read and ignored
     designation: str = ""
-    #: bore, outer_diameter, width: m; the bore of a drawn cup is the diameter under the rollers
     bore: PositiveLength
     outer_diameter: PositiveLength
     width: PositiveLength
-    #: load_rating, static_rating: basic dynamic and static radial load rating, N; of a pair those of
-    #: one bearing, of a thrust bearing the axial ones
     load_rating: PositiveLoad | None = None
     static_rating: PositiveLoad | None = None
-    fatigue_limit: PositiveLoad | None = None  #: fatigue load limit C_u, N, of the same
-    rating_factor: RatingFactor | None = None  #: b_m of ISO 281; by default that of the kind
-    #: rolling elements of one row
+    fatigue_limit: PositiveLoad | None = None
+    rating_factor: RatingFactor | None = None
     elements: Annotated[int, Field(strict=True, ge=FEWEST, le=MOST)] | None = None
-    #: element_diameter, element_length, pitch_diameter: of the rolling elements and their circle, m;
-    #: of tapered rollers the mean diameter
     element_diameter: PositiveLength | None = None
     element_length: PositiveLength | None = None
     pitch_diameter: PositiveLength | None = None
-    contact_angle: Angle | None = None  #: from the radial plane, rad
-    #: groove radius over ball diameter, inner and outer; of spherical rollers over twice the radius
-    #: of their contour
+    contact_angle: Angle | None = None
     conformity: Annotated[tuple[float, float], BeforeValidator(_conformity)] | None = None
-    #: of rollers that are no barrels, by ISO/TS 16281
     profile: Literal["logarithmic", "straight"] = "logarithmic"
-    #: double_row is of bearings that hold no shaft along y, or both ways; two rows in this one
-    #: bearing are tandem, back_to_back (or "O") or face_to_face (or "X")
     arrangement: Annotated[Arrangement, BeforeValidator(arrangement_word)] = "single"
-    row_distance: PositiveLength | None = None  #: of the rows' middles, m; by default the width
-    #: direction in which single rows and tandems with a contact angle keep the shaft from moving;
-    #: their mounting decides it, so that they need it, or `arrangement` of the scene
+    row_distance: PositiveLength | None = None
     holds: Literal["+y", "-y"] | None = None
-    #: radial internal clearance, m, or a class of ISO 5753-1, taken in the middle
     clearance: Annotated[float | ClearanceClass, BeforeValidator(_clearance)] = 0.0
-    #: shaft_interference, housing_interference: of the fits, on the diameter, m
     shaft_interference: Length = 0.0
     housing_interference: Length = 0.0
-    inner_ring_warmer: TemperatureRise = 0.0  #: K above the outer ring
-    #: along y; a text with a unit in a file: ``"500 N"`` or ``"10 um"``
+    inner_ring_warmer: TemperatureRise = 0.0
     preload: Annotated[Preload | None, BeforeValidator(_preload)] = None
-    preload_spring: AxialSpring | None = None  #: N/m, on the upper row of a pair
-    speed: Speed = 0.0  #: of the inner ring, rad/s; of balls, whose inertia it brings in
-    #: load, displacement: at which the stiffness is taken
+    preload_spring: AxialSpring | None = None
+    speed: Speed = 0.0
     load: BearingLoad | None = None
     displacement: BearingDisplacement | None = None
 

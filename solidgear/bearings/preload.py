@@ -49,7 +49,7 @@ class SprungRow:
         """Return the motion of the inner ring relative to the sliding outer ring."""
         motion = np.asarray(motion, float)
         preload = float(self.row.load(np.zeros(6))[1])
-        # the spring takes what the row presses beyond its preload: k w = F(q - w) - F(0)
+        # the spring takes the force of the row beyond its preload: k w = F(q - w) - F(0)
         y = motion[..., 1]
         most = abs(preload) / self.spring
         return slide_to_balance(

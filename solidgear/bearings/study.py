@@ -45,7 +45,7 @@ class BearingFacts:
 
     @property
     def called(self) -> str:
-        """Designation, or else its kind in words."""
+        """Designation, or else the kind in words."""
         return self.data.designation or self.data.kind.replace("_", " ")
 
     @property
@@ -60,7 +60,7 @@ class BearingFacts:
 
     @property
     def rows(self) -> tuple[Contacts, ...]:
-        """Contacts of its rolling elements, row by row."""
+        """Contacts of rolling elements, row by row."""
         return self.made.bearing.contacts(self.motion)
 
     @property
@@ -94,7 +94,7 @@ class BearingFacts:
 
 def bearing_facts(scene: Scene, body: Body | None = None) -> list[BearingFacts]:
     """Compute every catalogue bearing of a scene at its load; `body` is the shaft, needed where
-    bearings settle under its load.
+    bearings settle under the load.
 
     Examples
     --------
@@ -147,7 +147,7 @@ def over_load(
     scene: Scene, body: Body | None = None, factors: Sequence[float] = FACTORS
 ) -> dict[str, OverLoad]:
     """Compute the stiffness of every catalogue bearing at multiples of the load of the scene;
-    `body` is the shaft, needed where bearings settle under its load.
+    `body` is the shaft, needed where bearings settle under the load.
     """
     names = [b.name for b in scene.bearings if b.catalogue is not None]
     loads: dict[str, list] = {name: [] for name in names}
@@ -173,7 +173,7 @@ def over_load(
 
 
 def with_load(scene: Scene, load: dict[str, str | float], bearing: str | None) -> Scene:
-    """Return the scene with the components `load` as its load, on its port or on the bearing of a
+    """Return the scene with a load of the components `load` on its port or on the bearing of a
     name.
     """
     new = BearingLoad(**load)

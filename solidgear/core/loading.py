@@ -28,7 +28,7 @@ SHAFT = "timoshenko"
 
 
 def load(path: str | os.PathLike) -> Scene:
-    """Read and resolve a scene file, and work out the stiffness of its catalogue bearings.
+    """Read and resolve a scene file, and work out the stiffness of catalogue bearings.
 
     Parameters
     ----------

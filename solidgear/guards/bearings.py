@@ -55,7 +55,7 @@ def width_of(data: Catalogue) -> float:
 
 
 def _label(bearing: Bearing, data: Catalogue) -> str:
-    """Return a bearing in words, with its designation."""
+    """Return a bearing in words, with designation."""
     return f"bearing {bearing.name!r}" + (f" ({data.designation})" if data.designation else "")
 
 

@@ -75,7 +75,7 @@ def check_scene(scene: Scene, body: Body, probe: Probe | None = None) -> dict:
     Parameters
     ----------
     body : Body
-        The model asked for; its mesh is compared with the closed form.
+        The model asked for; the mesh is compared with the closed form.
     probe : Probe, optional
         Of the plain part of the scene and that body, for solutions that it has or will have.
 
@@ -287,7 +287,7 @@ def _guards(scene: Scene) -> tuple[str, ...]:
 
 
 def _of_a_body(scene: Scene) -> Iterator[Notice]:
-    """Yield notices on edges, mass and materials of a body without an axis, and doubts about its
+    """Yield notices on edges, mass and materials of a body without an axis, and doubts about the
     files.
     """
     body = scene.body
@@ -332,7 +332,7 @@ def _of_the_shaft(scene: Scene) -> Iterator[Notice]:
 
 
 def _of_the_mesh(scene: Scene, body: Body) -> Iterator[Notice]:
-    """Yield notices on mass and inertia of the mesh against the closed form, and on its stiffness
+    """Yield notices on mass and inertia of the mesh against the closed form, and on the stiffness
     against rigid motions, which must be none.
     """
     exact = mass_properties(scene.outline)

@@ -1,4 +1,4 @@
-"""Guards on the data of a scene: units, and the stiffness of its bearings."""
+"""Guards on the data of a scene: units, and the stiffness of bearings."""
 
 from __future__ import annotations
 

@@ -161,7 +161,7 @@ def nearly_incompressible(probe: Probe) -> Notices:
 
 
 def _element_of_solid(probe: Probe) -> str:
-    """Return the element of the 3D solid of a scene: that of its mesh file, or its default."""
+    """Return the element of the 3D solid of a scene: that of the mesh file, or its default."""
     file = probe.whole.body
     if file is not None and file.element:
         return SOLVED_AS.get(file.element, file.element)

@@ -39,7 +39,7 @@ class OneShaft(Side):
 
     @property
     def title(self) -> str:
-        """Title of its scene."""
+        """Title of the scene."""
         return self.scene.title or self.scene.name
 
     def bar(self, name: Quantity) -> float | None:
@@ -48,7 +48,7 @@ class OneShaft(Side):
         return width if math.isfinite(width) else None
 
     def seen(self, mode: Mode) -> BarredMode:
-        """Return a mode with its error bar."""
+        """Return a mode with the error bar."""
         bar = self.bars.get(mode.name, math.inf)
         return BarredMode(str(mode.name), mode.frequency_hz, bar if math.isfinite(bar) else None)
 

@@ -103,7 +103,7 @@ class Probe:
 
     @cached_property
     def parts(self) -> list[tuple[float, float, float]]:
-        """Parts of the shaft between its steps: (first y, last y, greatest outer diameter), m."""
+        """Parts of the shaft between steps: (first y, last y, greatest outer diameter), m."""
         parts = []
         for a, b in pairwise((0.0, *self.scene.steps, self.scene.length)):
             segments = [s for s in self.scene.segments if s.y0 > a - TOUCH and s.y1 < b + TOUCH]
@@ -150,7 +150,7 @@ class Probe:
 
     @property
     def first_bending(self) -> float | None:
-        """First bending of the Timoshenko beam on its bearings, Hz."""
+        """First bending of the Timoshenko beam on bearings, Hz."""
         return self.solution("timoshenko").quantities.get(FIRST_BENDING)
 
     @cached_property
@@ -170,7 +170,7 @@ class Probe:
 
     @cached_property
     def fixed_interface(self) -> float | None:
-        """First bending of the Timoshenko beam on its bearings with the lumped point held, Hz; None
+        """First bending of the Timoshenko beam on bearings with the lumped point held, Hz; None
         without a lumped model.
         """
         try:
@@ -259,7 +259,7 @@ class Probe:
     @cached_property
     def solid_size(self) -> Size:
         """Size of the 3D solid: that of the body if it is one, else of the default mesh of the
-        scene with all its cuts.
+        scene with all cuts.
         """
         if self.body.fidelity == "solid":
             return size_of_body(self.body)
@@ -267,5 +267,5 @@ class Probe:
 
     @property
     def meshed(self) -> Scene:
-        """Scene that the 3D solid models: all of it, or its plain part where no mesh holds all."""
+        """Scene that the 3D solid models: all of it, or the plain part where no mesh holds all."""
         return self.scene if LADDER["solid"].unfit(self.whole) else self.whole

@@ -78,7 +78,7 @@ def of_files(scene: Scene) -> Iterator[Notice]:
 
 
 def _of_materials(scene: Scene) -> Iterator[Notice]:
-    """Yield notices on the materials of a part, and on the mean material of its round part."""
+    """Yield notices on the materials of a part, and on the mean material of the round part."""
     body = scene.body
     assert body is not None  # asked of parts
     if not body.groups:

@@ -169,10 +169,10 @@ def _settled_lattice(
             break
         heavy = pairs / (stated + lattice.scatter**2)
         shift = float((heavy * differences).sum() / heavy.sum())
-        # of what is off, the part that what is told of each does not explain
+        # part of the differences that stated uncertainties do not explain
         share = lattice.scatter**2 / (stated + lattice.scatter**2)
         part = (share * (differences - shift)) ** 2 + share * stated
-        # drawn towards what is usual, for a scatter of none has no likelihood; the shift took a pair
+        # drawn towards the usual scatter, for zero has no likelihood; the shift took a pair
         square = float((pairs * part).sum()) + WORTH * USUAL**2
         scatter = max(math.sqrt(square / (max(weight - 1, 0.0) + WORTH)), LEAST)
         moved = abs(shift - lattice.shift) + abs(scatter - lattice.scatter)
@@ -253,7 +253,7 @@ def _steps(
     pair = np.array([mode.multiplicity == 2 for mode in computed], bool)
     single = np.array([peak.multiplicity != 2 for peak in measured])[:, None]
     split = np.where(pair & single[:-1] & single[1:], math.log(SPLIT), -np.inf)
-    # the peak is amid both, which differ by less than they can be told apart
+    # the peak is amid both, which differ by less than can be resolved
     amid = _normal(
         (difference[:, :-1] + difference[:, 1:]) / 2, stated + (moved[:-1] + moved[1:]) / 4
     )

@@ -23,7 +23,7 @@ LENGTHS = {
 }
 FORCES = {"n": 1.0, "mn": 1e-3, "kn": 1e3, "lbf": 4.4482216152605, "lb": 4.4482216152605}
 FREQUENCIES = {"hz": 1.0, "khz": 1e3, "rad/s": 1 / (2 * math.pi), "rpm": 1 / 60, "cpm": 1 / 60}
-#: m/s^2 of an acceleration that is told in the one of free fall
+#: m/s^2 of an acceleration in units of free fall
 GRAVITY = dict.fromkeys(("g", "gn", "g0"), 9.80665)
 #: a length, and how often it is over a second
 _MOTION = re.compile(

@@ -25,7 +25,7 @@ from solidgear.variants.sensitivity.adjoint import mode_form
 from solidgear.variants.sweep.bench import surface
 
 Progress = Callable[[str], None]
-#: of the highest measured frequency: modes above it may be what was measured
+#: of the highest measured frequency: modes above it may be measured ones
 BEYOND = 1.1
 #: shapes that are solved for first, and in addition to the expected ones
 FEW, MORE = 24, 6

@@ -96,9 +96,9 @@ class Correlation(Displayed):
     #: (n, m) of every measured shape and every mode; None where no shapes were measured
     mac: np.ndarray | None
     measured: Measured
-    computed: Computed  #: what was held against each other
+    computed: Computed  #: modes that were paired
     likeness: Likeness  #: whether the resonances can be those of this part
-    #: sentences on modes that the measuring points do not tell apart
+    #: sentences on modes that look alike on the measuring points
     of_points: tuple[str, ...] = ()
 
     @property

@@ -235,7 +235,7 @@ def load_measured(path: str | os.PathLike) -> Measured:
         if out.shapes or any(mode.shape for mode in out.mode):
             out._on_points = _joined_shapes(out, Path(name).parent)
     except SceneError as error:
-        # what is wrong in the file of shapes is told with that
+        # an error in the file of shapes names that file
         raise error if error.where else error.located(tables, where=name) from None
     return out
 

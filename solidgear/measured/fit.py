@@ -22,8 +22,8 @@ from solidgear.measured.varied import Varied
 UNDETERMINED = math.log(2.0)
 #: share of the direction that is not determined from which on an entry belongs to it
 SHARE = 0.3
-#: two modes may have changed places where that leaves less than this of what is between them; so
-#: many exchanges are tried; what is found is the same within a deviation
+#: two modes may have changed places where that leaves less than this share of their distance; number
+#: of exchanges that are tried; results are the same within a deviation
 EXCHANGED, STARTS, SAME = 0.5, 4, 1.0
 #: other values fit alike up to this misfit more: odds of one in ninety; and that of a resonance
 #: without a sure mode
@@ -57,7 +57,7 @@ class Fit:
         likely = alignment.pairs.argmax(axis=1)
         #: resonance and mode of each pair that is sure enough to be fitted
         self.pairs = [(i, int(j)) for i, j in enumerate(likely) if alignment.pairs[i, j] >= sure]
-        #: one over the deviations of what is known beforehand, and how far off it is
+        #: one over the deviations of prior values, and their distance
         self.prior_weight = 1 / np.array([entry.deviation for entry in varied])
         self.prior = np.array([entry.middle for entry in varied]) - x
         unknowns = int(np.count_nonzero(self.prior_weight == 0))

@@ -34,7 +34,7 @@ from solidgear.variants.sweep.bench import surface
 #: relative; at a bound
 EDGE = 1e-6
 #: a deviation that is more than this of the one beforehand is no news; and values this many
-#: deviations from what was known contradict it
+#: deviations from the prior contradict it
 LITTLE, FAR = 0.9, 3.0
 #: of the fitted resonances: as many left out are few
 FEW = 0.3
@@ -45,14 +45,14 @@ class Identified:
     """An entry of the scene."""
 
     path: str
-    #: before, value: SI; as in the file, and what the data say
+    #: before, value: SI; in the file, and by the data
     before: float
     value: float
     deviation: float  #: standard deviation of its logarithm
     #: low, high: ends of the interval of 95 %, cut off at bounds
     low: float
     high: float
-    #: what was known beforehand: value, and standard deviation of its logarithm
+    #: value and standard deviation of its logarithm
     prior: tuple[float, float] | None = None
 
     @property
@@ -74,8 +74,8 @@ class Fitted:
     #: measured, computed: Hz
     measured: float
     computed: float
-    #: what is predicted where this resonance is left out of the fit, Hz; None where the others do
-    #: not tell it
+    #: prediction where this resonance is left out of the fit, Hz; None where the others do not
+    #: determine it
     left_out: float | None
 
 
@@ -103,7 +103,7 @@ class Identification(Displayed):
     fitted: tuple[Fitted, ...]  #: resonances that were fitted
     unpaired: tuple[float, ...]  #: hz; those that were not, since no mode is surely theirs
     rms: float  #: relative differences of fit
-    #: of each resonance predicted from the others; None where they tell none
+    #: of each resonance predicted from the others; None where they determine none
     rms_left_out: float | None
     predicted: tuple[Predicted, ...]
     mesh: str
@@ -208,7 +208,7 @@ NEARER, MISTAKEN = 1e-5, 1e-2
 EARLY, LIKELY = 2, 0.5
 #: of the logarithm of an entry, to either side, for derivatives
 STEP = 1e-4
-#: of the logarithm of entries, along what is not told where it begins
+#: of the logarithm of entries, along a direction that is open at the start
 NUDGE = 0.03
 #: a resonance that leaves less than this of itself to the others is predicted from none
 ALONE = 1e-6
@@ -261,7 +261,7 @@ class _Search:
         self.path, self.measured, self.tol, self.progress = path, measured, tol, progress
         tables = parse(path)
         ranges = scene_of(tables, path).uncertain if priors else None
-        # what is found may lie beside the ranges that the file states
+        # results may lie outside the ranges that the file states
         self.tables: Tables = {key: table for key, table in tables.items() if key != "uncertain"}
         self.varied = varied_of(vary, self.tables, ranges)
         self.keys = [entry.keys for entry in self.varied]
@@ -314,7 +314,7 @@ class _Search:
             slopes = self.derivatives(computed)
             fit = Fit(self.measured, self.varied, self.x, computed, slopes, sure)
             if turn == 0 and not fit.determined:
-                # where planes are alike to first order no frequency tells them apart; a little off it
+                # where planes are alike to first order no frequency separates them; a little off it
                 # may
                 self.x = np.clip(self.x + NUDGE * fit.right[-1], self.low, self.high)
                 continue
@@ -352,7 +352,7 @@ class _Search:
 
     def identification(self, predict: int) -> Identification:
         first = self.search(self.x)
-        # what no pair tells here other pairs may tell
+        # other pairs may determine open directions
         ends = self.with_exchanges(first, [first])
         if (end := best_of(ends)) is not first:
             ends = self.with_exchanges(end, ends)

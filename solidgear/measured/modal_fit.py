@@ -26,13 +26,13 @@ from scipy.ndimage import uniform_filter1d
 from solidgear.core.errors import SolidgearError
 from solidgear.core.machine.threads import pinned
 
-#: lines of a band, and what of it is looked at from both sides by the next
+#: lines of a band, and the overlap of neighbouring bands
 LINES, MARGIN = 512, 128
 #: lines below which nothing is fitted
 FEWEST = 32
 #: highest order of the denominator in a band, and the lowest that is looked at
 ORDERS = range(4, 41, 2)
-#: share of the unit circle that a band is put on; the rest takes what does not close (Verboven 2002)
+#: share of the unit circle that a band is put on; the rest takes the gap (Verboven 2002)
 CIRCLE = 0.9
 #: a pole stays where it is within this share of its half width, over so many orders of those
 STAYS, STABLE = 0.5, 3
@@ -119,7 +119,7 @@ class _Band:
     def __init__(self, omega: np.ndarray, data: np.ndarray):
         self.omega, self.step = omega, float(np.median(np.diff(omega)))
         self.middle, self.half = (omega[0] + omega[-1]) / 2, (omega[-1] - omega[0]) / 2
-        # what does not go on from line to line is noise
+        # a part that does not continue from line to line is noise
         jumps = np.median(np.abs(np.diff(data, 2, axis=1)), axis=1) / math.sqrt(6 * math.log(2))
         rms = np.sqrt(np.mean(np.abs(data) ** 2, axis=1))
         self.scale = np.maximum(jumps, 1e-9 * rms.max())
@@ -169,7 +169,7 @@ class _Band:
         chains: list[list[complex]] = []
         orders = [n for n in ORDERS if n <= most]
         for n in orders:
-            # with the lowest coefficient held, what is no mode has its pole beyond the axis
+            # with the lowest coefficient held, a spurious pole lies beyond the axis
             higher = np.linalg.lstsq(
                 normal[1 : n + 1, 1 : n + 1], -normal[1 : n + 1, 0], rcond=None
             )[0]

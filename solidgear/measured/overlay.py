@@ -46,9 +46,9 @@ class Overlay:
     #: number of a pair -> computed modal constant over the measured one, of all responses
     constants: dict[int, float]
     #: (n, k) how far computed ones may be off by the bars of frequencies and of static compliance;
-    #: None where nothing tells them
+    #: None where unknown
     band: np.ndarray | None
-    #: around the axis, up to which what is stiffer counts; 0 of a 3D mesh, and None where it is
+    #: around the axis, up to which stiffer modes count; 0 of a 3D mesh, and None where it is
     #: left out
     waves: int | None
 

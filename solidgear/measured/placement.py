@@ -31,7 +31,7 @@ NEAR = 4
 SPREAD = 0.1
 #: and in a frame that is looked for they reach over this share of the body's longest side
 REACH = 0.25
-#: points may slide along the axis by so many largest distances and tell their place nevertheless
+#: points whose place is known may slide along the axis by so many largest distances
 SLIDE = 4.0
 #: steps of a search along the axis in a largest distance, and those about the best, twice
 STEPS, FINER = 2, 41

@@ -39,8 +39,8 @@ class Shapes:
 
     numbers: np.ndarray  #: (p,) of the points in the file
     points: np.ndarray  #: (p, 3) x, y, z, m
-    #: (n, p, 3) a shape for every resonance, real or complex, to a factor; what no shape moves was
-    #: not measured
+    #: (n, p, 3) a shape for every resonance, real or complex, to a factor; components that are
+    #: zero in all shapes were not measured
     values: np.ndarray
     #: m that a unit of the file was taken for; None where it is unknown, and places are in units of
     #: the file

@@ -32,10 +32,10 @@ def solid_body(
     materials: Sequence[Material] | None = None,
     patches: Mapping[str, np.ndarray] | None = None,
 ) -> Body:
-    """Build the free body of a mesh, with ports on cylinders and cones of its surface, or on patches.
+    """Build the free body of a mesh, with ports on cylinders and cones of the surface, or on patches.
 
     `mesh` is of tetrahedra or hexahedra, m, with y the axis. Stations of the `shaft` are looked for on
-    the outer surface of its segments; `wanted` are other stations with their attachments. `clipped`:
+    the outer surface of the segments; `wanted` are other stations with their attachments. `clipped`:
     integrals stop at the ends of a seat where faces reach beyond it, else only whole faces within the
     seat count. `owner` (ne,) is the place of each element's material among `materials`; by default
     each has that of the segment in which its middle lies. `patches` are facets of the patches that

@@ -110,7 +110,7 @@ class Balance:
         """
         out, remainder = self.linear(omega).reshape(-1, self.remainder.rows), self.remainder
         stiffness = np.diag(remainder.stiffness)
-        # what a law wants at its mean force beyond the linear stretch, as a force of its spring
+        # excess of the law over the linear stretch at its mean force, as a force of its spring
         lacking = np.zeros(remainder.rows)
         for law, rows in remainder.laws:
             depth = getattr(law, "depth", None)

@@ -298,7 +298,7 @@ def _followed(remainder, begin, end, count, adaptive, longest) -> Branch | None:
     low, high = min(begin, end), max(begin, end)
     grid = np.linspace(low, high, 200)
     size = max(float(np.abs(balance.linear(w)[remainder.rows :]).max()) for w in grid)
-    # a linear peak is far above what a gap leaves of it
+    # a linear peak is far above the real one with a gap
     gaps = [edge for law, _ in remainder.laws for edge in law.edges]
     size = min(size, max([abs(e) for e in gaps if e], default=size))
     walk = Follower(balance, size or 1.0, high - low)

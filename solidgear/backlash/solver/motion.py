@@ -70,7 +70,7 @@ class Run:
         duration = 2 * np.pi / omega if duration is None else duration
         fastest = max(omega, omega + slope * duration)
         at_fastest = Pieces(remainder, fastest)
-        # what a piece is at any frequency lies on a line through two of them
+        # a piece is linear in the frequency: two of them give all
         self.at_rest, self.at_one = at_fastest, at_fastest
         if slope:
             self.at_rest, self.at_one = Pieces(remainder, 0.0), Pieces(remainder, 1.0)
@@ -296,7 +296,7 @@ def steady_motion(
             if len(waves) > c:
                 changes.append(float(np.abs(waves[-1] - waves[-1 - c]).max()) / swing)
         cycle = next((c for c, changes in change.items() if _faded(changes, steady, rounding)), 0)
-        # what still fades towards one period looks like two or three before
+        # a motion that still fades towards one period looks like two or three before
         if cycle > 1 and max(change[1][-FADING:]) < STILL_FADING * steady:
             cycle = 0
     stretch, rate = (np.concatenate(series[-max(cycle, 1) :]) for series in (waves, rates))

@@ -38,7 +38,7 @@ class Beside(Generic[S, M]):
 
     @property
     def cautions(self) -> list[str]:
-        """Cautions of both; one that is not shared begins with the letter of its side."""
+        """Cautions of both; one that is not shared begins with the letter of the side."""
         shared = [text for text in self.a.cautions if text in self.b.cautions]
         single = [
             f"{side.letter}: {text}"

@@ -250,7 +250,7 @@ def _twin(shaft: OneShaft, name: Quantity) -> bool:
 def _frequencies(
     a: OneShaft, b: OneShaft, pairs: Sequence[ModePair[BarredMode]]
 ) -> Iterable[NumberChange]:
-    """Yield the first frequencies, each beside that of the partner of its mode."""
+    """Yield the first frequencies, each beside that of the partner of the mode."""
     partners = {p.a.name: (p.b.name, p.change) for p in pairs if p.a and p.b and p.change}
     for name in (q for q in QUANTITIES if q.is_frequency):
         mode = a.modes.named(name)

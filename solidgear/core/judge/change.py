@@ -1,4 +1,4 @@
-"""A number in two files: its change, and whether that is more than its error bars."""
+"""A number in two files: the change, and whether that is more than its error bars."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ class Change:
 
 @dataclass(frozen=True)
 class BarredMode:
-    """An elastic mode with the error bar of its frequency."""
+    """An elastic mode with the error bar of the frequency."""
 
     name: str
     frequency_hz: float
@@ -78,7 +78,7 @@ M = TypeVar("M", bound=BarredMode)
 
 @dataclass(frozen=True)
 class ModePair(Generic[M]):
-    """A mode of one design and its partner in another; either may be missing."""
+    """A mode of one design and the partner in another; either may be missing."""
 
     a: M | None
     b: M | None

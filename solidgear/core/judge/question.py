@@ -53,7 +53,7 @@ class FamilySolver:
         self.compliances: dict[tuple[str, ...], Condensed] = {}
         self.modes: ModeSet | None = None  #: of the last mesh that was solved for modes
 
-    def asked(self) -> tuple[Quantity, ...]:
+    def next_quantities(self) -> tuple[Quantity, ...]:
         """Return the quantities that the next mesh is solved for."""
         return tuple(q for _, names in self.questions() for q in names)
 

@@ -79,7 +79,7 @@ class Solved:
 class Solver(Protocol):
     """Solves the meshes of a refinement for the numbers of a question."""
 
-    def asked(self) -> tuple[Quantity, ...]:
+    def next_quantities(self) -> tuple[Quantity, ...]:
         """Return the quantities that the next mesh is solved for."""
 
     def solve(self, options: Mapping[str, Any]) -> Solved | None:
@@ -137,13 +137,13 @@ class Refinement:
         """Whether there are meshes enough for error bars of all quantities."""
         return len(self.levels) >= (1 if self.model.bounded else 2)
 
-    def add(self, solved: Solved, options: Mapping[str, Any], asked: set[Quantity]) -> None:
+    def add(self, solved: Solved, options: Mapping[str, Any], requested: set[Quantity]) -> None:
         """Add the solution of a mesh, solved for some quantities."""
         self.last = solved
         self.levels.append(solved.numbers)
         self.sizes.append(solved.cells)
         self.options = dict(options)
-        self.missing = (self.missing | asked) - set(solved.numbers.quantities)
+        self.missing = (self.missing | requested) - set(solved.numbers.quantities)
 
     def end(self, reason: str) -> None:
         """Take the last mesh, for a reason."""
@@ -322,17 +322,17 @@ def refine(refinement: Refinement, solver: Solver, progress: Progress, label: st
     wanted, tol, bounded = refinement.wanted, refinement.tol, refinement.model.bounded
     for options in _meshes(refinement):
         start = time.perf_counter()
-        asked = set(solver.asked())
+        requested = set(solver.next_quantities())
         only: tuple[Quantity, ...] = ()
-        if len(asked) < len(wanted):
-            only = tuple(q for q in wanted if q in asked)
+        if len(requested) < len(wanted):
+            only = tuple(q for q in wanted if q in requested)
         setting = mesh_words(options) + (f", for {few(only)}" if only else "")
         progress(f"{label}: {setting}")
         with listening(announce):
             solved = solver.solve(options)
         if solved is None:
             continue
-        refinement.add(solved, options, asked)
+        refinement.add(solved, options, requested)
         bar = solver.judge()
         refinement.steps.append(
             Step(

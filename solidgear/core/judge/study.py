@@ -132,7 +132,7 @@ class TiedSolver:
             self.failed["error bar"] = refinement.no_further_mesh()
         return self.solution
 
-    def asked(self) -> tuple[Quantity, ...]:
+    def next_quantities(self) -> tuple[Quantity, ...]:
         """Return the quantities that the next mesh is solved for: all."""
         return self.refinement.wanted
 

@@ -1,4 +1,4 @@
-"""One model a file; ``build`` builds the free body of one by its name."""
+"""One model a file; ``build`` builds the free body of one by name."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The harmonic solid: its error bars come from each mesh by itself."""
+"""The harmonic solid: error bars come from each mesh by itself."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class Harmonic(Model):
-    """Elasticity of a body of revolution on its meridian, wave by wave around the axis."""
+    """Elasticity of a body of revolution on the meridian, wave by wave around the axis."""
 
     name = "harmonic"
     title = "harmonic solid"

@@ -1,4 +1,4 @@
-"""Meshes that a solid is solved on, coarse to fine, until its error bar meets a target.
+"""Meshes that a solid is solved on, coarse to fine, until the error bar meets a target.
 
 Every level refines at once all that limits accuracy: the order of the harmonic elements (or the size
 of 3D ones) and the layers towards shoulders and seat ends.  Errors then shrink by a nearly constant

@@ -153,7 +153,7 @@ class Model:
         return not self.for_features or not sorts.isdisjoint(self.holds)
 
     def given(self, scene: Any, options: Options) -> dict[str, Any]:
-        """Return options for the builder of a scene: those asked for over those that its features
+        """Return options for the builder of a scene: those asked for over those that features
         need.
         """
         return dict(options)

@@ -102,7 +102,7 @@ class Solid(Volume):
         return bool(cuts) and all(f.sort == CUTS for f in cuts) and mirror_plane(cuts) is not None
 
     def concerns(self, scene: Any) -> bool:
-        """Return False where its mesh would be copies of a sector: that is no second opinion, and
+        """Return False where the mesh would be copies of a sector: that is no second opinion, and
         solved only when named.
         """
         return {CYCLIC} != {f.sort for f in features_of(scene)}

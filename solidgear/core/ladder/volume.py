@@ -12,7 +12,7 @@ PER_TETRAHEDRON = 4.0
 
 
 class Volume(Model):
-    """A model on a 3D mesh: without section ties, its volume off by arcs between nodes."""
+    """A model on a 3D mesh: without section ties, the volume off by arcs between nodes."""
 
     family = SOLID
     section_ties = False

@@ -3,7 +3,7 @@
 Python hears a signal between two of its instructions, in the main thread; one call into C that
 takes a minute is one instruction.  So the call runs in a second thread and the main thread waits,
 where it hears Ctrl-C at once.  The call itself cannot be ended: it is abandoned, runs on at the
-lowest priority, and its result is discarded.  The command line then ends the process without
+lowest priority, and the result is discarded.  The command line then ends the process without
 waiting for it (:func:`leave`).
 
 This needs a callee that lets go of Python's lock.  MKL and gmsh (through ctypes), SciPy's SuperLU
@@ -28,10 +28,10 @@ from typing import Any, NoReturn
 
 
 def call(function: Callable, *arguments, **options) -> Any:
-    """Return the result of a function, or raise its exception; Ctrl-C, or any exception of a signal handler
+    """Return the result of a function, or raise the exception; Ctrl-C, or any exception of a signal handler
     meanwhile, ends the wait for it.
 
-    After Ctrl-C the function may still be running: its arguments must not be used again.
+    After Ctrl-C the function may still be running: the arguments must not be used again.
 
     Examples
     --------
@@ -61,7 +61,7 @@ def abandoned() -> bool:
 
 def leave(code: int | str | None) -> NoReturn:
     """End the process as ``sys.exit`` does; at once if an abandoned call is still running, for it
-    cannot be waited for, and libraries that run C code at exit would free its data.
+    cannot be waited for, and libraries that run C code at exit would free the data.
     """
     if abandoned() and (code is None or isinstance(code, int)):
         for stream in (sys.stdout, sys.stderr):
@@ -99,7 +99,7 @@ def _free(box: list, maker: threading.Thread) -> None:
 
 
 class _Job:
-    """One call, made in the worker, with its result or its exception."""
+    """One call, made in the worker, with its result or exception."""
 
     def __init__(self, work: Callable[[], Any]):
         self._work, self._context = work, contextvars.copy_context()

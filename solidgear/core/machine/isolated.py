@@ -23,8 +23,8 @@ class IsolatedError(RuntimeError):
 
 
 def isolated(function: Callable, *arguments: Any, seconds: float, memory_mb: float = 8000.0) -> Any:
-    """Call a function of a module that can be imported in another process and return its result, or raise
-    its exception; arguments and result can be pickled, and the address space is limited where the
+    """Call a function of a module that can be imported in another process and return the result, or raise
+    the exception; arguments and result can be pickled, and the address space is limited where the
     system can do that.  IsolatedError if the process ended without a result, or was killed after so
     many seconds of processor time.
 

@@ -1,4 +1,4 @@
-"""Memory that this process may still take: of the machine, of its control groups, and by the limit of
+"""Memory that this process may still take: of the machine, of the control groups, and by the limit of
 the user.
 """
 
@@ -116,7 +116,7 @@ def one_run() -> Iterator[Run]:
 
 @contextmanager
 def one_command() -> Iterator[Run]:
-    """Open a run that begins with its first body (:func:`begin`): memory of large libraries is not
+    """Open a run that begins with the first body (:func:`begin`): memory of large libraries is not
     counted.
     """
     run = _run.get() or Run()

@@ -10,7 +10,7 @@ BLAS under        one if it is       the same variable steers it; set ``OPENBLAS
 CHOLMOD, MUMPS    OpenBLAS           yourself where they factor because PARDISO is absent
 ================= ================== ==============================================================
 
-Granted are the processors this process may run on (its affinity), less if a control group grants
+Granted are the processors this process may run on (the affinity), less if a control group grants
 fewer: a container with ``--cpus``, which MKL does not see, stops threads beyond that in turns.
 MKL takes ``OMP_NUM_THREADS`` at its word, also above the processors granted; then its threads wait
 for each other in turns, so the number is held down around every call.
@@ -59,7 +59,7 @@ def pin() -> None:
 
 
 def pinned(function: Callable[P, R]) -> Callable[P, R]:
-    """Decorate a function: OpenBLAS has one thread while it runs, and its previous number afterwards.
+    """Decorate a function: OpenBLAS has one thread while it runs, and the previous number afterwards.
 
     Examples
     --------

@@ -26,7 +26,7 @@ def number(
     whole: bool = False,
 ) -> Value:
     """Return a number within limits, of which only `least` may be met, or refuse it by the option of
-    the builder; None, its default, is passed through.
+    the builder; None, the default, is passed through.
     """
     if value is None or is_number(value, whole) and within(value, above, least, below):
         return value

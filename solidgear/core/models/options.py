@@ -365,7 +365,7 @@ def is_number(value: Any, whole: bool = False) -> bool:
 
 
 def within(value, above=None, least=None, below=None, most=None) -> bool:
-    """Return True where a number meets its limits; ``least`` and ``most`` may be met."""
+    """Return True where a number meets limits; ``least`` and ``most`` may be met."""
     return (
         (above is None or value > above)
         and (least is None or value >= least)

@@ -1,4 +1,4 @@
-"""Size of a model, counted on its mesh."""
+"""Size of a model, counted on the mesh."""
 
 from __future__ import annotations
 

@@ -112,7 +112,7 @@ class _Chain:
 
 
 def _second_tridiagonal(between, inertia) -> float:
-    """Return the second eigenvalue of a free chain; the first one is its rigid motion."""
+    """Return the second eigenvalue of a free chain; the first one is the rigid motion."""
     main = (np.append(between, 0.0) + np.append(0.0, between)) / inertia
     off_diagonal = -between / np.sqrt(inertia[1:] * inertia[:-1])
     return float(sla.eigvalsh_tridiagonal(main, off_diagonal, select="i", select_range=(1, 1))[0])

@@ -1,11 +1,11 @@
-r"""A shaft on its bearings reduced to the six motions of each of its lumped points (Guyan 1965).
+r"""A shaft on bearings reduced to the six motions of each of its lumped points (Guyan 1965).
 
 The static shapes of unit motions d of the lumped points, nothing else loaded, are
 
     [K  P'] [Phi]   [0]
     [P  0 ] [ L ] = [I],      K_ll = Phi'K Phi = -L,      M_ll = Phi'M Phi,
 
-with P the rows of the lumped points, K that of the shaft *with* its bearings.  A free rotation is
+with P the rows of the lumped points, K that of the shaft *with* bearings.  A free rotation is
 one of the shapes; nothing has to hold it.  M_ll is the mass of a shaft that moves in its static
 shapes: an *effective* mass, in the axial direction too, where the end behind the bearing moves less
 than the head.
@@ -27,7 +27,7 @@ from solidgear.core.reduction.superelement import PortMotion, Superelement
 
 @dataclass(frozen=True, eq=False)
 class CondensedShaft:
-    """A part whose coordinates are the motions of its l lumped points."""
+    """A part whose coordinates are the motions of l lumped points."""
 
     mass: np.ndarray  #: (6 l, 6 l)
     strain: np.ndarray  #: (r, 6 l) of the shaft alone, without bearings
@@ -42,7 +42,7 @@ class CondensedShaft:
 def condensed_shaft(
     shaft: Superelement, supports: np.ndarray, held: tuple[str, ...], points: Sequence[str]
 ) -> CondensedShaft:
-    """Reduce a superelement to a few of its ports, on supports of some stiffness (6 p, 6 p) on the
+    """Reduce a superelement to a few of the ports, on supports of some stiffness (6 p, 6 p) on the
     ports ``held``, in their order; refuse shapes that are not determined, as where a shaft swings
     on one bearing.
     """

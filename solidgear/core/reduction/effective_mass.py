@@ -2,7 +2,7 @@
 total.
 
 In a bending plane the lumped model is ``K_a - w^2 D`` on (z, phi), with K_a the static stiffness at
-the lumped point and D its 2x2 mass. Hua (2010) asks in equations 52 and 53 for ``D = diag(M, I)``
+the lumped point and D the 2x2 mass. Hua (2010) asks in equations 52 and 53 for ``D = diag(M, I)``
 such that
 
     M z^2 + I phi^2 = u'Mu  (= 1 here: kinetic energy of the first bending mode u)           (52)
@@ -225,7 +225,7 @@ def synthesise(
 def modal_receptance(
     body: Body, supports: Holding, port: str, mode_set: ModeSet
 ) -> Callable[[float], float]:
-    """Return the receptance z/F_z (m/N) at a port of a body on its supports, as a function of the
+    """Return the receptance z/F_z (m/N) at a port of a body on supports, as a function of the
     frequency in rad/s: modal superposition, with the static remainder.
 
     The static part of the modes left out is exact, so the error is of the order of (omega /

@@ -1,4 +1,4 @@
-"""A body seen from its lumped point in a bending plane: stiffness, first bending, condensed mass."""
+"""A body seen from the lumped point in a bending plane: stiffness, first bending, condensed mass."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class LumpedPoint:
 def lumped_point(
     body: Body, supports: Holding, port: str, mode_set: ModeSet | None = None
 ) -> tuple[LumpedPoint, ModeSet]:
-    """Compute static stiffness, first bending motion and condensed mass of a body at its lumped
+    """Compute static stiffness, first bending motion and condensed mass of a body at the lumped
     point, with the modes, which are solved if they are not given or have no first bending; refuse a
     body without a first bending mode or static stiffness at the port.
     """
@@ -83,7 +83,7 @@ def lumped_point(
 
 
 def _first_in_plane(body: Body, mode_set: ModeSet, index: int):
-    """Return the first bending mode that moves the port in the z plane, and its (z, thx) there:
+    """Return the first bending mode that moves the port in the z plane, and the (z, thx) there:
     unequal bearings may put one of the x plane before it.
     """
     for mode in (*mode_set.modes, *mode_set.beyond):
@@ -111,7 +111,7 @@ def _in_plane(motions: np.ndarray) -> np.ndarray:
 
 
 def _static_shapes(body: Body, supports, index: int):
-    """Return the group of the z plane and its displacements under unit (F_z, M_x) at a port."""
+    """Return the group of the z plane and the displacements under unit (F_z, M_x) at a port."""
     spring, _ = decoupled(body, supports, 1e-6)
     for group in groups(body, supports, spring):
         if any(2 in body.blocks[b].components for b in group):

@@ -1,4 +1,4 @@
-"""A free body reduced once to its lowest free modes and to residual moments of its seats.
+"""A free body reduced once to the lowest free modes and to residual moments of its seats.
 
 Notation: ``A = K + sigma M`` (the operator every body is factored with), G the motions of the
 ports, U the rigid motions and the lowest free modes, and H the inverse of A with U taken out of it.
@@ -40,7 +40,7 @@ Mass: TypeAlias = sp.csr_matrix | ScalarMass
 
 @dataclass(frozen=True)
 class ReducedBlock:
-    """One block of a body, seen from its seats; all shapes in U have unit energy in A."""
+    """One block of a body, seen from the seats; all shapes in U have unit energy in A."""
 
     components: tuple[int, ...]
     turn: np.ndarray  #: (r, c) coordinates in U of unit rigid motions about the origin
@@ -108,7 +108,7 @@ LEVELS = ((1.0, 1), (2.0, 1), (4.0, 2))
 
 @pinned
 def reduce(body: Body, n: int, level: int = 0) -> Reduced:
-    """Reduce a body for sweeps that need its ``n`` lowest supported shapes, at an index into
+    """Reduce a body for sweeps that need the ``n`` lowest supported shapes, at an index into
     `LEVELS`; the lumped point is its first port, and the seats come after it.
     """
     more, steps = LEVELS[level]
@@ -182,7 +182,7 @@ def _reduce_block(body: Body, index: int, count: int, steps: int) -> ReducedBloc
 
 
 def free_shapes(block: Block, elastic: Sequence[np.ndarray]) -> FreeShapes:
-    """Return rigid motions of a free block and some of its elastic modes, mass-normalised and in
+    """Return rigid motions of a free block and some elastic modes, mass-normalised and in
     any order, as a basis.
     """
     r = len(block.components)

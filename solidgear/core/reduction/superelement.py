@@ -1,6 +1,6 @@
-r"""A body seen from its ports: a few coordinates, and a way back to the mesh.
+r"""A body seen from the ports: a few coordinates, and a way back to the mesh.
 
-Every reduction here is a Ritz basis V of the free body that holds its rigid motions.  Written in the
+Every reduction here is a Ritz basis V of the free body that holds the rigid motions.  Written in the
 modes of the free body in the span of V,
 
     u = V q,      M = 1,      K = diag(0, .., 0, w_1^2, .., w_m^2),      port motions = (G V) q,
@@ -165,7 +165,7 @@ class Superelement:
         Returns
         -------
         dict of int to (n,) or (n, k) ndarray
-            Unknowns of every block of the body by its index, as in
+            Unknowns of every block of the body by index, as in
             :attr:`solidgear.core.solve.modes.Mode.vectors`.
         """
         coordinates = np.asarray(coordinates)
@@ -188,7 +188,7 @@ def joined(truncations: Iterable[Truncation]) -> Truncation:
 
 
 def chosen_ports(body: Body, ports: PortChoice | None) -> dict[str, int]:
-    """Return the index of every port that a reduction keeps, by its name; refuse a port that the
+    """Return the index of every port that a reduction keeps, by name; refuse a port that the
     body does not have, and a name that is asked for twice.
     """
     if ports is None:

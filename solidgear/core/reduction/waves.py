@@ -1,4 +1,4 @@
-r"""Harmonics n >= 2 of a body of revolution as further coordinates of its superelement.
+r"""Harmonics n >= 2 of a body of revolution as further coordinates of the superelement.
 
 Ports are mean motions of rings and bearings hold ports, so that these harmonics are coupled neither
 to bearings nor to one another; forces on a patch of the surface drive them
@@ -46,7 +46,7 @@ def with_waves(
     count: int = KEPT,
     fields: Mapping[int, np.ndarray] | None = None,
 ) -> Superelement:
-    """Add harmonics n >= 2 of its body to a superelement, and a port that moves with them.
+    """Add harmonics n >= 2 of the body to a superelement, and a port that moves with them.
 
     Harmonics that it has already are kept: patches at other angles have their fields in common and each
     its port. The new port, of that name, is carried rigidly by the port ``carrier`` at an ``offset``

@@ -63,22 +63,22 @@ class Bearing(Placed):
         6x6 of the bearing alone, SI, order (x, y, z, thx, thy, thz). The constructor also takes it
         as `stiffness`: six rows, or named entries. None as long as catalogue data are not solved.
     catalogue : Catalogue or None
-        Data that the stiffness comes from, where it was not given.
+        What the stiffness comes from, where it was not given.
     axial_series : tuple of float
-        Springs in series with the axial stiffness, N/m.
+        Springs in series with its axial stiffness, N/m.
     housing : Elastic or None
-        Support of the outer ring, in series with all of the bearing.
+        What its outer ring stands in, in series with all of it.
     scale : float
         Factor on the stiffness of all that; loads under which it settles are found without it.
     attachment : {'average', 'rigid', 'section'}
         How the seat follows the bearing.
     status : str
-        Source of the numbers: published, identified, assumed, measured, or of catalogue data
+        Where its numbers come from: published, identified, assumed, measured, or of catalogue data
         calculated (inner geometry given) or estimated.
     note : str
         Free text.
     support : {'locating', 'floating'} or None
-        A floating bearing slides in its seat and carries nothing along y; without a word cylindrical
+        A floating one slides in its seat and carries nothing along y; without a word cylindrical
         and needle rollers float, and all others locate.
     hold : {'clamped', 'pinned'} or None
         In place of a stiffness: nothing moves, or nothing moves but turns.

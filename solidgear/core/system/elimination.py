@@ -92,7 +92,7 @@ class Elimination:
         which are.
         """
         weight = np.linalg.lstsq(self.unit.T, rows.T, rcond=None)[0].T
-        # rounding on a soft spring far away would be as large as what a clamp lets through
+        # rounding on a soft spring far away would be as large as the motion of a clamp
         weight[np.abs(weight) <= SPARE * np.abs(weight).max(axis=1, initial=0.0, keepdims=True)] = 0
         miss = np.linalg.norm(rows - weight @ self.unit, axis=1)
         spanned = miss <= SAME * np.linalg.norm(rows, axis=1)

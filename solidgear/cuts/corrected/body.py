@@ -2,7 +2,7 @@ r"""Defect correction: the harmonic solid of the plain part, and the change by f
 solids on one mesh.
 
 A 3D mesh errs at seat ends and shoulders, and by nearly as much with a feature as without. With
-``X`` any number of the free body seen from its ports (:mod:`solidgear.cuts.corrected.modal`),
+``X`` any number of the free body seen from the ports (:mod:`solidgear.cuts.corrected.modal`),
 
     X = X_harmonic + (X_with - X_without)
 
@@ -184,7 +184,7 @@ def _fewer(exact: Modal) -> int:
 
 def _recognised(exact: Modal, before: Modal, after: Modal, families: Families) -> Modal:
     """Return the lowest harmonic modes, as far as each is recognised among those of the 3D mesh by
-    its shape and frequency, and no more of a family than both 3D solids have: on a stub, many of
+    shape and frequency, and no more of a family than both 3D solids have: on a stub, many of
     theirs move no sections and match none.
     """
     count = 0

@@ -1,4 +1,4 @@
-"""A free body seen from its ports: rigid motions, lowest free modes, and residual flexibility.
+"""A free body seen from the ports: rigid motions, lowest free modes, and residual flexibility.
 
 Rubin's representation (1975, AIAA J. 13, 996): with U the free elastic modes, G the rows of the
 ports and H the inverse of K without rigid motions and without U, a body is
@@ -61,7 +61,7 @@ class Modal:
         return fields
 
     def first(self, count: int) -> Modal:
-        """Return the same with its lowest modes only."""
+        """Return the same with the lowest modes only."""
         return replace(
             self,
             value=self.value[:count, :count],
@@ -79,7 +79,7 @@ class Modal:
 
 
 def modal(body: Body, count: int) -> Modal:
-    """Compute the port numbers of a free body with its ``count`` lowest modes, twins counted twice."""
+    """Compute the port numbers of a free body with the ``count`` lowest modes, twins counted twice."""
     mode_set = modes(body, (), n=count, ovalising=False, stations=STATIONS)
     vectors, values, moved = [], [], []
     for mode in mode_set.modes:

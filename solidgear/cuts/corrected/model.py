@@ -59,7 +59,7 @@ class Corrected(Volume):
         return corrected_size(scene, options["refinement"], options["attachments"])
 
     def rough_unknowns(self, scene: Any, options: Options) -> float:
-        """Estimate the unknowns of one of its 3D solids."""
+        """Estimate the unknowns of one of the 3D solids."""
         from solidgear.core.models.solid.plan import tetrahedra_of
         from solidgear.cuts.corrected.mesh import plan_of
 
@@ -76,7 +76,7 @@ class Corrected(Volume):
         return Sequence(tuple({**level, **options} for level in CORRECTED), False, True)
 
     def series(self, scene: Any, full: bool) -> list[Series]:
-        """Return its meshes, for a scene with such features."""
+        """Return the meshes, for a scene with such features."""
         if not self.concerns(scene):
             return []
         return [("solid", self.title, [dict(x) for x in CORRECTED[: None if full else 3]])]

@@ -165,7 +165,7 @@ def no_sector(scene: Any) -> str:
 
 
 def not_together(scene: Any) -> str:
-    """Return the reason why teeth and bolt circles of a scene cannot be meshed beside its cuts;
+    """Return the reason why teeth and bolt circles of a scene cannot be meshed beside cuts;
     empty if they can.
     """
     features = resolved(scene)
@@ -232,7 +232,7 @@ def meshed_sector(
 
 
 def sectors_around(scene, options: Mapping[str, Any]) -> int:
-    """Return the number of sectors of a scene: the number asked for, or that which its features
+    """Return the number of sectors of a scene: the number asked for, or that which features
     have in common.
     """
     return options.get("count") or max(1, sectors_of(cyclic_features(scene)))

@@ -42,7 +42,7 @@ _TURN = sp.csr_matrix([[0.0, -1.0], [1.0, 0.0]])
 
 @dataclass(frozen=True)
 class Sector:
-    """Nodes of a sector on its cut faces and axis."""
+    """Nodes of a sector on cut faces and axis."""
 
     count: int  #: sectors around, at least 3
     master: np.ndarray  #: (k,) nodes on a cut face

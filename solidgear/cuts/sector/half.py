@@ -1,4 +1,4 @@
-r"""A part of equal sectors from half of one: where a sector is even about its middle plane, its
+r"""A part of equal sectors from half of one: where a sector is even about the middle plane, its
 matrices are real.
 
 With ``v_k = Re(e^{i k h alpha} V)`` as in :mod:`solidgear.cuts.sector.cyclic` and the mirror S of the
@@ -253,7 +253,7 @@ def _phases(name: str, angle: float) -> tuple[float, float]:
 
 
 def half_sector_solid(meshed: SectorMesh) -> HalfSectorSolid:
-    """Return the isoparametric mesh of half a sector, with the nodes of its planes."""
+    """Return the isoparametric mesh of half a sector, with the nodes of the planes."""
     plain = _isoparametric(meshed.mesh, "tet10", meshed.segment)
     outside = meshed.mesh.boundary_facets()
     x, _, z = meshed.mesh.p[:, meshed.mesh.facets[:, outside]]

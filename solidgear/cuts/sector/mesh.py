@@ -1,4 +1,4 @@
-"""The isoparametric mesh of a sector, its seats, and drawings of all copies."""
+"""Isoparametric mesh of a sector, its seats, and drawings of all copies."""
 
 from __future__ import annotations
 
@@ -96,7 +96,7 @@ class SectorSolid(PieceSolid):
 
 
 def sector_solid(meshed: SectorMesh) -> SectorSolid:
-    """Return the isoparametric mesh of a sector, its cut faces matched; MeshError if they carry
+    """Return the isoparametric mesh of a sector, the cut faces matched; MeshError if they carry
     different meshes.
     """
     plain = _isoparametric(meshed.mesh, "tet10", meshed.segment)

@@ -74,7 +74,7 @@ class Sector(Volume):
         return Sequence(tuple({**level, **options} for level in SECTOR), False, False)
 
     def series(self, scene: Any, full: bool) -> list[Series]:
-        """Return its meshes, for a scene with such features."""
+        """Return the meshes, for a scene with such features."""
         if not self.concerns(scene):
             return []
         return [("tetrahedra", self.title, [dict(x) for x in SECTOR[: 4 if full else 3]])]

@@ -1,4 +1,4 @@
-"""A shaft at rest under load: its deflection line, and the load and stiffness of its bearings."""
+"""A shaft at rest under load: the deflection line, and the load and stiffness of its bearings."""
 
 from __future__ import annotations
 
@@ -142,7 +142,7 @@ class ShaftDeflection:
 
 @dataclass(frozen=True, eq=False)
 class SceneDeflection:
-    """A shaft at rest under the load of its scene, by several models."""
+    """A shaft at rest under the load of the scene, by several models."""
 
     title: str
     load: np.ndarray  #: (6,) at the lumped point, N and N m
@@ -163,7 +163,7 @@ def deflect_scene(
     models: Sequence[str] = MODELS,
     progress: Callable[[str], None] = lambda text: None,
 ) -> SceneDeflection:
-    """Compute the deflection of a shaft under the [load] of its scene, by several models, the finest
+    """Compute the deflection of a shaft under the [load] of the scene, by several models, the finest
     last; bearings of catalogue data need no stiffness yet.
 
     Examples
@@ -191,7 +191,7 @@ def load_of(scene: Scene) -> np.ndarray:
 
 
 class ShaftAtRest:
-    """A shaft by one model, to be settled under the load of its scene."""
+    """A shaft by one model, to be settled under the load of the scene."""
 
     def __init__(self, scene: Scene, model: str):
         self.scene, self.model = scene, model

@@ -1,4 +1,4 @@
-r"""Stress of a harmonic solid on a fillet: along its arc, around the axis, and the traction that a
+r"""Stress of a harmonic solid on a fillet: along the arc, around the axis, and the traction that a
 free surface must not have.
 
 Strains are those of :func:`solidgear.core.models.harmonic.families.strains`; with the outward normal n and
@@ -7,7 +7,7 @@ the tangent s of the meridian,
     along = s . sigma s,   around = sigma_tt,   shear = s . sigma t,   traction = sigma n
 
 The traction is zero for the exact solution. A finite element solution leaves some of it: the error
-of its stress at that place.
+of the stress at that place.
 """
 
 from __future__ import annotations

@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 
 #: how far a piece goes on beyond its fillet, in outer radii of the shaft on that side
 REACH = 4.0
-#: of the extent of a fillet along a segment, what is left of that segment at least
+#: least rest of a segment, in extents of a fillet along it
 ROOM = 3.0
 
 

@@ -25,10 +25,10 @@ def unit_slips(workshop: Workshop) -> tuple[str, ...]:
     --------
     >>> import solidgear as sg
     >>> train = sg.load_train("geometry/axle_overhung.toml")
-    >>> slips(Workshop(train))
+    >>> unit_slips(Workshop(train))
     ()
     >>> soft = train.with_changes(mesh=train.mesh.with_changes(stiffness=2.5e5))
-    >>> slips(Workshop(soft))[0][:62]
+    >>> unit_slips(Workshop(soft))[0][:62]
     'probably a slip in units: mesh stiffness over E r is 2.73e-05,'
     """
     out = mesh_unit_slips(workshop)

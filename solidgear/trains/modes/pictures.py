@@ -92,7 +92,7 @@ def turning_modes(workshop: Workshop, *models: str, highest_hz: float | None = N
     --------
     >>> import solidgear as sg
     >>> shop = Workshop(sg.load_train("geometry/axle_overhung.toml"))
-    >>> drawn = turned_modes(shop, "euler", "euler", highest_hz=700.0)
+    >>> drawn = turning_modes(shop, "euler", "euler", highest_hz=700.0)
     >>> drawn.title, len(drawn.along), [shape.name for shape in drawn.shapes][:2]
     ('both shafts euler', 1, ['load torsion 1', 'gear torsion 1'])
     """

@@ -1,4 +1,4 @@
-"""A measured spectrum from a CSV file, and the peaks that stand out of its noise."""
+"""A measured spectrum from a CSV file, and the peaks that stand out of the noise."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class Spectrum:
 
     @property
     def resolution_hz(self) -> np.ndarray:
-        """Distance (n,) of every line to its farther neighbour, Hz."""
+        """Distance (n,) of every line to the farther neighbour, Hz."""
         gaps = np.diff(self.frequency_hz)
         return np.maximum(np.append(gaps[0], gaps), np.append(gaps, gaps[-1]))
 

@@ -1,8 +1,8 @@
-"""Derivatives of a beam by its shape and material, with the same elements, moved.
+"""Derivatives of a beam by shape and material, with the same elements, moved.
 
 The derivatives of numbers by nodes, seats and segments are gathered once from the energies of
 elements and then multiplied with the velocities of any number of parameters. Derivatives of an
-element by its shape and material are imaginary parts (:mod:`solidgear.core.models.beam.element`), exact to
+element by shape and material are imaginary parts (:mod:`solidgear.core.models.beam.element`), exact to
 rounding.
 """
 

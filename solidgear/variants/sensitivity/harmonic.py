@@ -1,4 +1,4 @@
-"""Derivatives of a harmonic solid by its shape and material, on a mesh that moves with them.
+"""Derivatives of a harmonic solid by shape and material, on a mesh that moves with them.
 
 Every cell is carried along with its unknowns by a velocity V of the nodes: ``d(phi,i) = -phi,j V_j,i``,
 ``d(phi / r) = -(phi / r) V_r / r`` and ``d(r dA) = (V_r / r + div V) r dA``.  The change of the energy
@@ -46,7 +46,7 @@ class Push:
 
 
 class HarmonicAdjoint:
-    """Derivatives of numbers of a harmonic body (straight sides, order 3 or more) by its shape and
+    """Derivatives of numbers of a harmonic body (straight sides, order 3 or more) by shape and
     material.
     """
 
@@ -92,7 +92,7 @@ class HarmonicAdjoint:
 
     def _families(self, pairs):
         """Yield (family, columns, uses): unknowns on the mesh of every state in every block of a
-        family, and (pair, column of its first state, column of its second).
+        family, and (pair, column of the first state, column of its second).
         """
         groups: dict[Family, tuple[list, dict, list]] = {}
         for k, (a, b) in enumerate(pairs):

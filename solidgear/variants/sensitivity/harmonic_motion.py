@@ -1,4 +1,4 @@
-"""Motion of the mesh of a harmonic solid with a parameter of its scene.
+"""Motion of the mesh of a harmonic solid with a parameter of the scene.
 
 Nodes follow the ends of segments, seats and sections along the axis, linearly between them, and the
 surfaces across it, linearly between the mesh lines that run from joint to joint.
@@ -94,7 +94,7 @@ class Motion:
         return np.interp(r, places, [marks[m] for m in places])
 
     def derivative(self, push: Push) -> float:
-        """Return the derivative of a number by the parameter, without actions on its ports."""
+        """Return the derivative of a number by the parameter, without actions on ports."""
         return self._shape(push) + self._matter(push)
 
     def _shape(self, push: Push) -> float:

@@ -1,4 +1,4 @@
-"""Free beam model of a shaft: Euler-Bernoulli or Timoshenko, four blocks and its ports.
+"""Free beam model of a shaft: Euler-Bernoulli or Timoshenko, four blocks and ports.
 
 A port is tied to the beam as the scene asks. ``section`` is the beam's own node. ``average`` is the
 area-weighted least-squares rigid motion of the seat's surface, which a beam moves section by
@@ -283,7 +283,7 @@ def seat(e: Elements, shape, lo, hi, y) -> dict[str, tuple[np.ndarray, np.ndarra
 
 def _seat_mask(station, nodes, per_node: int, size: int) -> np.ndarray:
     """Return the unknowns that a rigid seat takes along: those of its nodes, and the internal ones
-    of its elements.
+    of the elements.
     """
     tol = 1e-9 * nodes[-1]
     inside = (nodes > station.lo - tol) & (nodes < station.hi + tol)

@@ -1,4 +1,4 @@
-"""Drawing of a beam: its profile as a body of revolution.
+"""Drawing of a beam: the profile as a body of revolution.
 
 A section of a beam is a rigid disc: the case U = V, W linear in r of
 :mod:`solidgear.core.body.revolution`.
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class BeamLine:
-    """Nodes of a beam along the profile of its shaft."""
+    """Nodes of a beam along the profile of the shaft."""
 
     shaft: Shaft
     nodes: np.ndarray  #: (n,) axial positions, m
@@ -33,7 +33,7 @@ class BeamLine:
         return revolve(rings, _waves(rings, self.nodes, moved))
 
     def volume(self) -> None:
-        """Return None: a beam has no mesh of its volume."""
+        """Return None: a beam has no mesh of the volume."""
         return None
 
 

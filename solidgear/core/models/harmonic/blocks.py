@@ -88,7 +88,7 @@ class Work:
                     yield part, segment.material, t, t.det * self.weights
 
     def block(self, name: str, components: tuple[int, ...], wanted) -> Block:
-        """Build the block of a family of motion, by its name, with the ports of stations and their
+        """Build the block of a family of motion, by name, with the ports of stations and their
         attachments.
         """
         family, nb = family_of(name), self.dofs.shape[0]

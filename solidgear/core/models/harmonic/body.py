@@ -1,6 +1,6 @@
-"""Axisymmetric-harmonic solid: exact 3D elasticity of a body of revolution on its meridian.
+"""Axisymmetric-harmonic solid: exact 3D elasticity of a body of revolution on the meridian.
 
-Here a scene is meshed and its blocks put together; unknowns and matrices of one harmonic are in
+Here a scene is meshed and the blocks put together; unknowns and matrices of one harmonic are in
 :mod:`solidgear.core.models.harmonic.blocks`.
 """
 

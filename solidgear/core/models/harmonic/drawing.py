@@ -1,4 +1,4 @@
-"""Drawing of a harmonic solid: the outline of its meridian as a body of revolution."""
+"""Drawing of a harmonic solid: the outline of the meridian as a body of revolution."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def rows(geometry: HarmonicMesh, name: str, chosen: np.ndarray) -> np.ndarray:
 
 def _rings(geometry: HarmonicMesh) -> tuple[Rings, sp.csr_matrix]:
     """Return the circles of the outline, and a scalar field on them by its unknowns; inside an edge
-    the basis itself is evaluated, whatever its order.
+    the basis itself is evaluated, whatever the order.
     """
     points, cells, dofs = geometry.meridian.points, geometry.meridian.cells, geometry.dofs
     pieces = 1 if dofs.shape[0] == 4 else PIECES

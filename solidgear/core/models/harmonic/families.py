@@ -142,6 +142,6 @@ class Family:
 
 
 def family_of(block: str) -> Family:
-    """Return the family of a block, by its name."""
+    """Return the family of a block, by name."""
     waves = {"torsion": TORSION, "axial": 0, "bending_z": 1, "bending_x": 1}
     return Family(waves[block] if block in waves else int(block.rpartition("_")[2]))

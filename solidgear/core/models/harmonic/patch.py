@@ -40,7 +40,7 @@ class Patch:
 
     @property
     def axes(self) -> np.ndarray:
-        """Radial, tangential and axial direction (3, 3) at its middle, as columns x y z."""
+        """Radial, tangential and axial direction (3, 3) at the middle, as columns x y z."""
         c, s = np.cos(self.angle), np.sin(self.angle)
         return np.array([[s, c, 0.0], [0.0, 0.0, 1.0], [c, -s, 0.0]])
 

@@ -1,4 +1,4 @@
-"""Section motions of a harmonic solid, by quadrature on its cells: they may be far longer than the
+"""Section motions of a harmonic solid, by quadrature on the cells: they may be far longer than the
 distance of two stations.
 """
 

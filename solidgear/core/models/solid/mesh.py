@@ -151,7 +151,7 @@ class SolidMesh:
 
 
 def basis_of(name: str) -> Element:
-    """Return the basis of an element by its name."""
+    """Return the basis of an element by name."""
     return getattr(skfem.element, ELEMENTS[name].basis)()
 
 

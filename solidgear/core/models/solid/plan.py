@@ -1,4 +1,4 @@
-"""Plan of a 3D mesh: places of its lines and sizes of its elements, before it is made."""
+"""Plan of a 3D mesh: places of the lines and sizes of its elements, before it is made."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Size of the 3D solid of a scene, counted on its mesh."""
+"""Size of the 3D solid of a scene, counted on the mesh."""
 
 from __future__ import annotations
 
