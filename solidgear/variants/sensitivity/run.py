@@ -300,7 +300,9 @@ class SolvedMesh:
             points = number.points_among([port.name for port in scene.ports])
             if len(points) > 1:
                 raise SolidgearError(f"{number}: terms between points have no derivatives here")
-            value, form = entry_form(self.body, self.supports, number, (*points, scene.port.name)[0])
+            value, form = entry_form(
+                self.body, self.supports, number, (*points, scene.port.name)[0]
+            )
             self.values.append(value)
             self.forms.append(form)
             self.pairs.append(False)

@@ -108,7 +108,9 @@ class SceneTask(FileTask):
         """Return numbers of one model on the mesh that was asked for, without error bars."""
         assert self.model is not None
         body: Body = build(scene, self.model, **self.options)
-        numbers = answer_of_body(body, as_supports(scene), [scene.port.name], self.n, ovalising=True)
+        numbers = answer_of_body(
+            body, as_supports(scene), [scene.port.name], self.n, ovalising=True
+        )
         mass, bar = mass_of(scene, body)
         out: dict[str, Any] = {
             "model": self.model,

@@ -200,7 +200,9 @@ class TrainTask(FileTask):
                 out[f"peak{k}_mode"] = peak.mode
             mean = at_rest.get(force_of(joint_name(drive.pair)))
             if mean is not None:
-                lowest = parting_frequency(hz, teeth_relief(drive, drive.over_cycle(hz, limit)), mean)
+                lowest = parting_frequency(
+                    hz, teeth_relief(drive, drive.over_cycle(hz, limit)), mean
+                )
                 out |= {} if lowest is None else {PARTS: lowest}
         return out
 
