@@ -85,7 +85,7 @@ def test_an_inside_of_another_bearing_is_told():
     assert list(misfits(with_b({"pitch_diameter": 60e-3}))) == []
     _, inside = misfits(with_b(of("7210 B") | {"pitch_diameter": 60e-3}))
     assert (
-        "pitch_diameter of 60 mm, and the middle between its bore and its outer diameter is 70"
+        "pitch_diameter of 60 mm, but 70 mm is midway between its bore and its outer diameter"
         in inside
     )
 

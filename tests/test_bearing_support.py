@@ -134,7 +134,7 @@ NO_PAIR = (
     ('{ O = ["A", "C"] }', "", r'no bearing is called "C"; there are A, B'),
     ('{ O = ["A"] }', "", "write the names of two bearings"),
     ('{ O = ["A", "B"], X = ["A", "B"] }', "", "is in two pairs"),
-    ('{ O = ["A", "B"] }', ', holds = "+y"', "leave one of both out"),
+    ('{ O = ["A", "B"] }', ', holds = "+y"', "leave one of them out"),
     ('"O"', ', holds = "+y"', r"this scene has 1: B; name two"),
 )  # fmt: skip
 
@@ -156,7 +156,7 @@ def test_a_bearing_that_is_wrong_by_itself_is_told_alone(tmp_path):
 SEAT = {"name": "A", "y": 0.1, "seat_width": 0.02}
 NO_SUPPORT = (
     ({"support": "floatign", "stiffness": {"kxx": 1e8}}, 'did you mean "floating"'),
-    ({"catalogue": {"designation": "6208", "support": "floating"}}, "beside the catalogue data"),
+    ({"catalogue": {"designation": "6208", "support": "floating"}}, "not to its catalogue data"),
     ({"support": "locating", "catalogue": {"designation": "NU 207"}}, "ribs being left out"),
     ({"support": "locating", "stiffness": {"kxx": 1e8}}, "holds nothing along y: write kyy"),
     ({"support": "floating", "hold": "pinned"}, "holds y as well"),

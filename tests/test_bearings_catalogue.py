@@ -212,7 +212,7 @@ ONE_WAY = {"designation": "7208 B", "holds": "+y"}
 BAD = (
     ({"designation": "6208", "contact_angle": "15 deg"}, "no contact angle of its own"),
     ({"designation": "NU 206", "elements": 40, "element_diameter": "9 mm"}, "more than fit on"),
-    ({"designation": "6208", "conformity": 0.49}, "above 0.5"),
+    ({"designation": "6208", "conformity": 0.49}, "more than 0.5"),
     ({"designation": "hurz"}, "not understood"),
     ({"designation": "6208-XYZ"}, 'did you mean "6208"'),
     ({"designation": "6280"}, 'did you mean "6208"'),
@@ -224,7 +224,7 @@ BAD = (
     ({"designation": "6208", "preload": "10 N"}, "not preloaded along y"),
     ({"designation": "NU 206", "speed": "3000 rpm"}, "belongs to balls"),
     ({"designation": "7208 B"}, r'write holds = "\+y" if this'),
-    (ONE_WAY | {"preload_spring": "1e6 N/m"}, "needs arrangement"),
+    (ONE_WAY | {"preload_spring": "1e6 N/m"}, "needs a pair, arrangement"),
     (ONE_WAY | {"clearance": "C3"}, "no clearance class"),
     ({"kind": "tapered", "bore": 0.05, "outer_diameter": 0.04, "width": 0.02}, "larger than the bore"),
 )  # fmt: skip

@@ -320,8 +320,8 @@ REFUSED = [
     (Fillet(name="f", y=0.05, radius=0.004), "no segment begins or ends at y = 0.05 m"),
     (Fillet(name="f", y=0.0, edge="root", radius=0.004), "an end face has no root"),
     (Fillet(name="f", y=0.0, edge="rim", radius=0.02), "into the seat of"),
-    (Fillet(name="f", y=0.068, surface="bore", radius=0.004), "does not jump"),
-    (Fillet(name="f", y=0.068, radius=1e-5), "is no fillet"),
+    (Fillet(name="f", y=0.068, surface="bore", radius=0.004), "has no step"),
+    (Fillet(name="f", y=0.068, radius=1e-5), "is too small"),
     (Chamfer(name="c", y=0.276, length=0.12, angle="10 deg"), "beyond half its length"),
 ]
 
@@ -337,7 +337,7 @@ def test_edges_are_taken_once_and_leave_a_cylinder():
         stepped(root(0.004), root(0.005).with_changes(name="again"))
     with pytest.raises(SceneError, match='beside "root"'):
         stepped(root(0.012), Fillet(name="rim", y=0.068, edge="rim", radius=0.01))
-    with pytest.raises(SceneError, match="no section there is plane"):
+    with pytest.raises(SceneError, match="where no section is plane"):
         stepped(root(0.004)).with_port(y=0.07)
 
 

@@ -195,7 +195,7 @@ def test_stiffness_between_two_patches_is_told_with_their_bars(beam, run):
     [
         (HELD.replace('"eye"', '"eyes"'), r"port.*patch", 'did you mean "eye".*there are'),
         (HELD.replace('patch = "eye"', 'at = "end"'), r"port.*patch", "name the faces"),
-        (HELD + 'attachment = "section"\n', r"port.*attachment", "a patch is no section"),
+        (HELD + 'attachment = "section"\n', r"port.*attachment", "a patch has no section"),
         (HELD + 'at = "end"\n', r"port.*\.at", "has its place and size itself"),
         (HELD + 'point = ["1 mm", "2 mm"]\n', r"port.*point", "three quantities"),
         (HELD + '[load]\nforce = ["1 N", "0 N", "0 N"]\n', "load", "no place for this"),

@@ -140,7 +140,7 @@ def test_check_looks_at_the_elements_of_a_body_without_an_axis(tmp_path):
     scene = sg.load(path)
     said = check_scene(scene, sg.build(scene, "solid"))
     assert any(
-        "are hex8, which lock in bending: they are solved as hex20" in f for f in said["facts"]
+        "are hex8, which lock in bending, and are solved as hex20" in f for f in said["facts"]
     )
     path.write_text(path.read_text().replace(f"nu = {NU}", "nu = 0.499"))
     told = command("check", path).stdout

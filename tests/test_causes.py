@@ -186,6 +186,6 @@ def test_plain_shaft_that_cannot_be_made_is_told():
     assert shoulder_cause(scene, {"C_zz": -0.1}, {}, said.append) is None
     assert (
         len(said) == 1
-        and said[0].startswith("the share of the shoulders is left out: ")
+        and said[0].startswith("the effect of the shoulders is not computed: ")
         and "bore" in said[0]
     )

@@ -290,7 +290,7 @@ def test_subset_of_models(overhung):
     assert list(found["models"]) == ["euler", "timoshenko"]
     assert found["mac"]["reference"] == "timoshenko"
     assert found["verdict"]["trust"] is None and found["verdict"]["sentences"] == [
-        "Not judged: no solid was run, and a beam cannot judge itself."
+        "Not judged: no solid was run, and a beam has no error bar."
     ]
     assert not any(m["valid"] for m in found["models"].values()) and all(
         m["open"] for m in found["models"].values()
@@ -408,7 +408,7 @@ def test_bar_that_cannot_be_made_is_a_warning(overhung, monkeypatch):
     ).results
     assert found["models"]["solid"]["band"] is None
     assert "3D solid: error bar: too coarse to mesh" in found["warnings"]
-    assert "no error bar of its own (too coarse to mesh)" in found["verdict"]["sentences"][0]
+    assert "no error bar (too coarse to mesh)" in found["verdict"]["sentences"][0]
     assert not found["models"]["solid"]["valid"]
 
 
@@ -654,7 +654,7 @@ def test_a_lumped_model_on_a_solid_is_not_called_cheaper_than_it():
 
 
 def test_lumped_alone_has_nothing_to_rest_on(overhung):
-    with pytest.raises(SolidgearError, match="not alone"):
+    with pytest.raises(SolidgearError, match="not lumped alone"):
         compare(overhung, ("lumped",))
 
 

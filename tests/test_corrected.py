@@ -106,7 +106,7 @@ def test_other_bearings_and_systems_take_it(scene, body):
 
 
 def test_it_is_for_features_alone(scene):
-    with pytest.raises(sg.SolidgearError, match="made for features, and the scene has none"):
+    with pytest.raises(sg.SolidgearError, match="needs features, and the scene has none"):
         sg.build(scene.plain, "corrected")
 
 

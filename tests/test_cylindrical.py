@@ -92,8 +92,8 @@ def test_a_hand_without_a_helix_is_an_omission(gearbox):
     [
         ({"pitch_radius": 0.03}, {}, "write module alone"),
         ({"spiral_angle": 0.2}, {}, "write helix_angle alone"),
-        ({}, {"shaft_angle": 1.0}, "a word of parallel shafts"),
-        ({"module": 2e-3}, {}, "wheels that mesh share it"),
+        ({}, {"shaft_angle": 1.0}, "is for parallel shafts"),
+        ({"module": 2e-3}, {}, "write one value for both wheels"),
     ],
 )
 def test_words_that_contradict_are_refused(gearbox, pinion, mesh, words):

@@ -146,11 +146,13 @@ def test_a_unit_that_a_universal_file_says_may_be_left_out_and_is_held_against_t
     bare = sg.load(scene_file(tmp_path, "unv", before=said, unit=""))
     assert bare.length == pytest.approx(0.04) and not bare.body.remarks
     (told,) = remarks(scene_file(tmp_path, "unv", before=said, unit='unit = "inch"'))
-    assert 'says that lengths are in mm, and unit = "inch" of the [body] is taken' in told
+    assert 'says that lengths are in mm, but unit = "inch" of the [body] is taken' in told
     assert "by a factor of 25.4" in told
     assert not remarks(scene_file(tmp_path, "unv", before=said))
     for ending in ("unv", "inp"):
-        with pytest.raises(sg.SceneError, match=rf"body.unit.*part.{ending} does not say it"):
+        with pytest.raises(
+            sg.SceneError, match=rf"body.unit.*part.{ending} does not give the unit"
+        ):
             sg.load(scene_file(tmp_path, ending, unit=""))
 
 

@@ -94,7 +94,7 @@ REFUSED = {
     "twice": (
         "inp",
         TET + "7, 1, 3, 2, 4\n",
-        "line 8: element 7 is there a second time, first in line 7",
+        "line 8: element 7 is given twice, first in line 7",
     ),
     "no such node": ("inp", TET.replace("2, 4\n", "2, 9\n"), "line 7: element 7 names node 9"),
     "spare": (

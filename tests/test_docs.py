@@ -343,15 +343,46 @@ LONG_SENTENCE = "A shaft " + "is long and " * 12 + "ends."
         (f"| a | {LONG_SENTENCE} |", "more than 35"),
         (f"$$x = 1,$$\n{LONG_SENTENCE}", "more than 35"),
         ("Its eigenfrequency is high.", "natural frequency"),
+        ("The mode is told.", "shown"),
+        ("A row tells its bound.", "shows"),
+        ("Stiffness is a matter of load.", "depends on"),
+        ("Peaks hang on losses.", "depends on"),
+        ("It is short. Of an idler the flank may be left out.", "begins with its subject"),
+        ("With teeth, of a bevel gear, it is the mean.", "begins with its subject"),
+        ("The bar is wide.", "error bar"),
+        ("\n\n".join(f"It is that of part {k}." for k in range(16)), "in 16 places"),
         ("\n\n".join(["No run of twelve words may stand on any page more than once."] * 2), "too"),
         ("\n\n".join(f"Word {k} of many." for k in range(prose.PAGE // 4 + 1)), "page"),
         ("\n\n".join(f"Word {k} of many." for k in range(prose.TOTAL // 4 + 1)), "all pages"),
     ],
-    ids=["paragraph", "sentence", "cell", "formula", "glossary", "twice", "page", "total"],
+    ids=[
+        "paragraph",
+        "sentence",
+        "cell",
+        "formula",
+        "glossary",
+        "told",
+        "tells",
+        "matter",
+        "hang",
+        "of",
+        "of it",
+        "bar",
+        "that of",
+        "twice",
+        "page",
+        "total",
+    ],
 )
-def test_prose_beyond_a_limit_is_told_with_its_place(text, rule):
-    told = prose.faults({"page.md": f"# Page\n\n{text}\n"})
-    assert [t for t in told if rule in t or (rule == "page" and t.startswith("page.md:1:"))]
+def test_prose_beyond_a_limit_is_reported_with_its_place(text, rule):
+    faults = prose.faults({"page.md": f"# Page\n\n{text}\n"})
+    assert [f for f in faults if rule in f or (rule == "page" and f.startswith("page.md:1:"))]
+
+
+def test_an_error_bar_and_a_flat_bar_are_heard_as_such():
+    assert (
+        prose.faults({"page.md": "# Page\n\nError bars hold. Flat and flat bars differ.\n"}) == []
+    )
 
 
 def test_code_is_no_prose():

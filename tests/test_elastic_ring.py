@@ -163,7 +163,7 @@ def test_a_ring_that_bends_shares_the_load_of_a_sun_off_its_place():
 
 def test_what_is_no_elastic_ring_is_told():
     scene = rim(3e-3, 20e-3)
-    with pytest.raises(SolidgearError, match="1 is no number of waves around a ring"):
+    with pytest.raises(SolidgearError, match="waves = 1: give numbers of waves around the ring"):
         sg.elastic_ring(scene, TEETH, 10e-3, waves=(1, 2))
     with pytest.raises(SolidgearError, match="a face of 50 mm around y = 10 mm is not on"):
         sg.elastic_ring(scene, TEETH, 50e-3, **LIGHT)

@@ -225,7 +225,7 @@ def test_a_fillet_whose_mesh_folds_is_told_and_the_rest_goes_on(monkeypatch):
     found = shaft_stress(scene, loads_on(scene))
     assert found.notches == () and len(found.nominal) > 4
     (told,) = found.remarks
-    assert told.startswith('no stress there: fillet "fillet": cells of the mesh around it fold')
+    assert told.startswith('no stress there: fillet "fillet": cells of order')
 
 
 def test_rims_on_other_faces_are_left_sharp():

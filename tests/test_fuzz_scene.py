@@ -193,7 +193,7 @@ def test_both_ends_of_a_cone_are_named_as_in_the_file(tmp_path):
 def test_scenes_made_in_python_are_refused_alike():
     rod = Segment.cylinder("rod", length=0.3, diameter=0.06)
     with pytest.raises(
-        SceneError, match="stiffness in thz is 1e-40, below 1e-30 in SI, which is no spring"
+        SceneError, match="stiffness in thz is 1e-40, below 1e-30 in SI, too soft for a spring"
     ):
         Bearing(name="1", y=0.1, seat_width=0.01, stiffness={"kxx": 1e8, "kthz": 1e-40})
     with pytest.raises(SceneError, match="below 1 Pa"):

@@ -43,7 +43,7 @@ def exchanged(train):
 def test_exchanged_teeth_stand_on_no_body_and_in_a_head_too_large_for_them():
     """57 teeth roll at 85.5 mm on a shaft of 30 mm; 6.4 kg and 0.0195 kg m2 are of 55 mm of radius."""
     body, head = said(exchanged(BOX))
-    assert "roll at 85.5 mm from the axis, and the shaft below them ends at 30 mm" in body
+    assert "roll at 85.5 mm from the axis, but the shaft ends at 30 mm" in body
     assert "radius of gyration of 55.2 mm, and its pitch radius is 30 mm" in head
 
 

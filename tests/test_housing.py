@@ -173,7 +173,7 @@ def test_what_is_not_held_is_free(shaft):
     ]
     for h, at in zip((1e3, 1e5), stiffness):  # it carries the force of the shaft as a whole
         assert 1 / at.compliance[2, 2] == pytest.approx(h, rel=1e-3)
-    with pytest.raises(sg.SolidgearError, match="softer than the bearings in it by more than"):
+    with pytest.raises(sg.SolidgearError, match="too much softer than the bearings in it"):
         sg.condense(body, shaft.with_changes(housing=Housing(stiffness={"kzz": 1e-4})), "wheel")
 
 
@@ -315,7 +315,7 @@ def test_a_motion_that_was_rigid_gives_as_the_file_would_say(shaft, tmp_path):
 @pytest.mark.parametrize(
     ("text", "word"),
     [
-        ("bearing.B.housing.kx_thz=1e9", "couples thz, which is rigid as long as kthz is not"),
+        ("bearing.B.housing.kx_thz=1e9", "couples thz, which is rigid unless kthz is given"),
         ("bearing.B.housing.kzq=1e9", "unknown stiffness entry"),
         ("bearing.B.housing=1e9", "no single entry; add one of"),
         ("bearing.C.housing.kzz=1e9", "there is no bearing.C"),

@@ -343,6 +343,7 @@ def test_the_rounding_of_coupled_springs_is_in_the_error():
 def test_springs_without_a_digit_left_are_named_as_the_cause():
     scene = on_a_skewed_spring(2.0)
     with pytest.raises(
-        SolidgearError, match="bearings resist it by the difference of far larger stiffnesses"
+        SolidgearError,
+        match="bearings resist it by a small difference of large coupled stiffnesses",
     ):
         sg.modes(sg.build(scene, "timoshenko"), scene, n=6)

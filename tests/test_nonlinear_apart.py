@@ -56,13 +56,13 @@ def test_the_largest_force_of_the_axle_is_on_branches_apart_that_time_bears_out(
 def test_what_is_told_of_the_axle_names_both_and_what_was_looked_for(axle):
     shop, found = axle
     told = " ".join(BacklashStudy(shop.train, (found,), 0.044).sentences())
-    assert "A branch apart of two mesh periods from 100" in told
-    assert "looked for from 1024 starts at 32 speeds" in told and "there may be others" in told
-    assert "on a branch apart, 7392 N" in told
+    assert "A separate branch of two mesh periods from 100" in told
+    assert "searched from 1024 starts at 32 speeds" in told and "there may be others" in told
+    assert "on a separate branch, 7392 N" in told
     alone = " ".join(
         BacklashStudy(shop.train, (replace(found, branches_apart=()),), 0.044).sentences()
     )
-    assert "of 1 to 3 mesh periods: none was found, and there may be some." in alone
+    assert "with 1 to 3 mesh periods: none was found, and there may be some." in alone
 
 
 def test_a_pair_has_the_subharmonic_that_a_motion_in_time_keeps_and_nothing_else():

@@ -86,8 +86,8 @@ def test_words_of_goals_and_limits():
         ([SPAN], "bending 1", [], "max NUMBER"),
         ([SPAN], "max bnding 1", [], "has no bnding 1.*bending 1"),
         ([SPAN], "max f1", ["C_zz = 5"], "NUMBER < VALUE"),
-        ([SPAN], "max f1", ["C_zz < 5 kg"], "'kg' is no unit"),
-        ([SPAN], "max f1", ["C_zz < five"], "is no number with a unit"),
+        ([SPAN], "max f1", ["C_zz < 5 kg"], "'kg' is not a unit"),
+        ([SPAN], "max f1", ["C_zz < five"], "is not a number with a unit"),
     ],
 )
 def test_bad_words_end_in_a_sentence(vary, goal, keep, said):

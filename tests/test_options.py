@@ -62,13 +62,13 @@ REFUSED = {
     "cells of nothing": (
         "harmonic",
         {"size": 1e-9},
-        "lines of them, more than 20000; give size of at least",
+        "lines of cells, more than 20000; give size of at least",
     ),
-    "cells of nothing in 3D": ("solid", {"size": 1e-9}, "lines of them, more than 20000"),
+    "cells of nothing in 3D": ("solid", {"size": 1e-9}, "lines of cells, more than 20000"),
     "tetrahedra of nothing": (
         "solid",
         {"element": "tet10", "size": 1e-9},
-        "lines of them, more than 20000",
+        "lines of cells, more than 20000",
     ),
     "layers without end": ("harmonic", {"layers": 100_000}, "between 0 and 20"),
     "waves without end": ("harmonic", {"ovalising": 1_000_000}, "at most 100"),

@@ -352,12 +352,12 @@ def test_seats_that_are_not_there(tmp_path):
     text = SCENE.read_text().replace("shaft_step.step", str(SCENE.with_suffix(".step")))
     for old, new, sentence in (
         ('"155 mm", to', '"172 mm", to', None),
-        ('diameter = "30 mm"', 'diameter = "31 mm"', "there are 30 mm, 40 mm, 56 mm"),
+        ('diameter = "30 mm"', 'diameter = "31 mm"', "it has 30 mm, 40 mm, 56 mm"),
         ('from = "60 mm", to = "84 mm"', 'from = "45 mm", to = "60 mm"', "only 20 % of this"),
         (
             "[ask]",
             '[[feature]]\nkind = "flat"\nsegment = "s1"\nlength = 0.01\ndepth = 0.002\n[ask]',
-            "leave one of both out",
+            "leave one of them out",
         ),
     ):
         path = tmp_path / "scene.toml"
@@ -404,7 +404,7 @@ BAD_MESHES = {
         [*CORNERS, [100, 100, 0], [0, 100, 100]],
         [[0, 2, 1, 3, 5, 4]],
         "wedge",
-        "holds 1 wedge; wanted is one kind",
+        "holds 1 wedge; write one kind",
     ),
 }
 
@@ -428,7 +428,7 @@ def test_mesh_files_that_are_not_read(tmp_path):
         with pytest.raises(sg.SceneError, match=sentence):
             load(tmp_path, mesh=name, unit="mm")
     (tmp_path / "part.msh").write_text("nothing")
-    with pytest.raises(sg.SceneError, match="part.msh does not say it"):
+    with pytest.raises(sg.SceneError, match="part.msh does not give the unit"):
         load(tmp_path, mesh="part.msh")
 
 
@@ -441,7 +441,7 @@ def test_a_mesh_file_has_one_mesh_and_no_bar(shipped, tmp_path):
     assert plan.fixed and len(plan.levels) == 1
     found = sg.answer(from_file, ask=["C_zz"])
     assert not found.reached and found.values[0].bar == math.inf
-    assert "nothing finer tells" in found.steps[-1].why
+    assert "there is no finer one" in found.steps[-1].why
     # a coarser one before it makes a bar, which is wider than the step between both
     coarse = sg.build(scene, "solid", refinement=0.15)
     written(coarse, tmp_path / "coarse.vtu")

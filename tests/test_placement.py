@@ -114,7 +114,7 @@ def test_resonances_need_neither_unit_nor_places(tmp_path):
     bare = written(tmp_path / "b.unv", mode(1, 700.0, LINE), mode(2, 250.0, LINE))
     shapes = load_measured(bare)
     assert [m.frequency for m in shapes.modes] == [250.0, 700.0] and shapes.on_points is None
-    assert "no places of its points" in shapes.remarks[0]
+    assert "no positions of its points" in shapes.remarks[0]
 
 
 @pytest.mark.parametrize(
@@ -138,7 +138,7 @@ def test_labels_of_axes_say_the_unit_where_dataset_164_is_not_there(
 
 def test_a_file_that_contradicts_itself_is_called_so(tmp_path):
     path = tap(tmp_path / "a.uff", units(1, 1.0, 1.0), labels=("Hz", "g", "N"))
-    assert "one of both is wrong" in read_universal(path).remarks[0]
+    assert "one of them is wrong" in read_universal(path).remarks[0]
     kilo = tap(tmp_path / "b.uff", labels=("kHz", "m/s^2", "N"), values=accelerances())
     read = read_universal(kilo)
     assert read.frequencies == pytest.approx(1e3 * HERTZ)

@@ -157,7 +157,7 @@ def test_both_points_of_a_mesh_lie_on_one_line_where_circles_and_axes_fit():
     "changed, words",
     [
         ({"pin": 0.0}, "planet 1 is on no pin: its stiffness is 0.0 N/m"),
-        ({"sun_mesh": 0.0}, "sun_mesh is 0 N/m of every planet"),
+        ({"sun_mesh": 0.0}, "sun_mesh is 0 N/m for every planet"),
         ({"radius": 0.2}, "a ring is larger than what turns in it"),
         ({"mass": -1.0}, "mass of planet 1 is -1.0; it must be finite and positive"),
     ],

@@ -151,7 +151,7 @@ def test_a_response_that_is_drawn_from_further_up_says_so(found):
     said, first = words({"both euler": 500.0})
     below = [peak for peak in found.peaks if peak.frequency_hz < first]
     assert first == pytest.approx(250.0) and len(below) > 1
-    assert "from half of where the first model leaves the band" in said
+    assert "from half the frequency where the first model leaves the tolerance" in said
     assert said.endswith(f"; {len(below)} peaks lie below")
 
 

@@ -148,7 +148,7 @@ def test_numbers_are_those_of_the_trusted_model_with_its_bars():
     rows = {row[0]: row for row in front.numbers(record, ENGINEERING).rows}
     assert rows["First bending mode"][1:] == [("2758 Hz", "strong"), "± 0.050 %"]
     assert rows["Compliance across the shaft, C_zz"][1:] == [("0.596 µm/kN", "strong"), "± 2.00 %"]
-    assert rows["Stiffness along the shaft, K_yy"][2] == "no bar"
+    assert rows["Stiffness along the shaft, K_yy"][2] == "no error bar"
     record.verdict.trust = "solid"
     (first, *_) = front.numbers(record, ENGINEERING).rows
     assert first[1] == ("2759 Hz", "strong")
@@ -177,11 +177,11 @@ def test_two_directions_across_are_told_apart():
 def test_three_sentences_say_why():
     own, second, others = front.reasons(record_of())
     assert "harmonic solid" in own and "0.050 % in first bending" in own and "5 %" in own
-    assert "3D solid" in second and "0.098 %" in second and "less than the bars" in second
-    assert others == "No cheaper model is known to stay within 5 %: do not use the Euler beam here."
+    assert "3D solid" in second and "0.098 %" in second and "less than both error bars" in second
+    assert others == "No cheaper model was shown to be within 5 %: do not use the Euler beam here."
     record = record_of()
     record.verdict.cheapest = "timoshenko"
-    assert front.reasons(record)[2].startswith("The Timoshenko beam will do as well within 5 %;")
+    assert front.reasons(record)[2].startswith("The Timoshenko beam is enough within 5 %;")
     del record.models["solid"]
     record.deviations = [d for d in record.deviations if d.model != "solid"]
     assert front.reasons(record)[1].startswith("No second solid")

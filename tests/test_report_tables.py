@@ -24,7 +24,7 @@ def cell(one):
 def test_the_load_that_bearings_are_taken_under_is_a_fact_of_the_scene():
     facts = {row[0]: cell(row[1]) for row in scene_facts(record()).rows}
     told = facts["load at the lumped point"]
-    assert told == "x 3800 N, y -1000 N, z 1400 N; bearings are taken under it"
+    assert told == "x 3800 N, y -1000 N, z 1400 N; bearings have their stiffness under it"
     pounds = {row[0]: cell(row[1]) for row in scene_facts(record(), US).rows}
     # 3800 N / 4.4482216 N
     assert pounds["load at the lumped point"].startswith("x 854.274 lbf, ")
@@ -40,8 +40,11 @@ def test_a_catalogue_bearing_is_told_by_its_designation():
 
 def test_entries_without_a_column_are_owned_up_to():
     # K_xz of the loaded roller bearing is a quarter of K_xx
-    assert "6x6 of 'A', 'B'; results.json has all of them" in bearings(CATALOGUE).note
-    assert "without a column" not in bearings(GIVEN).note
+    assert (
+        "Further entries of 'A', 'B', such as couplings, are in results.json"
+        in bearings(CATALOGUE).note
+    )
+    assert "Further entries of" not in bearings(GIVEN).note
 
 
 def test_the_mirrored_coupling_is_no_further_entry():
@@ -49,9 +52,9 @@ def test_the_mirrored_coupling_is_no_further_entry():
     matrix = scene["bearings"][0]["stiffness"]
     matrix[2][3] = matrix[3][2] = 4.0
     matrix[0][5] = matrix[5][0] = -4.0
-    assert "without a column" not in bearings(scene).note
+    assert "Further entries of" not in bearings(scene).note
     matrix[0][5] = matrix[5][0] = -5.0
-    assert "6x6 of 'one'" in bearings(scene).note
+    assert "Further entries of 'one'" in bearings(scene).note
 
 
 def test_a_mode_that_is_like_no_other_has_no_partner_by_name():

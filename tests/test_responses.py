@@ -163,7 +163,7 @@ def test_responses_of_a_table_of_numbers(tmp_path):
     found = load_measured(path)
     assert found.responses.fit.poles == pytest.approx(fit_modes(HERTZ, values).poles, rel=1e-9)
     for text, said in {
-        "frequency [Hz],real\n1,2\n": "under other heads",
+        "frequency [Hz],real\n1,2\n": "has other heads",
         "frequency [Hz],real,imaginary\n1,2,\n": "not all numbers",
         "frequency [Hz],real,imaginary\n1,2,3\n": "have 1 lines",
     }.items():

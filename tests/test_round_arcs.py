@@ -53,7 +53,7 @@ def test_a_filleted_shaft_from_a_file_is_the_one_written_down(tmp_path):
     left = [s for s in scene.segments if 0.057 - 1e-9 < s.y0 < 0.06 - 1e-9]
     assert (left[0].outer0, left[-1].outer1) == pytest.approx((0.020, 0.023), abs=1e-8)
     # the arc of 4 mm is 0.034 mm high over a sixth of a quarter, and cones of its volume cross it
-    assert "up to 0.02 mm beside them" in next(described(scene)).sentence
+    assert "up to 0.02 mm off" in next(described(scene)).sentence
 
     own, true = (sg.answer(s, 0.01, "bending") for s in (scene, written))
     assert own.reached and own.rung == true.rung == "harmonic"

@@ -67,14 +67,14 @@ def test_facets_of_a_round_part_are_no_feature(around, second, is_round, tmp_pat
             assert off == pytest.approx(chords, rel=1e-6)
         said = next(described(scene)).sentence
         assert "as facets of its mesh explain" in said
-        assert "of which 1 segment is the round part" in said
+        assert "1 segment is the round part" in said
         assert "the volume of the segment is" in said
         # second moment with the square of the area, within what a polygon differs from a circle
-        lost = "so much lighter, and the second moment of its sections is lower by about twice that"
+        lost = "so much lighter, and its second moment of area about twice as much lower"
         assert (lost in said) is not second
         # coarse linear hexahedra of the same facets bend less than the round part all the same
         assert "bends about" not in said
-        assert ("how it bends rests on its elements too" in said) is not second
+        assert ("its bending depends on its elements too" in said) is not second
 
 
 def test_a_wide_facet_among_narrow_ones_is_a_flat():
@@ -127,7 +127,7 @@ def test_a_round_part_from_a_mesh_file_is_answered_as_its_segments_are(tmp_path)
     assert found["bending 1"] == pytest.approx(plain["bending 1"], rel=1e-9)
     (told,) = _of_round_part(scene, found)
     # chords of 24 sides leave out 1.1 % of the circle
-    assert "Numbers of the round part of part.msh, whose volume is +1.1" in told
+    assert "These numbers are for the round part of part.msh, whose volume differs by +1.1" in told
     assert not _of_round_part(scene.plain, plain)
 
 

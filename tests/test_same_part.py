@@ -107,7 +107,7 @@ def test_sentences_open_with_the_doubt(tmp_path):
     assert doubted.sentences[0].startswith("This may be another part: ")
     assert doubted.sentences[1].endswith("if they are of this part.")
     assert doubted.results["other_part"]["in_question"]
-    assert not any("a modulus, a density or a length" in said for said in doubted.sentences)
+    assert not any("a wrong modulus, density or length" in said for said in doubted.sentences)
     path = tmp_path / "shaft.toml"
     path.write_text(file_of(SHAFTS[0]))
     assert identify(path, peaks, ["material.E"], tol=5e-2).likeness.scattered

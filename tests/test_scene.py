@@ -345,7 +345,7 @@ def test_straddled_pinion():
 
 
 def test_a_train_is_told_from_a_shaft():
-    with pytest.raises(SceneError, match="describes a train of shafts and not a shaft"):
+    with pytest.raises(SceneError, match="describes a train, not one shaft"):
         load(GEOMETRY / "axle_overhung.toml")
 
 

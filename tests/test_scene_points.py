@@ -98,7 +98,7 @@ SLIPS = {
     "frequency of a point": (
         ('port = "wheel"', 'quantities = ["bending 1@wheel"]'),
         "ask.quantities[1]",
-        "only compliances and stiffnesses are of a point; write bending 1 without @",
+        "only compliances and stiffnesses belong to a point; write bending 1 without @",
     ),
     "unknown quantity of a point": (
         ('port = "wheel"', 'quantities = ["D_zz@wheel"]'),
@@ -130,7 +130,7 @@ SLIPS = {
     "a housing nowhere": (('position = "112.5 mm"', ""), "housing.position", "this key is missing"),
     "a place of an axial spring": ((STIFF, 'axial = "1e8 N/m"'), "housing.position", "a spring has no place"),
     "unknown datum of a housing": (('position = "112.5 mm"', 'position = "1 mm"\nfrom = "bering.A"'), "housing.from", "unknown datum"),
-    "a rigid motion coupled": ((STIFF, "stiffness = {kzz = 8e8, kz_thx = 1e7}"), "housing.stiffness.kz_thx", "couples thx, which is rigid as long as kthx is not given"),
+    "a rigid motion coupled": ((STIFF, "stiffness = {kzz = 8e8, kz_thx = 1e7}"), "housing.stiffness.kz_thx", "couples thx, which is rigid unless kthx is given"),
     "an unknown entry": ((STIFF, 'stiffness = {kzx = "8e8 N/m"}'), "housing.stiffness.kzx", 'unknown stiffness entry; did you mean "kzz"'),
     "a word of catalogues": ((STIFF, 'stiffness = {radial = "8e8 N/m"}'), "housing.stiffness.radial", "radial is kxx and kzz"),
     "an entry of another dimension": ((STIFF, 'stiffness = {kzz = "8 mm"}'), "housing.stiffness.kzz", "is not a unit of force per length"),

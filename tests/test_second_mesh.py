@@ -44,7 +44,7 @@ def test_the_second_mesh_may_be_left_out(run):
     code, out, _ = run(
         "modes", GEOMETRY / "cylinder_free.toml", "-f", "solid", "--no-bars", "--set=refinement=0.4"
     )
-    assert code == 0 and "No bars: --no-bars leaves the second mesh out." in out
+    assert code == 0 and "No error bars: --no-bars leaves the second mesh out." in out
 
 
 @pytest.mark.long
@@ -78,7 +78,7 @@ def test_statics_of_a_mesh_that_is_set_have_bars_that_hold_the_truth(run, tmp_pa
     bare = json.loads(out)
     assert bare["bars"] == {} and "--no-bars" in bare["why_without_bar"]
     code, out, _ = run("stiffness", path, "-f", "timoshenko", "--json")
-    assert "-f auto has them" in json.loads(out)["why_without_bar"]
+    assert "-f auto has error bars" in json.loads(out)["why_without_bar"]
 
 
 def test_a_mesh_of_the_fewest_cells_has_no_coarser_one_and_no_bar(run, tmp_path):

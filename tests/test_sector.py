@@ -499,7 +499,7 @@ def test_teeth_and_a_keyway_are_refused_with_the_words_that_let_models_hold_both
     assert says in LADDER["solid"].unfit(shaft(spline, key))
     with pytest.raises(sg.SolidgearError) as caught:
         sg.answer(shaft(spline, key), 0.1, "C_zz")
-    assert 'write model = "pitch_cone" for spline "s", which leaves out' in str(caught.value)
+    assert 'write model = "pitch_cone" for spline "s", which replaces teeth' in str(caught.value)
     assert str(caught.value).endswith("use corrected or solid")
     assert str(caught.value).count("no model") == 1
     taught = shaft(spline.with_changes(model="pitch_cone"), key)
@@ -594,7 +594,7 @@ def test_a_model_that_says_it_fits_can_be_built():
             with pytest.raises(sg.SolidgearError, match=says) as caught:
                 sg.build(scene, rung)
             assert LADDER[rung].unfit(scene) in str(caught.value)
-        assert "no model holds all that the scene has" in str(caught.value)
+        assert "no model solves all features of the scene" in str(caught.value)
     told = no_common_sector((TEETH, spline))
     turned = spline.with_changes(angle=re.search('angle = "(.*)"', told)[1])
     assert no_common_sector((TEETH, turned)) == ""  # as it was printed

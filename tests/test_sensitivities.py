@@ -206,7 +206,7 @@ def test_a_solid_is_stiffer_as_its_springs_and_its_modulus_are(tmp_path):
     # twice as stiff is twice the square of a frequency; what moves the mesh is refused
     assert sum(stiff) + sum(tilts) == pytest.approx(0.5, abs=1e-6)
     assert bending["material.density"].elasticity == pytest.approx(-0.5, abs=1e-6)
-    assert "meshes every shape anew" in found.without["segment.rod.length"]
+    assert "makes a new mesh for every shape" in found.without["segment.rod.length"]
 
 
 def test_what_a_motion_does_not_feel_is_exactly_nothing(tmp_path):
@@ -219,7 +219,7 @@ def test_what_a_motion_does_not_feel_is_exactly_nothing(tmp_path):
     ("model", "more", "told"),
     [
         ("sector", {}, "the sector model has no derivatives"),
-        ("timoshenko", {"by": ["bearing.C"]}, "--by bearing.C: no number of the file"),
+        ("timoshenko", {"by": ["bearing.C"]}, "--by bearing.C: the file has no such number"),
         ("timoshenko", {"of": ["bending 90"]}, "bending 90: no such mode was found"),
         ("solid", {"of": ["C_zz"]}, "derivatives of C_zz are for bodies of revolution"),
         ("timoshenko", {"of": ["C_thy"]}, "C_thy: gear moves freely there"),

@@ -45,15 +45,17 @@ def test_a_fillet_is_told_with_its_bars_beside_what_is_published(found):
     factor = notch.found.factors["bending"]
     assert (row["fillet"], row["by"]) == ("fillet", "bending")
     assert float(row["Kt"]) == pytest.approx(factor.value, rel=5e-4)
-    assert float(row["bar"].split()[0]) == pytest.approx(100 * factor.bar / factor.value, rel=0.01)
+    assert float(row["error bar"].split()[0]) == pytest.approx(
+        100 * factor.bar / factor.value, rel=0.01
+    )
     # D/d 1.5, r/d 0.1: Peterson, chart 3.10, and DIN 743-2, 5.2, by hand
     assert (row["Peterson"], row["DIN 743"]) == ("1.743", "1.720")
     assert float(row["Kf"]) < float(row["Kt"])
     stress = stress_tables.surface_stress(found, {"fillet": (90e6, 99e6)})
     row = dict(zip(stress.heads, stress.texts[1]))
-    assert row["left open"] == "90.00 to 99.00"
+    assert row["range"] == "90.00 to 99.00"
     assert float(row["surface"]) == pytest.approx(notch.local.amplitude / 1e6, rel=5e-4)
-    assert float(row["bar"]) == pytest.approx(notch.local.amplitude_bar / 1e6, rel=0.05)
+    assert float(row["error bar"]) == pytest.approx(notch.local.amplitude_bar / 1e6, rel=0.05)
 
 
 def test_a_rating_shows_every_factor_its_source_and_what_is_assumed(found):
@@ -62,7 +64,7 @@ def test_a_rating_shows_every_factor_its_source_and_what_is_assumed(found):
     for wanted in ("K_1 (sigma_B)", "K_2", "K_F", "K_V", "beta", "K_sigma, K_tau", "sigma_WK"):
         assert wanted in symbols
     assert all(row[-1] for row in table.texts)
-    assert "Assumed, for nobody gave it: K_1 (sigma_B)" in table.note
+    assert "Assumed, since not given: K_1 (sigma_B)" in table.note
     assert f"Safety against fatigue {found.worst[0].rating.fatigue:.3g}"[:28] in table.note
     (row,) = stress_tables.safeties(found).texts
     assert float(row[1]) == pytest.approx(found.worst[0].rating.fatigue, rel=5e-3)
@@ -72,7 +74,7 @@ def test_sharp_corners_are_told_in_one_sentence():
     scene = shoulder().with_changes(blends=())
     bare = shaft_stress(scene, loads_on(scene))
     (told,) = stress_tables.remarks(bare)
-    assert told.startswith("sharp corners at y = 300.00 mm (s0 to s1): a stress does not exist")
+    assert told.startswith("sharp corners at y = 300.00 mm (s0 to s1): no stress there")
     for table in (stress_tables.fillets, stress_tables.form_factors, stress_tables.safeties):
         assert not table(bare)
 

@@ -243,7 +243,7 @@ def test_rows_of_another_sweep_are_never_mixed(finished, tmp_path):
     light(out, vary=["bearing.1.scale=1,3,4"], overwrite=True)
     assert len(numbers(out)) == 3
     (tmp_path / "rows.csv.sqlite").unlink()
-    with pytest.raises(SolidgearError, match="nothing beside it says"):
+    with pytest.raises(SolidgearError, match="not from this sweep"):
         light(out, vary=["bearing.1.scale=1,3,4"])
 
 

@@ -47,13 +47,13 @@ def test_a_file_of_a_model_that_is_given_says_that_it_has_no_bars(vary, tmp_path
     command("sweep", SHAFT, "--vary", vary, "-f", "timoshenko", "-n", "2", "-o", path)
     with path.open(newline="") as file:
         row = next(csv.DictReader(file))
-    assert row["bars"] == "none: the timoshenko mesh was given; -f auto judges its own"
+    assert row["bars"] == "none: the timoshenko mesh was given; -f auto has error bars"
     assert not any(name.endswith(" bar") and name != "mass bar" for name in row)
 
 
 def test_a_design_and_a_derivative_say_what_they_have_no_bar_of():
     found = sg.optimise(SHAFT, ["segment.left.diameter=48 mm:50 mm"], "min C_zz", model="euler")
-    assert found.results["bars"] == "none: the euler mesh was given; -f auto judges its own"
+    assert found.results["bars"] == "none: the euler mesh was given; -f auto has error bars"
     moved = sg.sensitivities(SHAFT, "euler", of=["C_zz"], by=["material.E"]).as_dict()
     (number,) = moved["of"]
     assert 0 <= number["from_coarser_mesh"] < 1e-3 * number["value"]

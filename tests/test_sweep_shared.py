@@ -167,7 +167,7 @@ def test_what_is_no_file_is_refused(tmp_path):
         names += ["d.csv", "e.csv"]
     for name in names:
         for overwrite in (False, True):
-            with pytest.raises(SolidgearError, match="cannot be written|is no file") as error:
+            with pytest.raises(SolidgearError, match="cannot be written|is not a file") as error:
                 write(tmp_path / name, overwrite=overwrite)
             assert one_sentence(error.value)
 

@@ -123,8 +123,8 @@ def test_teeth_that_overlap_or_do_not_reach_each_other_are_refused(gearbox, dist
         ({"centre_distance": 115.45e-3}, "overlap by 34"),
         ({"centre_distance": 117e-3}, "the backlash is large"),
         ({"centre_distance": 115.6e-3, "backlash": 100e-6}, ""),
-        ({"centre_distance": 116e-3, "backlash": 100e-6}, "less than the numbers of the teeth"),
-        ({"backlash": 1.5e-3}, "far more than the numbers of the teeth"),
+        ({"centre_distance": 116e-3, "backlash": 100e-6}, "less than the teeth have"),
+        ({"backlash": 1.5e-3}, "far more than the teeth have"),
     ],
 )
 def test_backlash_of_the_numbers_is_held_against_what_is_usual_and_what_is_given(
@@ -158,6 +158,6 @@ def test_roots_within_the_bore_are_refused(gearbox):
         segments=tuple(s.with_changes(inner0=15e-3, inner1=15e-3) for s in scene.segments)
     )
     by_module(gearbox, scene=hollow)
-    with pytest.raises(SceneError, match="within the bore of its shaft, 15 mm") as error:
+    with pytest.raises(SceneError, match="inside the bore of its shaft, 15 mm") as error:
         by_module(gearbox, scene=hollow, teeth=11)
     assert error.value.problems[0].path == ("pinion", "teeth")

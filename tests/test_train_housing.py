@@ -186,7 +186,7 @@ def test_a_stiff_housing_of_matrices_is_a_rigid_one(tmp_path, bare):
 @pytest.mark.parametrize(
     "change, said",
     [
-        (lambda m, k, p: (m, k + np.eye(len(k)) * 1e6, p), "resists rigid motions like a mode at"),
+        (lambda m, k, p: (m, k + np.eye(len(k)) * 1e6, p), r"resists rigid motions \(mode at"),
         (lambda m, k, p: (m, k * 0, p), "more than six motions free"),
         (lambda m, k, p: (m - np.eye(len(m)) * 8, k, p), "mass is not positive definite"),
         (lambda m, k, p: (m[1:, 1:], k, p), "do not fit"),
@@ -243,7 +243,7 @@ def test_without_mounts_six_motions_more_are_free_and_told_and_loads_at_rest_are
     assert "7 motions are free" in found.free[0] and "bearings" not in found.free[0]
     assert "no mount holds the housing in x y z thx thy thz" in found.free[0]
     point = bare.with_changes(operation=({"torque": 100.0},)).operation[0]
-    with pytest.raises(SolidgearError, match="nothing holds the housing in thy .* no mount does"):
+    with pytest.raises(SolidgearError, match="no mount holds the housing in thy"):
         Operating(shop, RIGID).at(point)
 
 
@@ -299,7 +299,7 @@ def test_lines_of_shafts_are_told_against_a_housing_however_soft_it_stands(train
     for mine, its in zip(one.shafts, other.shafts):
         off = np.abs(mine.line - its.line)[:, :3].max()
         assert off < 1e-9 * moved[1] < 1e-3 * np.abs(mine.line[:, :3]).max()
-    assert "are told against the housing" in one.notes[-1]
+    assert "are relative to the housing" in one.notes[-1]
 
 
 def test_what_bearings_mounts_and_inertia_do_to_a_housing_is_in_balance_at_every_frequency(
@@ -371,11 +371,11 @@ def test_lumped_shafts_whose_bearings_are_condensed_to_ground_are_refused(shop):
         ({"mass": 0.0}, r"housing.mass.*greater than zero"),
         ({"inertia": [1.0, 2.0]}, r"housing.inertia.*three moments"),
         ({"inertia": [1.0, -2.0, 1.5]}, r"housing.inertia.*-2 kg m\^2"),
-        ({"inertia": [1.0, 1.0, 3.0]}, "no body has one that is larger than the other two"),
+        ({"inertia": [1.0, 1.0, 3.0]}, "the largest must not be more than the sum of the others"),
         ({"inertia": [[1, 0.1, 0], [0, 1, 0], [0, 0, 1]]}, "not symmetric"),
         ({"carries": ["inptu"]}, r"carries.*no shaft 'inptu'; did you mean"),
         ({"spring": (0.0, 0.0, 0.0)}, "stiffness.*holds nothing"),
-        ({"loss": 0.1}, "loss.*is of an elastic housing"),
+        ({"loss": 0.1}, "loss.*belongs to an elastic housing"),
         ({"points": {"centre": (0, 0, 0)}}, "points.centre.*cannot name it"),
     ],
 )

@@ -371,7 +371,7 @@ BAD = {
                 'hand = "right"\nface_width = 0.03\nloaded',
             ),
         ),
-        "-handed and cannot mesh",
+        "-handed; a",
     ),
     "ratio": ((("pressure_angle", "ratio = 3.0\npressure_angle"),), "are a ratio of"),
     "rotor": ((('[load]\nshaft = "output"', '[load]\nshaft = "outputs"'),), "names no shaft"),

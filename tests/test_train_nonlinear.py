@@ -263,7 +263,7 @@ def test_a_line_of_action_over_the_cycle_that_cannot_be_is_refused(shop, changes
 
 
 def test_tables_over_the_cycle_that_begin_apart_or_push_elsewhere_are_refused(shop):
-    with pytest.raises(SceneError, match="both tell one cycle"):
+    with pytest.raises(SceneError, match="let both begin at one angle"):
         lines(cycle(shop), angle=np.linspace(0.1, 0.1 + PITCH, 41))
     met = shop.contact.pinion
     moved = lines(shop, point=np.tile(met.point * [0.5, 1.0, 1.0], (41, 1)))

@@ -118,7 +118,7 @@ def test_without_a_renderer_there_is_a_sentence(tmp_path, monkeypatch):
     monkeypatch.setenv("SOLIDGEAR_RENDERER", "none")
     args = ["system-modes", str(OVERHUNG), "--pinion", "euler", "--gear", "euler"]
     done = command(*args, "--pictures", str(tmp_path), "--mode", "3")
-    assert done.exit_code == 0 and "OpenGL is mended by" in done.output
+    assert done.exit_code == 0 and "install OpenGL by" in done.output
     assert not list(tmp_path.iterdir())
 
 

@@ -295,7 +295,7 @@ def test_frequencies_hang_on_the_position_of_unequal_planets_alone(written):
         for by in (0.0, 0.7)
     ]
     np.testing.assert_allclose(at[1][1:], at[0][1:], rtol=ROUNDING)
-    assert "do not hang on the position" in train_modes(Workshop(train), RIGID).turn
+    assert "do not depend on the position" in train_modes(Workshop(train), RIGID).turn
     pair = sg.load_train(written(train_text(planets="planets = 2")))
     told = train_modes(Workshop(pair), RIGID).turn
     assert "solved at 6 positions" in told
@@ -341,7 +341,7 @@ BAD = {
     f"module = {MODULE}\n": ("", "the gear sun.sun, the sun, needs its module"),
     f"teeth = {TEETH[0]}\nmodule = {MODULE}\n": ("", "the sun carries no gear; write teeth and"),
     "radial = 100000000.0": ("radial = 0.0", "must be greater than zero"),
-    "[planetary.stage.planet.pin]": ("[planetary.stage.ring.pin]", "planets are on no pins"),
+    "[planetary.stage.planet.pin]": ("[planetary.stage.ring.pin]", "planets have no pins"),
 }
 
 

@@ -180,7 +180,9 @@ def test_a_line_of_action_that_locks_a_loop_is_refused(tmp_path):
     given = {"line_of_action": turn @ met.normal, "point": (turn @ met.point).round(3)}
     given["gear_position"] = contact.origin
     typed = last.mesh.with_changes(pressure_angle=None, **{k: tuple(v) for k, v in given.items()})
-    with pytest.raises(SceneError, match="turn the output by .* % other than the rest of it"):
+    with pytest.raises(
+        SceneError, match="turn the output by .* % more or less than the other meshes do"
+    ):
         Workshop(train.with_changes(meshes=(*train.meshes[:3], typed)))
     Workshop(train.with_changes(meshes=(*train.meshes[:2], typed)))
 

@@ -171,7 +171,7 @@ def test_left_and_right_flanks_are_of_parallel_shafts_and_touch_their_own(tmp_pa
     left = 'loaded_side = "concave"', 'loaded_side = "left"'
     with pytest.raises(sg.SceneError, match="pinion.loaded_side = .left.: left and right flanks"):
         load_train(written(tmp_path, left))
-    with pytest.raises(sg.SceneError, match="is the right flank, and the left one is loaded on"):
+    with pytest.raises(sg.SceneError, match="is the right flank, but the left one is loaded on"):
         right = 'loaded_side = "convex"', 'loaded_side = "right"'
         load_train(written(tmp_path, *PARALLEL, left, right))
 
@@ -180,12 +180,12 @@ NORMAL = "0.23183445, 0.5465063, 0.80472583"
 # file text to replace, by what, and what the sentence must hold
 BAD = {
     "off the gears": (LINE, GIVEN.format(NORMAL, -90.0), "off the pinion"),
-    "levers": (LINE, GIVEN.format(NORMAL, -45.0), "the teeth ask for 3.2143"),
+    "levers": (LINE, GIVEN.format(NORMAL, -45.0), "the teeth need 3.2143"),
     "a harmonic of ports": (LINE, LINE + "\nlocal_harmonics = [1, 2]", "local_harmonics"),
     "a harmonic twice": (LINE, LINE + "\nlocal_harmonics = [2, 2]", "names a harmonic twice"),
     "no unit": (LINE, GIVEN.format("0.24, 0.54, 0.80", -55), "unit vector of this direction is"),
     "wrong frame": (LINE, GIVEN.format("0.5465063, -0.23183445, 0.80472583", -55), "gear's frame"),
-    "hands": ('hand = "right"', 'hand = "left"', "cannot mesh"),
+    "hands": ('hand = "right"', 'hand = "left"', "needs one of each hand"),
     "ratio": (LINE, LINE + "\nratio = 3.0", "a ratio of 3.2143"),
     "teeth": ("teeth = 14 ", "teeth = 14.5 ", "pinion.teeth"),
     "a spring misspelt": ("[engine.spring]", "[engine.sprint]", 'did you mean "spring"'),
@@ -193,7 +193,7 @@ BAD = {
     "port": ('at = "gear"', 'at = "5"', "known here: gear, 3, 4"),
     "per cent": ("mesh = 0.12", "mesh = 12", "12 per cent is written 0.12"),
     "unit of an inertia": ('"2.734 kg*m^2"', '"2.734 kg"', "kg*m^2"),
-    "nothing turns": (LINE, GIVEN.format("1, 0, 0", -55), "transmits no rotation"),
+    "nothing turns": (LINE, GIVEN.format("1, 0, 0", -55), "transmits no torque"),
     "no file": ('"gear_shaft.toml"', '"gear_shift.toml"', "no such file"),
     "no key of geometry": ("spiral_angle =", "# spiral_angle =", "spiral_angle: is missing"),
     "a table that descends": (
@@ -298,7 +298,10 @@ def test_a_mesh_from_contact_cells(tmp_path):
     assert found.stiffness == pytest.approx(np.linalg.norm(wrench.force) / 11e-6)
     assert np.allclose(found.pinion.point, wrench.point, atol=1e-12)
     told = wrench_lines(found)
-    assert "No mesh point balances" in told[1] and "thesis's formulas" in told[2]
+    assert (
+        "N m about the line of action remain at any mesh point" in told[1]
+        and "thesis's formulas" in told[2]
+    )
 
 
 @pytest.mark.parametrize(
@@ -324,7 +327,7 @@ def test_a_spring_may_sit_anywhere_on_its_shaft(tmp_path):
     assert station.y == pytest.approx(train.gear.scene.length - 0.005)
     assert not station.stiffness.any()
     off = place.replace("-5", "5")
-    with pytest.raises(sg.SceneError, match="no place on the gear's shaft"):
+    with pytest.raises(sg.SceneError, match="not a place on the gear's shaft"):
         load_train(written(tmp_path, ('at = "gear"', off)))
 
 
@@ -384,7 +387,7 @@ def test_an_apex_that_contradicts_its_scene_is_told(tmp_path):
         assert bool(found) == told, changes
     pinion = 'apex = "end" of the pinion contradicts its scene'
     line = contacts(load_train(written(tmp_path, (start, end))))["mesh"].cautions[1]
-    assert line.startswith(pinion) and 'unless apex = "start"' in line
+    assert line.startswith(pinion) and 'only with apex = "start"' in line
 
 
 def test_all_that_a_line_of_action_lacks_is_told_at_once(tmp_path):

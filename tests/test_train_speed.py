@@ -204,7 +204,7 @@ GOOD = "frequency [Hz],acceleration [m/s^2]\n" + "".join(f"{k},{k % 3}\n" for k 
         (GOOD.replace("\n5,2", "\n5"), 'line 7 is "5"; it must hold two finite'),
         (GOOD.replace("\n5,2", "\n5,-2"), "line 7 has an amplitude of -2"),
         (GOOD.replace("\n0,", "\n-1,"), "begins at -1 Hz"),
-        (GOOD[:60], "lines of numbers are no spectrum; give 8 or more"),
+        (GOOD[:60], "lines of numbers are too few for a spectrum; give 8 or more"),
         ("", "0 lines of numbers"),
         ("".join(f"{k},0\n" for k in range(9)), "all amplitudes are zero"),
     ],

@@ -70,7 +70,7 @@ def mountings():
 def test_twice_the_mesh_stiffness_is_all_that_the_table_of_inputs_shows(stiffer):
     told, _, _ = stiffer
     assert told["differences"] == [{"path": "mesh.stiffness", "a": "2.5e8 N/m", "b": "5e8 N/m"}]
-    assert told["sentences"][0] == "1 entry of the input differs: mesh.stiffness."
+    assert told["sentences"][0] == "Changed: mesh.stiffness from 2.5e8 N/m to 5e8 N/m."
 
 
 def test_what_means_the_same_is_no_difference(tmp_path):
@@ -156,7 +156,10 @@ def test_a_train_beside_itself_differs_nowhere_and_nothing_is_resolved(monkeypat
     assert all(found.decibels(c) in (0.0, None) for c in found.columns)
     told = found.told()
     assert told[0] == "Nothing differs in the input."
-    assert any("none differ by more than both bars (resolved)." in one for one in told)
+    assert any(
+        one.startswith("None of") and "changed by more than their error bars." in one
+        for one in told
+    )
 
 
 def test_a_mirrored_train_has_the_same_frequencies_found_by_name(tmp_path):

@@ -78,7 +78,7 @@ def test_inputs_that_act_on_one_another_are_told(gearbox):
     one.sampled.deviation = 1.4 * one.total.deviation
     found.samples = 200
     assert "bending 1" in [told.quantity for told in acting(found, [one])]
-    assert "there samples hold, not s" in budget_table(found, ["bending 1"]).note
+    assert "there take the samples and not s" in budget_table(found, ["bending 1"]).note
 
 
 def test_a_bearing_that_its_file_calls_assumed_has_a_range():
@@ -106,9 +106,9 @@ def test_a_scene_that_states_all_of_its_data_prints_as_without_ranges():
 @pytest.mark.parametrize(
     "path, text, sentence",
     [
-        ("material.E", "300 GPa : 400 GPa", "that holds what the scene says"),
+        ("material.E", "300 GPa : 400 GPa", "that contains the scene's value"),
         ("material.E", "3 %", "must be two ends"),
-        ("bearing.A.stiffness", "1 : 2", "no entry with a value here"),
+        ("bearing.A.stiffness", "1 : 2", "cannot have a range here"),
         ("bearing.B.catalogue.preload", "100 um : 1 N", "preload"),
         ("segment.left.length", "± 1 %", "a range may have"),
     ],

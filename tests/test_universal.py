@@ -51,7 +51,7 @@ def test_responses_come_back_in_si_over_one_axis(tmp_path):
 def test_bad_files_end_in_one_sentence(tmp_path):
     shape = np.ones((len(PLACES), 3))
     cases = {
-        "gives no place of point 18": (units(), nodes(PLACES[:-1]), mode(1, 250.0, shape)),
+        "gives no position of point 18": (units(), nodes(PLACES[:-1]), mode(1, 250.0, shape)),
         "holds no mode shapes": (units(), nodes(PLACES)),
     }
     for told, sets in cases.items():
@@ -136,10 +136,10 @@ def test_some_resonances_have_shapes_and_others_none(tmp_path):
     with pytest.raises(SceneError, match=r"rod.unv holds 2 shapes"):
         load_measured(path)
     (tmp_path / "rod.unv").write_text("no datasets")
-    with pytest.raises(SceneError, match=r"rod.unv: is no universal file"):
+    with pytest.raises(SceneError, match=r"rod.unv: is not a universal file"):
         load_measured(path)
     path.write_text(path.read_text().replace('shapes = "rod.unv"', ""))
-    with pytest.raises(SceneError, match="shapes of what file"):
+    with pytest.raises(SceneError, match="the file of the shapes is missing"):
         load_measured(path)
 
 
@@ -158,7 +158,7 @@ def test_points_that_do_not_tell_modes_apart_are_named_with_one_that_would(tmp_p
     one = points.confused(2)[0]
     assert (one.first, one.second) == (0, 1) and one.mac > 0.9 and one.mac_with_it < 0.1
     found = correlate(rod_scene(), measured, tol=0.02)
-    told = [s for s in found.sentences if "do not tell bending 1 from bending 2" in s]
+    told = [s for s in found.sentences if "do not distinguish bending 1 and bending 2" in s]
     assert told and "one more at x, y, z" in told[0]
     # the point that is named does what is said
     more = Shapes(np.arange(few + 1), np.vstack([ON[at], one.place]), np.ones((2, few + 1, 3)))

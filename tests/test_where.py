@@ -115,7 +115,7 @@ def test_the_error_is_at_the_only_shoulder_and_moves_with_it(quantity):
         first = found.rows[0]
         assert first.what == "shoulder" and first.share > 0.6
         assert (first.y, first.r) == pytest.approx((at / 1e3, 0.020))
-        assert f"of what is left in {quantity} sits at the shoulder at y = {at:g} mm" in (
+        assert f"of the error bar of {quantity} arises at the shoulder at y = {at:g} mm" in (
             found.sentence
         )
         # and the cell with the most of it touches the corner
@@ -265,7 +265,7 @@ def test_command_line(tmp_path):
     assert told["steps"][-1]["only"] == ["torsion 1"] and bars["axial 1"] > bars["torsion 1"]
     assert (told["where"]["quantity"], told["where"]["order"]) == ("axial 1", first)
     words = run(scene, "--tol", 0.05, "--ask", "torsion", "--where").stdout
-    assert "of what is left in torsion 1 sits at the shoulder at y = 68.25 mm" in words
+    assert "of the error bar of torsion 1 arises at the shoulder at y = 68.25 mm" in words
     assert "(a bound by local problems, 0.0" in words
     assert "error of torsion 1" in words and "within, mm" in words
     assert run(scene, "--picture", tmp_path / "error.gif").exit_code != 0

@@ -39,6 +39,18 @@ BANNED = {
     r"\bmultipoint constraint": "attachment",
     r"\bgrounded springs?\b": "bearing",
 }
+#: turns that a stranger reads twice, and plain ones: none of them in any page
+UNPLAIN = {
+    r"\btold\b": "shown, printed or given",
+    r"\btells?\b": "shows, says or prints",
+    r"\bmatter of\b": "depends on",
+    r"\bhangs? on\b": "depends on",
+    r"^\W*Of\b": "a sentence that begins with its subject",
+    r"\b[Oo]f an? [\w ]+, it (?:is|has)\b": "a sentence that begins with its subject",
+    r"(?<![Ee]rror )(?<!flat )\bbars?\b(?! C$)(?!, discs)(?! shorter)": "error bar",
+}
+#: turns that are English now and then, and how often they may stand in all pages: only ever less
+RARE = {r"\b(?:that|those) of\b": 15}
 
 
 class Piece(NamedTuple):
@@ -98,19 +110,41 @@ def length(page: str, text: str) -> Iterator[str]:
         count = len(words(piece.text))
         if count > PARAGRAPH:
             yield f"{page}:{piece.line}: a paragraph of {count} words, more than {PARAGRAPH}"
-        for one in sentences(piece.text):
-            count = len(words(one))
+        for sentence in sentences(piece.text):
+            count = len(words(sentence))
             if count > SENTENCE:
-                told = " ".join(words(one)[:6])
-                yield f"{page}:{piece.line}: {count} words, more than {SENTENCE}: {told} ..."
+                start = " ".join(words(sentence)[:6])
+                yield f"{page}:{piece.line}: {count} words, more than {SENTENCE}: {start} ..."
 
 
 def banned(page: str, text: str) -> Iterator[str]:
     """Words for which the glossary has another one."""
     for piece in pieces(text):
         for pattern, better in BANNED.items():
-            if found := re.search(pattern, piece.text, re.I):
-                yield f"{page}:{piece.line}: {found[0]!r}, in the glossary {better!r}"
+            if match := re.search(pattern, piece.text, re.I):
+                yield f"{page}:{piece.line}: {match[0]!r}, in the glossary {better!r}"
+
+
+def unplain(page: str, text: str) -> Iterator[str]:
+    """Yield the turns of :data:`UNPLAIN` in a page, each with a plain one."""
+    for piece in pieces(text):
+        for sentence in sentences(piece.text):
+            for pattern, better in UNPLAIN.items():
+                if match := re.search(pattern, sentence):
+                    yield f"{page}:{piece.line}: {match[0]!r}, better {better!r}"
+
+
+def too_often(pages: dict[str, str]) -> Iterator[str]:
+    """Yield the turns of :data:`RARE` that stand in more places than they may."""
+    for pattern, most in RARE.items():
+        places = [
+            f"{page}:{piece.line}"
+            for page, text in pages.items()
+            for piece in pieces(text)
+            for _ in re.finditer(pattern, piece.text)
+        ]
+        if len(places) > most:
+            yield f"{pattern} in {len(places)} places, more than {most}: {', '.join(places)}"
 
 
 def twice(pages: dict[str, str]) -> Iterator[str]:
@@ -119,12 +153,12 @@ def twice(pages: dict[str, str]) -> Iterator[str]:
     for page, text in pages.items():
         for piece in pieces(text):
             run = [w.strip(".,;:()*\"'").lower() for w in words(piece.text)]
-            told = False
+            reported = False
             for k in range(len(run) - RUN + 1):
                 key = tuple(run[k : k + RUN])
                 first = seen.setdefault(key, (page, piece.line))
-                if first != (page, piece.line) and not told:
-                    told = True
+                if first != (page, piece.line) and not reported:
+                    reported = True
                     where = f"{first[0]}:{first[1]}"
                     yield f"{page}:{piece.line}: stands in {where} too: {' '.join(key)}"
 
@@ -136,8 +170,13 @@ def size(page: str, text: str) -> int:
 
 def faults(pages: dict[str, str]) -> list[str]:
     """Everything that is out of its limits, as file:line and the rule."""
-    found = [told for page, text in pages.items() for told in length(page, text)]
-    found += [told for page, text in pages.items() for told in banned(page, text)]
+    found = [
+        fault
+        for rule in (length, banned, unplain)
+        for page, text in pages.items()
+        for fault in rule(page, text)
+    ]
+    found += too_often(pages)
     found += twice(pages)
     sizes = {page: size(page, text) for page, text in pages.items()}
     found += [f"{p}:1: {n} words, more than {PAGE}" for p, n in sizes.items() if n > PAGE]
@@ -163,6 +202,6 @@ if __name__ == "__main__":
         for page, text in pages.items():
             print(f"{size(page, text):6} {page}")
         print(f"{sum(size(p, t) for p, t in pages.items()):6} in all")
-    told = faults(pages)
-    print("\n".join(told))
-    sys.exit(bool(told))
+    wrong = faults(pages)
+    print("\n".join(wrong))
+    sys.exit(bool(wrong))

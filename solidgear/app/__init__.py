@@ -13,7 +13,7 @@ pin()  # before anything imports numpy
 
 
 def _interrupted(*_) -> None:
-    """Ctrl-C while modules are read: nothing has begun."""
+    """Exit on Ctrl-C while modules are imported."""
     os.write(2, b"solidgear: interrupted\n")
     os._exit(130)
 
@@ -37,9 +37,7 @@ NOT_MAPPED = ("failed to map segment", "annot allocate memory")
 
 
 def main() -> None:
-    """Entry point: errors raised on purpose become one sentence (a scene's, one for each problem)
-    and exit code 1.
-    """
+    """Run the command line; errors raised on purpose become one sentence each and exit code 1."""
     try:
         _run()
     except SystemExit as end:
@@ -69,10 +67,10 @@ def _run() -> None:
 
 
 def _stop_without_memory() -> None:
-    """Whatever this says is here already: nothing can be imported any more."""
+    """Exit with a sentence that was prepared before, since nothing can be imported any more."""
     print(
-        "solidgear: not enough memory for this model; use a coarser one (--set refinement=0.5) or "
-        "the harmonic model",
+        "solidgear: not enough memory for this model; use a coarser mesh (--set refinement=0.5) "
+        "or the harmonic model",
         file=sys.stderr,
     )
     sys.exit(1)

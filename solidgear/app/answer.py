@@ -47,17 +47,23 @@ def answer(
         str,
         typer.Option(
             "--ask",
-            help="Comma-separated: C_zz, K_thx, bending, f1 (the lowest), ..., C_zz@gear at a further point, "
-            "C_zz@wheel@pinion between two; by default what the scene asks for.",
+            help="Comma-separated: C_zz, K_thx, bending, f1 (the lowest), ..., C_zz@gear at "
+            "another point, C_zz@wheel@pinion between two points; by default what the scene "
+            "asks for.",
         ),
     ] = "",
     where: Annotated[
         bool,
-        typer.Option("--where", help="Also say where in the shaft the error of the answer sits."),
+        typer.Option(
+            "--where", help="Also show where in the shaft the error of the answer comes from."
+        ),
     ] = False,
     picture: Annotated[
         Path | None,
-        typer.Option("--picture", help="The same as a picture: a file that ends in .png or .svg."),
+        typer.Option(
+            "--picture",
+            help="Picture of where the error comes from: a file that ends in .png or .svg.",
+        ),
     ] = None,
     run: Shown,
 ) -> None:
@@ -69,106 +75,108 @@ def answer(
     places: WhereRecord | None = None
     unplaced = ""
     with run.progress() as progress:
-        found = solve(loaded, tol, ask, progress=progress)
+        answered = solve(loaded, tol, ask, progress=progress)
         progress("what the data leave open")
         open_ = beside(loaded)
         if where or picture is not None:
-            progress("where the error sits")
+            progress("where the error comes from")
             try:
-                places = _places(loaded, found)
+                places = _places(loaded, answered)
             except SolidgearError as error:
                 unplaced = str(error)
     if places is not None and picture is not None:
         _draw(places, picture)
     if run.as_json:
-        out = found.as_dict() | {"open": open_.model_dump(mode="json")}
+        out = answered.as_dict() | {"open": open_.model_dump(mode="json")}
         if where or picture is not None:
             out["where"] = {"error": unplaced} if places is None else _plain(places)
         print(json.dumps(out, allow_nan=False))
     else:
-        say(_values(found, run.units, open_), _path(found))
-        say(*sentences(found), *_of_round_part(loaded, found))
+        say(_values(answered, run.units, open_), _path(answered))
+        say(*sentences(answered), *_of_round_part(loaded, answered))
         if places is not None:
             say(_where_table(places), _sentence(places))
         if unplaced:
-            say(f"Where the error sits: {unplaced}.")
+            say(f"Where the error comes from is not known: {unplaced}.")
         if places is not None and picture is not None:
             say(f"Picture: {picture}")
     # the usual question is of what there is; one that names a number wants that number
-    if not found.reached or found.missing and (ask or loaded.ask.quantities):
+    if not answered.reached or answered.missing and (ask or loaded.ask.quantities):
         raise typer.Exit(NOT_REACHED)
 
 
-def _values(found: Answered, units: str, open_: OpenNumbers) -> Table:
+def _values(answered: Answered, units: str, open_: OpenNumbers) -> Table:
     chosen = units_named(units)
     notes = []
-    if any(row.side in (ABOVE, BELOW) for row in found.values):
-        notes.append("a bar with one sign: the exact answer lies on that side only")
-    if any(row.quantity.diagonals for row in found.values):
+    if any(row.side in (ABOVE, BELOW) for row in answered.values):
+        notes.append("error bar with one sign: the exact value lies on that side only")
+    if any(row.quantity.diagonals for row in answered.values):
         notes.append(
-            "bars of couplings are relative to the geometric mean of both diagonal entries"
+            "error bars of couplings: relative to the geometric mean of both diagonal entries"
         )
     columns = [
         text("quantity", lambda row: row.quantity),
         Column("value", lambda row: "0" if row.zero else chosen.number(row.value, row.unit, 6)),
         text("unit", lambda row: chosen.unit(row.unit)),
-        Column("bar", bar_of),
+        Column("error bar", bar_of),
         *ranges(open_, lambda row: row.quantity),
-        text("from", lambda row: row.how),
+        text("error bar by", lambda row: row.how),
     ]
     notes += filter(None, [remark(open_)])
-    return Table("", columns, found.values, "\n".join(notes))
+    return Table("", columns, answered.values, "\n".join(notes))
 
 
-def _path(found: Answered) -> Table:
+def _path(answered: Answered) -> Table:
     columns = [
-        text("tried", lambda step: f"{step.rung}, chosen" if step.chosen else step.rung),
+        text("model", lambda step: f"{step.rung}, chosen" if step.chosen else step.rung),
         text("mesh", lambda step: step.setting),
-        Column("dofs", lambda step: step.unknowns, count),
-        Column("bar", lambda step: percent(step.bar, signed=False)),
+        Column("unknowns", lambda step: step.unknowns, count),
+        Column("error bar", lambda step: percent(step.bar, signed=False)),
         Column("time, s", lambda step: step.seconds, seconds),
     ]
-    return Table("", columns, _solved(found))
+    return Table("", columns, _solved(answered))
 
 
-def _solved(found: Answered) -> list[Step]:
-    return [step for step in found.steps if step.unknowns is not None]
+def _solved(answered: Answered) -> list[Step]:
+    return [step for step in answered.steps if step.unknowns is not None]
 
 
-def _of_round_part(scene: Scene, found: Answered) -> list[str]:
-    """Remark that numbers are of the round part, where a mesh file is answered by a model of revolution."""
+def _of_round_part(scene: Scene, answered: Answered) -> list[str]:
+    """Return a remark where numbers of a mesh file are for its round part."""
     body = scene.body
-    if body is None or not body.one_mesh or PARTS in LADDER[found.rung].holds:
+    if body is None or not body.one_mesh or PARTS in LADDER[answered.rung].holds:
         return []
     return [
-        f"Numbers of the round part of {body.name}, whose volume is "
-        f"{percent(body.round_volume - 1)} from that of its mesh; the mesh itself is solved "
-        f"by -f solid of stiffness and modes, {'and judged by compare' if body.coarser else 'without a bar'}."
+        f"These numbers are for the round part of {body.name}, whose volume differs by "
+        f"{percent(body.round_volume - 1)} from the mesh; the mesh itself is solved by stiffness "
+        f"and modes with -f solid, {'and judged by compare' if body.coarser else 'without an error bar'}."
     ]
 
 
-def _places(scene: Scene, found: Answered) -> WhereRecord:
-    """Places of the error of the number with the widest bar, on the finest mesh it was solved on.
+def _places(scene: Scene, answered: Answered) -> WhereRecord:
+    """Return places of the error of the number with the widest bar, on the finest mesh it was
+    solved on.
 
     Raises
     ------
     SolidgearError
         For the answer of another model than the harmonic solid, or where nothing was answered.
     """
-    if found.rung != "harmonic":
+    if answered.rung != "harmonic":
         raise SolidgearError(
-            f"only known of the harmonic solid; this answer is that of the {LADDER[found.rung].title}"
+            "only the harmonic solid shows it, and this answer is by the "
+            f"{LADDER[answered.rung].title}"
         )
-    if not found.values:
+    if not answered.values:
         raise SolidgearError("nothing that was asked for exists in this scene")
-    widest = max(found.values, key=lambda value: value.bar)
-    solved = [step for step in _solved(found) if not step.only or widest.quantity in step.only]
+    widest = max(answered.values, key=lambda value: value.bar)
+    solved = [step for step in _solved(answered) if not step.only or widest.quantity in step.only]
     places = error_places(scene, widest.quantity, solved[-1].options)
     return places.model_copy(update={"total": widest.bar})
 
 
 def _where_table(places: WhereRecord) -> Table:
-    """Places of the error with their shares of it, the largest first."""
+    """Return places of the error with their shares of it, the largest first."""
 
     def millimetres(value: float) -> str:
         return f"{1e3 * value:.4g}"
@@ -184,21 +192,17 @@ def _where_table(places: WhereRecord) -> Table:
 
 
 def _sentence(places: WhereRecord) -> str:
-    """Sentences on the places with most of the error, the width of the bar, and the cost of
-    telling.
-    """
+    """Return the sentence on the places with most of the error."""
     total = percent(places.total, signed=False)
     return f"{places.sentence} (a bound by local problems, {total}; {seconds(places.seconds)} s)."
 
 
 def _plain(places: WhereRecord) -> dict[str, Any]:
-    """Places as ``--json`` gives them: all but the mesh and the share of every cell, which only a
-    picture needs.
-    """
+    """Return places as plain data without the mesh and its cells."""
     return places.model_dump(exclude={"model", "points", "cells", "shares"})
 
 
 def _draw(places: WhereRecord, picture: Path) -> None:
     """Write a picture of the mesh, every cell with its share of the error."""
-    title = f"Bar of {places.quantity} by cells, order {places.order}"
+    title = f"Error bar of {places.quantity} by cells, order {places.order}"
     draw_where(picture, places, title)

@@ -22,20 +22,19 @@ HELP_TEXTS = ("help", "epilog", "short_help")
 #: commands by what they are for, in the order of the work, each with the line of its help
 GROUPS = {
     "Start": {
-        "new": ("Write a short, commented scene that runs, or a train, to change into one's own."),
+        "new": ("Write a short, commented scene or train that runs, to be made your own."),
         "scenes": ("List the scenes that come with solidgear, or copy them into a folder."),
         "check": (
-            "Say what will be modelled and what will not hold, of a scene or a train; a "
-            "light mesh is the heaviest solved."
+            "Say which models hold for a scene or train, which do not, and why; solves light "
+            "meshes only."
         ),
         "options": (
-            "List what --set takes: every builder option, its default, its limits and "
-            "what it means."
+            "List what --set takes: every builder option with default, limits and meaning."
         ),
     },
     "One shaft": {
         "answer": (
-            "Numbers within a tolerance, each with its bar, from the cheapest model that "
+            "Numbers within a tolerance, each with its error bar, from the cheapest model that "
             "can show it."
         ),
         "stiffness": (
@@ -43,8 +42,8 @@ GROUPS = {
         ),
         "modes": ("Natural frequencies on the bearings, with the evidence for them."),
         "compare": (
-            "Solve a scene with every model and write a report on which to trust; a train "
-            "as well, or two of a kind beside each other."
+            "Solve a scene or a train with every model and write a report on which to trust, or "
+            "compare two designs."
         ),
         "chart": (
             "Chart error against cost: every model and element, uniform and graded, with "
@@ -54,12 +53,11 @@ GROUPS = {
             "Draw one mode shape off-screen, or all of them in a page where they can be turned."
         ),
         "bearing": (
-            "Bearings of catalogue data: stiffness at load, load of every element, "
-            "pressure, life; of a train with an [operation] their lives over its points."
+            "Catalogue bearings: stiffness at load, load of every element, pressure, life; for a "
+            "train with an [operation] lives over its points."
         ),
         "stress": (
-            "Stress of shafts at rest: section forces, nominal stress, fillets by the "
-            "solid, DIN 743."
+            "Stress of shafts at rest: section forces, nominal stress, stress on fillets, DIN 743."
         ),
     },
     "Design": {
@@ -68,26 +66,24 @@ GROUPS = {
             "rows of a file."
         ),
         "sensitivities": (
-            "What would move a number: its derivatives by every number of the file, from "
-            "one solution."
+            "What would change a number: its derivatives by every number of the file, from one "
+            "solution."
         ),
-        "optimise": ("The best design within ranges, as far as error bars tell designs apart."),
+        "optimise": ("The best design within ranges, and whether error bars show it to be better."),
         "budget": (
-            "Which unknown is worth measuring: what every open input of a scene leaves "
-            "open of its numbers."
+            "Which unknown is worth measuring: the range of the scene's numbers by every open "
+            "input."
         ),
     },
     "Measured": {
         "correlate": (
-            "Measured resonances beside computed modes: which is which, how sure, and how "
-            "far apart."
+            "Measured resonances beside computed modes: which belongs to which, how surely, and "
+            "how far apart."
         ),
         "identify": ("Entries of a scene from measured resonances, and how sure they are."),
     },
     "Trains": {
-        "system-modes": (
-            "Natural frequencies of a geared rotor system, each with its name and its proven bound."
-        ),
+        "system-modes": ("Natural frequencies of a train, each with its name and a proven bound."),
         "response": (
             "Steady response to the transmission error: mesh force, reactions, motions, "
             "and a chart."
@@ -96,16 +92,15 @@ GROUPS = {
             "Receptance between any two ports of a train: table, chart, and peaks with their modes."
         ),
         "nonlinear": (
-            "Teeth with backlash: where they part, jumps over speed, and how far off the "
-            "linear answer is."
+            "Teeth with backlash: where they part, jumps over speed, and the error of the linear "
+            "answer."
         ),
         "deflect": (
             "Deflection of shafts under torque: displacements, misalignment of the gears, "
             "bearing loads."
         ),
         "judge-system": (
-            "Comparison of a train with further mixes and reductions, and no folder "
-            "unless asked for."
+            "Compare a train with further mixes and reductions; a report only with --out."
         ),
     },
 }
@@ -141,9 +136,7 @@ MODULES = {
 
 @contextmanager
 def _brackets(*parts: Any) -> Iterator[None]:
-    """While this lasts, the help of commands and options has its square brackets as typer prints them:
-    it takes them for markup, and leaves out what they hold.
-    """
+    """Print square brackets in help as written, within this context; typer takes them for markup."""
     from rich.markup import escape  # start-up: for help alone
 
     plain = [(part, name, getattr(part, name, None)) for part in parts for name in HELP_TEXTS]
@@ -159,7 +152,7 @@ def _brackets(*parts: Any) -> Iterator[None]:
 
 
 class Told(TyperCommand):
-    """A command whose help is printed as it is written."""
+    """A command whose help is printed as written."""
 
     def format_help(self, ctx, formatter):
         with _brackets(self, *self.params):
@@ -167,19 +160,19 @@ class Told(TyperCommand):
 
 
 class Door(TyperGroup):
-    """The commands: a module is imported when one of its commands runs or is asked for its help."""
+    """The commands; a module is imported when one of its commands runs or is asked for help."""
 
     def format_help(self, ctx, formatter):
         with _brackets(self, *self.params, *self.commands.values()):
             super().format_help(ctx, formatter)
 
     def resolve_command(self, ctx, args):
-        """The command itself, in place of the one that has only name and help."""
-        name, known, rest = super().resolve_command(ctx, args)
+        """Return the command itself, in place of the one that has only name and help."""
+        name, found_command, arguments = super().resolve_command(ctx, args)
         if not name:
-            return name, known, rest
-        with options_alone() if rest and rest[-1] in HELP else nullcontext():
-            return name, _imported(name), rest
+            return name, found_command, arguments
+        with options_alone() if arguments and arguments[-1] in HELP else nullcontext():
+            return name, _imported(name), arguments
 
     def invoke(self, ctx):
         """Run a command; typer would swallow Ctrl-C without a word."""
@@ -192,7 +185,7 @@ class Door(TyperGroup):
 
 
 def _imported(name: str) -> Any:
-    """A command with its options."""
+    """Return a command with its options."""
     module = import_module(f"solidgear.{MODULES[name]}")
     alone = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
     alone.command(name, cls=Told, help=COMMANDS[name])(getattr(module, name.replace("-", "_")))
@@ -205,9 +198,8 @@ app = typer.Typer(
     help="Shafts on their bearings, and trains of shafts that mesh, as lumped model, beam, "
     "axisymmetric-harmonic solid and full 3D solid, side by side.",
     epilog="Exit codes: 0 done; 1 refused or failed, in a sentence on standard error; 2 wrong usage; "
-    "3 the tolerance is not reached, or a part of what was asked has no answer: what is there has its "
-    "bars; 130 interrupted. "
-    "First steps: solidgear new my_shaft, then solidgear check my_shaft.toml.",
+    "3 the tolerance is not reached, or a part of what was asked has no answer; 130 "
+    "interrupted. First steps: solidgear new my_shaft, then solidgear check my_shaft.toml.",
     context_settings={"help_option_names": [*HELP]},
     pretty_exceptions_enable=False,
 )
@@ -216,8 +208,8 @@ for _group, _commands in GROUPS.items():
         app.command(_name, help=_words, rich_help_panel=_group)(lambda: None)
 
 
-def _version(asked: bool) -> None:
-    if asked:
+def _version(wanted_version: bool) -> None:
+    if wanted_version:
         from importlib.metadata import version  # start-up: for this option alone
 
         typer.echo(f"solidgear {version('solidgear')}")

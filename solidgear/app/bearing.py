@@ -36,15 +36,16 @@ def bearing(
         str | None,
         typer.Option(
             "--load",
-            help='Another load, such as "x=2 kN, z=-500 N, thx=10 N*m": on the port, or with --bearing on that one.',
+            help='Another load, such as "x=2 kN, z=-500 N, thx=10 N*m", on the port or the bearing '
+            "of --bearing.",
         ),
     ] = None,
     name: Annotated[
-        str | None, typer.Option("--bearing", help="Only this bearing; --load is then its own.")
+        str | None, typer.Option("--bearing", help="Only this bearing, under --load.")
     ] = None,
     speed: Annotated[
         str | None,
-        typer.Option("--speed", help='Of the shaft, such as "3000 rpm", for lives in hours.'),
+        typer.Option("--speed", help='Speed of the shaft, such as "3000 rpm", for lives in hours.'),
     ] = None,
     out: Annotated[
         Path | None,
@@ -72,7 +73,7 @@ def bearing(
         facts = [fact for fact in bearing_facts(loaded, body) if name in (None, fact.name)]
         if not facts:
             raise SolidgearError(f"--bearing {name}: no bearing of catalogue data has this name")
-        lives = {one.name: one for one in bearing_lives(loaded, body, turns)}
+        lives = {life.name: life for life in bearing_lives(loaded, body, turns)}
         if out is not None:
             _draw(out, loaded, body, facts)
     if run.as_json:
@@ -103,11 +104,11 @@ def _draw(out: Path, scene: Scene, body, facts: Sequence[BearingFacts]) -> None:
 
 
 def _print(fact: BearingFacts) -> None:
-    what = fact.called
+    kind = fact.called
     ignored = boundary(fact.data.designation).ignored if fact.data.designation else ""
-    unused = f" (read, of no part in the numbers: {ignored})" if ignored else ""
+    unused = f" (read and ignored: {ignored})" if ignored else ""
     support = f", {fact.bearing.support}" if fact.bearing.support else ""
-    say(f"Bearing {fact.name!r}: {what}{unused}{support}, {fact.bearing.status}")
+    say(f"Bearing {fact.name!r}: {kind}{unused}{support}, {fact.bearing.status}")
     i = fact.inside
     size = f"{i['elements']} elements of {1e3 * i['element_diameter']:.4g}"
     if "element_length" in i:
@@ -134,9 +135,11 @@ def _print(fact: BearingFacts) -> None:
         if abs(v) > 1e-12
     ]
     say(f"Displacement: {', '.join(moved) or 'none'}")
-    own = np.sqrt(np.abs(np.diag(fact.stiffness)))
-    told = np.where(np.abs(fact.stiffness) > 1e-12 * np.outer(own, own), fact.stiffness, 0.0)
-    say(matrix_table(told, "stiffness"))
+    scale = np.sqrt(np.abs(np.diag(fact.stiffness)))
+    stiffness = np.where(
+        np.abs(fact.stiffness) > 1e-12 * np.outer(scale, scale), fact.stiffness, 0.0
+    )
+    say(matrix_table(stiffness, "stiffness"))
     # a bearing that carries nothing has no stiffness at either end
     if fact.spread is not None and np.any(fact.spread[1] > 0):
         ends = [
@@ -144,7 +147,7 @@ def _print(fact: BearingFacts) -> None:
             for n, low, high in zip(DOF_NAMES, *fact.spread)
             if high > 0
         ]
-        say(f"With the estimated inside from its softer to its stiffer end: {', '.join(ends)}.")
+        say(f"Range over the estimated inside, from soft to stiff: {', '.join(ends)}.")
     for k, row in enumerate(fact.rows):
         place = "" if len(fact.rows) == 1 else f" of the {'lower' if k == 0 else 'upper'} row"
         carrying = row.load > 0

@@ -28,53 +28,53 @@ def check(
     run: Run,
 ) -> None:
     if is_train(scene):
-        given = {"--model": model.name != MODEL, "--set": bool(model.settings)}
-        check_train(scene, run.as_json, given)
+        options = {"--model": model.name != MODEL, "--set": bool(model.settings)}
+        check_train(scene, run.as_json, options)
         return
 
     loaded = load(scene)
     # a model of revolution is looked at on the plain part, and the check says so
-    shown = loaded.plain if LADDER[model.name].unfit(loaded) else loaded
+    checked = loaded.plain if LADDER[model.name].unfit(loaded) else loaded
     light = model.name == MODEL and not model.settings
-    found = check_scene(loaded, build(shown, MODEL, **HARMONIC) if light else model.body(shown))
+    report = check_scene(
+        loaded, build(checked, MODEL, **HARMONIC) if light else model.body(checked)
+    )
     if run.as_json:
-        print(json.dumps(found, default=float))
+        print(json.dumps(report, default=float))
     else:
-        print_check(found)
-    if found["faults"]:
+        print_check(report)
+    if report["faults"]:
         raise typer.Exit(1)
 
 
-def print_check(found: dict) -> None:
-    """Verdicts, faults, cautions and facts of one shaft, as
-    :func:`solidgear.guards.check.check_scene` gives them.
-    """
+def print_check(report: dict) -> None:
+    """Print verdicts, faults, cautions and facts of one shaft."""
     _print_verdicts(
         {
-            name: (told["verdict"], ", ".join(told["guards"]).replace("_", " "))
-            for name, told in found["verdicts"].items()
+            name: (verdict["verdict"], ", ".join(verdict["guards"]).replace("_", " "))
+            for name, verdict in report["verdicts"].items()
         }
     )
-    said = [record for record in found["records"] if not _spared(record, found["verdicts"])]
+    records = [record for record in report["records"] if not _spared(record, report["verdicts"])]
     cautions = [
         ": ".join(filter(None, (", ".join(record["models"]), record["sentence"])))
         for level in ("caution", "open", "avoid")
-        for record in said
+        for record in records
         if record["level"] == level
     ]
-    facts = [record["sentence"] for record in said if record["level"] == "fact"]
-    _print_sentences(found["faults"], cautions, facts)
+    facts = [record["sentence"] for record in records if record["level"] == "fact"]
+    _print_sentences(report["faults"], cautions, facts)
 
 
 def _print_sentences(faults: list[str], cautions: list[str], facts: list[str]) -> None:
-    """Lines as wide as the terminal, a thought a sentence."""
+    """Print lines as wide as the terminal, a thought a sentence."""
     lines = [*(f"fault: {text}" for text in faults), *map(caution, cautions), *facts]
     for line in lines:
         print(filled(thoughts(line)))
 
 
 def thoughts(text: str) -> str:
-    """A text in which each thought that a semicolon joins is a sentence.
+    """Return a text in which each part before a semicolon becomes a sentence.
 
     Examples
     --------
@@ -88,61 +88,63 @@ def thoughts(text: str) -> str:
             parts.append("")
         else:
             parts[-1] += letter
-    first, *others = (part.strip() for part in parts)
-    begun = [part if part.startswith(COMMAND) else part[:1].upper() + part[1:] for part in others]
+    first, *following = (part.strip() for part in parts)
+    begun = [
+        part if part.startswith(COMMAND) else part[:1].upper() + part[1:] for part in following
+    ]
     return ". ".join([first, *begun]) + ("." if not text.endswith(".") else "")
 
 
 def _spared(record: dict, verdicts: dict) -> bool:
-    """Tell whether a record is left to ``--json``: a sound mesh, what is said of models that do not
-    hold the features at all, and a rule of thumb where what was computed refuses.
+    """Return True for a record left to ``--json``: a sound mesh, or a caution on a model that is
+    out anyway.
     """
     if record["guard"] == "mesh":
         return record["level"] == "fact"
     refused = [verdicts.get(m, {}).get("guards", []) for m in record["models"]]
-    by = {"features"} | ({"beam_against_solid"} if record["guard"] == "slenderness" else set())
+    refusals = {"features"} | (
+        {"beam_against_solid"} if record["guard"] == "slenderness" else set()
+    )
     return (
         bool(refused)
-        and record["guard"] not in by
+        and record["guard"] not in refusals
         and record["level"] in ("caution", "open")
-        and all(by & set(guards) for guards in refused)
+        and all(refusals & set(guards) for guards in refused)
     )
 
 
 def _print_verdicts(models: dict[str, tuple[str, str]]) -> None:
-    """Verdict and reason of every model: a line for each verdict, in the order of check."""
+    """Print verdict and reason of every model, a line for each verdict."""
     for verdict in dict.fromkeys(VERDICTS.values()):
-        own = {name: why for name, (here, why) in models.items() if here == verdict}
-        if own:
-            told = (f"{name} ({why})" if why else name for name, why in own.items())
-            print(filled(f"{verdict.capitalize()}: {', '.join(told)}."))
+        reasons = {name: reason for name, (value, reason) in models.items() if value == verdict}
+        if reasons:
+            texts = (f"{name} ({reason})" if reason else name for name, reason in reasons.items())
+            print(filled(f"{verdict.capitalize()}: {', '.join(texts)}."))
 
 
-def check_train(train: Path, as_json: bool, given: dict[str, bool]) -> None:
-    """The command check on a train: both shafts, then the system; options that speak of one shaft are
-    refused where they were given.
-    """
+def check_train(train: Path, as_json: bool, options: dict[str, bool]) -> None:
+    """Check a train: the shafts, then the system; refuse options of one shaft."""
     # start-up: a shaft has no use for the studies of trains
     from solidgear.trains.judge.check import check_train as checked
     from solidgear.trains.options import Reduced
 
-    instead = "run check on the file of the shaft for other models and meshes"
-    refuse(given, f"one shaft, and {train} is a train: {instead}")
+    instead = "for other models and meshes run check on the file of a shaft"
+    refuse(options, f"one shaft, and {train} is a train: {instead}")
     shop = Reduced().workshop(train)
-    found = checked(shop)
+    report = checked(shop)
     if as_json:
-        print(json.dumps(found, default=float))
+        print(json.dumps(report, default=float))
     else:
         print("== train")
         _print_verdicts(
             {
-                name: (told["verdict"], " and ".join(told["shafts"]))
-                for name, told in found["verdicts"].items()
+                name: (verdict["verdict"], " and ".join(verdict["shafts"]))
+                for name, verdict in report["verdicts"].items()
             }
         )
-        _print_sentences(found["faults"], found["cautions"], found["facts"])
+        _print_sentences(report["faults"], report["cautions"], report["facts"])
         for side in shop.train.shafts:
             print(f"== {side}")
-            print_check(found[side])
-    if found["faults"] or any(found[side]["faults"] for side in shop.train.shafts):
+            print_check(report[side])
+    if report["faults"] or any(report[side]["faults"] for side in shop.train.shafts):
         raise typer.Exit(1)

@@ -40,7 +40,7 @@ def compare(
     more: Annotated[
         list[Path] | None,
         typer.Argument(
-            help="A second file of its kind, to be held beside the first.", show_default=False
+            help="A second scene or train, to be compared with the first.", show_default=False
         ),
     ] = None,
     *,
@@ -65,8 +65,8 @@ def compare(
         list[str] | None,
         typer.Option(
             "--set",
-            help="Builder option of one model as MODEL.key=value, repeatable: "
-            "solid.around=32, harmonic.order=8. One that speaks of the mesh fixes it.",
+            help="Builder option of one model as MODEL.key=value, repeatable: solid.around=32, "
+            "harmonic.order=8. An option of the mesh fixes it.",
         ),
     ] = None,
     chart: Annotated[
@@ -78,22 +78,25 @@ def compare(
     ] = False,
     pinion: Annotated[
         str | None,
-        typer.Option("--pinion", help=f"Of two trains: model of both pinions, {MODEL} else."),
+        typer.Option(
+            "--pinion", help=f"For two trains: model of both pinions, {MODEL} by default."
+        ),
     ] = None,
     gear: Annotated[
-        str | None, typer.Option("--gear", help="Of two trains: model of both gears, as --pinion.")
+        str | None, typer.Option("--gear", help="For two trains: model of both gears, as --pinion.")
     ] = None,
     shafts: Annotated[
         list[str] | None,
         typer.Option(
             "--shaft",
-            help="Of two trains: model of a shaft of another name, input=euler; repeatable.",
+            help="For two trains: model of a shaft with another name, input=euler; repeatable.",
         ),
     ] = None,
     mesh: Annotated[
         str | None,
         typer.Option(
-            "--mesh", help="Of two trains: whose transmission error drives, of several; the first."
+            "--mesh",
+            help="For two trains: the mesh whose transmission error drives; by default the first.",
         ),
     ] = None,
     run: Shown,
@@ -114,37 +117,37 @@ def compare(
         mix = Pair(pinion or MODEL, gear or MODEL, shafts)
         compare_two([scene, *more], out, mix, mesh, run, of_one_shaft, of_trains)
         return
-    refuse(of_trains, f"two trains, and {scene} is one file: every model of it is solved")
+    refuse(of_trains, f"two trains, and {scene} is one, of which every model is solved")
     if is_train(scene):
         compare_train(scene, out, renders, run, of_one_shaft)
         return
 
     loaded = read(scene)
-    wanted = tuple(m.strip() for m in models.split(",") if m.strip())
-    check_models(wanted)
+    names = tuple(m.strip() for m in models.split(",") if m.strip())
+    check_models(names)
     chosen = options_by_name(settings, LADDER.bodies, "model", "solid.around=32")
     if solid_element:
         chosen.setdefault("solid", {})["element"] = solid_element
     with held(out):
         with run.progress() as progress:
-            found = compared(loaded, wanted, settings=chosen, progress=progress)
-            drawn = renders and found.record.complete
-            found.write_report(out, renders=drawn, units=run.units, progress=progress)
-        if chart and found.record.complete:
+            comparison = compared(loaded, names, settings=chosen, progress=progress)
+            drawn = renders and comparison.record.complete
+            comparison.write_report(out, renders=drawn, units=run.units, progress=progress)
+        if chart and comparison.record.complete:
             run_chart(loaded, out, quiet=run.as_json)
     if run.as_json:
-        print(json.dumps(found.results, allow_nan=False))
+        print(json.dumps(comparison.results, allow_nan=False))
     else:
-        say(final_table(found.record), verdict_text(found.record), soft_wrap=False)
-        say(*closing_lines(found.record), f"Report: {out / 'report.html'}")
-    if not found.record.complete:
+        say(final_table(comparison.record), verdict_text(comparison.record), soft_wrap=False)
+        say(*closing_lines(comparison.record), f"Report: {out / 'report.html'}")
+    if not comparison.record.complete:
         raise typer.Exit(130)
-    if not found.solutions:
+    if not comparison.solutions:
         raise typer.Exit(1)
 
 
 #: where options of one shaft lead
-TRAINS = "of two trains --pinion, --gear and --shaft choose the models"
+TRAINS = "for two trains --pinion, --gear and --shaft choose the models"
 
 
 def compare_two(
@@ -153,58 +156,60 @@ def compare_two(
     mix: Pair,
     mesh: str | None,
     run: Shown,
-    given: dict[str, bool],
+    options: dict[str, bool],
     of_trains: dict[str, bool],
 ) -> None:
-    """Two trains beside each other, or two shafts: just two files of one kind. `given` and
-    `of_trains` are the options that speak of one shaft and of trains, and tell of each whether it
-    was given.
+    """Compare two trains or two shafts; `options` and `of_trains` say which options of the other
+    kind were given.
     """
     if len(files) > 2:
-        raise SolidgearError(f"compare takes one file, or two of a kind; {len(files)} are given")
+        raise SolidgearError(
+            f"compare takes one file, or two scenes or two trains; {len(files)} are given"
+        )
     a, b = map(str, files)
     trains = is_train(a), is_train(b)
     if trains[0] != trains[1]:
-        one, other = (a, b) if trains[0] else (b, a)
+        train, shaft = (a, b) if trains[0] else (b, a)
         raise SolidgearError(
-            f"{one} is a train and {other} one shaft: compare takes two trains, two shafts, or either file alone"
+            f"{train} is a train and {shaft} one shaft: compare two trains, two shafts, or either "
+            "file alone"
         )
     if trains[0]:
-        refuse(given, f"one shaft, and {files[0]} is a train: {TRAINS}")
+        refuse(options, f"one shaft, and {files[0]} is a train: {TRAINS}")
     else:
-        _refuse_of_two_shafts(given | of_trains)
+        _refuse_of_two_shafts(options | of_trains)
     if a == b or (os.path.exists(a) and os.path.exists(b) and os.path.samefile(a, b)):
         _say_same(a, b, "two trains" if trains[0] else "two shafts", run)
         return
     solve = _two_trains(a, b, mix, mesh) if trains[0] else _two_shafts(a, b)
     with held(out), run.progress() as progress:
-        found = solve(progress=progress)
+        pair = solve(progress=progress)
         progress("report")
-        found.write_report(out, units=run.units)
+        pair.write_report(out, units=run.units)
     if run.as_json:
-        print(json.dumps(found.results, allow_nan=False))
+        print(json.dumps(pair.results, allow_nan=False))
         return
     printed = two_trains_page.printed if trains[0] else two_shafts_page.printed
     say(
-        *(f"{one.label}, {one.title}" for one in found.both),
-        *printed(found, units_named(run.units)),
-        *map(caution, found.cautions),
+        *(f"{train.label}, {train.title}" for train in pair.both),
+        *printed(pair, units_named(run.units)),
+        *map(caution, pair.cautions),
         f"Report: {out / 'report.html'}",
         soft_wrap=False,
     )
 
 
-def _refuse_of_two_shafts(given: dict[str, bool]) -> None:
-    for option in (option for option, there in given.items() if there):
+def _refuse_of_two_shafts(options: dict[str, bool]) -> None:
+    for option in (option for option, present in options.items() if present):
         raise SolidgearError(
-            f"{option} does not apply to two shafts: both are solved by the model that the judge "
-            "chooses, to bars of a tenth of their tolerance"
+            f"{option} does not apply to two shafts: both are solved as by answer, to a tenth of "
+            "their tolerance"
         )
 
 
 def _say_same(a: str, b: str, kind: str, run: Shown) -> None:
-    what = f"{a} is given twice" if a == b else f"{a} and {b} are one file"
-    sentence = f"{what}: nothing differs, and nothing was solved."
+    text = f"{a} is given twice" if a == b else f"{a} and {b} are one file"
+    sentence = f"{text}: nothing differs, so nothing was solved."
     if run.as_json:
         print(json.dumps({"kind": kind, "differences": [], "sentences": [sentence]}))
     else:
@@ -212,7 +217,7 @@ def _say_same(a: str, b: str, kind: str, run: Shown) -> None:
 
 
 def _two_trains(a: str, b: str, mix: Pair, mesh: str | None) -> Callable[..., TwoTrains]:
-    """Comparison of two train files, to be run."""
+    """Return the comparison of two train files, to be run."""
     shops = [Reduced().workshop(Path(path)) for path in (a, b)]
     models = mix.by_shaft(shops[0].train)
     for model in models.values():
@@ -221,12 +226,12 @@ def _two_trains(a: str, b: str, mix: Pair, mesh: str | None) -> Callable[..., Tw
 
 
 def _two_shafts(a: str, b: str) -> Callable[..., TwoShafts]:
-    """Comparison of two scene files, to be run."""
+    """Return the comparison of two scene files, to be run."""
     scenes = [load(Path(path)) for path in (a, b)]
     return partial(two_shafts, scenes, _names(a, b), differences(a, b))
 
 
 def _names(a: str, b: str) -> tuple[str, str]:
-    """Names of two files: those without folder and ending, unless they are the same."""
+    """Return names of two files: those without folder and ending, unless they are the same."""
     short = Path(a).stem, Path(b).stem
     return short if short[0] != short[1] else (a, b)

@@ -28,12 +28,14 @@ def new(
     kind: Annotated[str, typer.Option(help=f"{KINDS}.")] = "overhung",
 ) -> None:
     path = name if name.suffix == ".toml" else name.with_name(f"{name.name}.toml")
-    made = {path.parent / one: content for one, content in start(kind, path.stem).items()}
-    _write({one: content.encode() for one, content in made.items()})
-    beside = (
-        f" (with {', '.join(str(one) for one in made if one != path)})" if len(made) > 1 else ""
+    contents = {path.parent / file: content for file, content in start(kind, path.stem).items()}
+    _write({file: content.encode() for file, content in contents.items()})
+    companions = (
+        f" (with {', '.join(str(file) for file in contents if file != path)})"
+        if len(contents) > 1
+        else ""
     )
-    typer.echo(f"{path}: {STARTS[kind]}{beside}. Next: solidgear check {path}")
+    typer.echo(f"{path}: {STARTS[kind]}{companions}. Next: solidgear check {path}")
 
 
 @command
@@ -45,19 +47,19 @@ def scenes(
         Path | None, typer.Option("--to", help="Folder to copy them into, with what they refer to.")
     ] = None,
 ) -> None:
-    there = shipped()
-    for one in names or []:
-        if one.removesuffix(".toml") not in there:
+    shipped_names = shipped()
+    for name in names or []:
+        if name.removesuffix(".toml") not in shipped_names:
             raise SolidgearError(
-                f"scene {show(one, 60)} does not come with solidgear{nearest(one, there)}; "
-                f"there are {', '.join(there)}"
+                f"scene {show(name, 60)} does not come with solidgear{nearest(name, shipped_names)}; "
+                f"there are {', '.join(shipped_names)}"
             )
-    asked = [one.removesuffix(".toml") for one in names or there]
+    wanted_names = [name.removesuffix(".toml") for name in names or shipped_names]
     if to is None:
-        columns = [text("scene", str), text("what it is", lambda one: title(there[one]))]
-        say(Table("", columns, asked, style="ruled"))
+        columns = [text("scene", str), text("what it is", lambda name: title(shipped_names[name]))]
+        say(Table("", columns, wanted_names, style="ruled"))
         return
-    files = sorted({file for one in asked for file in needed(there[one])})
+    files = sorted({file for name in wanted_names for file in needed(shipped_names[name])})
     _write({to / file.name: file.read_bytes() for file in files})
     typer.echo(f"{to}: {', '.join(file.name for file in files)}")
 
@@ -73,14 +75,14 @@ def options(
 
 
 def _options(model: Model) -> Table:
-    defaults, known = model.defaults(), model.options
+    defaults, choices = model.defaults(), model.options
     columns = [
         word("option", str),
         word("default", lambda key: _default(defaults.get(key))),
-        text("may be", lambda key: _may_be(known[key])),
-        text("what it is", lambda key: known[key].meaning),
+        text("may be", lambda key: _may_be(choices[key])),
+        text("what it is", lambda key: choices[key].meaning),
     ]
-    return Table(f"{model.name}: {model.title}", columns, list(known))
+    return Table(f"{model.name}: {model.title}", columns, list(choices))
 
 
 def _may_be(option: Option) -> str:
@@ -99,7 +101,7 @@ def _may_be(option: Option) -> str:
 
 
 def _default(value: object) -> str:
-    """A value as ``--set`` would take it."""
+    """Return a value as ``--set`` would take it."""
     if value is None or value == ():
         return "-"
     if isinstance(value, bool):
@@ -131,19 +133,19 @@ REFERRING = ("scene", "step", "mesh", "contact_cells")
 
 
 def shipped() -> dict[str, Path]:
-    """Scene files by name; refuses an installation that has none.
+    """Return shipped scene files by name; refuse an installation that has none.
 
     Examples
     --------
     >>> "pinion_overhung" in shipped()
     True
     """
-    found = sorted(CHECKOUT.glob("*.toml")) or _installed()
-    if not found:
+    toml_files = sorted(CHECKOUT.glob("*.toml")) or _installed()
+    if not toml_files:
         raise SolidgearError(
             "this installation of solidgear has no scenes; they lie in geometry/ of its source"
         )
-    return {path.stem: path for path in found}
+    return {path.stem: path for path in toml_files}
 
 
 def _installed() -> list[Path]:
@@ -151,12 +153,12 @@ def _installed() -> list[Path]:
         listed = files("solidgear") or []
     except PackageNotFoundError:
         return []
-    mine = [f for f in listed if SHARED in f.as_posix() and f.suffix == ".toml"]
-    return sorted(path for f in mine if (path := Path(str(f.locate())).resolve()).exists())
+    scene_files = [f for f in listed if SHARED in f.as_posix() and f.suffix == ".toml"]
+    return sorted(path for f in scene_files if (path := Path(str(f.locate())).resolve()).exists())
 
 
 def title(path: Path) -> str:
-    """Description that a scene file gives of itself.
+    """Return the title of a scene file.
 
     Examples
     --------
@@ -167,23 +169,23 @@ def title(path: Path) -> str:
 
 
 def needed(path: Path) -> list[Path]:
-    """A scene file and the files it refers to, beside it.
+    """Return a scene file and the files that it refers to.
 
     Examples
     --------
     >>> [file.name for file in needed(shipped()["axle_overhung"])]
     ['axle_overhung.toml', 'pinion_overhung.toml', 'gear_shaft.toml']
     """
-    beside = [path.parent / name for name in _referred(tomllib.loads(path.read_text("utf-8")))]
-    return [path, *(file for file in beside if file.is_file())]
+    referred = [path.parent / name for name in _referred(tomllib.loads(path.read_text("utf-8")))]
+    return [path, *(file for file in referred if file.is_file())]
 
 
 def _referred(entry: Any) -> Iterator[str]:
-    """Names of files in a table and in those that it holds."""
+    """Yield names of files in a table and in those that it holds."""
     if isinstance(entry, list):
-        for one in entry:
-            yield from _referred(one)
+        for item in entry:
+            yield from _referred(item)
     elif isinstance(entry, dict):
         yield from (entry[key] for key in REFERRING if isinstance(entry.get(key), str))
-        for one in entry.values():
-            yield from _referred(one)
+        for item in entry.values():
+            yield from _referred(item)

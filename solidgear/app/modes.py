@@ -49,17 +49,18 @@ def modes(
     n: Annotated[
         int | None, typer.Option("-n", help="Number of elastic shapes; twins count twice.")
     ] = None,
-    max_frequency: Annotated[float | None, typer.Option(help="Hz; leave out modes above.")] = None,
+    max_frequency: Annotated[
+        float | None, typer.Option(help="Hz; leave out modes above it.")
+    ] = None,
     count: Annotated[
         bool,
-        typer.Option(
-            "--count", help="Prove by the inertia of a second factor that no mode was missed."
-        ),
+        typer.Option("--count", help="Prove by a second factorisation that no mode was missed."),
     ] = False,
     speed: Annotated[
         str | None,
         typer.Option(
-            help='Of the shaft, such as "3000 rpm": says which frequencies spin moves, and how far.'
+            help='Speed of the shaft, such as "3000 rpm": shows which frequencies spin moves, and '
+            "how far."
         ),
     ] = None,
     run: Run,
@@ -68,12 +69,10 @@ def modes(
     if max_frequency is not None and not max_frequency > 0:
         raise SolidgearError(f"--max-frequency {max_frequency:g}: must be greater than zero, in Hz")
     if n is not None and not 1 <= n <= MOST_MODES:
-        raise SolidgearError(
-            f"-n {show(n)} is not a number of modes that can be asked for; give 1 to {MOST_MODES}"
-        )
+        raise SolidgearError(f"-n {show(n)}: give 1 to {MOST_MODES} modes")
     loaded = load(scene)
     body, settled = model.body(loaded, "modes")
-    found = solve(
+    mode_set = solve(
         body,
         loaded,
         loaded.ask.modes if n is None else n,
@@ -82,21 +81,21 @@ def modes(
     )
     bounded = LADDER[body.fidelity].bounded
     if settled is not None and bounded:
-        found = complete_list(loaded, body, as_supports(loaded), found)
-    every = found.whole if count and not bounded else found
-    bars = bars_of_modes(loaded, body, every, settled)
+        mode_set = complete_list(loaded, body, as_supports(loaded), mode_set)
+    whole = mode_set.whole if count and not bounded else mode_set
+    bars = bars_of_modes(loaded, body, whole, settled)
     if settled is None and model.on_two_meshes:
-        bars = coarser_bars(loaded, body, every, options(model.pairs))
-    evidence = less_widest(found.evidence, bars.values())
-    bars = {name: bar for name, bar in bars.items() if name in found.names}
-    bare = without_bar(found, bars)
-    why = model.without_bars(bars, settled, loaded, body)
-    why = why or unjudged(bare, body.fidelity, second=settled is None)
-    said = cautions(loaded, body)
+        bars = coarser_bars(loaded, body, whole, options(model.pairs))
+    evidence = less_widest(mode_set.evidence, bars.values())
+    bars = {name: bar for name, bar in bars.items() if name in mode_set.names}
+    bare = without_bar(mode_set, bars)
+    reason = model.without_bars(bars, settled, loaded, body)
+    reason = reason or unjudged(bare, body.fidelity, second=settled is None)
+    warnings = cautions(loaded, body)
     open_ = beside(loaded)
-    asked = n or loaded.ask.modes, max_frequency or loaded.ask.max_frequency
-    said += cut_short(found.modes, *asked, option="-n")
-    said += spin_caution(loaded, body, found.modes, bars, turns)
+    highest_hz = max_frequency or loaded.ask.max_frequency
+    warnings += cut_short(mode_set.modes, n or loaded.ask.modes, highest_hz, option="-n")
+    warnings += spin_caution(loaded, body, mode_set.modes, bars, turns)
     rows = [
         {
             "name": m.name,
@@ -107,7 +106,7 @@ def modes(
             "bar": bars.get(m.name),
             "split": m.split,
         }
-        for m in found.modes
+        for m in mode_set.modes
     ]
     if run.as_json:
         record = {
@@ -116,29 +115,29 @@ def modes(
             "dofs": body.size,
             "modes": rows,
             "evidence": evidence,
-            "cautions": said,
+            "cautions": warnings,
             "open": open_.model_dump(mode="json"),
         }
         record |= {} if settled is None else settled.as_dict()
-        record |= {"without_bar": bare, "why_without_bar": why}
+        record |= {"without_bar": bare, "why_without_bar": reason}
         print(json.dumps(record, default=float))
         ended(settled)
         return
 
-    say(heading(loaded, body, settled), modes_table(found.modes, bars, open_), soft_wrap=False)
+    say(heading(loaded, body, settled), modes_table(mode_set.modes, bars, open_), soft_wrap=False)
     if len(rows) > MANY:
-        shapes = sum(m.multiplicity for m in found.modes)
-        say(f"{shapes} shapes up to {found.frequency_hz[-1]:.6g} Hz.")
-    planes = by_plane(found.names)
+        shapes = sum(m.multiplicity for m in mode_set.modes)
+        say(f"{shapes} shapes up to {mode_set.frequency_hz[-1]:.6g} Hz.")
+    planes = by_plane(mode_set.names)
     if planes:
         say(planes.strip())
-    e = found.evidence
+    e = mode_set.evidence
     say(*(f"caution: {sentence}" for sentence in split_apart(e)), soft_wrap=False)
-    say(*(f"caution: {mixture.sentence}." for mixture in mixtures(found)))
+    say(*(f"caution: {mixture.sentence}." for mixture in mixtures(mode_set)))
     if e["error"] > 1e-6:
         say(
-            f"caution: rounding leaves frequencies good to {e['error']:.0e} only: the smallest "
-            "cells are that stiff beside the shaft; a coarser mesh has less of it.",
+            f"caution: rounding leaves errors of {e['error']:.0e} in frequencies, since the "
+            "smallest cells are too stiff beside the shaft; use a coarser mesh.",
             soft_wrap=False,
         )
     if count:
@@ -151,11 +150,11 @@ def modes(
     lines = bar_lines(settled, {Quantity(name): bar for name, bar in bars.items()})
     if bars and settled is None:
         lines.append(SECOND_MESH)
-    if not bars and why:
-        lines.append(f"No bars: {why}.")
-    elif why:
-        lines.append(f"No bar of their own: {listed(bare, most=3)}; {why}.")
+    if not bars and reason:
+        lines.append(f"No error bars: {reason}.")
+    elif reason:
+        lines.append(f"No error bar: {listed(bare, most=3)}; {reason}.")
     lines += beyond(bars, settled)
     say(*lines)
-    say(*map(caution, said), soft_wrap=False)
+    say(*map(caution, warnings), soft_wrap=False)
     ended(settled)

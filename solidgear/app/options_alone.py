@@ -17,26 +17,24 @@ ROOM = "solidgear.app"
 
 @contextmanager
 def options_alone() -> Iterator[None]:
-    """While this lasts, modules of the command line are read for their options; they are forgotten
-    after it.
-    """
-    here, known = _Finder(), set(sys.modules)
-    sys.meta_path.insert(0, here)
+    """Import modules of the command line for their options only, within this context."""
+    finder, loaded = _Finder(), set(sys.modules)
+    sys.meta_path.insert(0, finder)
     try:
         yield
     finally:
-        sys.meta_path.remove(here)
-        for name in [n for n in sys.modules if n.startswith(f"{ROOM}.") and n not in known]:
+        sys.meta_path.remove(finder)
+        for name in [n for n in sys.modules if n.startswith(f"{ROOM}.") and n not in loaded]:
             del sys.modules[name]
             vars(sys.modules[ROOM]).pop(name.rpartition(".")[2], None)
 
 
 class _Finder(MetaPathFinder):
     def find_spec(self, fullname, path, target=None) -> ModuleSpec | None:
-        found = PathFinder.find_spec(fullname, path) if fullname.startswith(f"{ROOM}.") else None
-        if found and found.origin:
-            found.loader = _Loader(fullname, found.origin)
-        return found
+        spec = PathFinder.find_spec(fullname, path) if fullname.startswith(f"{ROOM}.") else None
+        if spec and spec.origin:
+            spec.loader = _Loader(fullname, spec.origin)
+        return spec
 
 
 class _Loader(SourceFileLoader):
@@ -44,24 +42,22 @@ class _Loader(SourceFileLoader):
 
     def get_code(self, fullname: str) -> CodeType:
         tree = ast.parse(self.get_data(self.path))
-        told, before = _told(tree), 0
+        kept_names, before = _told(tree), 0
         # functions that make options are called as the module is read, and those that they call
-        while len(told) > before:
-            before = len(told)
+        while len(kept_names) > before:
+            before = len(kept_names)
             for node in tree.body:
-                if isinstance(node, ast.FunctionDef) and node.name in told:
-                    told |= set().union(*map(_told, node.body))
+                if isinstance(node, ast.FunctionDef) and node.name in kept_names:
+                    kept_names |= set().union(*map(_told, node.body))
         for node in tree.body:
             if isinstance(node, ast.ImportFrom) and node.module != "__future__":
-                node.names = [a for a in node.names if (a.asname or a.name) in told]
+                node.names = [a for a in node.names if (a.asname or a.name) in kept_names]
         tree.body = [n for n in tree.body if not isinstance(n, ast.ImportFrom) or n.names]
         return compile(tree, self.path, "exec", dont_inherit=True)
 
 
 def _told(node: ast.AST) -> set[str]:
-    """Names that are looked up when a statement runs: of a command those of its head, of another
-    function its defaults.
-    """
+    """Return the names that a statement looks up when it runs: of a command those of its head."""
     parts: list[ast.AST] = list(ast.iter_child_nodes(node))
     if isinstance(node, ast.FunctionDef):
         head = [node.args] if node.decorator_list else [*node.args.defaults, *node.args.kw_defaults]

@@ -42,14 +42,14 @@ def render(
         )
     loaded = load(scene)
     drawn = []
-    for one in [model, *([Fixed(beside)] if beside not in (None, model.name) else [])]:
-        body = one.body(loaded)
-        found = solve(body, loaded, max(loaded.ask.modes, 10))
-        drawn.append(Drawn(body, found, LADDER[one.name].title))
+    for chosen in [model, *([Fixed(beside)] if beside not in (None, model.name) else [])]:
+        body = chosen.body(loaded)
+        mode_set = solve(body, loaded, max(loaded.ask.modes, 10))
+        drawn.append(Drawn(body, mode_set, LADDER[chosen.name].title))
     if turn is None:
         print(render_mode(drawn[0], mode, out))
         return
-    path, said = turn_modes(drawn, turn, loaded.title or loaded.name, mode)
-    if said:
-        print(f"caution: {said}", file=sys.stderr)
+    path, sentence = turn_modes(drawn, turn, loaded.title or loaded.name, mode)
+    if sentence:
+        print(f"caution: {sentence}", file=sys.stderr)
     print(path)

@@ -38,7 +38,8 @@ def stiffness(
     port: Annotated[
         str | None,
         typer.Option(
-            help="Lumped point, by name; several with commas for the stiffness between them. By default the main one."
+            help="Lumped point, by name; several with commas for the stiffness between them. By "
+            "default the main point."
         ),
     ] = None,
     attachment: Annotated[
@@ -55,28 +56,28 @@ def stiffness(
     names = _points(loaded, port)
     loaded = loaded.with_main_port(names[0])
     body, settled = model.body(loaded, "stiffness", names[1:])
-    found = condense(body, loaded, names[0])
+    condensed = condense(body, loaded, names[0])
     coupled = condense(body, loaded, names) if len(names) > 1 else None
     bars = settled.bars if settled is not None else {}
     if settled is None and model.on_two_meshes:
         bars = static_bars(loaded, body, names, options(model.pairs))
-    why = model.without_bars(bars, settled, loaded, body)
-    said = cautions(loaded, body)
+    reason = model.without_bars(bars, settled, loaded, body)
+    warnings = cautions(loaded, body)
     open_ = beside(loaded, body)
 
     if run.as_json:
         record: dict[str, Any] = {"scene": loaded.name, "fidelity": body.fidelity}
-        record |= _plain(found) if coupled is None else _plain_coupled(coupled)
+        record |= _plain(condensed) if coupled is None else _plain_coupled(coupled)
         evidence = {"evidence": record.pop("evidence")}
-        record |= {"dofs": body.size, **evidence, "cautions": said}
+        record |= {"dofs": body.size, **evidence, "cautions": warnings}
         record |= {"bars": bars} if settled is None else settled.as_dict()
-        record |= {"why_without_bar": why}
+        record |= {"why_without_bar": reason}
         print(json.dumps(record | {"open": open_.model_dump(mode="json")}))
         ended(settled)
         return
     head = heading(loaded, body, settled)
     if coupled is None:
-        _tell(head, loaded, found, run.units)
+        _tell(head, loaded, condensed, run.units)
     else:
         _tell_coupled(head, loaded, coupled, run.units)
         if bars:
@@ -84,23 +85,23 @@ def stiffness(
     if open_.inputs:
         say(open_table(open_, bars, units_named(run.units)))
     if settled is None:
-        lines = [f"No bars: {why}."] if why else largest_bar(bars, names[0])
-        say(*lines, *([] if why else [SECOND_MESH]))
+        lines = [f"No error bars: {reason}."] if reason else largest_bar(bars, names[0])
+        say(*lines, *([] if reason else [SECOND_MESH]))
     say(*bar_lines(settled))
-    say(*map(caution, said), soft_wrap=False)
+    say(*map(caution, warnings), soft_wrap=False)
     ended(settled)
 
 
 def _points(scene: Scene, port: str | None) -> tuple[str, ...]:
-    """Names given with ``--port``; that of the main point where there are none."""
-    known = [one.name for one in scene.ports]
+    """Return the names in ``--port``; by default the main point."""
+    points = [point.name for point in scene.ports]
     if port is None:
-        return (known[0],)
+        return (points[0],)
     # a name may have a comma of its own
-    names = [port] if port in known else [part.strip() for part in port.split(",")]
+    names = [port] if port in points else [part.strip() for part in port.split(",")]
     for name in names:
-        if name not in known:
-            raise SolidgearError(f"--port: {no_such_point(name, known)}")
+        if name not in points:
+            raise SolidgearError(f"--port: {no_such_point(name, points)}")
         if names.count(name) > 1:
             raise SolidgearError(f"--port {port}: {name} is named twice; name each point once")
     return tuple(names)
@@ -110,67 +111,67 @@ def _numbers(matrix) -> list[list[float | None]]:
     return [[float(v) if np.isfinite(v) else None for v in row] for row in matrix]
 
 
-def _plain(found: Condensed) -> dict[str, Any]:
+def _plain(condensed: Condensed) -> dict[str, Any]:
     return {
-        "port": found.port,
-        "attachment": found.attachment,
+        "port": condensed.port,
+        "attachment": condensed.attachment,
         "order": DOF_NAMES,
-        "stiffness": _numbers(found.stiffness),
-        "compliance": _numbers(found.compliance),
-        "free": found.free_names,
-        "free_oblique": found.oblique.T.tolist(),
-        "evidence": found.evidence,
+        "stiffness": _numbers(condensed.stiffness),
+        "compliance": _numbers(condensed.compliance),
+        "free": condensed.free_names,
+        "free_oblique": condensed.oblique.T.tolist(),
+        "evidence": condensed.evidence,
     }
 
 
-def _plain_coupled(found: Coupled) -> dict[str, Any]:
+def _plain_coupled(coupled: Coupled) -> dict[str, Any]:
     return {
-        "ports": found.ports,
-        "attachments": found.attachments,
-        "order": [f"{port} {name}" for port in found.ports for name in DOF_NAMES],
-        "stiffness": _numbers(found.stiffness),
-        "compliance": _numbers(found.compliance),
-        "free": found.free_names,
-        "evidence": found.evidence,
+        "ports": coupled.ports,
+        "attachments": coupled.attachments,
+        "order": [f"{port} {name}" for port in coupled.ports for name in DOF_NAMES],
+        "stiffness": _numbers(coupled.stiffness),
+        "compliance": _numbers(coupled.compliance),
+        "free": coupled.free_names,
+        "evidence": coupled.evidence,
     }
 
 
 def _at(port: Port) -> str:
-    """Place of a lumped point, mm."""
+    """Return the place of a lumped point, mm."""
     if port.patch is None:
         return f"y = {1e3 * port.y:.3f}"
     return "({})".format(", ".join(f"{1e3 * v:.3f}" for v in port.patch.point))
 
 
-def _tell(head: str, scene: Scene, found: Condensed, units: str) -> None:
+def _tell(head: str, scene: Scene, condensed: Condensed, units: str) -> None:
     say(
-        f"{head}, port {found.port!r} at {_at(scene.port)} mm ({found.attachment})",
-        matrix_table(found.stiffness, "stiffness", units),
-        matrix_table(found.compliance, "compliance", units),
+        f"{head}, port {condensed.port!r} at {_at(scene.port)} mm ({condensed.attachment})",
+        matrix_table(condensed.stiffness, "stiffness", units),
+        matrix_table(condensed.compliance, "compliance", units),
         soft_wrap=False,
     )
-    if found.free_names:
-        say(f"Free: {', '.join(found.free_names)} (stiffness exactly zero).")
-    for motion in found.oblique.T:
+    if condensed.free_names:
+        say(f"Free: {', '.join(condensed.free_names)} (stiffness exactly zero).")
+    for motion in condensed.oblique.T:
         moved = [(v, n) for v, n in zip(motion, DOF_NAMES) if abs(v) > 1e-9]
         parts = ", ".join(f"{v:.4g} {n}" for v, n in moved)
         names = " and ".join(n for _, n in moved)
-        line = f"Free: the motion ({parts}), m and rad; a compliance of {names} does not exist."
+        line = f"Free: the motion ({parts}), m and rad; {names} have no compliance."
         say(line)
 
 
-def _bars(bars: Mapping[Quantity, float], found: Coupled) -> Table:
-    """The largest mesh bar of every block."""
+def _bars(bars: Mapping[Quantity, float], coupled: Coupled) -> Table:
+    """Return the largest error bar of every block."""
     largest: dict[tuple[str, ...], float] = {}
     for name, bar in bars.items():
         if name.pair or name.kind == COMPLIANCE:  # what one point resists alone is not told here
-            point = next(iter(name.points), found.ports[0])
-            key = (name.kind, *sorted(name.pair or (point, point), key=found.ports.index))
+            point = next(iter(name.points), coupled.ports[0])
+            key = (name.kind, *sorted(name.pair or (point, point), key=coupled.ports.index))
             largest[key] = max(bar, largest.get(key, 0.0))
-    pairs = [(a, b) for k, a in enumerate(found.ports) for b in found.ports[k:]]
+    pairs = [(a, b) for k, a in enumerate(coupled.ports) for b in coupled.ports[k:]]
     columns = [
         Column(
-            "largest mesh bar of a block",
+            "largest error bar of a block",
             lambda pair: (
                 "{} itself".format(*pair)
                 if pair[0] == pair[1]
@@ -180,38 +181,39 @@ def _bars(bars: Mapping[Quantity, float], found: Coupled) -> Table:
         Column(STIFFNESS, lambda pair: largest.get((STIFFNESS, *pair)), plus_minus),
         Column(COMPLIANCE, lambda pair: largest.get((COMPLIANCE, *pair)), plus_minus),
     ]
-    note = "couplings: relative to the geometric mean of what both motions have of their own"
+    note = "couplings: relative to the geometric mean of both diagonal entries"
     return Table("", columns, pairs, note)
 
 
-def _tell_coupled(head: str, scene: Scene, found: Coupled, units: str) -> None:
+def _tell_coupled(head: str, scene: Scene, coupled: Coupled, units: str) -> None:
     places = {port.name: _at(port) for port in scene.ports}
-    at = ", ".join(
+    ports = ", ".join(
         f"{name!r} at {places[name]} mm ({kind})"
-        for name, kind in zip(found.ports, found.attachments)
+        for name, kind in zip(coupled.ports, coupled.attachments)
     )
-    say(f"{head}, ports {at}", soft_wrap=False)
-    pairs = [(a, b) for k, a in enumerate(found.ports) for b in found.ports[k:]]
-    stiff = bool(np.isfinite(found.stiffness).all())
+    say(f"{head}, ports {ports}", soft_wrap=False)
+    pairs = [(a, b) for k, a in enumerate(coupled.ports) for b in coupled.ports[k:]]
+    stiff = bool(np.isfinite(coupled.stiffness).all())
     for kind in ("stiffness", "compliance") if stiff else ("compliance",):
         for a, b in pairs:
-            words = {"stiffness": "load on", "compliance": "motion of"}[kind]
-            other = {"stiffness": "motion of", "compliance": "load on"}[kind]
-            caption = f"{kind}: {words} {a}, {other} {b}"
-            own = [np.diag(found.between(one, one, kind)).tolist() for one in (a, b)]
-            say(matrix_table(found.between(a, b, kind), kind, units, caption, own))
-    several = "both points" if len(found.ports) == 2 else "all points"
+            rows = {"stiffness": "load on", "compliance": "motion of"}[kind]
+            columns = {"stiffness": "motion of", "compliance": "load on"}[kind]
+            caption = f"{kind}: {rows} {a}, {columns} {b}"
+            diagonals = [np.diag(coupled.between(point, point, kind)).tolist() for point in (a, b)]
+            say(matrix_table(coupled.between(a, b, kind), kind, units, caption, diagonals))
+    several = "both points" if len(coupled.ports) == 2 else "all points"
     if stiff:
-        line = f"Stiffness holds {several}: one moves, all else is held. The blocks left out are the transposed ones."
-    else:
         line = (
-            "The points all but move as one: a stiffness between them does not exist to any digits."
+            f"Stiffness is with {several} held but for one motion. Blocks left out are the "
+            "transposed ones."
         )
+    else:
+        line = "The points move almost as one, so that a stiffness between them has no digits."
     say(line)
-    if found.free_names:
-        names = ", ".join(found.free_names)
+    if coupled.free_names:
+        names = ", ".join(coupled.free_names)
         line = (
-            f"Free: {names} of {several} together; only what the points do against each other is "
-            "resisted, and has no entry of its own in the compliance."
+            f"Free: {names} of {several} together; only their relative motion is resisted, and "
+            "has no entry in the compliance."
         )
         say(line)

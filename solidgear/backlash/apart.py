@@ -18,16 +18,16 @@ from solidgear.backlash.torque import Backlash, Range
 #: share of a mean force that the linear one must exceed where branches apart are looked for
 LIVELY = 0.2
 PERIODS = {1: "one mesh period", 2: "two mesh periods", 3: "three mesh periods"}
-APART = "A branch apart of {0} from {1}: {2}."
+APART = "A separate branch of {0} from {1}: {2}."
 MERGED = "Motions of {0} come off a branch from {1}: {2}."
 SEARCHED = (
-    "Branches apart, which a blow can reach and a slow sweep not, were looked for from {0} starts at {1} speeds "
-    "from {2}, of 1 to {3} mesh periods{4}."
+    "Separate branches, which a blow can reach but a slow sweep cannot, were searched from {0} "
+    "starts at {1} speeds from {2}, with 1 to {3} mesh periods{4}."
 )
 OTHERS, NONE = "; there may be others", ": none was found, and there may be some"
-UNSEARCHED = "Branches apart from this one were not looked for."
+UNSEARCHED = "Branches separate from this one were not searched."
 QUIET = (
-    "Branches apart were not looked for: the linear force stays below {0:.0f} % of the mean one."
+    "Separate branches were not searched: the linear force stays below {0:.0f} % of the mean force."
 )
 
 

@@ -40,24 +40,24 @@ BINS = 160
 
 
 def backlash_chart(
-    found: Any, title: str, units: Units = ENGINEERING, width: float = WIDE
+    study: Any, title: str, units: Units = ENGINEERING, width: float = WIDE
 ) -> Chart:
-    """Dynamic mesh force over the speed of the pinion, share of the cycle in contact, and
-    orders.
-    """
-    judge, teeth = found.judge, found.teeth_a_turn
+    """Chart dynamic mesh force over speed, share of the cycle in contact, and orders."""
+    judge, teeth = study.judge, study.teeth_a_turn
     rpm = 60 * judge.frequency_hz / teeth
     ends = float(rpm.min()), float(rpm.max())
-    panels = [_force(found, rpm, ends, units, width)]
-    panels += [_contact(one, rpm, ends, width, teeth.of) for one in judge.meshes if _may_part(one)]
-    if found.over_force:
-        panels.append(_map(found, ends, units))
+    panels = [_force(study, rpm, ends, units, width)]
+    panels += [
+        _contact(mesh, rpm, ends, width, teeth.of) for mesh in judge.meshes if _may_part(mesh)
+    ]
+    if study.over_force:
+        panels.append(_map(study, ends, units))
     return Chart(in_columns([*panels, _orders(judge, units)], 1), width, title)
 
 
-def _map(found: Any, ends: tuple[float, float], units: Units) -> Panel:
-    """Map of parting teeth and jumps over speed and mean force."""
-    judge, teeth = found.judge, found.teeth_a_turn
+def _map(study: Any, ends: tuple[float, float], units: Units) -> Panel:
+    """Return a map of parting teeth and jumps over speed and mean force."""
+    judge, teeth = study.judge, study.teeth_a_turn
     unit, (hz, size) = units.unit("N"), judge.holding
     top = 1.05 * float(units.values(size, "N").max())
     panel = Panel(
@@ -72,53 +72,53 @@ def _map(found: Any, ends: tuple[float, float], units: Units) -> Panel:
     for rising, shape in ((True, "triangle-up"), (False, "triangle-down")):
         rows = [
             {
-                "x": 60 * at / teeth,
-                "y": units.value(one.mean_force, "N"),
-                "readout": readout("jump", ("frequency", hertz(at), "Hz")),
+                "x": 60 * jump_hz / teeth,
+                "y": units.value(branch.mean_force, "N"),
+                "readout": readout("jump", ("frequency", hertz(jump_hz), "Hz")),
             }
-            for one in found.over_force
-            for at, up in one.jumps_hz
-            if up is rising
+            for branch in study.over_force
+            for jump_hz, is_up in branch.jumps_hz
+            if is_up is rising
         ]
         panel.draw({"type": "point", "shape": shape, "filled": True, "color": "#222222"}, rows)
     return panel
 
 
-def _force(found: Any, rpm: np.ndarray, ends, units: Units, width: float) -> Panel:
-    judge, teeth = found.judge, found.teeth_a_turn
+def _force(study: Any, rpm: np.ndarray, ends, units: Units, width: float) -> Panel:
+    judge, teeth = study.judge, study.teeth_a_turn
     unit = units.unit("N")
     hz, size = judge.linear
     linear = units.values(size, "N")
-    curves = {one.label: units.values(one.force, "N") for one in found.mixes}
-    ran = {_run_name(one, teeth): one for one in found.runs}
-    further = [units.values(one.force, "N") for one in (*judge.branches_apart, *ran.values())]
+    curves = {branch.label: units.values(branch.force, "N") for branch in study.mixes}
+    ran = {_run_name(branch, teeth): branch for branch in study.runs}
+    further = [units.values(branch.force, "N") for branch in (*judge.branches_apart, *ran.values())]
     sizes = [linear, *curves.values(), *further]
     top = 1.08 * max(float(size.max()) for size in sizes)
-    named = [*(one.label for one in found.mixes[1:]), *ran]
-    others = {name: Series(OTHERS[k % len(OTHERS)]) for k, name in enumerate(named)}
+    labels = [*(branch.label for branch in study.mixes[1:]), *ran]
+    series = {name: Series(OTHERS[k % len(OTHERS)]) for k, name in enumerate(labels)}
     panel = Panel(
         Axis(f"speed of the {teeth.of} in rpm", ends),
         Axis(f"dynamic mesh force in {unit}", (0.0, top)),
         360.0,
         "Half of the swing of the mesh force; triangles: jumps as the speed rises (up) and falls (down)",
         series={name: look for name, look in LOOKS.items() if name != APART or judge.branches_apart}
-        | others,
+        | series,
         legend=lines_legend(3 if width > NARROW else 1),
     )
     rows = curve(60 * hz / teeth, linear, name=LINEAR)
     panel.draw({"type": "line", "strokeWidth": 1.2, "strokeDash": [5, 3]}, rows)
-    for one in found.mixes[1:]:
-        places, own = 60 * one.frequency_hz / teeth, curves[one.label]
-        inside = one.stable & (places >= ends[0]) & (places <= ends[1])
+    for branch in study.mixes[1:]:
+        places, own = 60 * branch.frequency_hz / teeth, curves[branch.label]
+        inside = branch.stable & (places >= ends[0]) & (places <= ends[1])
         for part, (a, b) in enumerate(_runs(inside)):
-            rows = curve(places[a:b], own[a:b], name=one.label, detail=part)
+            rows = curve(places[a:b], own[a:b], name=branch.label, detail=part)
             panel.draw({"type": "line", "strokeWidth": 1.1, "clip": True}, rows)
-    for name, one in ran.items():
-        places, own = _envelope(60 * one.frequency_hz / teeth, units.values(one.force, "N"))
+    for name, branch in ran.items():
+        places, own = _envelope(60 * branch.frequency_hz / teeth, units.values(branch.force, "N"))
         panel.draw({"type": "line", "strokeWidth": 1.4}, curve(places, own, name=name))
-    for one in (*judge.branches_apart, judge):
-        calm = STABLE if one is judge else APART
-        _branch(panel, one, 60 * one.frequency_hz / teeth, units, calm)
+    for branch in (*judge.branches_apart, judge):
+        calm = STABLE if branch is judge else APART
+        _branch(panel, branch, 60 * branch.frequency_hz / teeth, units, calm)
     for jump in judge.jumps:
         x, y = 60 * jump.frequency_hz / teeth, units.value(jump.force, "N")
         way = "rising" if jump.rising else "falling"
@@ -142,58 +142,58 @@ def _force(found: Any, rpm: np.ndarray, ends, units: Units, width: float) -> Pan
     return panel
 
 
-def _branch(panel: Panel, one: Any, rpm: np.ndarray, units: Units, calm: str) -> None:
-    """Stable and unstable parts of a branch."""
-    force = units.values(one.force, "N")
-    for name, where, dash in ((UNSTABLE, ~one.stable, [3, 2]), (calm, one.stable, [1, 0])):
-        for part, (a, b) in enumerate(_runs(where)):
+def _branch(panel: Panel, branch: Any, rpm: np.ndarray, units: Units, calm: str) -> None:
+    """Draw stable and unstable parts of a branch."""
+    force = units.values(branch.force, "N")
+    for name, chosen, dash in ((UNSTABLE, ~branch.stable, [3, 2]), (calm, branch.stable, [1, 0])):
+        for part, (a, b) in enumerate(_runs(chosen)):
             # a part reaches its neighbours, so that the branch has no gaps
             a, b = max(a - 1, 0), min(b + 1, len(rpm))
             rows = curve(rpm[a:b], force[a:b], name=name, detail=part)
             panel.draw({"type": "line", "strokeWidth": 2.0, "strokeDash": dash}, rows)
 
 
-def waterfall_chart(found: Any, one: Any, title: str, width: float = WIDE) -> Chart:
-    """Spectra of the mesh force over a run through the speeds, with orders of the mesh."""
-    own, teeth = one.run.spectra, found.teeth_a_turn
-    rising = np.argsort(own.omega)
-    rpm = 60 * own.omega[rising] / (2 * np.pi * teeth)
-    hertz = own.omega[rising, None] / (2 * np.pi) * own.order
+def waterfall_chart(study: Any, run: Any, title: str, width: float = WIDE) -> Chart:
+    """Chart spectra of the mesh force over a run through the speeds, with orders of the mesh."""
+    spectra, teeth = run.run.spectra, study.teeth_a_turn
+    rising = np.argsort(spectra.omega)
+    rpm = 60 * spectra.omega[rising] / (2 * np.pi * teeth)
+    hertz = spectra.omega[rising, None] / (2 * np.pi) * spectra.order
     orders = {f"order {order:g}": order * teeth for order in MESH_ORDERS}
-    highest = MESH_SEEN * float(own.omega.max()) / (2 * np.pi)
-    words = f"{_run_name(one, teeth).capitalize()}: mesh force, each spectrum {DEEP:g} dB high"
-    panel = waterfall(rpm, hertz, own.size[rising], orders, teeth.of, highest, words)
+    highest = MESH_SEEN * float(spectra.omega.max()) / (2 * np.pi)
+    words = f"{_run_name(run, teeth).capitalize()}: mesh force, each spectrum {DEEP:g} dB high"
+    panel = waterfall(rpm, hertz, spectra.size[rising], orders, teeth.of, highest, words)
     return Chart([[panel]], width, title)
 
 
-def _run_name(one: Any, teeth: int) -> str:
-    return f"run-{'up' if one.ramp > 0 else 'down'} at {60 * abs(one.ramp) / teeth:.6g} rpm/s"
+def _run_name(run: Any, teeth: int) -> str:
+    return f"run-{'up' if run.ramp > 0 else 'down'} at {60 * abs(run.ramp) / teeth:.6g} rpm/s"
 
 
 def _envelope(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The largest of every few cycles, no more of them than are seen."""
+    """Return the largest of every few cycles."""
     first = np.arange(0, len(x), -(-len(x) // (3 * BINS)))
     return x[first], np.maximum.reduceat(y, first)
 
 
-def _runs(where: np.ndarray) -> np.ndarray:
-    """(n, 2) first and after the last of each run."""
-    return np.flatnonzero(np.diff(np.r_[False, where, False].astype(int))).reshape(-1, 2)
+def _runs(mask: np.ndarray) -> np.ndarray:
+    """Return (n, 2) first and after the last of each run of True."""
+    return np.flatnonzero(np.diff(np.r_[False, mask, False].astype(int))).reshape(-1, 2)
 
 
-def _may_part(one: Any) -> bool:
-    """True if it has a gap, or is the one that is driven."""
-    return one.law == 0 or one.teeth.half_gap > 0
+def _may_part(mesh: Any) -> bool:
+    """Return True for a mesh with a gap, or the one that is driven."""
+    return mesh.law == 0 or mesh.teeth.half_gap > 0
 
 
 def _contact(judge: Any, rpm: np.ndarray, ends, width: float, shaft: str) -> Panel:
-    """Shares of the cycle in areas over one another; of stable motions, the largest loss a speed."""
-    of = f" of the {judge.teeth.mesh}" if judge.teeth.others or judge.law else ""
+    """Draw shares of the cycle in contact; of stable motions the largest loss at each speed."""
+    mesh = f" of the {judge.teeth.mesh}" if judge.teeth.others or judge.law else ""
     panel = Panel(
         Axis(f"speed of the {shaft} in rpm", ends),
         Axis("share of the cycle in %", (0.0, 100.0)),
         130.0,
-        f"Contact{of} over a mesh cycle; of several motions, the one that parts longest; blank: none is stable",
+        f"Contact{mesh} over a mesh cycle, for the motion that parts longest; blank: none is stable",
         series=CONTACT,
         legend={"orient": "top", "columns": 3 if width > NARROW else 1},
     )
@@ -201,9 +201,9 @@ def _contact(judge: Any, rpm: np.ndarray, ends, width: float, shaft: str) -> Pan
     middle = (edges[1:] + edges[:-1]) / 2 * judge.frequency_hz[0] / rpm[0]
     drives, backs = np.full(BINS, np.inf), np.zeros(BINS)
     pairs = zip(judge.interpolate(middle, judge.driving), judge.interpolate(middle, judge.backside))
-    for (at, drive), (_, back) in pairs:
-        longer = drive < drives[at]
-        drives[at[longer]], backs[at[longer]] = drive[longer], back[longer]
+    for (drive_row, drive), (_, back) in pairs:
+        longer = drive < drives[drive_row]
+        drives[drive_row[longer]], backs[drive_row[longer]] = drive[longer], back[longer]
     rows = []
     for low, high, drive, back in zip(edges, edges[1:], 100 * drives, 100 * backs):
         if not np.isfinite(drive):
@@ -222,10 +222,10 @@ def _contact(judge: Any, rpm: np.ndarray, ends, width: float, shaft: str) -> Pan
 
 
 def _orders(judge: Any, units: Units) -> Panel:
-    """Amplitudes of the mesh force by orders of the mesh."""
-    own = judge.worst
-    size = units.values(own.spectrum(), "N")
-    unit, hz, periods = units.unit("N"), own.loudest[0], own.periods
+    """Return amplitudes of the mesh force by orders of the mesh."""
+    worst = judge.worst
+    size = units.values(worst.spectrum(), "N")
+    unit, hz, periods = units.unit("N"), worst.loudest[0], worst.periods
     half = 0.3 / periods
     panel = Panel(
         Axis("order of the mesh", (2 * half - 0.2 / periods, len(size) / periods + 2 * half)),

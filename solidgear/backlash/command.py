@@ -41,26 +41,27 @@ def nonlinear(
     backlash: Annotated[
         str | None,
         typer.Option(
-            help='Along the line of action, such as "100 um"; that of the file without it.'
+            help='Backlash along the line of action, such as "100 um"; by default the file\'s.'
         ),
     ] = None,
     mean_force: Annotated[
         str | None,
         typer.Option(
             "--mean-force",
-            help='Of the teeth, such as "5 kN"; that of the operating point in the file without it.',
+            help='Mean force of the teeth, such as "5 kN"; by default by the file\'s operating '
+            "point.",
         ),
     ] = None,
     error: Annotated[
         str | None,
-        typer.Option(help='Transmission error, such as "10 um"; that of the file without it.'),
+        typer.Option(help='Transmission error, such as "10 um"; by default the file\'s.'),
     ] = None,
     mesh: Annotated[
         str | None,
         typer.Option(
             "--mesh",
-            help="Whose transmission error drives the train, of several, and whose --backlash, "
-            "--mean-force and --error are given; the first.",
+            help="Mesh whose transmission error drives the train, and to which --backlash, "
+            "--mean-force and --error belong; by default the first.",
         ),
     ] = None,
     min_frequency: Annotated[
@@ -77,30 +78,36 @@ def nonlinear(
     apart: Annotated[
         int,
         typer.Option(
-            "--apart", help="Speeds at which branches apart are looked for; 0 leaves them out."
+            "--apart", help="Number of speeds at which separate branches are searched; 0 for none."
         ),
     ] = SPEEDS,
     in_time: Annotated[
         int,
-        typer.Option("--in-time", help="Speeds at which to hold it against integration in time."),
+        typer.Option(
+            "--in-time", help="Number of speeds at which to check it by integration in time."
+        ),
     ] = 0,
     run_up: Annotated[
         list[float] | None,
         typer.Option(
             "--run-up",
-            help="Run through the range in time at so many rpm/s of the engine's shaft; below 0 down.",
+            help="Run through the range in time at so many rpm/s of the engine's shaft; below 0 "
+            "for a run-down.",
         ),
     ] = None,
     contact_loss: Annotated[
         float | None,
         typer.Option(
             "--contact-loss",
-            help="Hz at which a damper in contact alone has the loss factor of the mesh.",
+            help="Frequency in Hz at which a damper in contact only has the loss factor of the "
+            "mesh.",
         ),
     ] = None,
     forces: Annotated[
         int,
-        typer.Option("--forces", help="Mean forces for a map of jumps over speed and torque."),
+        typer.Option(
+            "--forces", help="Number of mean forces for a map of jumps over speed and torque."
+        ),
     ] = 0,
     out: Annotated[
         Path | None,
@@ -111,7 +118,7 @@ def nonlinear(
 ) -> None:
     shop = models.workshop(reduced, train)
     first, driver = tuple(models.by_shaft(shop.train).values()), named_pair(shop.train, mesh)
-    others = _usual(shop) if against is None else [_mix(shop, text) for text in against]
+    further_mixes = _usual(shop) if against is None else [_mix(shop, text) for text in against]
     shop = _with_teeth(shop, driver, backlash, error)
     if contact_loss is not None and not contact_loss > 0:
         raise SolidgearError(f"--contact-loss {contact_loss:g}: give a frequency above 0 Hz")
@@ -125,17 +132,17 @@ def nonlinear(
     passing = shop.train.per_turn(driver)
     ramps = [ramp_of(rpm, passing, low, high) for rpm in run_up or []]
     with held(out) if out else nullcontext(), run.progress() as progress:
-        found = tuple(
+        judged = tuple(
             study.with_backlash(
                 shop, mix, teeth, reduced.max_frequency, min_frequency, progress, apart
             )
-            for mix in [first, *(mix for mix in others if mix != first)]
+            for mix in [first, *(mix for mix in further_mixes if mix != first)]
         )
-        swept = study.in_time(found[0], in_time, progress) if in_time else ()
-        mapped = study.over_force(found[0], forces, progress) if forces else ()
-        runs = tuple(speed_run(found[0], rate, progress) for rate in ramps)
+        swept = study.in_time(judged[0], in_time, progress) if in_time else ()
+        mapped = study.over_force(judged[0], forces, progress) if forces else ()
+        runs = tuple(speed_run(judged[0], rate, progress) for rate in ramps)
         lever = study.torque_of(shop, driver.name, 1.0).torque
-        told = BacklashStudy(shop.train, found, lever, swept, mapped, runs)
+        backlash_study = BacklashStudy(shop.train, judged, lever, swept, mapped, runs)
         title = f"{shop.train.called}: teeth with backlash"
         if teeth.others:
             title += f", driven by the {driver.name}"
@@ -145,44 +152,51 @@ def nonlinear(
         cautions += _beside_torque(shop, mean_force)
         files = []
         if out:
-            files = write_nonlinear(out, told, title, train_data(shop), run.units, cautions)
+            files = write_nonlinear(
+                out, backlash_study, title, train_data(shop), run.units, cautions
+            )
     if run.as_json:
-        print(json.dumps(told.as_dict() | {"cautions": cautions}, allow_nan=False))
+        print(json.dumps(backlash_study.as_dict() | {"cautions": cautions}, allow_nan=False))
         return
-    shown = units_named(run.units)
-    say(f"{title}.", lead(told, shown), *told.sentences(), *map(caution, cautions))
-    say(mixes(told, shown), soft_wrap=False)
+    units = units_named(run.units)
+    say(
+        f"{title}.",
+        lead(backlash_study, units),
+        *backlash_study.sentences(),
+        *map(caution, cautions),
+    )
+    say(mixes(backlash_study, units), soft_wrap=False)
     say(*unpublished_lines(shop.train.unpublished()))
     if mapped:
-        say(over_force(told, shown), soft_wrap=False)
+        say(over_force(backlash_study, units), soft_wrap=False)
     if files:
         say(f"Written: {', '.join(map(str, files))}")
 
 
 def _beside_torque(shop: Workshop, mean_force: str | None) -> list[str]:
-    """Caution on what loads a loop of meshes beside the torque, by which its teeth share it."""
+    """Return cautions on further loads in a loop of meshes, which divide the torque differently."""
     point, looped = shop.train.point, None in shop.train.flows.values()
     if not looped or mean_force is not None or point is None or not (point.weight or point.force):
         return []
     return [
-        "weight and forces on shafts, which move the share of each mesh of a loop, are left out here; "
-        "solidgear deflect has them"
+        "weight and forces on shafts, which change the force of each mesh in a loop, are left "
+        "out; run solidgear deflect"
     ]
 
 
 def _mix(shop: Workshop, text: str) -> tuple[str, ...]:
-    """Models of all shafts, from a text such as ``euler+euler``."""
+    """Return models of all shafts, from a text such as ``euler+euler``."""
     return tuple(shop.models_by_shaft(mix(text)).values())
 
 
 def _usual(shop: Workshop) -> list[tuple[str, ...]]:
-    """Models that the first are held against; shafts in a housing are no lumped ones."""
+    """Return the models compared by default; shafts in a housing cannot be lumped."""
     usual = ("timoshenko",) if shop.train.housed else ("lumped", "timoshenko")
     return [(model,) * len(shop.train.shafts) for model in usual]
 
 
 def _with_teeth(shop: Workshop, driver: Pair, backlash: str | None, error: str | None) -> Workshop:
-    """The same train, one of its meshes with teeth as given."""
+    """Return the same train with the given teeth of one mesh."""
     width, size = _read("--backlash", backlash, "length"), _read("--error", error, "length")
     if width is None and size is None:
         return shop
@@ -200,7 +214,7 @@ def _with_teeth(shop: Workshop, driver: Pair, backlash: str | None, error: str |
 
 
 def _read(option: str, text: str | None, dimension: str) -> float | None:
-    """A quantity of an option in SI."""
+    """Return a quantity of an option in SI."""
     if text is None:
         return None
     try:

@@ -18,16 +18,16 @@ from solidgear.trains.file.train import Train
 #: of motions that repeat themselves otherwise than every mesh period
 WANDERS = "From {0} the periodic motion is unstable: {1} comes in, and a sweep may leave it there."
 PHASES = (
-    "The file gives no phases of the transmission error: its orders are cosines that begin where the "
-    "stiffness cycle begins, positive where teeth stand back; other phases give other forces."
+    "The file gives no phases of the transmission error, so its orders are cosines from the start "
+    "of the stiffness cycle, positive where teeth stand back; other phases give other forces."
 )
 RETURNS = (
-    "{0}: the branch turns back at {1} and leaves the range where it began, on another motion, so that "
-    "higher speeds are not judged; give a lower --min-frequency."
+    "{0}: the branch turns back at {1} and leaves the range where it began, so that higher speeds "
+    "are not judged; give a lower --min-frequency."
 )
 IN_CONTACT = (
-    "The mesh loses energy in contact alone, by a damper that has its loss factor at {0:g} Hz and "
-    "takes part in the mesh forces."
+    "The mesh loses energy only in contact, by a damper with the mesh's loss factor at {0:g} Hz, "
+    "which is part of the mesh forces."
 )
 
 
@@ -107,10 +107,13 @@ class BacklashStudy:
             place = ""
             if mesh.worst is not mesh:
                 branch_hz, branch_size = mesh.loudest
-                place = f" on a branch apart, {branch_size:.0f} N at {self._place(branch_hz)} on this one"
+                place = (
+                    f" on a separate branch, {branch_size:.0f} N at {self._place(branch_hz)} on "
+                    "this one"
+                )
             lines.append(
-                f"Largest dynamic mesh force{self._mesh_suffix(mesh)} {size:.0f} N at {self._place(hz)}{place}; the "
-                f"linear answer says {linear:.0f} N at {self._place(linear_hz)}."
+                f"Largest dynamic mesh force{self._mesh_suffix(mesh)} {size:.0f} N at "
+                f"{self._place(hz)}{place}; linear: {linear:.0f} N at {self._place(linear_hz)}."
             )
         if not judge.teeth.varies:
             holding = float(judge.holding[1].max())
@@ -125,8 +128,8 @@ class BacklashStudy:
         if not judge.teeth.phases and (judge.teeth.varies or len(judge.teeth.errors) > 1):
             lines.append(PHASES)
         lines.append(
-            "All of it hangs on losses, backlash and transmission error, and has no bar; harmonics "
-            "are followed to 1e-4 of the largest."
+            "All of it depends on losses, backlash and transmission error, and has no error bar; "
+            "harmonics are followed to 1e-4 of the largest."
         )
         return lines
 
@@ -185,7 +188,7 @@ class BacklashStudy:
         if not self.in_time:
             return []
         if not periodic:
-            return ["In time no motion came to repeat itself every mesh period."]
+            return ["In time no motion repeated itself every mesh period."]
         worst = max(periodic, key=lambda run: abs(run.error))
         lines = [
             f"Integration in time agrees within {100 * abs(worst.error):.2g} % in mesh "
@@ -197,7 +200,7 @@ class BacklashStudy:
             lines.append(f"It repeats itself after {cycle} mesh periods at {', '.join(places)}.")
         unsteady = [self._place(run.frequency_hz) for run in self.in_time if run.cycle == 0]
         if unsteady:
-            lines.append(f"It came to no steady motion at {', '.join(unsteady)}.")
+            lines.append(f"It reached no steady motion at {', '.join(unsteady)}.")
         return lines
 
     def _run_lines(self) -> list[str]:
@@ -217,8 +220,8 @@ class BacklashStudy:
                 f"reach {steady:.0f} N at {self._place(steady_hz)}."
             )
             lines.append(
-                f"In {100 * run.followed(tolerance):.0f} % of its {len(run.force)} mesh cycles the force is "
-                f"within {100 * tolerance:g} % of such a motion's; {contact}."
+                f"In {100 * run.followed(tolerance):.0f} % of its {len(run.force)} mesh cycles the "
+                f"force is within {100 * tolerance:g} % of a stable motion's; {contact}."
             )
         return lines
 

@@ -98,8 +98,8 @@ def teeth_of(
     error, table = error_of(pair), pair.mesh.stiffness_cycle
     if error.frequency:
         raise SolidgearError(
-            "the transmission error is a table over frequency, which has no cycle in time; give it "
-            'by orders in the file, or --error "10 um"'
+            "the transmission error is a table over frequency; give it by orders in the file, or "
+            '--error "10 um"'
         )
     cycle: tuple[tuple[float, float], ...] = ()
     if table is not None:
@@ -271,7 +271,7 @@ def with_backlash(
     if not search_speeds:
         return backlash
     if progress:
-        progress(f"branches apart of {' + '.join(mix.values())}")
+        progress(f"separate branches of {' + '.join(mix.values())}")
     with_branches = search_branches(backlash, search_speeds, STEP)
     return replace(with_branches, seconds=process_time() - begin)
 
@@ -381,13 +381,13 @@ def turning_line(workshop: Workshop, pair: Pair) -> TurningLine | None:
         return None
     if pair.mesh.local_harmonics:
         raise SceneError(
-            "moves the mesh point, and local_harmonics hold it where it is on the rim; leave one out",
+            "moves the mesh point, which local_harmonics fix on the rim; leave one out",
             path=path,
         )
     if pair.point is not None and pair.point.coast:
         raise SceneError(
-            "is that of one flank; a torque on the other one (coast, below zero) needs a file with "
-            "its own",
+            "belongs to one flank; a torque on the other flank (coast, below zero) needs a file "
+            "with its own",
             path=path,
         )
     rows = [

@@ -75,8 +75,9 @@ def read_pairs(words: Words, tables: Sequence[Mapping[str, Any]]) -> list[Pair] 
         if pair is None and len(free) != 2:
             names_of_free = f": {listed(names[k] for k in free)}" if free else ""
             raise SceneError(
-                "stands for two single bearings with a contact angle and without holds, and this "
-                f'scene has {len(free)}{names_of_free}; name two of them, as arrangement = {{O = ["A", "B"]}}',
+                "needs two single bearings with a contact angle and without holds, and this scene "
+                f"has {len(free)}{names_of_free}; name two of them, as "
+                'arrangement = {O = ["A", "B"]}',
                 path=("arrangement",),
             )
         for name in pair or ():
@@ -98,9 +99,9 @@ def _check(
         reason = f"{show(name)} is in two pairs"
     elif not _needs_holds(table := tables[names.index(name)]):
         data = table.get("catalogue")
-        reason = f"{show(name)} is no single bearing with a contact angle, which a pair is made of"
+        reason = f"{show(name)} is not a single bearing with a contact angle, as a pair needs"
         if isinstance(data, Mapping) and "holds" in data:
-            reason = f"{show(name)} has holds as well: leave one of both out"
+            reason = f"{show(name)} has holds as well: leave one of them out"
     if reason:
         raise SceneError(reason, path=("arrangement",))
 

@@ -131,8 +131,8 @@ def _conformity(value: Any) -> Any:
     for ratio in (quantity(v, "dimensionless") for v in pair):
         if not 0.5 < ratio <= 0.6:
             raise SceneError(
-                "is groove radius over ball diameter: above 0.5, or the ball would not fit its "
-                "groove, and at most 0.6; usual is 0.52",
+                "is groove radius over ball diameter: write more than 0.5 and at most 0.6; usual "
+                "is 0.52",
                 value=show(value),
             )
     return tuple(pair)
@@ -152,47 +152,47 @@ class Catalogue(Model):
     bore, outer_diameter, width : float
         Boundary dimensions, m; the bore of a drawn cup is the diameter under its rollers.
     load_rating, static_rating : float or None
-        Basic dynamic and static radial load rating, N; of a pair those of one bearing, of a thrust
+        Basic dynamic and static radial load rating, N; for a pair those of one bearing, for a thrust
         bearing its axial ones.
     fatigue_limit : float or None
-        Fatigue load limit C_u, N, of the same.
+        Fatigue load limit C_u, N, of one bearing.
     rating_factor : float or None
-        b_m of ISO 281; where none is given that of its kind.
+        b_m of ISO 281; by default that of its kind.
     elements : int or None
         Rolling elements of one row.
     element_diameter, element_length, pitch_diameter : float or None
-        Of the rolling elements and their circle, m; of tapered rollers the mean diameter.
+        Dimensions of the rolling elements and their circle, m; for tapered rollers the mean diameter.
     contact_angle : float or None
         From the radial plane, rad.
     conformity : (float, float) or None
-        Groove radius over ball diameter, inner and outer; of spherical rollers over twice the radius
+        Groove radius over ball diameter, inner and outer; for spherical rollers over twice the radius
         of their contour.
     profile : {'logarithmic', 'straight'}
-        Of rollers that are no barrels, by ISO/TS 16281.
+        Of cylindrical, tapered and needle rollers, by ISO/TS 16281.
     arrangement : str
         single, double_row (of bearings that hold no shaft along y, or both ways), tandem,
         back_to_back (or "O") or face_to_face (or "X"): two rows in this one bearing.
     row_distance : float or None
-        Of the rows' middles, m; the width where not given.
+        Distance of the rows' middles, m; by default the width.
     holds : {'+y', '-y'} or None
         Direction in which single rows and tandems with a contact angle keep the shaft from moving;
-        these have to tell it, as their mounting decides it, or `arrangement` of the scene does.
+        they need it, since mounting decides it, or else `arrangement` of the scene.
     clearance : float or str
         Radial internal clearance, m, or a class of ISO 5753-1, taken in its middle.
     shaft_interference, housing_interference : float
-        Of the fits, on the diameter, m.
+        Interference of the fits, on the diameter, m.
     inner_ring_warmer : float
         K above the outer ring.
     preload : Preload or None
         Along y; a text with a unit in a file: ``"500 N"`` or ``"10 um"``.
     preload_spring : float or None
-        N/m, of the spring by which the upper row of a pair is preloaded.
+        N/m, of the spring that preloads the upper row of a pair.
     speed : float
-        Of the inner ring, rad/s; of balls, whose inertia it brings in.
+        Of the inner ring, rad/s; for balls, which then have inertia.
     load : BearingLoad or None
-        At which the stiffness is taken.
+        Load at which the stiffness is taken.
     displacement : BearingDisplacement or None
-        At which the stiffness is taken.
+        Displacement at which the stiffness is taken.
 
     Raises
     ------
@@ -237,7 +237,7 @@ class Catalogue(Model):
 
     def __init__(self, /, **data: Any):
         if "support" in data:
-            reason = "stands beside the catalogue data, as a key of the bearing, and not among them"
+            reason = "belongs to the bearing, not to its catalogue data"
             raise SceneError(reason, path=("support",), value=show(data["support"]))
         if isinstance(data.get("designation"), str) and data["designation"]:
             data = _with_boundary(data)
@@ -370,9 +370,9 @@ def _belongs(data: Catalogue) -> Iterator[SceneError]:
         )
     if data.one_sided and data.holds is None:
         yield SceneError(
-            f"{data.arrangement} {kind} bearings hold the shaft in one direction only: "
-            'write holds = "+y" if this one keeps the shaft from moving towards +y, else "-y", or '
-            'for a pair arrangement = "O" or "X" above all tables',
+            f"{data.arrangement} {kind} bearings hold the shaft in one direction only: write "
+            'holds = "+y" if this one keeps it from moving towards +y, else "-y", or for a pair '
+            'arrangement = "O" or "X" above all tables',
             path=("holds",),
         )
     for key, allowed, owner in (
@@ -395,8 +395,8 @@ def _belongs(data: Catalogue) -> Iterator[SceneError]:
         or data.preload.force is None
     ):
         yield SceneError(
-            'presses one row of a pair with a force: it needs arrangement = "back_to_back" or '
-            '"face_to_face" and a preload such as "500 N"',
+            'needs a pair, arrangement = "back_to_back" or "face_to_face", and a preload such as '
+            '"500 N"',
             path=("preload_spring",),
         )
 

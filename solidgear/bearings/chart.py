@@ -37,10 +37,10 @@ def draw_bearings(file: Path, panels: Sequence[BearingPanel]) -> None:
 
 
 def _stiffness(panel: BearingPanel) -> Panel:
-    """Stiffness over load, and its range."""
-    seen = [values[values > 0] for values in (panel.middle, panel.low, panel.high)]
-    known = np.concatenate(seen) if any(map(len, seen)) else np.ones(1)
-    ends = known.min() / 1.3, known.max() * 1.3
+    """Return the stiffness over load, and its range."""
+    positive = [values[values > 0] for values in (panel.middle, panel.low, panel.high)]
+    stiffnesses = np.concatenate(positive) if any(map(len, positive)) else np.ones(1)
+    ends = stiffnesses.min() / 1.3, stiffnesses.max() * 1.3
     ticks = {size: engineering(size, 3) for size in log_ticks(*ends)}
     drawn = Panel(
         Axis("load over that of the scene", (min(panel.factors), max(panel.factors)), log=True),

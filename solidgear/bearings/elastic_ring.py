@@ -28,10 +28,10 @@ def elastic_ring(
 ) -> Part:
     """Harmonic solid of a ring with a port at every planet, to be the ring of a stage.
 
-    Teeth push on a pitch of the inner surface each.  Harmonics n = 0 and 1 follow the port of the
+    Each tooth pushes on one pitch of the inner surface.  Harmonics n = 0 and 1 follow the port of the
     scene, which is ``centre``; harmonics from 2 on are the ring's own waves.  Bearings of the scene
-    are left out: the stage states the support of the ring, which holds its centre, so that waves
-    are those of a free rim.
+    are left out: give the support of the ring to the stage, where it holds the centre, so that
+    waves are those of a free rim.
 
     Parameters
     ----------
@@ -70,15 +70,12 @@ def elastic_ring(
     """
     few = [n for n in waves if n < 2]
     if few:
-        raise SolidgearError(
-            f"{few[0]} is no number of waves around a ring; its own begin at 2, and its port has "
-            "the others"
-        )
+        raise SolidgearError(f"waves = {few[0]}: give numbers of waves around the ring from 2 on")
     name, y = scene.port.name, scene.port.y
     if any(station.attachment == "rigid" for station in scene.stations):
         raise SolidgearError(
-            "a seat of the ring is tied rigidly and holds all waves around it; "
-            "use attachment average or section"
+            "a seat of the ring is tied rigidly, which suppresses all waves around it; use "
+            "attachment average or section"
         )
     first, last = y - face_width / 2, y + face_width / 2
     if not 0 <= first < last <= scene.length:

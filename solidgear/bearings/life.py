@@ -161,8 +161,8 @@ def _modified(
     kappa = lubrication.viscosity / reference
     if kappa < LEAST_FILM:
         reason = (
-            f"the viscosity is {kappa:.2g} of the {reference * 1e6:.3g} mm^2/s that speed and size ask "
-            f"for, and ISO 281 has no life below {LEAST_FILM:g}"
+            f"the viscosity is {kappa:.2g} of the {reference * 1e6:.3g} mm^2/s needed at this speed "
+            f"and size, and ISO 281 has no life below {LEAST_FILM:g}"
         )
         return replace(result, without=reason)
     a1 = reliability_factor(lubrication.reliability)
@@ -201,7 +201,7 @@ def _notes(
     if dynamic > MOST_LOAD * rated.dynamic:
         yield (
             f"its equivalent load of {dynamic:.5g} N is {dynamic / rated.dynamic:.3g} times its "
-            f"dynamic rating C; ISO 281 vouches for lives up to {MOST_LOAD:g} of it"
+            f"dynamic rating C; ISO 281 holds up to {MOST_LOAD:g} of it"
         )
     most = max(float(max(row.inner.max(), row.outer.max())) for row in rows)
     limit = STATIC_PRESSURE[data.balls]

@@ -124,11 +124,11 @@ class RollingBearing:
         target = np.array(load, float)
         if target[4] != 0.0:
             raise SolidgearError(
-                f"a bearing carries no torque about its axis, but {target[4]:g} N m are asked of it"
+                f"a bearing carries no torque about its axis, but the load has {target[4]:g} N m"
             )
         if self.floats and target[1] != 0.0:
             raise SolidgearError(
-                f"a floating bearing carries nothing along y, but {target[1]:g} N are asked of it"
+                f"a floating bearing carries nothing along y, but the load has {target[1]:g} N"
             )
         begin = np.zeros(6) if start is None else np.array(start, float)
         still = {4, *fixed} | ({1} if self.floats else set())

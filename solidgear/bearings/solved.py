@@ -115,8 +115,8 @@ def solved(
         if not tangent[name].any() and not waits:
             once = " (once for both of a pair)" * data.one_sided
             reason = (
-                f"without load a bearing has no stiffness: give load or displacement, a preload{once}, "
-                "a negative clearance, or a [load] on the port"
+                "the bearing carries no load, so it has no stiffness: give it load or "
+                f"displacement, a preload{once}, a negative clearance, or a [load] on the port"
             )
             raise located(SceneError(reason), k)
     bearings = tuple(_with_stiffness(b, tangent) for b in scene.bearings)

@@ -127,8 +127,8 @@ def compare(
     scene : Scene
     models : tuple of str, optional
         Models of the ladder (lumped, euler, timoshenko, harmonic, solid); all by default. The
-        lumped model rests on one of the others. Another scene in their place is compared with the
-        first, each solved by the model that the judge chooses.
+        lumped one needs one of the others. Another scene in their place is compared with
+        the first, each solved as by :func:`answer`.
     settings : dict, optional
         Builder options per model, such as ``{"harmonic": {"order": 8}}``.  Options that concern the
         mesh fix it: that mesh and two coarser ones are solved.
@@ -140,7 +140,7 @@ def compare(
     Comparison
         After Ctrl-C with the models solved so far, ``record.complete`` False.
     TwoShafts
-        Of two scenes: ``inputs`` that differ, ``changes`` of numbers with both bars, ``modes`` in
+        For two scenes: ``inputs`` that differ, ``changes`` of numbers with both error bars, ``modes`` in
         pairs, ``sentences``, ``write_report(out)``.
 
     Raises
@@ -155,7 +155,7 @@ def compare(
     >>> rod = sg.Segment.cylinder("rod", length=0.6, diameter=0.02)
     >>> comparison = sg.compare(sg.Scene.from_parts([rod]), models=("euler",))
     >>> comparison.record.verdict.sentences
-    ['Not judged: no solid was run, and a beam cannot judge itself.']
+    ['Not judged: no solid was run, and a beam has no error bar.']
     >>> thicker = sg.Segment.cylinder("rod", length=0.6, diameter=0.022)
     >>> shafts = sg.compare(sg.Scene.from_parts([rod]), sg.Scene.from_parts([thicker]))
     >>> shafts["mass"].verdict, round(shafts["mass"].relative, 4)
@@ -168,12 +168,14 @@ def compare(
         )
     if without_axis(scene) or without_axis(models):
         raise SolidgearError(
-            "compare: a body without an axis has one model, the 3D solid; solidgear modes and "
-            "stiffness tell its numbers and bars"
+            "compare: a body without an axis has one model, the 3D solid; run solidgear modes and "
+            "stiffness"
         )
     if isinstance(models, Scene):
         if settings:
-            raise SolidgearError("settings are of models of one scene; of two the judge chooses")
+            raise SolidgearError(
+                "settings are for models of one scene; for two the program chooses"
+            )
         return two_shafts((scene, models), progress=progress)
     models = LADDER.names if models is None else models
     check_models(models)
@@ -253,7 +255,7 @@ def _run(scene: Scene, models, options, findings: _Findings, progress: Progress)
         progress("guards")
         findings.guards = notices(scene, findings.solutions)
     if "harmonic" in findings.solutions:
-        progress("where the error sits")
+        progress("where the error comes from")
         findings.where = recorded_places(scene, findings.solutions["harmonic"])
     findings.causes = _causes(scene, findings.solutions, options, progress)
 
@@ -285,7 +287,7 @@ def check_models(models: tuple[str, ...]) -> None:
     if unknown or not set(models) & set(LADDER.bodies):
         raise SolidgearError(
             f"models: {', '.join(unknown or models) or 'none given'}; choose from "
-            f"{', '.join(LADDER.names)}, lumped not alone"
+            f"{', '.join(LADDER.names)}, and not lumped alone"
         )
 
 
@@ -310,5 +312,5 @@ def _causes(scene: Scene, solutions: dict[str, Solution], options, progress: Pro
             if cause:
                 out.append(cause)
     except SolidgearError as error:
-        log.warning("causes left out: %s", error)
+        log.warning("causes skipped: %s", error)
     return out

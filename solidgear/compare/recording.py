@@ -175,7 +175,7 @@ def _add_lumped(
     if lumped_model.valid and source.family == SOLID:
         verdict.sentences.append(
             f"A {LADDER[name].title} ({masses}) is within {percent(tolerance)} too, for first "
-            "bending and below only, and costs as much as what it rests on."
+            "bending and below only, and costs as much as the solid it is made from."
         )
     elif lumped_model.valid:
         verdict.cheapest = name

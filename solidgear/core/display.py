@@ -41,7 +41,7 @@ class Displayed:
         """
         draw = _shown(f"{self.shown}_figure")
         if draw is None:
-            raise TypeError(f"a {type(self).__name__} has no picture; table() tells its numbers")
+            raise TypeError(f"a {type(self).__name__} has no picture; table() shows its numbers")
         return draw(self, *args, **kwargs)
 
     def to_dataframe(self, *args: Any, **kwargs: Any) -> Any:

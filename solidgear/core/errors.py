@@ -39,7 +39,7 @@ class SceneError(SolidgearError, ValueError):
     Parameters
     ----------
     reason : str
-        The problem, and how to correct it.
+        The problem, and a right value.
     path : tuple of str and int
         Keys and zero-based indices from the root of the scene to the faulty entry.
     value : str
@@ -329,9 +329,9 @@ def _plain_words(entry: Mapping, data: Any) -> str:
         "model_attributes_type": "must be a table of keys",
         "union_tag_not_found": "this key is missing; "
         + (
-            'it says what the feature is, such as kind = "keyway"'
+            'it gives the sort of the feature, such as kind = "keyway"'
             if entry["loc"][0] == "feature"
-            else 'it says which shape the segment has, such as kind = "cylinder"'
+            else 'it gives the shape of the segment, such as kind = "cylinder"'
         ),
         "union_tag_invalid": f"unknown kind; write one of {ctx.get('expected_tags')}",
         "literal_error": f"must be {expected}{hint}",

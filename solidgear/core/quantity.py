@@ -84,7 +84,9 @@ class Quantity(Name):
     @property
     def place(self) -> tuple[int, int]:
         """Row and column of an entry of a matrix."""
-        assert self.row is not None and self.column is not None, f"{self} is no entry of a matrix"
+        assert self.row is not None and self.column is not None, (
+            f"{self} is not an entry of a matrix"
+        )
         return self.row, self.column
 
     @overload

@@ -109,8 +109,8 @@ def in_series(
     series[np.abs(series) <= ROUNDING * np.outer(size, size)] = 0.0
     if _softest(series, half.shape[1]) < LOST <= _softest(stiffness, root_of(stiffness).shape[1]):
         raise SolidgearError(
-            f"{name} is softer than the bearings in it by more than sixteen digits can tell; "
-            "write 0 for a motion that it leaves free, or stiffnesses that are nearer to each other"
+            f"{name} is too much softer than the bearings in it for sixteen digits; write 0 for a "
+            "motion that it leaves free, or stiffnesses nearer to each other"
         )
     return series
 

@@ -94,8 +94,8 @@ def _beside_steps(scene: Scene, bearing: Bearing, data: Catalogue) -> Iterator[s
         if reach > slack and shoulder > data.bore * (1 + BORE):
             yield (
                 f"{_label(bearing, data)} reaches from y = {_mm(low)} to {_mm(high)}, over a step "
-                f"to {_mm(shoulder)} at {_mm(step)} ({segment.name!r}), which its bore of "
-                f"{_mm(data.bore)} does not pass: correct position, designation or the segment"
+                f"to {_mm(shoulder)} at {_mm(step)} ({segment.name!r}), larger than its bore of "
+                f"{_mm(data.bore)}: correct position, designation or the segment"
             )
         elif shoulder > data.bore + OUTER_RING * (data.outer_diameter - data.bore):
             yield (
@@ -111,9 +111,9 @@ def _inside(bearing: Bearing, data: Catalogue) -> Iterator[str]:
     middle = (data.bore + data.outer_diameter) / 2
     if data.pitch_diameter and abs(data.pitch_diameter / middle - 1) > PITCH:
         yield (
-            f"{_label(bearing, data)} has a pitch_diameter of {_mm(data.pitch_diameter)}, and the "
-            f"middle between its bore and its outer diameter is {_mm(middle)}: are its inner "
-            "dimensions those of another bearing?"
+            f"{_label(bearing, data)} has a pitch_diameter of {_mm(data.pitch_diameter)}, but "
+            f"{_mm(middle)} is midway between its bore and its outer diameter: check its inner "
+            "dimensions"
         )
 
 

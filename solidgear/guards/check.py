@@ -240,35 +240,35 @@ def _beyond_the_segments(scene: Scene) -> Iterator[Notice]:
         yield Notice(
             "avoid",
             tuple(unfit),
-            f"{feature_labels(features)} has no axis, and models of shafts do not hold it",
+            f"{feature_labels(features)} has no axis, and models of shafts cannot solve it",
         )
         return
     names = feature_labels(features)
     # fillets of a part from a file are neither, and are not recognised
-    as_recognised = ", as far as cylinders and cones tell" if scene.body is not None else ""
+    as_recognised = ", judged by cylinders and cones" if scene.body is not None else ""
     yield Notice(
         "fact",
         (),
-        f"not of revolution{as_recognised}: {names}; all that is told of the shaft is of its plain part",
+        f"not of revolution{as_recognised}: {names}; numbers of the shaft are for its plain part",
     )
     fit = LADDER.holding(scene)
-    use = f"use {' or '.join(fit)}" if fit else "no model holds all of them"
+    use = f"use {' or '.join(fit)}" if fit else "no model solves all of them"
     for model in (m for m in unfit if LADDER[m].holds):
         yield Notice("avoid", (model,), f"{LADDER[model].unfit(scene)}; {use}")
     for model in (m for m in fit if m in LADDER.fit(scene)):
         for sentence in heavy_meshes(scene, LADDER[model]) if LADDER[model].holds else ():
-            small = "features that are small beside the part make cells as small around them"
+            small = "small features need small cells"
             yield Notice("fact", (model,), f"{sentence}; {small}")
     lumped = tuple(m for m in unfit if LADDER[m].family == LUMPED)
     blind = tuple(m for m in unfit if m not in lumped and not LADDER[m].holds)
     if lumped:
         on = " or ".join(m for m in fit if LADDER[m].family == SOLID)
-        rests = f"the scene has {names}: a lumped model of it rests on a solid that holds "
+        rests = f"the scene has {names}: its lumped model comes from a solid that solves "
         rests += "it" if len(features) == 1 else "them"
         yield Notice(
             "open" if fit else "avoid",
             lumped,
-            f"{rests} ({on}), and costs as much; run compare for what it is worth"
+            f"{rests} ({on}), and costs as much; run compare to judge it"
             if fit
             else f"{rests}, and there is none",
         )
@@ -276,8 +276,8 @@ def _beyond_the_segments(scene: Scene) -> Iterator[Notice]:
         yield Notice(
             "avoid",
             blind,
-            f"the scene has {names}, of which a model of revolution knows nothing: it would answer "
-            f"for the plain part; {use}",
+            f"the scene has {names}, so a model of revolution would answer for the plain part; "
+            f"{use}",
         )
 
 
@@ -328,7 +328,7 @@ def _of_the_shaft(scene: Scene) -> Iterator[Notice]:
             + (f"y = {1e3 * m.lo:.6g} to {1e3 * m.hi:.6g} mm" if m.on is None else repr(m.on))
             for m in scene.masses
         )
-        yield Notice("fact", (), f"of this mass the shaft has {shaft.mass:.4g} kg, {masses}")
+        yield Notice("fact", (), f"the shaft has {shaft.mass:.4g} kg of this mass, {masses}")
 
 
 def _of_the_mesh(scene: Scene, body: Body) -> Iterator[Notice]:
@@ -359,14 +359,15 @@ def _of_the_mesh(scene: Scene, body: Body) -> Iterator[Notice]:
             yield Notice(
                 "fault",
                 model,
-                f"{name} of the {body.fidelity} mesh is {error:+.2e} off {off}, limit {limit:g}: mesh finer",
+                f"{name} of the {body.fidelity} mesh is {error:+.2e} off {off}, limit {limit:g}: "
+                "use a finer mesh",
             )
     against = f"{' and '.join(errors)} against {source}, " if errors else ""
     yield Notice(
         "fact",
         model,
-        f"mesh looked at: {body.fidelity}, {body.size} unknowns, {against}stiffness {residual:.1e} "
-        "against rigid motions (a free body gives rounding)",
+        f"mesh checked: {body.fidelity}, {body.size} unknowns, {against}stiffness {residual:.1e} "
+        "against rigid motions (rounding, for a free body)",
     )
     if residual > 1e-9:
         yield Notice(

@@ -94,7 +94,7 @@ def free_motions(probe: Probe) -> Notices:
         yield Notice(
             "caution",
             (),
-            f"bearings leave {free} rigid motions free; only torsion is meant to be: give the "
+            f"bearings leave {free} rigid motions free, where only torsion should be; give the "
             "missing entries a stiffness",
         )
 
@@ -121,19 +121,19 @@ def oblique_softness(probe: Probe) -> Notices:
             yield Notice(
                 "caution",
                 (),
-                f"at this load few rolling elements of bearing {b.name!r} carry, all of them to "
-                f"one side: in one oblique direction it has {share}, and what it has changes with "
-                "the load; more load, preload or less clearance makes more of them carry, and "
-                "solidgear budget tells what the inside leaves open",
+                f"few rolling elements of bearing {b.name!r} carry at this load, so in one "
+                f"oblique direction it has {share}, which changes with the load; more load, "
+                "preload or less clearance makes more of them carry; solidgear budget shows the "
+                "range",
             )
         elif least < FOUR_DIGITS:
             softness = "is taken as free" if least < FREE else f"is {least:.1e} of its entries"
             yield Notice(
                 "caution",
                 (),
-                f"the couplings of bearing {b.name!r} all but cancel its stiffness in one oblique "
-                f"direction, which {softness}: below {FOUR_DIGITS:g} it hangs on the fourth digit of "
-                "the entries; check their signs and give more digits",
+                f"the couplings of bearing {b.name!r} almost cancel its stiffness in one oblique "
+                f"direction, which {softness}; below {FOUR_DIGITS:g} it depends on the fourth digit "
+                "of the entries; check their signs and give more digits",
             )
 
 
@@ -158,7 +158,7 @@ def facing_one_way(scene: Scene) -> Iterator[str]:
         way = ways.pop()
         opposite = "nothing holds it the other way"
         if held_otherwise:
-            opposite = "only other bearings hold it the other way, and feel all their preload"
+            opposite = "only other bearings hold it the other way, and take all the preload"
         yield (
             f"the bearings {listed([repr(b.name) for b in rows])} all hold the shaft towards {way}: "
             f'{opposite}; turn one of a pair with holds = "{"-y" if way == "+y" else "+y"}"'
@@ -178,7 +178,7 @@ def axial_support(probe: Probe) -> Notices:
             "caution",
             (),
             f"no bearing locates the shaft along y: {listed(floating)} {float_}{others}; "
-            'let one hold it, by support = "locating" or by its kind',
+            'let one locate it, by support = "locating" or by its kind',
         )
         return
     fixed = [(b, b.catalogue) for b in bearings if b.catalogue and not b.floats]
@@ -190,9 +190,8 @@ def axial_support(probe: Probe) -> Notices:
         yield Notice(
             "fact",
             (),
-            f"the bearings {listed(both_ways)} each locate the shaft along y, "
-            "which is statically indeterminate: they share its load by clearance and stiffness, and "
-            "what warmth and distances of seats press between them is in no number; write "
+            f"bearings {listed(both_ways)} each locate the shaft along y: they share its load by "
+            "clearance and stiffness, and forces from heat and seat distances are left out; write "
             'support = "floating" at all but one',
         )
     if any(b.support for b in bearings):
@@ -210,6 +209,6 @@ def split_pair(probe: Probe) -> Notices:
         yield Notice(
             "fact",
             (),
-            "bearings, with what they stand in, that differ in x and z split the first bending "
-            f"pair by {100 * split:.2g} % (Timoshenko): 'bending 2' is the twin of 'bending 1'",
+            "bearings that differ between x and z split the first bending pair by "
+            f"{100 * split:.2g} % (Timoshenko): 'bending 2' is the twin of 'bending 1'",
         )

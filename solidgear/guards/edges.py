@@ -45,7 +45,7 @@ def fillets(probe: Probe) -> Notices:
         yield Notice(
             level,
             beams(),
-            f"a beam leaves out the {places}: on a short overhang the largest takes {soft:.1g} % of "
-            f"the deflection and {tilt:.1g} % of the tilt and adds {rise:.1g} % to first bending; a "
-            f"thousandth is passed at {NOTICED:g}, a hundredth at {LARGE:g}; use {probe.instead()}",
+            f"a beam leaves out the {places}: on a short overhang that is {soft:.1g} % of the "
+            f"deflection, {tilt:.1g} % of the tilt and {rise:.1g} % of first bending; use "
+            f"{probe.instead()}",
         )

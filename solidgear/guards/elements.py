@@ -48,8 +48,7 @@ def narrow_seat(probe: Probe) -> Notices:
             f"the {'seats' if several else 'seat'} of {listed(map(repr, seats))} "
             f"{'are' if several else 'is'} {widths} diameters of the shaft wide: below {limit:g} "
             f"{'they tie' if several else 'it ties'} like a line, {softer:g} % softer than a seat "
-            "of 0.5, and softer "
-            'without limit as it narrows; give the real width, or attachment = "section"',
+            'of 0.5; give the real width, or attachment = "section"',
         )
 
 
@@ -76,8 +75,8 @@ def rigid_seats(probe: Probe) -> Notices:
         yield Notice(
             "caution",
             solids(),
-            f"rigid seats at {', '.join(chosen)}: rigid rings at all seats move {words} against "
-            'averaged ones, limit 1 %; they are a stiff bound, use attachment = "average"',
+            f"rigid seats at {', '.join(chosen)}: against averaged ones, rigid seats everywhere "
+            f'change {words}, limit 1 %; they are a stiff bound, use attachment = "average"',
         )
 
 
@@ -93,15 +92,15 @@ def linear_elements(probe: Probe) -> Notices:
         yield Notice(
             "fact",
             ("solid",),
-            f"the cells of {file.name} are {file.element}, which lock in bending: they are solved as "
-            f"{SOLVED_AS[file.element]}, with flat sides",
+            f"cells of {file.name} are {file.element}, which lock in bending, and are solved as "
+            f"{SOLVED_AS[file.element]} with flat sides",
         )
     if element in LINEAR:
         better, factor = LINEAR[element]
         yield Notice(
             "caution",
             ("solid",),
-            f"element = {element} errs {factor} times as much in first bending as {better} at "
+            f"element = {element} has {factor} times the error of {better} in first bending at "
             f"9000 unknowns, more on longer cells; use {better}",
         )
     elif element == "Q1":
@@ -120,8 +119,8 @@ def hexahedra_at_fillets(probe: Probe) -> Notices:
         yield Notice(
             "open",
             ("solid",),
-            f"element = {element} converges slowly and unevenly beside {names}: no error bar can be told; "
-            "use element = tet10, which is the default here, or the harmonic solid",
+            f"element = {element} converges unevenly at {names}, so that it has no error bar; use "
+            "element = tet10, the default here, or the harmonic solid",
         )
 
 
@@ -195,7 +194,7 @@ def _locks_less(probe: Probe, nu: float) -> str:
         return "the harmonic solid of order 3 or more"
     body = probe.whole.body
     better = "hex27" if body is not None and body.kind == "block" else "tet10"
-    return f"{better}, which lacks {100 * locking(better, nu):.2g} %"
+    return f"{better}, which is {100 * locking(better, nu):.2g} % too stiff"
 
 
 def uniform_at_shoulder(probe: Probe) -> Notices:
@@ -206,8 +205,7 @@ def uniform_at_shoulder(probe: Probe) -> Notices:
             "caution",
             ("harmonic",),
             f"layers = 0 at a corner of {np.degrees(angle):.0f} degrees: the mesh converges with "
-            f"order {2 * exponent:.2f} whatever the order of its elements; use layers = 2 or "
-            "more",
+            f"order {2 * exponent:.2f}, whatever the elements' order; use layers = 2 or more",
         )
 
 
@@ -250,7 +248,7 @@ def memory(probe: Probe) -> Notices:
         yield Notice(
             "avoid" if need > free else "caution",
             ("solid",),
-            f"{article} 3D solid needs about {need:.0f} MB (good to a factor of {GOOD_TO:g}) and "
+            f"{article} 3D solid needs about {need:.0f} MB (to a factor of {GOOD_TO:g}), and "
             f"{free:.0f} MB are free; use {smaller}",
         )
 
@@ -261,5 +259,5 @@ def renderer(probe: Probe) -> Notices:
         yield Notice(
             "fact",
             everything(),
-            "pyvista is not installed: no pictures will be drawn, and no number depends on it",
+            "pyvista is not installed: no pictures of modes will be drawn",
         )

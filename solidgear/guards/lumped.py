@@ -44,14 +44,14 @@ def effective_mass(probe: Probe) -> Notices:
         level = beyond(deviation, probe.scene.ask.tolerance)
         lacks = "holds the mode as its second one" if matched.feasible else "has a negative entry"
         reasons.append(
-            f"the mode-matched pair of masses {lacks}: Guyan's stands in, whose first bending is "
+            f"the mode-matched pair of masses {lacks}, so Guyan's is taken, with first bending "
             f"{against(deviation, 'higher', 'lower')} that of {beam}"
         )
     if point.static_share < ENERGY:
         reasons.append(
             f"the static shape of {probe.scene.port.name!r} holds {100 * point.static_share:.3g} "
-            f"% of the energy of first bending, less than {100 * ENERGY:g} %: the mode lives "
-            "elsewhere, and a lumped model is good for stiffness only"
+            f"% of the energy of first bending, less than {100 * ENERGY:g} %: a lumped model is "
+            "good for stiffness only"
         )
     if reasons:
         yield Notice(level, ("lumped",), f"{'; '.join(reasons)}; use {better}")
@@ -75,8 +75,8 @@ def lumped_against_solid(probe: Probe) -> Notices:
     bar = bars[FIRST_BENDING].width if FIRST_BENDING in bars else 0.0
     kind = gap_verdict(gap, bar, tolerance)
     text = (
-        f"first bending of the lumped model is {against(gap, 'higher', 'lower')} "
-        f"that of a light harmonic solid{sure(bar)}"
+        f"its first bending is {against(gap, 'higher', 'lower')} that of a light harmonic "
+        f"solid{sure(bar)}"
     )
     if kind == deviations.BEYOND:
         yield Notice(
@@ -88,8 +88,8 @@ def lumped_against_solid(probe: Probe) -> Notices:
         yield Notice(
             "open",
             ("lumped",),
-            f"{text}, and the light solid is too coarse to tell whether that is within the "
-            f"{100 * tolerance:g} % asked for; run compare to find out",
+            f"{text}, which is too close to the {100 * tolerance:g} % asked for to tell; run "
+            "compare to find out",
         )
 
 
@@ -107,8 +107,7 @@ def frequency_range(probe: Probe) -> Notices:
         yield Notice(
             "avoid" if highest > pole else "caution",
             ("lumped",),
-            f"{highest:g} Hz are asked for, and with the lumped point held the shaft has a mode at "
-            f"{pole:.4g} Hz that no condensed model has: Guyan's is off by 1 % of the "
-            f"stiffness from {HOLDS * pole:.4g} Hz, by 10 % from {DRIFTS * pole:.4g} Hz; use "
-            f"{probe.instead(BEAM_OR_SOLID, *beams())} above",
+            f"within the {highest:g} Hz asked for it lacks the mode at {pole:.4g} Hz (lumped point "
+            f"held), and is 1 % off from {HOLDS * pole:.4g} Hz, 10 % from {DRIFTS * pole:.4g} Hz; "
+            f"use {probe.instead(BEAM_OR_SOLID, *beams())} above",
         )

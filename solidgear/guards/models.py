@@ -46,14 +46,14 @@ def beam_against_solid(probe: Probe) -> Notices:
         name, gap = worst.quantity, worst.relative
         if name.diagonals:  # a share of their mean is no ratio of the two numbers
             share = f"{abs(gap):.3g} times" if abs(gap) > 1 else f"{100 * abs(gap):.3g} % of"
-            ratio = f"{share} the geometric mean of its two diagonal entries away from"
+            ratio = f"{share} the geometric mean of both diagonal entries off"
         else:
             words = ("larger", "smaller") if name.kind == COMPLIANCE else ("higher", "lower")
             ratio = against(gap, *words)
         quantity = in_words(name, probe.main)
         text = (
-            f"{quantity} of the {LADDER[model].title} is {ratio} that of a "
-            f"light harmonic solid {TIES[worst.attachment]}{sure(worst.bar)}"
+            f"{quantity} of the {LADDER[model].title} is {ratio} that of a light "
+            f"harmonic solid{TIES[worst.attachment]}{sure(worst.bar)}"
         )
         if kind == deviations.BEYOND:
             yield Notice(
@@ -65,11 +65,15 @@ def beam_against_solid(probe: Probe) -> Notices:
             yield Notice(
                 "open",
                 with_lumped(model),
-                f"{text}, and the light solid is too coarse to tell whether that is within the "
-                f"{100 * tolerance:g} % asked for; run compare to find out",
+                f"{text}, which is too close to the {100 * tolerance:g} % asked for to tell; run "
+                "compare to find out",
             )
         else:
-            yield Notice("fact", with_lumped(model), f"{text}, the largest gap of what is compared")
+            yield Notice(
+                "fact",
+                with_lumped(model),
+                f"{text}, the largest difference of all that is compared",
+            )
 
 
 # slenderness.py: where the last of first bending free, on bearings, and C_zz on bearings passes 1 %
@@ -113,7 +117,8 @@ STEPS = np.array(
         [3.0, 0.1836],
     ]
 )
-STEP, STEEP = 1.17, 1.53
+#: ratio of diameters from which 1 % is missed
+STEP = 1.17
 
 
 def shoulder(probe: Probe) -> Notices:
@@ -127,9 +132,8 @@ def shoulder(probe: Probe) -> Notices:
     segments, degrees = probe.scene.segments, np.degrees(sharpest_corner(probe.scene)[0])
     if not stiff:
         return
-    sharp = f"(sharpest corner {degrees:.0f} degrees)" if degrees > 180 else "(with fillets)"
-    limits = f"1 % is passed at {STEP:g}, 5 % at {STEEP:g}"
-    by_reason: dict[str, list[tuple[str, str, str, str]]] = {}
+    fillets = "" if degrees > 180 else " (with fillets)"
+    by_materials: dict[str, list[tuple[str, str, str, str]]] = {}
     for a, b in zip(segments, segments[1:]):
         (thin, inside), (thick, outside) = sorted(
             ((a.outer1, a.material), (b.outer0, b.material)), key=lambda side: side[0]
@@ -144,23 +148,23 @@ def shoulder(probe: Probe) -> Notices:
         if small:
             continue
         missing = more * float(np.interp(ratio, MISSING[:, 0], MISSING[:, 1]))
-        by_stiffness = f"{more:.2g} times as much as of one material, by E of both parts"
-        by_reason.setdefault(limits if one_material else by_stiffness, []).append(
+        materials = "" if one_material else f", {more:.2g} times as much as with one material"
+        by_materials.setdefault(materials, []).append(
             (
-                f"{a.name!r} and {b.name!r} at y = {1e3 * b.y0:.6g} mm",
+                f"{a.name!r} to {b.name!r}, y = {1e3 * b.y0:.6g} mm",
                 f"{ratio:.2f}",
                 f"{2e3 * thin * missing:.2g}",
                 f"{100 * lacking:.1f}",
             )
         )
-    for reason, steps in by_reason.items():
+    for materials, steps in by_materials.items():
         places, ratios, missed, shares = (listed(column) for column in zip(*steps))
         yield Notice(
             "caution",
             stiff,
-            f"shoulder{'s' if len(steps) > 1 else ''} between {places} {sharp}, ratio of diameters "
-            f"{ratios}: a beam lacks {missed} mm of thin shaft, {shares} % of the deflection of an "
-            f"overhang of one diameter; {reason}; use {better}",
+            f"shoulder{'s' if len(steps) > 1 else ''} {places}, ratio {ratios}{fillets}: a beam "
+            f"lacks {missed} mm of thin shaft, {shares} % of a short overhang's deflection{materials}; "
+            f"use {better}",
         )
 
 
@@ -182,9 +186,8 @@ def disc_head(probe: Probe) -> Notices:
                 "caution",
                 beams(),
                 f"the head with {port.name!r}, y = {1e3 * low:.6g} to {1e3 * high:.6g} mm, is "
-                f"{(high - low) / widest:.2g} of its diameter long: below {DISC:g} it bends in "
-                "itself, and "
-                f"a beam's tilt compliance misses 10 % and more; use {probe.instead()}",
+                f"{(high - low) / widest:.2g} of its diameter long: below {DISC:g} a beam misses "
+                f"10 % and more of its tilt compliance; use {probe.instead()}",
             )
 
 
@@ -224,11 +227,9 @@ def point_beyond_surface(probe: Probe) -> Notices:
             yield Notice(
                 "caution",
                 (*beams(), *probe.solids),
-                f"the lumped point {port.name!r} lies {distance:.2f} diameters of the shaft beyond its "
-                f"surface ({1e3 * port.lo:.6g} to {1e3 * port.hi:.6g} mm): from {BEYOND:g} on "
-                "beams "
-                "and solids answer different questions (7 % in tilt at 0.1); move the point, or "
-                "give it the surface it stands for",
+                f"the lumped point {port.name!r} lies {distance:.2f} diameters beyond its surface "
+                f"({1e3 * port.lo:.6g} to {1e3 * port.hi:.6g} mm): from {BEYOND:g} on beams and "
+                "solids differ in meaning (7 % in tilt at 0.1); move the point or its surface",
             )
 
 
@@ -257,8 +258,8 @@ def ovalising(probe: Probe) -> Notices:
     yield Notice(
         "avoid" if low < first else "caution",
         beams(),
-        f"sections lose their shape below {bound}: {lowest}, which a beam cannot do; use "
-        + probe.instead("the harmonic solid, which solves them"),
+        f"sections lose their shape below {bound}: {lowest}, which a beam leaves out; use "
+        + probe.instead("the harmonic solid"),
     )
     cells = probe.cells_around if probe.body.fidelity == "solid" else DEFAULT_AROUND
     needed = max(cells_around(scene, n) for n in inside)
@@ -266,9 +267,9 @@ def ovalising(probe: Probe) -> Notices:
         yield Notice(
             "caution",
             ("solid",),
-            f"sections lose their shape below {bound}: {lowest}; with {cells} cells around "
-            "hexahedra put such modes of a thin wall up to 25 % too high, with 24 2.3 %, "
-            f"with 32 0.9 %; use --set around={needed}",
+            f"sections lose their shape below {bound}: {lowest}; {cells} cells around make them up "
+            "to 25 % too high in a thin wall, 24 cells 2.3 %, 32 cells 0.9 %; use --set "
+            f"around={needed}",
         )
 
 

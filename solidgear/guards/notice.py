@@ -86,12 +86,12 @@ def slip_in_units(
         least, most = sound[name]
         value, owner = min(values) if min(values)[0] < least else max(values)
         number = f"{name} of {owner}" if owner else name
-        others = f", and so are {len(values) - 1} others" if len(values) > 1 else ""
+        others = f", and {len(values) - 1} more" if len(values) > 1 else ""
         slips.append(f"{number} is {value:.3g}, outside {least:g} to {most:g}{others}")
     if not slips:
         return ""
     symbols = f" ({legend})" if legend else ""
-    return f"probably a slip in units: {'; '.join(slips)}{symbols}; check the number and its unit"
+    return f"probably a wrong unit: {'; '.join(slips)}{symbols}; check the number and its unit"
 
 
 def against(gap: float, more: str, less: str) -> str:

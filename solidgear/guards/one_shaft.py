@@ -82,7 +82,7 @@ def one_shaft(
         wanted=[q for q in QUANTITIES if q.is_frequency],
         spare=True,
     )
-    say("how sure its frequencies are")
+    say("error bars of its frequencies")
     bars = bars_of_modes(scene, body, solution.modes.whole, settled)
     for quantity in (q for q in settled.bars if q.is_frequency):
         # bending may be called by its plane

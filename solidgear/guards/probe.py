@@ -78,7 +78,7 @@ class Probe:
         """
         if not any(LADDER[m].unfit(self.whole) for m in models or ("harmonic",)):
             return usual
-        return " or ".join(LADDER.holding(self.whole)) or "a scene with fewer of its features"
+        return " or ".join(LADDER.holding(self.whole)) or "a scene with fewer features"
 
     @property
     def beam_fits(self) -> bool:
@@ -164,8 +164,8 @@ class Probe:
                 return synthesise(beam.body, self.supports, self.scene.port.name, beam.modes)
         except FloatingPointError:
             raise SolidgearError(
-                "first bending leaves the lumped point at rest in the z plane, in which masses "
-                "are lumped; bearings differ in x and z"
+                "first bending does not move the lumped point in the z plane, where masses are "
+                "lumped; bearings differ between x and z"
             ) from None
 
     @cached_property

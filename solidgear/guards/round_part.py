@@ -35,15 +35,15 @@ def described(scene: Scene) -> Iterator[Notice]:
         if abs(off) > 0.1:
             # of a polygon on the circle, n sin(t) / 2 and n sin(t) (2 + cos t) / 24 with t = 2 pi / n
             same += (
-                ": models of its segments are of the round part; a solid of the mesh is so much "
-                f"{'lighter' if off > 0 else 'heavier'}, and the second moment of its sections is "
-                f"{'lower' if off > 0 else 'higher'} by about twice that; how it bends rests on its "
-                "elements too"
+                ": models of its segments solve the round part; a solid of the mesh is so much "
+                f"{'lighter' if off > 0 else 'heavier'}, and its second moment of area about "
+                f"twice as much {'lower' if off > 0 else 'higher'}, but its bending depends on "
+                "its elements too"
             )
     if body.beside_arcs:
         same += (
-            "; arcs such as fillets are cones of the same volume, which lie up to "
-            f"{1e3 * body.beside_arcs:.2g} mm beside them"
+            "; arcs such as fillets become cones of the same volume, up to "
+            f"{1e3 * body.beside_arcs:.2g} mm off"
         )
     several = len(scene.segments) > 1
     segments = f"{len(scene.segments)} segments are" if several else "1 segment is"
@@ -51,9 +51,9 @@ def described(scene: Scene) -> Iterator[Notice]:
     yield Notice(
         "fact",
         (),
-        f"{body.name}: {1e6 * body.volume:.6g} cm^3, of which {segments} the round part: "
-        f"{100 * body.round_share:.3g} % of its surface beside end faces and shoulders "
-        f"is of revolution, and the volume of the {noun} is {same}",
+        f"{body.name}: {1e6 * body.volume:.6g} cm^3; {segments} the round part: "
+        f"{100 * body.round_share:.3g} % of its surface without end faces and shoulders is of "
+        f"revolution, and the volume of the {noun} is {same}",
     )
     yield from of_files(scene)
 
@@ -72,8 +72,8 @@ def of_files(scene: Scene) -> Iterator[Notice]:
         yield Notice(
             "caution",
             tuple(model.name for model in LADDER if PARTS in model.holds),
-            f"the mesh of {body.name} is the only one there is: how good its numbers are is not "
-            f'judged{finer}; mesh = ["coarser", "finer"] of the [body] judges two',
+            f"there is one mesh of {body.name}, so that its numbers have no error bar{finer}; "
+            'give two, as mesh = ["coarser", "finer"] under [body]',
         )
 
 
@@ -97,9 +97,8 @@ def _of_materials(scene: Scene) -> Iterator[Notice]:
         yield Notice(
             "caution",
             (),
-            f"across {listed(body.mixed, 12)} of the round part several materials lie side by side, "
-            "which no segment can hold: there it is told with one of their mean E and density, as "
-            "stiff and as heavy in tension only",
+            f"across {listed(body.mixed, 12)} of the round part several materials lie side by "
+            "side; a segment has their mean E and density there, right in tension only",
         )
 
 
@@ -131,16 +130,17 @@ def against_the_part(
             continue
         if all(v == WITHIN for v in verdicts):
             words = (
-                f"within the {percent(tolerance)} asked for, the {LADDER[ROUND_MODEL].title} of "
-                "its segments would do"
+                f"within the {percent(tolerance)} asked for, so the {LADDER[ROUND_MODEL].title} "
+                "of its segments is enough"
             )
         elif BEYOND in verdicts:
-            words = f"more than the {percent(tolerance)} asked for: the part is needed"
+            words = f"more than the {percent(tolerance)} asked for, so the part itself is needed"
         else:
-            words = f"whether that is within the {percent(tolerance)} asked for is open"
+            words = f"too close to the {percent(tolerance)} asked for to tell"
         yield Notice(
             "caution",
             (model,),
-            f"the round part of {scene.body.name} alone{mean_material}, as {LADDER[ROUND_MODEL].title}, has "
-            f"{', '.join(labels)} against the {LADDER[model].title} of the part; {words}",
+            f"the round part of {scene.body.name} alone{mean_material}, as "
+            f"{LADDER[ROUND_MODEL].title}, has {', '.join(labels)} against the "
+            f"{LADDER[model].title} of the part: {words}",
         )

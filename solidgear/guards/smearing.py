@@ -65,18 +65,18 @@ def smearing(scene: Scene) -> Notices:
     stiffness, frequency = expected(scene)
     mass, polar = _lacking(scene)
     cost = (
-        f"{feature_labels(_smeared(scene))}: smeared into the segment of revolution, which lacks "
-        f"{mass:+.3g} kg and {polar:+.3g} kg m^2 of them; stiffness is off by up to {100 * stiffness:.2g} %, "
-        f"frequencies by up to {100 * frequency:.2g} % (as measured on an overhung pinion)"
+        f"{feature_labels(_smeared(scene))}: smeared into the segment, which lacks "
+        f"{mass:+.3g} kg and {polar:+.3g} kg m^2; stiffness is up to {100 * stiffness:.2g} % off, "
+        f"frequencies up to {100 * frequency:.2g} % (as on an overhung pinion)"
     )
     tolerance = scene.ask.tolerance
     if max(stiffness, frequency) <= tolerance:
-        yield Notice("fact", (), f"{cost}: no need of 3D at a tolerance of {100 * tolerance:g} %")
+        yield Notice("fact", (), f"{cost}, within the tolerance of {100 * tolerance:g} %")
         return
     round_ones = tuple(m for m in everything() if not LADDER[m].for_features)
     yield Notice(
         "caution",
         round_ones,
-        f"{cost}, beyond the tolerance of {100 * tolerance:g} %: resolve them with "
-        'model = "sector", or give the lumped point the mass that is lacking',
+        f'{cost}, beyond the tolerance of {100 * tolerance:g} %; use model = "sector", or add the '
+        "missing mass at the lumped point",
     )

@@ -41,7 +41,7 @@ MeasuredFile = Annotated[
 Tolerance = Annotated[
     float,
     typer.Option(
-        "--tol", parser=share, metavar="FLOAT", help="Bar allowed of computed frequencies."
+        "--tol", parser=share, metavar="FLOAT", help="Error bar allowed for computed frequencies."
     ),
 ]
 Out = Annotated[
@@ -63,10 +63,12 @@ def correlate(
     data = load_measured(measured)
     loaded = load(scene)
     with held(out) if out else nullcontext(), run.progress() as progress:
-        found = correlated(loaded, data, tol, progress)
-        files = _written(out, found, progress) if out else []
-    tables = [pairs(found)] if data.responses is None else [peaks(found), pairs(found)]
-    _tell(found, tables, files, run)
+        correlation = correlated(loaded, data, tol, progress)
+        files = _written(out, correlation, progress) if out else []
+    tables = (
+        [pairs(correlation)] if data.responses is None else [peaks(correlation), pairs(correlation)]
+    )
+    _tell(correlation, tables, files, run)
 
 
 @command
@@ -78,16 +80,15 @@ def identify(
         list[str] | None,
         typer.Option(
             "--vary",
-            help="Entry that is to be found, such as bearing.A.stiffness.kxx; with bounds, "
-            '"material.E=180 GPa : 220 GPa", or known to a standard deviation, '
-            '"material.E=206 GPa ± 3 %"; repeatable.',
+            help='Entry to find, such as bearing.A.stiffness.kxx; with bounds, "material.E=180 GPa '
+            ': 220 GPa", or a standard deviation, "material.E=206 GPa ± 3 %"; repeatable.',
         ),
     ] = None,
     predict: Annotated[
-        int, typer.Option("--predict", help="Modes beyond the measured ones to predict.")
+        int, typer.Option("--predict", help="Number of modes above the measured ones to predict.")
     ] = 0,
     priors: Annotated[
-        bool, typer.Option("--priors", help="Ranges of the scene's [uncertain] hold as well.")
+        bool, typer.Option("--priors", help="Use the ranges of the scene's [uncertain] as well.")
     ] = False,
     tol: Tolerance = TOLERANCE,
     out: Out = None,
@@ -95,7 +96,7 @@ def identify(
 ) -> None:
     data = load_measured(measured)
     with held(out) if out else nullcontext(), run.progress() as progress:
-        found = identified(
+        identification = identified(
             scene,
             data,
             vary or (),
@@ -104,22 +105,24 @@ def identify(
             progress=progress,
             priors=priors,
         )
-        files = write_identification(out, found) if out else []
-    tables = [entries(found), fitted(found)] + [predicted(found)] * bool(found.predicted)
-    _tell(found, tables, files, run)
+        files = write_identification(out, identification) if out else []
+    tables = [entries(identification), fitted(identification)] + [predicted(identification)] * bool(
+        identification.predicted
+    )
+    _tell(identification, tables, files, run)
 
 
-def _written(out: Path, found: Any, progress: Callable[[str], None]) -> list[Path]:
-    """The page of a correlation, with shapes to be turned and responses where there are any."""
+def _written(out: Path, study: Any, progress: Callable[[str], None]) -> list[Path]:
+    """Write the page of a correlation, with shapes and responses where there are any."""
     progress("responses and shapes at the measuring points")
-    shown = turned_beside(found)
-    return write_correlation(out, found, overlay(found), viewer_fragment(shown) if shown else "")
+    viewer = turned_beside(study)
+    return write_correlation(out, study, overlay(study), viewer_fragment(viewer) if viewer else "")
 
 
-def _tell(found: Any, tables: list, files: list[Path], run: Run) -> None:
+def _tell(study: Any, tables: list, files: list[Path], run: Run) -> None:
     if run.as_json:
-        print(json.dumps(found.results, allow_nan=False))
+        print(json.dumps(study.results, allow_nan=False))
         return
-    say(f"{found.scene}: {found.mesh}", *tables, soft_wrap=False)
-    say(*found.sentences, soft_wrap=False)
+    say(f"{study.scene}: {study.mesh}", *tables, soft_wrap=False)
+    say(*study.sentences, soft_wrap=False)
     say(*([f"Written: {', '.join(map(str, files))}"] if files else []), soft_wrap=False)

@@ -105,13 +105,13 @@ def computed_up_to(
         model, options = before.model, dict(before.options)
         same_surface = surface(scene) == surface(before.scene)
         body = before.body if same_surface else build(scene, model, **options)
-    progress("modes and how sure they are")
+    progress("modes and their error bars")
     listed, bars = _barred(scene, body, limit, options, settled)
     while LADDER[model].bounded and _largest(listed, bars, highest) > tolerance:
         if options.get("order", 3) + STEP > HIGHEST:
             break
         options["order"] = options.get("order", 3) + STEP
-        progress(f"order {options['order']}: bars of all modes")
+        progress(f"order {options['order']}: error bars of all modes")
         body = build(scene, model, **options)
         listed, bars = _barred(scene, body, limit, options, settled)
     return Computed(scene, body, tuple(listed), tuple(bars), model, options, limit)

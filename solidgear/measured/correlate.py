@@ -292,9 +292,9 @@ def _sentences(correlation: Correlation) -> Iterator[str]:
     if doubt:
         yield doubt
     yield (
-        f"{len(paired)} of {len(correlation.pairs)} measured resonances have a mode, {len(sure)} of them "
-        f"with a probability of {100 * SURE:.0f} % and no other in question"
-        f"{', if they are of this part' if doubt else ''}."
+        f"{len(paired)} of {len(correlation.pairs)} measured resonances have a mode, {len(sure)} of "
+        f"them surely (probability {100 * SURE:.0f} %, no "
+        f"rival){', if they are of this part' if doubt else ''}."
     )
     worst = correlation.worst
     if worst is not None and worst.computed is not None and worst.relative is not None:
@@ -308,14 +308,14 @@ def _sentences(correlation: Correlation) -> Iterator[str]:
         yield correlation.likeness.condition
     if worst is not None and all(pair.measured.width_hz is None for pair in paired):
         yield (
-            "No resonance says how sure it is, so that none has a band: write for example "
+            "No resonance has an uncertainty, so that none has a band: write for example "
             'uncertainty = "0.1 %".'
         )
     for pair in correlation.pairs:
         if pair.computed is None:
             yield (
-                f"{pair.measured.frequency:.6g} Hz was measured and not computed: no resonance of this "
-                "part, or one of something that the scene does not have."
+                f"{pair.measured.frequency:.6g} Hz was measured and not computed: it is no "
+                "resonance of this part, or of something missing in the scene."
             )
         elif not pair.sure:
             names = ", ".join(f"{mode.name} ({100 * share:.0f} %)" for mode, share in pair.others)

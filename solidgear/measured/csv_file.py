@@ -44,8 +44,8 @@ def _columns(rows: Sequence[Sequence[str]]) -> Responses:
     as_stated = words == ["frequency"] + ["real", "imaginary"] * (len(words) // 2)
     if not as_stated or unit is None or not unit["unit"]:
         raise SceneError(
-            'has responses under other heads than "frequency [Hz], real, imaginary" and as many more '
-            "pairs of real and imaginary as there are responses"
+            'has other heads than "frequency [Hz], real, imaginary", with one more pair "real, '
+            'imaginary" for each further response'
         )
     try:
         numbers = np.array(rows[1:], float)

@@ -63,7 +63,8 @@ def _uncertainty(value: Any) -> tuple[float, str]:
 def _above_zero(value: tuple[float, str]) -> tuple[float, str]:
     if not value[0] > 0:
         raise SceneError(
-            'must be greater than zero: no frequency is known exactly; write for example "0.1 %"'
+            "must be greater than zero, since no frequency is known exactly; write for example "
+            '"0.1 %"'
         )
     if value[1] == "relative" and value[0] >= 1:
         raise SceneError('is more than all of the frequency; a number is a share, "0.1 %" is 0.001')
@@ -72,7 +73,7 @@ def _above_zero(value: tuple[float, str]) -> tuple[float, str]:
 
 def _share(value: tuple[float, str]) -> tuple[float, str]:
     if value[1] != "relative":
-        raise SceneError('must be a share and no frequency, such as "5 %"')
+        raise SceneError('must be a share, such as "5 %", not a frequency')
     return value
 
 
@@ -167,8 +168,8 @@ class Measured(Model):
         if not self.points.states(frame, shapes.length):
             out._remarks = (
                 *self._remarks,
-                f"Measuring points were placed on the surface, within {max(1e3 * away, 0.01):.2g} mm, by "
-                f"{frame.table}.",
+                f"Measuring points were placed on the surface, within {max(1e3 * away, 0.01):.2g} "
+                f"mm, by {frame.table}.",
             )
         return out
 
@@ -182,7 +183,8 @@ class Measured(Model):
             return self
         if self.response_unit:
             raise SceneError(
-                'responses of what file? write file = "tap.uff"', path=("response_unit",)
+                'the file of the responses is missing; write file = "tap.uff"',
+                path=("response_unit",),
             )
         if not 1 <= len(self.mode) <= MOST:
             raise SceneError(
@@ -270,7 +272,9 @@ def _from_universal(table: Measured, folder: Path) -> Measured:
 def _joined_shapes(measured: Measured, folder: Path) -> Shapes:
     """Return shapes of all resonances, from the file that is named; zero of those without."""
     if not measured.shapes:
-        raise SceneError('shapes of what file? write shapes = "test.unv"', path=("shapes",))
+        raise SceneError(
+            'the file of the shapes is missing; write shapes = "test.unv"', path=("shapes",)
+        )
     content = read_universal(folder / measured.shapes)
     if isinstance(content, Responses):
         raise SceneError(
@@ -317,7 +321,8 @@ def _from_shapes(frequencies: Sequence[float], shapes: Shapes | None, name: str)
     out = _from_modes([{"frequency": hertz} for hertz in frequencies], name, shapes)
     if shapes is None:
         out._remarks = (
-            "The file gives no places of its points (dataset 15 or 2411), so its shapes take no part.",
+            "The file gives no positions of its points (dataset 15 or 2411), so its shapes are "
+            "not used.",
         )
     return out
 

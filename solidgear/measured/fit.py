@@ -64,10 +64,10 @@ class Fit:
         if len(self.pairs) < max(unknowns, 1):
             bare = not np.isfinite(computed.bars).any()
             raise SolidgearError(
-                f"identify: resonances with a sure mode: {len(self.pairs)}, fewer than the {unknowns} "
-                "entries that are to be found; "
+                f"identify: {len(self.pairs)} resonances have a sure mode, fewer than the "
+                f"{unknowns} entries to find; "
                 + (
-                    "nothing tells how good the one mesh is: list a coarser one before it"
+                    "one mesh has no error bar: list a coarser one before it"
                     if bare
                     else "vary fewer, or measure more"
                 )
@@ -237,7 +237,7 @@ def best_of(ends: Sequence[End]) -> End:
 def _factor(deviation: float) -> str:
     """Return the standard deviation of a logarithm in words."""
     return (
-        "however far it is changed that way, they move by less than their scatter"
+        "any change of them that way moves the resonances by less than their scatter"
         if deviation > 10
-        else f"they leave it open by a factor of {math.exp(deviation):.3g} either way"
+        else f"they leave a factor of {math.exp(deviation):.3g} either way"
     )

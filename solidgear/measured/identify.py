@@ -150,14 +150,14 @@ def _sentences(result: Identification) -> Iterator[str]:
             f"the file has {entry.before:.6g}."
         )
         if entry.at_bound:
-            yield f"{entry.path} is held by its bound: the data ask for a value beyond it."
+            yield f"{entry.path} is at its bound: the data ask for a value beyond it."
         if entry.prior is not None:
             yield from _prior_sentences(entry, *entry.prior)
     for values in result.alike:
         listed = ", ".join(f"{e.path} = {v:.6g}" for e, v in zip(result.entries, values))
         yield (
-            f"Not the only answer: {listed} (SI) fits these resonances as well; measure shapes, or "
-            "further modes, to tell which."
+            f"Not the only answer: {listed} (SI) fits these resonances as well; measure shapes or "
+            "further modes to decide."
         )
     yield f"{len(result.fitted)} resonances fitted: {100 * result.rms:.2g} % rms" + (
         "."
@@ -166,35 +166,35 @@ def _sentences(result: Identification) -> Iterator[str]:
     )
     if alone := [resonance.name for resonance in result.fitted if resonance.left_out is None]:
         yield (
-            f"No other resonance tells {', '.join(alone)}, whose fit proves nothing: measure more that "
-            "the same entries move."
+            f"{', '.join(alone)} would be fitted by any value, since no other resonance moves "
+            "with the same entries: measure more of those."
         )
     if result.unpaired:
         listed = ", ".join(f"{frequency:.6g}" for frequency in result.unpaired)
-        yield f"Left out, since no mode is surely theirs: {listed} Hz."
+        yield f"Not fitted, since no mode is surely theirs: {listed} Hz."
         if len(result.unpaired) > FEW * len(result.fitted):
             yield (
-                "So many left out may hide values that fit better: begin nearer, lower --tol, or "
-                "measure shapes."
+                "So many not fitted may hide better values: begin nearer, lower --tol, or measure "
+                "shapes."
             )
     yield from result.remarks
     correlation = np.abs(result.correlations - np.eye(len(result.entries)))
     if len(result.entries) > 1 and correlation.max() > SURE:
         i, j = np.unravel_index(int(correlation.argmax()), correlation.shape)
         yield (
-            f"{result.entries[i].path} and {result.entries[j].path} move the same resonances alike "
-            f"(correlation {result.correlations[i, j]:+.2f}): their ratio is known worse than either "
-            "with the other held."
+            f"{result.entries[i].path} and {result.entries[j].path} move the same resonances "
+            f"(correlation {result.correlations[i, j]:+.2f}), so that each is less sure than with "
+            "the other held."
         )
 
 
 def _prior_sentences(entry: Identified, middle: float, deviation: float) -> Iterator[str]:
     prior = f"{middle:.6g}, known to {100 * deviation:.2g} % beforehand"
     if entry.uninformed:
-        yield f"The data leave {entry.path} open: it is as it was, {prior}."
+        yield f"The data do not determine {entry.path}: it stays as it was, {prior}."
     deviations = abs(math.log(entry.value / middle)) / deviation
     if deviations > FAR:
-        yield f"{entry.path} lies {deviations:.2g} standard deviations from {prior}: one of both is wrong."
+        yield f"{entry.path} lies {deviations:.2g} standard deviations from {prior}: one of them is wrong."
 
 
 Progress = Callable[[str], None]
@@ -333,8 +333,8 @@ class _Search:
                 return End(self.x + step, fit, step)
             self.x = self.x + step
         raise SolidgearError(
-            f"identify: no values were settled on in {ROUNDS} rounds; the last change was "
-            f"{100 * abs(step).max():.2g} %: begin nearer, or vary fewer entries"
+            f"identify: values still changed by {100 * abs(step).max():.2g} % after {ROUNDS} "
+            "rounds; begin nearer, or vary fewer entries"
         )
 
     def with_exchanges(self, best: End, known_ends: list[End]) -> list[End]:

@@ -87,10 +87,10 @@ def fit_modes(hertz: np.ndarray, accelerance: np.ndarray) -> ModalFit:
     ahead = hertz > 0
     omega, data = 2 * np.pi * hertz[ahead], accelerance[:, ahead]
     if len(omega) < FEWEST:
-        raise SolidgearError(f"responses have {len(omega)} lines; {FEWEST} at least are fitted")
+        raise SolidgearError(f"responses have {len(omega)} lines; give {FEWEST} at least")
     moved = np.sqrt(np.mean(np.abs(data) ** 2, axis=1))
     if not np.all(np.isfinite(data)) or not np.all(moved > 0):
-        raise SolidgearError("a response is zero everywhere, or holds what is no number")
+        raise SolidgearError("a response is zero everywhere, or has an entry that is not a number")
     modes_found: list[tuple[complex, np.ndarray, np.ndarray]] = []
     count = max(math.ceil((len(omega) - 2 * MARGIN) / (LINES - 2 * MARGIN)), 1)
     edges = np.linspace(0, len(omega), count + 1).astype(int)

@@ -57,21 +57,21 @@ class Overlay:
         """Model of the computed ones, in words."""
         waves = f", up to {self.waves} waves around" if self.waves else ""
         stiffer = (
-            f"What is stiffer counts with its static compliance{waves}: at the point that is driven "
-            "it rests on how wide the force is, and is sure to its own size only."
+            f"Higher modes count by their static compliance{waves}, which at the driven point "
+            "depends on how wide the force is."
             if self.waves is not None
-            else "What is stiffer is left out, which moves minima more than peaks."
+            else "Higher modes are left out, which moves minima more than peaks."
         )
         band = (
-            "The band is that of the bars of frequencies, and of static compliance what twice their "
-            "largest makes of it, which is an estimate; shapes and damping have none."
+            "The band comes from the error bars of frequencies, and for static compliance from "
+            "twice the largest of them (an estimate); shapes and damping have none."
             if self.band is not None
-            else "The computed response has no bar."
+            else "The computed response has no error bar."
         )
         return (
-            f"Computed: the modes up to {self.limit:.0f} Hz and the rigid motions that nothing "
-            "holds, each with the damping measured of it, others with the median, "
-            f"{100 * self.damping:.2g} %. {stiffer} {band}"
+            f"Computed from the modes up to {self.limit:.0f} Hz and free rigid motions, with "
+            f"their measured damping or else its median, {100 * self.damping:.2g} %. {stiffer} "
+            f"{band}"
         )
 
     @property

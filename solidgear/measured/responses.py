@@ -57,9 +57,9 @@ class ResponseFit:
         yield from self.responses.remarks
         if self.responses.places and not self.responses.scaled:
             yield (
-                "The file does not say the unit of its responses (dataset 164, or labels of axes), so "
-                "they are not laid over computed ones; a TOML file with file = and "
-                'response_unit = "m/s^2/N" says it.'
+                "The file gives no unit of its responses (dataset 164, or labels of axes), so "
+                "they are not drawn over computed ones; give it by a TOML file with file = and "
+                'response_unit = "m/s^2/N".'
             )
 
 

@@ -60,15 +60,12 @@ class Common:
         """Conclusion."""
         shift = f"{100 * self.off:+.2g} ± {100 * self.reach:.1g} %"
         scatter = (
-            f"{100 * self.scatter:.2g} % is left beside it ({self.count} sure pairs; with 95 %, "
+            f"{100 * self.scatter:.2g} % scatter remains ({self.count} sure pairs; with 95 %, "
             f"{100 * self.low:.2g} to {100 * self.high:.2g} %)"
         )
         if abs(self.off) <= self.reach:
-            return f"No shift is common to all ({shift}); {scatter}."
-        return (
-            f"Common to all is {shift}, as a modulus, a density or a length that is not right makes it; "
-            f"{scatter}."
-        )
+            return f"No common shift ({shift}); {scatter}."
+        return f"Common shift {shift}, as from a wrong modulus, density or length; {scatter}."
 
 
 @dataclass(frozen=True)
@@ -124,9 +121,9 @@ class Likeness:
     def sentence(self) -> str:
         """Doubt that they are of the part of the scene; empty where there is none."""
         scatter_clause = (
-            f"{self.pairs} pairs scatter by {100 * self.scatter:.2g} % about what all have in common "
-            f"(at least by {100 * self.least:.2g} %, with 95 % confidence), and of one part a wrong "
-            f"modulus or density leaves {100 * SAME_PART:.0f} % at most"
+            f"{self.pairs} pairs scatter by {100 * self.scatter:.2g} % about their common shift "
+            f"(at least by {100 * self.least:.2g} %, with 95 % confidence), and a wrong modulus "
+            f"or density of the same part leaves {100 * SAME_PART:.0f} % at most"
         )
         if self.scattered:
             return (
@@ -139,7 +136,7 @@ class Likeness:
                 f"{'has' if self.pairs < 2 else 'have'} a mode."
             )
         if self.scatter > SAME_PART and self.pairs > 1:
-            return f"Too few pairs to show that this is the part of the scene: {scatter_clause}."
+            return f"Too few pairs to show that this is the part in the scene: {scatter_clause}."
         return ""
 
     @property
@@ -148,8 +145,8 @@ class Likeness:
         if self.sentence or abs(self.shift) < max(SHIFTS):
             return ""
         return (
-            f"They are of this part only if its modulus over its density is {math.exp(2 * self.shift):.2g} "
-            "times what the scene says."
+            "They belong to this part only if its modulus over its density is "
+            f"{math.exp(2 * self.shift):.2g} times the scene's."
         )
 
 

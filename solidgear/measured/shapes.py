@@ -114,20 +114,21 @@ class OnPoints:
         shapes = sum(mode.multiplicity for mode in modes)
         if shapes > self.likeness.components:
             out.append(
-                f"{self.likeness.components} measured components tell at most as many shapes apart, and "
-                f"{shapes} are computed up to the highest resonance: MAC is high by chance; measure "
-                f"{shapes - self.likeness.components} more at least."
+                f"{self.likeness.components} measured components distinguish no more than "
+                f"{self.likeness.components} shapes, but {shapes} are computed up to the highest "
+                f"resonance, so MAC is high by chance; measure {shapes - self.likeness.components} "
+                "more at least."
             )
         confused = self.confused(len(modes))
         for pair in confused[:NAMED]:
             place = ", ".join(f"{x:.4g}" for x in pair.place)
             out.append(
-                f"The measuring points do not tell {names[pair.first]} from {names[pair.second]} (their "
-                f"MAC on them is {pair.mac:.2f})"
+                f"The measuring points do not distinguish {names[pair.first]} and "
+                f"{names[pair.second]} (MAC {pair.mac:.2f})"
                 + (
                     f"; one more at x, y, z = {place} m would (MAC {pair.mac_with_it:.2f})."
                     if pair.mac_with_it <= ALIKE
-                    else ", nor do they with any one more."
+                    else ", nor would any one more point."
                 )
             )
         if len(confused) > NAMED:

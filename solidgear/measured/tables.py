@@ -23,8 +23,8 @@ BOTH = {"measured": Series(INK), "computed": Series("#00805e")}
 LOOKS = {"agrees": Series("#00805e"), "differs": Series("#b3305c"), "no band": Series("#0072b2")}
 
 
-def pairs(found: Any) -> Table:
-    """Every measured resonance and the mode it is."""
+def pairs(correlation: Any) -> Table:
+    """Return every measured resonance and its mode."""
     columns = [
         Column("", lambda p: p.number, kind=NUMBER),
         Column("measured\nHz", lambda p: p.measured.frequency, hertz),
@@ -35,24 +35,24 @@ def pairs(found: Any) -> Table:
         Column("sure", lambda p: p.probability, "{:.0%}".format),
         text("", lambda p: p.verdict),
     ]
-    if found.mac is not None:
+    if correlation.mac is not None:
         columns.insert(-1, Column("MAC", lambda p: p.mac, "{:.2f}".format))
     note = (
         "Off: computed over measured, less one. Band: two standard deviations of the measured "
-        "frequency and the bar of the computed one. Sure: probability of the pair."
+        "frequency and the error bar of the computed one. Sure: probability of the pair."
     )
-    if found.measured.responses is not None:
+    if correlation.measured.responses is not None:
         note += (
-            f" A measured frequency deviates by {100 * found.measured.responses.repeats:.2g} % at least: so well do temperature, "
-            "cords and sensor repeat."
+            f" A measured frequency deviates by {100 * correlation.measured.responses.repeats:.2g} % at "
+            "least, by temperature, cords and sensor."
         )
-    if found.mac is not None:
-        note += " MAC: share of the measured shape that is the mode's, on the measuring points."
-    return Table("Measured and computed", columns, found.pairs, note, style="ruled")
+    if correlation.mac is not None:
+        note += " MAC: likeness of the measured and the computed shape at the measuring points."
+    return Table("Measured and computed", columns, correlation.pairs, note, style="ruled")
 
 
-def entries(found: Any) -> Table:
-    """Entries that were identified."""
+def entries(identification: Any) -> Table:
+    """Return the identified entries."""
     columns = [
         text("entry", lambda e: e.path),
         Column("in the file", lambda e: e.before, "{:.6g}".format),
@@ -62,13 +62,14 @@ def entries(found: Any) -> Table:
         Column("to", lambda e: e.high, "{:.6g}".format),
     ]
     note = (
-        "Deviation: one standard deviation, of the scatter of the data and the bars of the model."
+        "Deviation: one standard deviation, from the scatter of the data and the error bars of "
+        "the model."
     )
-    return Table("Identified", columns, found.entries, note, style="ruled")
+    return Table("Identified", columns, identification.entries, note, style="ruled")
 
 
-def fitted(found: Any) -> Table:
-    """Resonances that were fitted."""
+def fitted(identification: Any) -> Table:
+    """Return the fitted resonances."""
     columns = [
         text("mode", lambda f: f.name),
         Column("measured\nHz", lambda f: f.measured, hertz),
@@ -76,32 +77,34 @@ def fitted(found: Any) -> Table:
         Column("off", lambda f: f.computed / f.measured - 1, percent),
         Column("left out", lambda f: f.left_out and f.left_out / f.measured - 1, percent),
     ]
-    note = "Left out: the same where this resonance is predicted from all others."
-    return Table("Fitted", columns, found.fitted, note, style="ruled")
+    note = "Left out: the same when this resonance is predicted from all others."
+    return Table("Fitted", columns, identification.fitted, note, style="ruled")
 
 
-def predicted(found: Any) -> Table:
-    """Modes beyond the measured ones."""
+def predicted(identification: Any) -> Table:
+    """Return modes beyond the measured ones."""
     columns = [
         text("mode", lambda p: p.name),
         Column("shapes", lambda p: p.multiplicity),
         Column("predicted\nHz", lambda p: p.frequency_hz, hertz),
         Column("deviation\nHz", lambda p: p.deviation_hz, "{:.2g}".format),
     ]
-    note = "Deviation: one standard deviation, of the entries, the scatter of the fit and the mesh."
-    return Table("Predicted, not measured", columns, found.predicted, note, style="ruled")
+    note = (
+        "Deviation: one standard deviation, from the entries, the scatter of the fit and the mesh."
+    )
+    return Table("Predicted, not measured", columns, identification.predicted, note, style="ruled")
 
 
 def _unsigned(value: float) -> str:
     return percent(value, signed=False)
 
 
-def off_chart(found: Any, title: str, width: float = WIDE) -> Chart:
-    """Differences of all pairs over frequency, each in its band."""
-    told = [pair for pair in found.pairs if pair.relative is not None]
-    khz = [pair.measured.frequency / 1e3 for pair in told]
-    off = np.array([pair.relative for pair in told])
-    ends = np.array([pair.band or 0.0 for pair in told])
+def off_chart(correlation: Any, title: str, width: float = WIDE) -> Chart:
+    """Chart differences of all pairs over frequency, each in its band."""
+    paired = [pair for pair in correlation.pairs if pair.relative is not None]
+    khz = [pair.measured.frequency / 1e3 for pair in paired]
+    off = np.array([pair.relative for pair in paired])
+    ends = np.array([pair.band or 0.0 for pair in paired])
     most = 1.15 * float(np.max(np.abs(off) + ends, initial=1e-6))
     panel = Panel(
         Axis("measured, kHz", (0.0, 1.05 * max(khz, default=1.0))),
@@ -116,7 +119,7 @@ def off_chart(found: Any, title: str, width: float = WIDE) -> Chart:
     ]
     panel.draw({"type": "rule", "color": GREY, "strokeWidth": 2}, bands)
     rows = []
-    for pair, x, y in zip(told, khz, off.tolist()):
+    for pair, x, y in zip(paired, khz, off.tolist()):
         facts = ("measured", hertz(pair.measured.frequency), "Hz"), ("off", percent(y), "")
         verdict = pair.verdict.partition(",")[0]
         rows.append(
@@ -126,18 +129,22 @@ def off_chart(found: Any, title: str, width: float = WIDE) -> Chart:
     return Chart([[panel]], width, title)
 
 
-def mac_map(found: Any, width: float = WIDE) -> Chart:
-    """MAC of every measured shape and every mode."""
-    told = ~np.isnan(found.mac).any(axis=1)
-    rows = [f"{hertz(p.measured.frequency)} Hz" for p, shown in zip(found.pairs, told) if shown]
-    columns = [mode.name for mode in found.computed.barred]
-    table = MacTable(rows=rows, columns=columns, values=found.mac[told].tolist())
+def mac_map(correlation: Any, width: float = WIDE) -> Chart:
+    """Chart MAC of every measured shape and every mode."""
+    with_shape = ~np.isnan(correlation.mac).any(axis=1)
+    rows = [
+        f"{hertz(p.measured.frequency)} Hz"
+        for p, drawn in zip(correlation.pairs, with_shape)
+        if drawn
+    ]
+    columns = [mode.name for mode in correlation.computed.barred]
+    table = MacTable(rows=rows, columns=columns, values=correlation.mac[with_shape].tolist())
     return Chart([[mac_panel(table, "measured", "computed")]], width)
 
 
-def peaks(found: Any, overlay: Any = None) -> Table:
-    """Resonances that were found in responses."""
-    fit = found.measured.responses.fit
+def peaks(correlation: Any, overlay: Any = None) -> Table:
+    """Return resonances found in responses."""
+    fit = correlation.measured.responses.fit
     columns = [
         Column("", lambda k: k + 1, kind=NUMBER),
         Column("frequency\nHz", lambda k: fit.frequencies[k], hertz),
@@ -145,20 +152,25 @@ def peaks(found: Any, overlay: Any = None) -> Table:
         Column("damping", lambda k: fit.damping[k], _unsigned),
         Column("deviation", lambda k: 100 * fit.deviations[1][k], "{:.2g} %".format),
     ]
-    note = "Deviation: one standard deviation, of the noise of these responses alone. Damping: the ratio."
+    note = (
+        "Deviation: one standard deviation, from the noise of these responses alone. Damping: the "
+        "ratio."
+    )
     if overlay is not None:
         constants = overlay.constants
         size = Column("size", lambda k: constants.get(k + 1), "{:.2f}".format)
         columns.append(size)
-        note += " Size: computed modal constant over the measured one, of all responses."
+        note += " Size: computed modal constant over the measured one, over all responses."
     return Table("Resonances of the responses", columns, range(len(fit.poles)), note, style="ruled")
 
 
-def alone(found: Any) -> Table:
-    """Resonances measured and not computed, and the reverse."""
-    rows = [("measured", "", p.measured.frequency, p.probability) for p in found.pairs]
-    rows = [row for row, pair in zip(rows, found.pairs) if pair.computed is None]
-    rows += [("computed", mode.name, mode.frequency_hz, share) for mode, share in found.missed]
+def alone(correlation: Any) -> Table:
+    """Return resonances measured and not computed, and the reverse."""
+    rows = [("measured", "", p.measured.frequency, p.probability) for p in correlation.pairs]
+    rows = [row for row, pair in zip(rows, correlation.pairs) if pair.computed is None]
+    rows += [
+        ("computed", mode.name, mode.frequency_hz, share) for mode, share in correlation.missed
+    ]
     columns = [
         text("only", lambda row: row[0]),
         text("mode", lambda row: row[1]),
@@ -169,24 +181,24 @@ def alone(found: Any) -> Table:
     return Table("Without a partner", columns, rows, note, style="ruled")
 
 
-def overlay_chart(overlay: Any, found: Any, title: str, width: float = WIDE) -> Chart:
-    """A response, and the root mean square of all, measured and computed."""
+def overlay_chart(overlay: Any, correlation: Any, title: str, width: float = WIDE) -> Chart:
+    """Chart a response, and the root mean square of all, measured and computed."""
     k = overlay.loudest
-    every = [np.abs(overlay.measured), np.abs(overlay.computed)]
+    amplitudes = [np.abs(overlay.measured), np.abs(overlay.computed)]
     if overlay.band is not None:
-        every += [np.maximum(every[1] - overlay.band, 0.0), every[1] + overlay.band]
-    parts = [(overlay.names[k], *(values[k] for values in every))]
+        amplitudes += [np.maximum(amplitudes[1] - overlay.band, 0.0), amplitudes[1] + overlay.band]
+    parts = [(overlay.names[k], *(values[k] for values in amplitudes))]
     if len(overlay.names) > 1:
-        both = [np.sqrt(np.mean(values**2, axis=0)) for values in every]
-        parts.append((f"root mean square of all {len(overlay.names)}", *both))
-    panels = [_responses(overlay, found, *part, last=part is parts[-1]) for part in parts]
+        means = [np.sqrt(np.mean(values**2, axis=0)) for values in amplitudes]
+        parts.append((f"root mean square of all {len(overlay.names)}", *means))
+    panels = [_responses(overlay, correlation, *part, last=part is parts[-1]) for part in parts]
     return Chart([[panel] for panel in panels], width, title)
 
 
 def _responses(
     overlay: Any,
-    found: Any,
-    what: str,
+    correlation: Any,
+    title: str,
     measured: np.ndarray,
     computed: np.ndarray,
     *band: np.ndarray,
@@ -198,62 +210,64 @@ def _responses(
         Axis("frequency, kHz" if last else "", (float(khz[0]), float(khz[-1]))),
         Axis(f"{overlay.kind}, {overlay.unit}", (max(low, 1e-6 * high) / 2, 3 * high), log=True),
         260.0,
-        title=what,
+        title=title,
         series=BOTH,
         legend={"orient": "top", "symbolType": "stroke"}
-        if not last or what[:4] != "root"
+        if not last or title[:4] != "root"
         else None,
     )
     if band:
-        kept, floor = outline(khz, band[1] - band[0]), 1e-6 * high
-        places = zip(khz[kept].tolist(), *(values[kept].clip(floor).tolist() for values in band))
+        outlined, floor = outline(khz, band[1] - band[0]), 1e-6 * high
+        places = zip(
+            khz[outlined].tolist(), *(values[outlined].clip(floor).tolist() for values in band)
+        )
         ends = [{"x": x, "y": low, "y2": high} for x, low, high in places]
         panel.draw(
             {"type": "area", "opacity": 0.25, "color": BOTH["computed"].colour, "clip": True}, ends
         )
     for name, values in (("measured", measured), ("computed", computed)):
-        kept = outline(khz, values)
+        outlined = outline(khz, values)
         rows = [
             {"x": x, "y": y, "name": name}
-            for x, y in zip(khz[kept].tolist(), values[kept].tolist())
+            for x, y in zip(khz[outlined].tolist(), values[outlined].tolist())
         ]
         panel.draw({"type": "line", "strokeWidth": 1.3, "clip": True}, rows)
     dots = []
-    for pair in found.pairs:
-        at = int(np.searchsorted(khz, pair.measured.frequency / 1e3).clip(0, len(khz) - 1))
-        its = pair.computed
+    for pair in correlation.pairs:
+        place = int(np.searchsorted(khz, pair.measured.frequency / 1e3).clip(0, len(khz) - 1))
+        counterpart = pair.computed
         facts = (
             ("measured", hertz(pair.measured.frequency), "Hz"),
-            ("computed", hertz(its.frequency_hz) if its else "", "Hz"),
+            ("computed", hertz(counterpart.frequency_hz) if counterpart else "", "Hz"),
         )
-        words = readout(its.name if its else "no mode", *facts)
-        dots.append({"x": float(khz[at]), "y": float(measured[at]), "readout": words})
+        words = readout(counterpart.name if counterpart else "no mode", *facts)
+        dots.append({"x": float(khz[place]), "y": float(measured[place]), "readout": words})
     panel.draw({"type": "point", "filled": True, "size": 34, "color": INK}, dots)
     return panel
 
 
 def write_correlation(
-    folder: Path, found: Any, overlay: Any = None, viewer: str = ""
+    folder: Path, correlation: Any, overlay: Any = None, viewer: str = ""
 ) -> list[Path]:
-    """Page, data, tables and charts of a correlation, with measured and computed responses where
-    there are any; `viewer` is HTML of shapes beside each other.
+    """Write page, data, tables and charts of a correlation, with responses where there are any;
+    `viewer` is HTML of shapes.
     """
-    title = f"{found.scene}: measured and computed"
-    lead = f"{found.title or 'Measured resonances'} beside {found.mesh}."
-    lines = {"pairs": pairs(found)}
+    title = f"{correlation.scene}: measured and computed"
+    lead = f"{correlation.title or 'Measured resonances'} beside {correlation.mesh}."
+    lines = {"pairs": pairs(correlation)}
     sections = [
         Section(
             "pairs",
             "Pairs",
-            charts={"off": partial(off_chart, found, title)} if found.worst else {},
-            tables=[pairs(found), alone(found)],
+            charts={"off": partial(off_chart, correlation, title)} if correlation.worst else {},
+            tables=[pairs(correlation), alone(correlation)],
         )
     ]
-    if found.mac is not None:
-        sections.append(Section("shapes", "Shapes", charts={"mac": partial(mac_map, found)}))
-    if found.measured.responses is not None:
-        lines["peaks"] = peaks(found, overlay)
-        drawn = {"overlay": partial(overlay_chart, overlay, found, title)} if overlay else {}
+    if correlation.mac is not None:
+        sections.append(Section("shapes", "Shapes", charts={"mac": partial(mac_map, correlation)}))
+    if correlation.measured.responses is not None:
+        lines["peaks"] = peaks(correlation, overlay)
+        drawn = {"overlay": partial(overlay_chart, overlay, correlation, title)} if overlay else {}
         words = overlay.description if overlay else ""
         sections.append(Section("responses", "Responses", words, drawn, [lines["peaks"]]))
     return write_files(
@@ -262,30 +276,30 @@ def write_correlation(
         title,
         lead,
         [],
-        found.results,
+        correlation.results,
         lines=lines,
         charts={},
-        verdict=found.sentences,
+        verdict=correlation.sentences,
         viewer=viewer,
         sections=sections,
     )
 
 
-def write_identification(folder: Path, found: Any) -> list[Path]:
-    """Page, data and tables of an identification."""
-    title = f"{found.scene}: identified"
-    lead = f"From {found.title or 'measured resonances'}, by {found.mesh}."
-    lines = {"identified": entries(found), "fitted": fitted(found)}
-    if found.predicted:
-        lines["predicted"] = predicted(found)
+def write_identification(folder: Path, identification: Any) -> list[Path]:
+    """Write page, data and tables of an identification."""
+    title = f"{identification.scene}: identified"
+    lead = f"From {identification.title or 'measured resonances'}, by {identification.mesh}."
+    lines = {"identified": entries(identification), "fitted": fitted(identification)}
+    if identification.predicted:
+        lines["predicted"] = predicted(identification)
     return write_files(
         folder,
         "identification",
         title,
         lead,
         list(lines.values()),
-        found.results,
+        identification.results,
         lines=lines,
         charts={},
-        notes=found.sentences,
+        notes=identification.sentences,
     )

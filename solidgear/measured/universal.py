@@ -113,7 +113,7 @@ def read_universal(
         from pyuff import UFF
     except ImportError:
         raise SolidgearError(
-            "universal files are read by pyuff: pip install 'solidgear[testdata]'"
+            "universal files need pyuff: pip install 'solidgear[testdata]'"
         ) from None
     with explained(path, {}):
         sets = _datasets(Path(path), UFF)
@@ -151,14 +151,14 @@ def _shapes(
             raise SceneError(f"has other points in mode {mode['mode_n']} than in the first")
     missing = [int(k) for k in numbers if int(k) not in places]
     if missing and places:
-        raise SceneError(f"gives no place of point {missing[0]} (dataset 15 or 2411)")
+        raise SceneError(f"gives no position of point {missing[0]} (dataset 15 or 2411)")
     hertz = [_hertz(mode) for mode in modes]
     order = np.argsort(hertz, kind="stable")
     values = np.array(
         [np.column_stack([modes[k]["r1"], modes[k]["r2"], modes[k]["r3"]]) for k in order]
     )
     if not np.all(np.isfinite(values)) or not np.all(np.any(values, axis=(1, 2))):
-        raise SceneError("has a mode shape that is zero or no number")
+        raise SceneError("has a mode shape that is zero or not a number")
     hertz = [hertz[k] for k in order]
     if not places:
         return hertz, None
@@ -252,8 +252,8 @@ def _remarks(
         if by_labels is None or scale is None or math.isclose(scale, by_labels, rel_tol=1e-3):
             continue
         yield (
-            f"Responses are scaled by dataset 164, {scale:.4g} in SI; the labels of their axes say "
-            f"{words[1]} over {words[2]}, {by_labels:.4g}: one of both is wrong."
+            f"Responses are scaled by dataset 164, {scale:.4g} in SI, but the labels of their "
+            f"axes say {words[1]} over {words[2]}, {by_labels:.4g}: one of them is wrong."
         )
         return
 
@@ -265,7 +265,7 @@ def _datasets(path: Path, reader: Callable) -> list[dict[str, Any]]:
     except OSError as error:
         raise SceneError(f"cannot be read ({error})") from None
     if not _MARK.search(text):
-        raise SceneError("is no universal file: no line holds the mark -1 of a dataset")
+        raise SceneError("is not a universal file: no line holds the mark -1 of a dataset")
     # binary data may run into the mark that ends them
     if not text.rstrip().endswith(b"    -1"):
         raise SceneError("is cut short: its last dataset has no end")

@@ -55,7 +55,7 @@ def varied_of(
         raise SolidgearError("--vary: the same entry is given twice")
     bounded = any(math.isfinite(entry.high) or math.isfinite(entry.deviation) for entry in entries)
     if ranges is not None and not bounded:
-        raise SolidgearError("--priors: [uncertain] of the file has a range of none that is varied")
+        raise SolidgearError("--priors: [uncertain] of the file has no range for a varied entry")
     return tuple(entries)
 
 
@@ -66,11 +66,11 @@ def _varied(text: str, tables: Tables, ranges: Sequence[Uncertain]) -> Varied:
         value = entry(keys, tables)
         before = in_si(value)
         if value is None:
-            raise SceneError("is not in the file, and its value there is where the search begins")
+            raise SceneError("is not in the file, where the search takes its first value from")
         if before is None or not before > 0:
             raise SceneError(
-                f"the file holds {show(value, 40)}, and what is identified begins at a number above "
-                "zero"
+                f"is {show(value, 40)} in the file; identify needs a number above zero to begin "
+                "with"
             )
         label = label_of(keys, tables)
         if equals:
@@ -99,7 +99,8 @@ def _with_range(entry: Varied, range_text: str, low: float, high: float) -> Vari
         return Varied(entry.keys, entry.label, entry.before, middle=middle, deviation=(b - a) / 2)
     if not a <= 0 <= b:
         raise SceneError(
-            f"bounds must hold what the file says, {entry.before:.6g} in SI: the search begins there",
+            f"bounds must contain the file's value, {entry.before:.6g} in SI, where the search "
+            "begins",
             value=show(range_text),
         )
     return Varied(entry.keys, entry.label, entry.before, low=a, high=b)

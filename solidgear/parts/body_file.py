@@ -103,12 +103,12 @@ class BodyTable(Model):
             if len(self.block) != 3:
                 raise SceneError("give three edges, along x, y and z", path=("block",))
             for key in sorted(self.model_fields_set - {"block", "mass_check"}):
-                raise SceneError("this key is of a file, and a block has none", path=(key,))
+                raise SceneError("this key belongs to a file, and a block has none", path=(key,))
         if self.axis == NONE and self.step is not None:
             raise SceneError("a body without an axis is read from a mesh file", path=("axis",))
         if self.axis == NONE and self.size_check is not None:
             raise SceneError(
-                "length and diameter are of a shaft; check a body by its mass_check",
+                "length and diameter belong to a shaft; check a body by its mass_check",
                 path=("size_check",),
             )
         return self

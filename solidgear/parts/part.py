@@ -205,7 +205,8 @@ def _unit(table: BodyTable, path: Path, content: bytes) -> tuple[float, tuple[st
     if table.unit is None:
         if in_file is None:
             raise SceneError(
-                f"this key is missing: {path.name} does not say it; one of {', '.join(UNITS)}",
+                f"this key is missing: {path.name} does not give the unit; write one of "
+                f"{', '.join(UNITS)}",
                 path=("unit",),
             )
         return in_file, ()
@@ -217,8 +218,8 @@ def _unit(table: BodyTable, path: Path, content: bytes) -> tuple[float, tuple[st
         (n for value, n in names.items() if math.isclose(value, in_file, rel_tol=1e-6)), ""
     )
     remark = (
-        f"its dataset 164 says that lengths are in {unit_name or f'units of {in_file:g} m'}, and unit = "
-        f'"{table.unit}" of the [body] is taken: one of both is wrong by a factor of '
+        f"its dataset 164 says that lengths are in {unit_name or f'units of {in_file:g} m'}, but unit = "
+        f'"{table.unit}" of the [body] is taken: one of them is wrong by a factor of '
         f"{max(unit / in_file, in_file / unit):.4g}"
     )
     return unit, (remark,)
@@ -463,8 +464,8 @@ def _check_sizes(table: BodyTable, points) -> None:
         length, about = float(np.ptp(points, axis=1).max()), ""
     if not LEAST_LENGTH <= length <= MOST_LENGTH:
         raise SceneError(
-            f"the part is {length:.4g} m long{about}, outside 1 mm to 20 m: probably "
-            "drawn in another unit than the file says",
+            f"the part is {length:.4g} m long{about}, outside 1 mm to 20 m: probably drawn in "
+            "another unit than the file's",
             path=("unit",) if table.unit else (table.key,),
         )
 

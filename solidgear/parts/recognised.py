@@ -114,7 +114,8 @@ class Recognised(NamedTuple):
                 f"{1e3 * d:.6g} mm" for d in sorted({round(c[0], 7) for c in self.cylinders})
             )
             raise SceneError(
-                f"the part has no cylinder of this diameter about its axis; there are {diameters or 'none'}",
+                "the part has no cylinder of this diameter about its axis; it has "
+                f"{diameters or 'none'}",
                 path=("diameter",),
             )
         share = self.seat_share(near[0][0] / 2, lo, hi)
@@ -144,8 +145,8 @@ def with_seats(part: Recognised, stations: Iterable, segments: Sequence[Segment]
         share = part.seat_share(radii.pop(), s.lo, s.hi)
         if share < WHOLE_SEAT:
             remarks.append(
-                f"the seat of {s.name!r} has {100 * share:.3g} % of the area 2 pi r b of its cylinder; "
-                "its motion is the mean of what is there"
+                f"the seat of {s.name!r} has {100 * share:.3g} % of its cylinder's area 2 pi r b; "
+                "its motion is the mean over that part"
             )
     return part.body.model_copy(update={"remarks": (*part.body.remarks, *remarks)})
 
@@ -153,7 +154,7 @@ def with_seats(part: Recognised, stations: Iterable, segments: Sequence[Segment]
 def refuse_parts(table: BodyTable, folder: Path) -> Recognised:
     """Refuse a part from a file, where no reader is given."""
     raise SceneError(
-        "a part from a file is read by solidgear.load alone; a train or a study of bearings takes "
+        "a part from a file is read by solidgear.load only; in trains and bearing studies write "
         "segments",
         path=("body", table.key),
     )

@@ -196,7 +196,7 @@ def mesh(
         except Exception as error:
             raise MeshError(
                 f"cannot be filled with tetrahedra ({error}): change refinement a little, or look "
-                "for faces that intersect or all but touch"
+                "for faces that intersect or almost touch"
             ) from error
     owner_of = {tag: number for number, tags in zip(owner, pieces) for tag in tags}
     return filling, np.array([owner_of[tag] for tag in filling.volume])
@@ -409,9 +409,8 @@ def _why_not_one(gmsh, solids: list[int]) -> str:
         centres = [gmsh.model.occ.getCenterOfMass(3, tag) for tag in solids[:4]]
         places = "; ".join(f"at {mm(centre)}" for centre in centres)
         return (
-            f"holds {len(solids)} separate solids ({places}) where one is wanted: join them in the "
-            "CAD program, or name the material of each that touches another under materials, by "
-            "its number"
+            f"holds {len(solids)} separate solids ({places}) where one is wanted: join them in "
+            "the CAD program, or give solids that touch a material each, by number under materials"
         )
     faces = [tag for _, tag in gmsh.model.getEntities(2)]
     if not faces:

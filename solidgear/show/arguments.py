@@ -10,7 +10,7 @@ from solidgear.core.scene import Scene
 
 
 def load(path: Path) -> Scene:
-    """A scene, and to the terminal what is doubtful about the file of its part."""
+    """Read a scene and print doubts about the file of its part."""
     scene = read(path)
     for sentence in scene.body.doubts(scene.material) if scene.body is not None else ():
         print(f"caution: {sentence}", file=sys.stderr)

@@ -11,12 +11,12 @@ from solidgear.core.errors import SolidgearError
 from solidgear.core.judge.record import SCHEMA, Record
 
 
-def as_record(found: Mapping[str, Any], name: str = "the results") -> Record:
-    """Plain data, such as ``results.json`` has it, as a record.
+def as_record(data: Mapping[str, Any], name: str = "the results") -> Record:
+    """Return the plain data, such as ``results.json`` has it, as a record.
 
     Parameters
     ----------
-    found : mapping
+    data : mapping
         Parts may be missing.  Data without a ``schema`` is taken for current.
     name : str
         What an error calls it.
@@ -32,10 +32,9 @@ def as_record(found: Mapping[str, Any], name: str = "the results") -> Record:
     'harmonic'
     >>> as_record({"schema": 2}, "out/results.json")
     Traceback (most recent call last):
-    solidgear.core.errors.SolidgearError: out/results.json: written by an older version of solidgear \
-(layout 2; this version reads 4); run solidgear compare again
+    solidgear.core.errors.SolidgearError: out/results.json: written by an older version of solidgear (layout 2; this version reads 4); run solidgear compare again
     """
-    version = found.get("schema")
+    version = data.get("schema")
     if version is not None and version != SCHEMA:
         older = isinstance(version, int) and version < SCHEMA
         raise SolidgearError(
@@ -43,7 +42,7 @@ def as_record(found: Mapping[str, Any], name: str = "the results") -> Record:
             f"(layout {version}; this version reads {SCHEMA}); run solidgear compare again"
         )
     try:
-        return Record.model_validate(found)
+        return Record.model_validate(data)
     except ValidationError as error:
         first = error.errors()[0]
         place = ".".join(str(part) for part in first["loc"])

@@ -20,32 +20,32 @@ NOT_REACHED = 3
 
 
 def console(stderr: bool = False) -> Console:
-    """The terminal, which prints texts as they are: what stands in square brackets is no markup."""
+    """Return the terminal, which prints square brackets as they are."""
     from rich.console import Console  # start-up: not before a command prints
 
     # Without a terminal rich assumes 80 columns; a pipe can take more, but 80 is what people paste.
     return Console(highlight=False, markup=False, emoji=False, stderr=stderr)
 
 
-def say(*told: RenderableType, soft_wrap: bool = True) -> None:
+def say(*blocks: RenderableType, soft_wrap: bool = True) -> None:
     """Print tables, and texts as they stand: a line of any length each, or broken at the width of
     the terminal without `soft_wrap`.
     """
     terminal = console()
-    for one in told:
-        if isinstance(one, str) and not soft_wrap:
+    for block in blocks:
+        if isinstance(block, str) and not soft_wrap:
             # rich breaks lines at the spaces that hold the digits of a number together as well
-            one = "\n".join(_broken(line, terminal.width) for line in one.split("\n"))
-        terminal.print(one, soft_wrap=isinstance(one, str), crop=False)
+            block = "\n".join(_broken(line, terminal.width) for line in block.split("\n"))
+        terminal.print(block, soft_wrap=isinstance(block, str), crop=False)
 
 
 def _broken(line: str, width: int) -> str:
-    """A line broken at plain spaces."""
+    """Break a line at plain spaces."""
     return textwrap.fill(line, width, break_long_words=False, break_on_hyphens=False)
 
 
 def filled(text: str) -> str:
-    """A text in lines as wide as the terminal, all but the first set in."""
+    """Fill a text into lines as wide as the terminal, all but the first indented."""
     from rich.console import Console  # start-up: as in `say`
 
     return textwrap.fill(
@@ -102,20 +102,20 @@ class Group:
 
 
 def command(function: Callable[..., R]) -> Callable[..., R]:
-    """A command as typer reads it: the fields of its groups are among its options."""
+    """Register a function as a command; the fields of its option groups become options."""
     parameters = inspect.signature(function, eval_str=True).parameters
     groups = {name: p.annotation for name, p in parameters.items() if _is_group(p.annotation)}
 
     @functools.wraps(function)
-    def flattened(**given: Any) -> R:
+    def flattened(**values: Any) -> R:
         for name, group in groups.items():
-            given[name] = group(**{key.name: given.pop(key.name) for key in _fields(group)})
-        return function(**given)
+            values[name] = group(**{key.name: values.pop(key.name) for key in _fields(group)})
+        return function(**values)
 
     flat = [
-        own
+        field
         for p in parameters.values()
-        for own in (_fields(groups[p.name]) if p.name in groups else [p])
+        for field in (_fields(groups[p.name]) if p.name in groups else [p])
     ]
     flattened.__signature__ = inspect.Signature(flat)  # type: ignore[attr-defined]  # what typer reads
     flattened.__annotations__ = {p.name: p.annotation for p in flat}
@@ -127,7 +127,7 @@ def _is_group(annotation: Any) -> bool:
 
 
 def _fields(group: type[Group]) -> Iterator[inspect.Parameter]:
-    """The options of a group as parameters of a command."""
+    """Yield the options of a group as parameters of a command."""
     hints = get_type_hints(group, include_extras=True)
-    for name, own in inspect.signature(group).parameters.items():
-        yield own.replace(annotation=hints[name], kind=inspect.Parameter.KEYWORD_ONLY)
+    for name, parameter in inspect.signature(group).parameters.items():
+        yield parameter.replace(annotation=hints[name], kind=inspect.Parameter.KEYWORD_ONLY)

@@ -66,7 +66,7 @@ def _draw(pv, job, path, points, displacement, faces, triangles, lines):
     cells = np.concatenate(
         [np.insert(f, 0, f.shape[1], axis=1).ravel() for f in (faces, triangles)]
     )
-    rest = pv.PolyData(points, cells)
+    undeformed = pv.PolyData(points, cells)
     frames = job["frames"]
     extremes = np.vstack([points, *(points + factor * displacement for factor, _ in frames)])
     down, across = _layout(len(frames), extremes, view)
@@ -81,7 +81,7 @@ def _draw(pv, job, path, points, displacement, faces, triangles, lines):
         p.enable_anti_aliasing("ssaa")
         deformed = pv.PolyData(points + factor * displacement, cells)
         deformed["size"] = abs(factor) * size / size.max()
-        body = _frame(pv, p, rest, deformed, lines, length, view, job["along"])
+        body = _frame(pv, p, undeformed, deformed, lines, length, view, job["along"])
         _words(p, "" if len(head) else job["title"], caption)
         if k == 0:
             _axes(p)
@@ -90,22 +90,22 @@ def _draw(pv, job, path, points, displacement, faces, triangles, lines):
         _aim(p, points, extremes, tile[1] / tile[0], *view[1:])
         drawn = p.screenshot(return_img=True)
         p.close()
-        top, left = k // across * tile[1], k % across * tile[0]
-        picture[top : top + tile[1], left : left + tile[0]] = drawn[..., :3]
+        top, x = k // across * tile[1], k % across * tile[0]
+        picture[top : top + tile[1], x : x + tile[0]] = drawn[..., :3]
     _in_few_colours(Image.fromarray(np.concatenate([head, picture]))).save(path, optimize=True)
 
 
 def _in_few_colours(picture):
-    """The picture with a palette of its own, dithered so that no step is seen: half the bytes."""
+    """Return the picture with a dithered palette, in half the bytes."""
     # every fourth pixel of every fourth row has all colours, and takes a tenth of the time
     sample = picture.resize((picture.width // 4, picture.height // 4), resample=0)
     return picture.quantize(palette=sample.quantize(kmeans=1))
 
 
 def _layout(count: int, points, view) -> tuple[int, int]:
-    """Rows and columns in which frames of this shape come out largest."""
-    _, right, up, _ = view
-    wide, high = np.ptp(points @ right), np.ptp(points @ up)
+    """Return rows and columns in which frames of this shape come out largest."""
+    _, right, upward, _ = view
+    wide, high = np.ptp(points @ right), np.ptp(points @ upward)
 
     def scale(across: int) -> float:
         down = -(-count // across)
@@ -115,13 +115,13 @@ def _layout(count: int, points, view) -> tuple[int, int]:
     return -(-count // across), across
 
 
-def _frame(pv, p, rest, deformed, lines, length, view, along):
-    """One deformed shape over the shape at rest; the actor that carries the colours."""
-    _, right, up, back = view
+def _frame(pv, p, undeformed, deformed, lines, length, view, along):
+    """Draw one deformed shape over the shape at rest; return the actor with the colours."""
+    _, right, upward, back = view
     # A lamp over the left shoulder of the viewer and a weak one from the other side.
     for offset, strength in (
-        (0.7 * up - 0.5 * right + back, 0.75),
-        (-0.5 * up + 0.6 * right + 0.8 * back, 0.35),
+        (0.7 * upward - 0.5 * right + back, 0.75),
+        (-0.5 * upward + 0.6 * right + 0.8 * back, 0.35),
     ):
         p.add_light(
             pv.Light(
@@ -165,17 +165,17 @@ def _frame(pv, p, rest, deformed, lines, length, view, along):
         lighting=False,
     )
     p.add_mesh(
-        rest.extract_feature_edges(**edges).translate(nearer),
+        undeformed.extract_feature_edges(**edges).translate(nearer),
         color=OUTLINE,
         line_width=3.0,
         lighting=False,
     )
-    p.add_silhouette(rest, color=OUTLINE, line_width=3.5, feature_angle=None)
+    p.add_silhouette(undeformed, color=OUTLINE, line_width=3.5, feature_angle=None)
     return body
 
 
 def _heading(pv, title: str) -> np.ndarray:
-    """Pixels (height, width, 3) of a title over several frames."""
+    """Return pixels (height, width, 3) of a title over several frames."""
     p = pv.Plotter(off_screen=True, window_size=[SIZE[0], HEADING], lighting="none")
     p.set_background("white")
     _text(p, title, 0.3, 13)
@@ -185,7 +185,7 @@ def _heading(pv, title: str) -> np.ndarray:
 
 
 def _words(p, title: str, caption: str) -> None:
-    """Title and caption of a frame, the caption smaller where it stands alone."""
+    """Draw title and caption of a frame, the caption smaller where it stands alone."""
     for words, height, font in ((title, 0.92, 15), (caption, 0.86, 11 if title else 9)):
         if words:
             _text(p, words, height, font)
@@ -235,7 +235,7 @@ def _axes(p) -> None:
 
 
 def colours():
-    """viridis without its darkest part, on which neither shading nor lines can be seen."""
+    """Return viridis without its darkest part, on which neither shading nor lines can be seen."""
     from matplotlib import colormaps
     from matplotlib.colors import ListedColormap
 
@@ -249,9 +249,7 @@ def _wires(pv, points, lines):
 
 
 def _view(displacement):
-    """Of a shaft along y: direction of the motion across the axis; and right, up and towards the viewer, with y to the
-    right and that motion up.
-    """
+    """Return the directions of motion, right, up and towards the viewer for a shaft along y."""
     across = displacement[:, [0, 2]]
     w, v = np.linalg.eigh(across.T @ across)
     # Motion without a plane of its own (torsion, axial, a ring breathing) is seen from +x.
@@ -268,7 +266,7 @@ def _view(displacement):
 
 
 def _from_above():
-    """Of two shafts in the plane of x and y: seen from above, z up, from the pinion's back end."""
+    """Return the view on two shafts in the plane of x and y from above, z up."""
     height, turn = np.deg2rad(38), np.deg2rad(35)
     back = np.array([np.cos(height) * np.sin(turn), np.cos(height) * np.cos(turn), np.sin(height)])
     plane = np.array([0.0, 0.0, 1.0])
@@ -281,7 +279,7 @@ FROM_ABOVE = _from_above()
 
 
 def _sign(points, displacement, plane) -> float:
-    """The sign of a shape is free: where it moves most, let it move up, along +y, or about +y."""
+    """Return the sign that lets a shape move up, along +y or about +y where it moves most."""
     i = np.argmax((displacement**2).sum(axis=1))
     d, r = displacement[i], points[i] * [1.0, 0.0, 1.0]
     about = np.cross(r, d)[1] / max(np.linalg.norm(r), 1e-300)
@@ -289,15 +287,15 @@ def _sign(points, displacement, plane) -> float:
     return -1.0 if choice < 0 else 1.0
 
 
-def _aim(p, rest, drawn, aspect, right, up, back):
-    """Parallel projection that fills the frame between the title and the colour bar."""
-    a, b = drawn @ right, drawn @ up
+def _aim(p, undeformed, drawn, aspect, right, upward, back):
+    """Aim a parallel projection that fills the frame between title and colour bar."""
+    a, b = drawn @ right, drawn @ upward
     height = max(np.ptp(b) / USABLE[1], np.ptp(a) / USABLE[0] * aspect)
-    middle = (a.max() + a.min()) / 2 * right + ((b.max() + b.min()) / 2 - 0.02 * height) * up
+    middle = (a.max() + a.min()) / 2 * right + ((b.max() + b.min()) / 2 - 0.02 * height) * upward
     p.camera.parallel_projection = True
     p.camera.focal_point = middle
-    p.camera.position = middle + 3 * np.ptp(rest, axis=0).max() * back
-    p.camera.up = up
+    p.camera.position = middle + 3 * np.ptp(undeformed, axis=0).max() * back
+    p.camera.up = upward
     p.camera.parallel_scale = height / 2
     p.renderer.reset_camera_clipping_range()
 

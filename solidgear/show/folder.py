@@ -43,7 +43,7 @@ _held: set[Path] = set()
 
 
 def prepare(out: str | os.PathLike) -> Path:
-    """Make sure a folder can be written, before an hour is spent on what goes into it.
+    """Make sure a folder can be written, before an hour is spent.
 
     Raises
     ------
@@ -69,15 +69,15 @@ def _unwritable(out: str | os.PathLike, error: OSError) -> SolidgearError:
 
 @contextmanager
 def held(out: str | os.PathLike) -> Iterator[Path]:
-    """A folder that can be written and that no other process takes meanwhile; one that was made for
-    it and stays empty goes again.
+    """Hold a folder that can be written, against other processes; a new one that stays empty is
+    removed.
 
     Raises
     ------
     SolidgearError
         If it cannot be written, or another run holds it.
     """
-    made = not Path(out).exists()
+    is_new = not Path(out).exists()
     folder = prepare(out)
     place = folder.resolve()
     if place in _held:
@@ -93,13 +93,13 @@ def held(out: str | os.PathLike) -> Iterator[Path]:
             # Removed while it is held: whoever waits for this very file sees that it is gone.
             (folder / LOCK).unlink(missing_ok=True)
             lock.close()
-        if made and not any(folder.iterdir()):
+        if is_new and not any(folder.iterdir()):
             folder.rmdir()
 
 
 @contextmanager
 def begun(out: str | os.PathLike) -> Iterator[Path]:
-    """A folder that is held for a run, without what an earlier one left in it.
+    """Hold a folder for a run and remove the files of an earlier run.
 
     Raises
     ------
@@ -150,7 +150,7 @@ def _locked(folder: Path, out) -> IO | None:
 
 
 def _is(file: IO, path: Path) -> bool:
-    """True where an open file is still the one of that name."""
+    """Return True where an open file is still the one of that name."""
     try:
         return os.path.samestat(os.fstat(file.fileno()), path.stat())
     except OSError:
@@ -158,7 +158,7 @@ def _is(file: IO, path: Path) -> bool:
 
 
 def clear(folder: Path) -> None:
-    """Remove what an earlier run left in a folder: the files it listed, and halves of files."""
+    """Remove the files that an earlier run listed, and halves of files."""
     for name in _listed(folder):
         if OWN.fullmatch(name) and (folder / name).is_file():
             (folder / name).unlink()
@@ -166,7 +166,7 @@ def clear(folder: Path) -> None:
 
 
 def clear_halves(folder: Path) -> None:
-    """Remove halves of files that processes left which were killed while writing them."""
+    """Remove halves of files left by processes that were killed."""
     for path in folder.iterdir():
         half = HALF.fullmatch(path.name)
         if half and not _alive(int(half["process"])):
@@ -174,7 +174,7 @@ def clear_halves(folder: Path) -> None:
 
 
 def _listed(folder: Path) -> list[str]:
-    """Files of an earlier run, by its own list."""
+    """Return files of an earlier run, as it listed them."""
     try:
         results = json.loads((folder / "results.json").read_text(encoding="utf-8"))
         return [str(name) for name in results["files"]]

@@ -24,7 +24,7 @@ def block(
     sizes: Sequence[Sequence[float | None]] | None = None,
     faint_digits: int = 0,
 ) -> Table:
-    """A 6x6 of one point or between two.
+    """Return a 6x6 of one point or between two.
 
     Parameters
     ----------
@@ -40,8 +40,8 @@ def block(
         Figures of a coupling that is next to nothing, in units without exponents: there zeros would
         fill its cell. By default it is a bare zero.
     """
-    own = [entry(matrix, k, k) for k in range(6)]
-    across, along = sizes or (own, own)
+    diagonal = [entry(matrix, k, k) for k in range(6)]
+    across, along = sizes or (diagonal, diagonal)
     same, mixed, turn = BLOCK_UNITS[kind]
     quarters = ((same, mixed), (mixed, turn))
 

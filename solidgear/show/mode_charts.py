@@ -20,14 +20,14 @@ LONGEST = 76.0
 
 
 def mode_chart(record: Record, width: float = WIDE) -> Chart | None:
-    """Natural frequencies of all models side by side, and below them how far each is from the
-    reference.
+    """Chart natural frequencies of all models side by side, and below them their differences from
+    the reference.
     """
     models = [key for key, model in record.models.items() if model.modes]
     modes = {key: _elastic_by_name(record.models[key]) for key in models}
     reference = reference_of(record)
-    known = _known(modes, reference)
-    names = sorted(known, key=lambda name: _place(known[name]))
+    references = _known(modes, reference)
+    names = sorted(references, key=lambda name: _place(references[name]))
     if not names:
         return None
     base = modes.get(reference or "")
@@ -50,31 +50,36 @@ def mode_chart(record: Record, width: float = WIDE) -> Chart | None:
     labels = {
         float(i): name + ("\n(pair)" if name in pairs else "") for i, name in enumerate(names)
     }
-    families = [known[name].family for name in names]
+    families = [references[name].family for name in names]
     legend = {"orient": "top", "columns": 5 if width > NARROW else 2}
     turned = len(names) > (9 if width > NARROW else 3)
     relative = base is not None and len(models) > 1
-    over = Axis("frequency, Hz", (0.0, 1.06 * max(row["y"] for row in rows)))
+    axis = Axis("frequency, Hz", (0.0, 1.06 * max(row["y"] for row in rows)))
     hidden = dict.fromkeys(labels, "") if relative else labels
-    panels = [_stems(over, TALL, hidden, families, rows, series, legend, turned)]
+    panels = [_stems(axis, TALL, hidden, families, rows, series, legend, turned)]
     if relative and reference is not None:
-        apart = [{**row, "y": row["apart"]} for row in rows if row["apart"] is not None]
-        sizes = [row["y"] for row in apart] or [0.0]
+        differences = [{**row, "y": row["apart"]} for row in rows if row["apart"] is not None]
+        sizes = [row["y"] for row in differences] or [0.0]
         reach = 0.08 * (max(0.0, *sizes) - min(0.0, *sizes)) or 1.0
         ends = min(0.0, *sizes) - reach, max(0.0, *sizes) + reach
         words = f"against {model_name(record, reference)}"
         panels.append(
             _stems(
-                Axis(words, ends, label=PERCENT), LOW, labels, families, apart, series, None, turned
+                Axis(words, ends, label=PERCENT),
+                LOW,
+                labels,
+                families,
+                differences,
+                series,
+                None,
+                turned,
             )
         )
     return Chart(in_columns(panels, 1), width)
 
 
 def _row(model: str, mode: ModeRecord, reference: Mapping[str, ModeRecord]) -> dict[str, Any]:
-    """One mode of one model: its frequency, how far it is from that of the reference, and what is
-    to be read of it.
-    """
+    """Return one mode of one model: frequency, difference from the reference, and readout."""
     base = reference[mode.name].frequency_hz if mode.name in reference else None
     change = relative_change(mode.frequency_hz, base)
     words = readout(
@@ -87,7 +92,7 @@ def _row(model: str, mode: ModeRecord, reference: Mapping[str, ModeRecord]) -> d
 
 
 def _stems(
-    over: Axis,
+    axis: Axis,
     height: float,
     labels: Mapping[float, str],
     families: list[str],
@@ -96,16 +101,16 @@ def _stems(
     legend: Mapping[str, Any] | None,
     turned: bool,
 ) -> Panel:
-    """A stem with its marker for every row, and a dotted line wherever the next family begins."""
+    """Draw a stem with its marker for every row, and a dotted line between families."""
     along = Axis("", (-0.6, len(labels) - 0.4), ticks=labels, grid=False)
-    panel = Panel(along, over, height, series=series, legend=legend, turned=turned)
+    panel = Panel(along, axis, height, series=series, legend=legend, turned=turned)
     ends = [i - 0.5 for i in range(1, len(families)) if families[i] != families[i - 1]]
     panel.draw({"type": "rule", "color": GREY, "strokeDash": [2, 3]}, [{"x": x} for x in ends])
     panel.draw({"type": "rule", "color": GREY}, [{"y": 0.0}])
     stems = [{"x": row["x"], "y": 0.0, "y2": row["y"], "name": row["name"]} for row in rows]
     panel.draw({"type": "rule", "strokeWidth": 1.4}, stems)
-    kept = [{key: row[key] for key in ("x", "y", "name", "readout")} for row in rows]
-    panel.draw({"type": "point", "filled": True, "size": 60}, kept)
+    points = [{key: row[key] for key in ("x", "y", "name", "readout")} for row in rows]
+    panel.draw({"type": "point", "filled": True, "size": 60}, points)
     return panel
 
 
@@ -116,11 +121,11 @@ def _elastic_by_name(model: ModelRecord) -> dict[str, ModeRecord]:
 def _known(
     modes: Mapping[str, dict[str, ModeRecord]], reference: str | None
 ) -> dict[str, ModeRecord]:
-    """Every mode by its name, as the reference has it, else the last model that has it."""
-    known: dict[str, ModeRecord] = {}
-    for found in modes.values():
-        known |= found
-    return known if reference is None else known | modes.get(reference, {})
+    """Return every mode by name, from the reference, else from the last model that has it."""
+    references: dict[str, ModeRecord] = {}
+    for record in modes.values():
+        references |= record
+    return references if reference is None else references | modes.get(reference, {})
 
 
 def _place(mode: ModeRecord) -> tuple:
@@ -129,22 +134,22 @@ def _place(mode: ModeRecord) -> tuple:
 
 
 def mac_chart(record: Record, width: float = WIDE) -> Chart | None:
-    """MAC matrices against the reference as annotated heat maps."""
+    """Return MAC matrices against the reference as annotated heat maps."""
     if record.mac is None:
         return None
     reference = model_name(record, record.mac.reference)
     panels = [
-        mac_panel(found, model_name(record, key), reference)
-        for key, found in record.mac.models.items()
-        if found.values and found.values[0]
+        mac_panel(table, model_name(record, key), reference)
+        for key, table in record.mac.models.items()
+        if table.values and table.values[0]
     ]
     return Chart(in_columns(panels, 3), width) if panels else None
 
 
-def mac_panel(found: MacTable, name: str, reference: str) -> Panel:
-    """One matrix, a mode of the model a row."""
-    rows = found.rows or [""] * len(found.values)
-    columns = found.columns or [""] * len(found.values[0])
+def mac_panel(table: MacTable, name: str, reference: str) -> Panel:
+    """Return one matrix, a mode of the model a row."""
+    rows = table.rows or [""] * len(table.values)
+    columns = table.columns or [""] * len(table.values[0])
     panel = Panel(
         Axis("", (-0.5, len(columns) - 0.5), ticks=_numbered(columns), grid=False),
         Axis("", (len(rows) - 0.5, -0.5), ticks=_numbered(rows), grid=False),
@@ -154,7 +159,7 @@ def mac_panel(found: MacTable, name: str, reference: str) -> Panel:
         turned=True,
     )
     cells = []
-    for i, row in enumerate(found.values):
+    for i, row in enumerate(table.values):
         for j, value in enumerate(row):
             if value is None:
                 continue
@@ -165,7 +170,7 @@ def mac_panel(found: MacTable, name: str, reference: str) -> Panel:
     panel.draw({"type": "rect", "stroke": "#ffffff", "strokeWidth": 0.5}, cells)
     for white in (False, True):
         text = {"type": "text", "color": "#ffffff" if white else INK, "baseline": "middle"}
-        panel.draw(text | {"fontSize": 10}, _figures(found, white))
+        panel.draw(text | {"fontSize": 10}, _figures(table, white))
     return panel
 
 
@@ -173,24 +178,24 @@ def _numbered(names: list[str]) -> dict[float, str]:
     return {float(i): name for i, name in enumerate(names)}
 
 
-def _figures(found: MacTable, white: bool) -> list[dict[str, Any]]:
-    """Figures of the dark cells of a map, or of the others; none where there is next to nothing."""
+def _figures(table: MacTable, white: bool) -> list[dict[str, Any]]:
+    """Return figures of the dark cells of a map, or of the light ones; none for negligible values."""
     return [
         {"x": j, "y": i, "text": _mac_text(value)}
-        for i, row in enumerate(found.values)
+        for i, row in enumerate(table.values)
         for j, value in enumerate(row)
         if value is not None and value >= 0.005 and (value > 0.6) == white
     ]
 
 
 def _blue(value: float) -> str:
-    """From nearly white at 0 to dark blue at 1."""
+    """Return a colour from nearly white at 0 to dark blue at 1."""
     ends = zip((247, 251, 255), (8, 48, 107))
     return "#" + "".join(f"{round(a + (b - a) * value):02x}" for a, b in ends)
 
 
 def _mac_text(value: float) -> str:
-    """A MAC in four characters; 0.998 must not round to a perfect 1.00."""
+    """Return a MAC in four characters; 0.998 must not round to a perfect 1.00."""
     if value >= 0.9995:
         return "1.00"
     return ">.99" if value >= 0.995 else f"{min(value, 0.99):.2f}"

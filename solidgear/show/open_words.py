@@ -22,9 +22,9 @@ ALL = "in all"
 RESOLVED = 0.05
 
 
-def interval(one: IntervalRecord | None) -> str:
-    """A range in per cent: ``-35 / +10 %``, or ``± 1.5 %`` of one that is as wide to both sides."""
-    low, high = (one.low or 0.0, one.high or 0.0) if one else (0.0, 0.0)
+def interval(range_: IntervalRecord | None) -> str:
+    """Return a range in per cent: ``-35 / +10 %``, or ``± 1.5 %`` for a symmetric one."""
+    low, high = (range_.low or 0.0, range_.high or 0.0) if range_ else (0.0, 0.0)
     if max(-low, high) < NOTHING:
         return "0"
     if abs(high + low) < 0.02 * (high - low):
@@ -35,132 +35,138 @@ def interval(one: IntervalRecord | None) -> str:
 
 
 def _figures(share: float) -> str:
-    """A share in per cent to two or three figures."""
+    """Return a share in per cent to two or three figures."""
     size = 100 * share
     if size < 100 * NOTHING:
         return "0"
     return f"{size:.0f}" if size >= 9.95 else f"{size:.1f}" if size >= 0.95 else f"{size:.2g}"
 
 
-def parts(found: OpenNumbers, quantity: str) -> list[tuple[str, str]]:
-    """Sources that leave a number open, and its range: each, and all if there are several."""
-    one = found.of(quantity)
-    if one is None:
+def parts(numbers: OpenNumbers, quantity: str) -> list[tuple[str, str]]:
+    """Return sources of a number's range with the range by each, and by all if there are several."""
+    number = numbers.of(quantity)
+    if number is None:
         return []
-    told = [(source, interval(part)) for source, part in one.by_source.items()]
-    return told if len(told) < 2 else [*told, (ALL, interval(one.total))]
+    ranges = [(source, interval(part)) for source, part in number.by_source.items()]
+    return ranges if len(ranges) < 2 else [*ranges, (ALL, interval(number.total))]
 
 
-def columns(found: OpenNumbers, name: Callable[[Any], str]) -> list[Column]:
-    """Columns that stand beside that of a bar; `name` tells the quantity of an item."""
+def columns(numbers: OpenNumbers, name: Callable[[Any], str]) -> list[Column]:
+    """Return columns of ranges beside an error bar; `name` gives the quantity of an item."""
     heads = list(
-        dict.fromkeys(head for one in found.numbers for head, _ in parts(found, one.quantity))
+        dict.fromkeys(
+            head for number in numbers.numbers for head, _ in parts(numbers, number.quantity)
+        )
     )
     return [
-        Column(head, lambda item, head=head: dict(parts(found, name(item))).get(head))  # type: ignore[misc]
+        Column(head, lambda item, head=head: dict(parts(numbers, name(item))).get(head))  # type: ignore[misc]
         for head in heads
     ]
 
 
-def remark(found: OpenNumbers) -> str:
-    """Sentence below numbers with ranges, with where they come from; empty where nothing is open."""
-    if found.left_out:
-        return f"Not told, what the data leave open: {found.left_out}."
-    if not found.inputs:
+def remark(numbers: OpenNumbers) -> str:
+    """Return the sentence on where ranges come from; empty where nothing is open."""
+    if numbers.left_out:
+        return f"The range by open data is not known: {numbers.left_out}."
+    if not numbers.inputs:
         return ""
-    lost = [f" Bearing {name} carries nothing somewhere in them." for name in found.lost]
-    refused = [f" Left out of them: {reason}." for reason in found.refused]
-    named = ", ".join(one.path for one in found.inputs)
-    sources = ", ".join(dict.fromkeys(one.source for one in found.inputs))
-    return f"Ranges of {sources}: from {named}. See: solidgear budget.{''.join(lost + refused)}"
+    lost = [f" Bearing {name} carries no load somewhere in them." for name in numbers.lost]
+    refused = [f" Not included: {reason}." for reason in numbers.refused]
+    paths = ", ".join(entry.path for entry in numbers.inputs)
+    sources = ", ".join(dict.fromkeys(entry.source for entry in numbers.inputs))
+    return f"Ranges of {sources}: from {paths}. See: solidgear budget.{''.join(lost + refused)}"
 
 
-def table(found: OpenNumbers, bars: dict[Quantity, float], units: Units) -> Table:
-    """Diagonal entries of a stiffness and a compliance, each with its bar and its ranges."""
-    rows = [one for one in found.numbers if not one.quantity.is_coupling]
-    own = [text("quantity", lambda one: one.quantity)]
-    own += [Column("value", lambda one: units.number(one.value, one.quantity.unit, 4))]
-    own += [text("unit", lambda one: units.unit(one.quantity.unit))]
+def table(numbers: OpenNumbers, bars: dict[Quantity, float], units: Units) -> Table:
+    """Return diagonal entries of a stiffness and a compliance, with error bars and ranges."""
+    rows = [number for number in numbers.numbers if not number.quantity.is_coupling]
+    columns_ = [text("quantity", lambda number: number.quantity)]
+    columns_ += [
+        Column("value", lambda number: units.number(number.value, number.quantity.unit, 4))
+    ]
+    columns_ += [text("unit", lambda number: units.unit(number.quantity.unit))]
 
-    def bar(one: OpenRecord) -> str | None:
-        found = bars.get(one.quantity)
-        return None if found is None else f"+- {percent(found, signed=False)}"
+    def bar(number: OpenRecord) -> str | None:
+        numbers = bars.get(number.quantity)
+        return None if numbers is None else f"+- {percent(numbers, signed=False)}"
 
     if bars:
-        own.append(Column("mesh bar", bar))
-    return Table("", [*own, *columns(found, lambda one: one.quantity)], rows, remark(found))
+        columns_.append(Column("error bar", bar))
+    return Table(
+        "", [*columns_, *columns(numbers, lambda number: number.quantity)], rows, remark(numbers)
+    )
 
 
-def budget(found: OpenNumbers, asked: Iterable[str] = ()) -> Table:
-    """Contribution of every input to every number that is asked for, the largest first."""
-    chosen = [one for name in (tuple(asked) or SHOWN) if (one := found.of(name)) is not None]
+def budget(numbers: OpenNumbers, names: Iterable[str] = ()) -> Table:
+    """Return the contribution of every input to every number asked for, the largest first."""
+    chosen = [
+        number for name in (tuple(names) or SHOWN) if (number := numbers.of(name)) is not None
+    ]
     rows: list[tuple[str, ...]] = []
-    for one in chosen:
-        said = {i.path: i.said for i in found.inputs}
-        shares = one.shares or dict.fromkeys(one.by_input, None)
+    for number in chosen:
+        ranges = {i.path: i.said for i in numbers.inputs}
+        shares = number.shares or dict.fromkeys(number.by_input, None)
         for k, (path, share) in enumerate(shares.items()):
             whole = "" if share is None else f"{100 * share:.0f} %"
             rows.append(
                 (
-                    one.quantity if not k else "",
+                    number.quantity if not k else "",
                     path,
-                    said[path],
-                    interval(one.by_input[path]),
+                    ranges[path],
+                    interval(number.by_input[path]),
                     whole,
                 )
             )
-        rows.append(("", ALL, _sampled(one, found), interval(one.total), ""))
+        rows.append(("", ALL, _sampled(number, numbers), interval(number.total), ""))
     heads = ("number", "open input", "its range", "number by it", "share")
     return Table(
         "",
         [text(head) if k < 3 else Column(head) for k, head in enumerate(heads)],
         rows,
-        " ".join([*_notes(found, chosen)]),
+        " ".join([*_notes(numbers, chosen)]),
     )
 
 
-def _sampled(one: OpenRecord, found: OpenNumbers) -> str:
-    """Words on the deviation of all inputs, and on samples where there are any."""
-    told = [] if one.total.deviation is None else [f"s {short(one.total.deviation)}"]
-    if one.sampled is not None:
-        told.append(f"samples {interval(one.sampled)}, s {short(one.sampled.deviation)}")
-    return "; ".join(told)
+def _sampled(number: OpenRecord, numbers: OpenNumbers) -> str:
+    """Return words on the deviation of all inputs, and on samples where there are any."""
+    parts_ = [] if number.total.deviation is None else [f"s {short(number.total.deviation)}"]
+    if number.sampled is not None:
+        parts_.append(f"samples {interval(number.sampled)}, s {short(number.sampled.deviation)}")
+    return "; ".join(parts_)
 
 
 def short(share: float | None) -> str:
-    """A deviation in per cent, to three figures."""
+    """Return a deviation in per cent, to three figures."""
     return short_percent(float(f"{share:.3g}")) or "" if share is not None else ""
 
 
-def acting(found: OpenNumbers, chosen: Iterable[OpenRecord]) -> list[OpenRecord]:
-    """Numbers whose samples scatter otherwise than the inputs one by one: beyond three standard
-    errors of a deviation, and by a part that matters.
-    """
-    wide = max(RESOLVED, 3 / (2 * max(found.samples, 1)) ** 0.5)
+def acting(numbers: OpenNumbers, chosen: Iterable[OpenRecord]) -> list[OpenRecord]:
+    """Return numbers whose samples scatter differently from the sum of single inputs."""
+    wide = max(RESOLVED, 3 / (2 * max(numbers.samples, 1)) ** 0.5)
     out = []
-    for one in chosen:
-        alone, sampled = one.total.deviation, one.sampled and one.sampled.deviation
+    for number in chosen:
+        alone, sampled = number.total.deviation, number.sampled and number.sampled.deviation
         if alone and sampled and sampled > NOTHING and abs(sampled / alone - 1) > wide:
-            out.append(one)
+            out.append(number)
     return out
 
 
-def _notes(found: OpenNumbers, chosen: list[OpenRecord]) -> Iterable[str]:
+def _notes(numbers: OpenNumbers, chosen: list[OpenRecord]) -> Iterable[str]:
     if not chosen:
         return
     yield (
-        f"Ranges over {found.points} points of the {found.title}, relative to its numbers "
-        "with all inputs as the scene says. Share: of variance, each input equally likely anywhere in "
-        "its range, by itself; s: root of the sum of squares."
+        f"Ranges over {numbers.points} points of the {numbers.title}, relative to its numbers as the "
+        "scene is. Share: of variance, each input uniform in its range, by itself; s: root of the "
+        "sum of squares."
     )
-    if found.samples:
-        yield f"Samples: {found.samples} of all inputs together, seed {found.seed}."
-        names = [str(one.quantity) for one in acting(found, chosen)]
+    if numbers.samples:
+        yield f"Samples: {numbers.samples} of all inputs together, seed {numbers.seed}."
+        names = [str(number.quantity) for number in acting(numbers, chosen)]
         if names:
-            yield f"Inputs act on one another in {', '.join(names)}: there samples hold, not s."
+            yield f"Inputs interact in {', '.join(names)}: there take the samples and not s."
         else:
-            yield "They scatter as the inputs one by one do: none acts much on another."
-    for name in found.lost:
-        yield f"Bearing {name} carries nothing somewhere in the ranges."
-    for reason in found.refused:
-        yield f"Left out: {reason}."
+            yield "They scatter as s says: inputs hardly interact."
+    for name in numbers.lost:
+        yield f"Bearing {name} carries no load somewhere in the ranges."
+    for reason in numbers.refused:
+        yield f"Not included: {reason}."

@@ -54,18 +54,18 @@ else:
 
 
 def share(text: str | float) -> float:
-    """A relative error from the command line, as a share or in per cent; defaults are numbers."""
+    """Read a relative error, as a share or in per cent; defaults are numbers."""
     number = str(text).strip()
     try:
         return float(number.removesuffix("%")) / (100 if number.endswith("%") else 1)
     except ValueError:
         raise typer.BadParameter(
-            f'"{text}" is no number; a tolerance is a share such as 0.01, or 1%'
+            f'"{text}" is not a number; give a tolerance such as 0.01 or 1%'
         ) from None
 
 
 def relative(name: str, about: str) -> Any:
-    """Option that is a relative error."""
+    """Return an option that is a relative error."""
     return typer.Option(name, parser=share, metavar="FLOAT", help=about)
 
 
@@ -80,7 +80,7 @@ Settings = Annotated[
 
 @dataclass(frozen=True)
 class Run(Group):
-    """Options of every command that solves and tells numbers."""
+    """Options of every command that solves and prints numbers."""
 
     as_json: Annotated[
         bool,
@@ -88,21 +88,21 @@ class Run(Group):
     ] = False
 
     def progress(self) -> Progress:
-        """Lines on standard error, none beside JSON."""
+        """Print progress on standard error, unless JSON is asked for."""
         return Progress(quiet=self.as_json)
 
 
 @dataclass(frozen=True)
 class Shown(Run):
-    """Those of a command whose numbers have other units than Hz."""
+    """Options of a command whose numbers have other units than Hz."""
 
     units: Annotated[
         UnitsChoice,
         typer.Option(
             "--units",
-            help="Of tables and pages: "
+            help="Units of tables and pages: "
             + "; ".join(f"{units.name}: {units.about}" for units in SYSTEMS.values())
-            + ". JSON stays SI always.",
+            + ". JSON is always in SI.",
         ),
     ] = UNITS
 
@@ -115,7 +115,7 @@ class Fixed(Group):
     settings: Settings = None
 
     def body(self, scene: Scene) -> Body:
-        """Body of a scene."""
+        """Return the body of a scene."""
         return build_body(scene, self.name, self.settings)
 
 
@@ -127,12 +127,12 @@ class Chosen(Group):
         AutoChoice,
         typer.Option(
             *BY_MODEL,
-            help="Model to solve with; auto: the cheapest whose bars are within --tol.",
+            help="Model to solve with; auto: the cheapest whose error bars are within --tol.",
         ),
     ] = AUTO
     tol: Annotated[
         float | None,
-        relative("--tol", "Of -f auto: relative error allowed; else the scene's own."),
+        relative("--tol", "Relative error allowed, for -f auto; else the scene's own."),
     ] = None
     settings: Settings = None
 
@@ -157,11 +157,11 @@ class Chosen(Group):
                     f"--tol {self.tol:g} needs -f auto; the mesh of -f {self.name} is set by --set"
                 )
             return False
-        given = options(self.pairs)  # which says so where one is no key=value
-        if given:
-            held = (MODEL, *LADDER.holding(scene)) if scene is not None else (MODEL,)
-            fit = [m for m in held if scene is None or not LADDER[m].unfit(scene)]
-            able = [m for m in fit if given.keys() <= LADDER[m].options.keys()]
+        settings = options(self.pairs)  # which says so where one is no key=value
+        if settings:
+            models = (MODEL, *LADDER.holding(scene)) if scene is not None else (MODEL,)
+            fit = [m for m in models if scene is None or not LADDER[m].unfit(scene)]
+            able = [m for m in fit if settings.keys() <= LADDER[m].options.keys()]
             raise SolidgearError(
                 f"--set {show(self.pairs[0], 40)} needs a fixed model: add -f "
                 f"{(able or fit or [MODEL])[0]}"
@@ -171,27 +171,28 @@ class Chosen(Group):
 
 @dataclass(frozen=True)
 class Solved(Chosen):
-    """The same of a single solution, which may be as large as a machine holds."""
+    """Options of a single solution, which may be as large as the machine's memory."""
 
     engine: Annotated[
         str | None,
         typer.Option(
             "--engine",
-            help="Who factors a 3D solid too large for this program: petsc (MUMPS under mpirun) "
-            "or petsc-gamg (multigrid, statics only); the same as --set engine=...",
+            help="Solver of a 3D solid too large for this program: petsc (MUMPS under mpirun) or "
+            "petsc-gamg (multigrid, statics only); the same as --set engine=...",
         ),
     ] = None
     second: Annotated[
         bool,
         typer.Option(
             "--bars/--no-bars",
-            help="Of -f solid: error bars by a coarser second mesh, a quarter to two thirds more time.",
+            help="With -f solid: error bars by a coarser second mesh, a quarter to two thirds more "
+            "time.",
         ),
     ] = True
 
     @property
     def pairs(self) -> list[str]:
-        """``--set`` options with that of ``--engine``."""
+        """``--set`` options with ``--engine`` among them."""
         return [*super().pairs, *([] if self.engine is None else [f"engine={self.engine}"])]
 
     @property
@@ -202,7 +203,7 @@ class Solved(Chosen):
     def without_bars(
         self, bars: Mapping[Any, float], settled: Settled | None, scene: Scene, body: Body
     ) -> str:
-        """Reason why numbers have no error bar; empty where they have one."""
+        """Return the reason why numbers have no error bar; empty where they have one."""
         if bars or settled is not None:
             return ""
         if self.on_two_meshes:
@@ -211,15 +212,15 @@ class Solved(Chosen):
                 from solidgear.core.judge.coarser_mesh import no_bar
 
                 return no_bar(scene, body, options(self.pairs))
-            return "there is no coarser mesh beside the one that was set"
+            return "there is no coarser mesh than the one that was set"
         if self.name in SECOND:
             return "--no-bars leaves the second mesh out"
-        return "the model was given, and its mesh with it; -f auto has them"
+        return "model and mesh were given; -f auto has error bars"
 
     def body(
         self, scene: Scene, ask: str, points: Sequence[str] = ()
     ) -> tuple[Body, Settled | None]:
-        """The body to solve with, and how it was chosen where it was.
+        """Build the body to solve with, and say how its mesh was chosen.
 
         Parameters
         ----------
@@ -237,7 +238,9 @@ class Solved(Chosen):
 
 
 def options(pairs: list[str] | None) -> dict:
-    """Builder options from ``key=value`` texts; numbers as numbers, a list with commas as a tuple."""
+    """Return the builder options from ``key=value`` texts; numbers as numbers, a list with commas
+    as a tuple.
+    """
     out: dict = {}
     for pair in pairs or []:
         key, sep, text = pair.partition("=")
@@ -254,24 +257,26 @@ def options(pairs: list[str] | None) -> dict:
 def options_by_name(
     pairs: list[str] | None, names: Collection[str], what: str, example: str
 ) -> dict[str, dict]:
-    """Builder options by the names of models or of shafts, from ``NAME.key=value`` texts."""
+    """Return the builder options by the names of models or of shafts, from ``NAME.key=value``
+    texts.
+    """
     out: dict[str, list[str]] = {}
     for pair in pairs or []:
-        name, dot, rest = pair.partition(".")
+        name, dot, setting = pair.partition(".")
         if not dot or name not in names:
             raise SolidgearError(
                 f"--set {pair}: write {what.upper()}.key=value, such as --set {example}; "
                 f"{what}s: {', '.join(names)}"
             )
-        out.setdefault(name, []).append(rest)
-    return {name: options(own) for name, own in out.items()}
+        out.setdefault(name, []).append(setting)
+    return {name: options(settings) for name, settings in out.items()}
 
 
-def refuse(given: Mapping[str, bool], what: str) -> None:
-    """Refuse the first of some options that is given; they are for something else, in words."""
-    for option, there in given.items():
-        if there:
-            raise SolidgearError(f"{option} is for {what}")
+def refuse(present: Mapping[str, bool], kind: str) -> None:
+    """Refuse the first of some options that is given; `kind` says what they are for."""
+    for option, is_given in present.items():
+        if is_given:
+            raise SolidgearError(f"{option} is for {kind}")
 
 
 def _value(text: str):
@@ -284,7 +289,7 @@ def _value(text: str):
 
 
 def build_body(scene: Scene, name: str, pairs: list[str] | None) -> Body:
-    """Body of a scene by one model, with ``--set`` options."""
+    """Return the body of a scene by one model, with ``--set`` options."""
     # Checked here too: an option called scene or fidelity would be taken for an argument of
     # `build`.
     return build(scene, name, **LADDER[name].checked(options(pairs)))

@@ -62,9 +62,9 @@ def write_vtu(
         still = body.surface({})
         points = still.points
         cells = [
-            (kind, at)
-            for kind, at in (("quad", still.faces), ("triangle", still.triangles))
-            if len(at)
+            (kind, nodes)
+            for kind, nodes in (("quad", still.faces), ("triangle", still.triangles))
+            if len(nodes)
         ]
         data = {name: body.surface(vectors).displacement for name, vectors in shapes.items()}
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -74,7 +74,7 @@ def write_vtu(
 
 
 def _shapes(modes: Iterable):
-    """Name and vectors of every shape; a letter distinguishes those of a pair."""
+    """Return the name and vectors of every shape; a letter distinguishes those of a pair."""
     for mode in modes:
         for k, vectors in enumerate(mode.vectors):
             letter = chr(ord("a") + k) if len(mode.vectors) > 1 else ""
@@ -92,7 +92,8 @@ def _volume(body: Body, mesh: Volume, shapes):
 
 
 def node_order(doflocs: np.ndarray, vtk_name: str) -> np.ndarray:
-    """Local nodes of an element in VTK's order, found by their reference coordinates, (nb, 3).
+    """Return the local nodes of an element in VTK's order, found by their reference coordinates,
+    (nb, 3).
 
     Both sides use the unit cube or the unit tetrahedron; meshio keeps VTK's order for these types.
     `vtk_name` is the class of the VTK cell, which knows its own.
@@ -100,8 +101,8 @@ def node_order(doflocs: np.ndarray, vtk_name: str) -> np.ndarray:
     from vtkmodules import vtkCommonDataModel  # needs no OpenGL
 
     cell = getattr(vtkCommonDataModel, vtk_name)()
-    theirs = np.reshape(cell.GetParametricCoords(), (-1, 3))[: cell.GetNumberOfPoints()]
-    distance = np.abs(theirs[:, None] - np.asarray(doflocs)[None]).max(axis=2)
+    coordinates = np.reshape(cell.GetParametricCoords(), (-1, 3))[: cell.GetNumberOfPoints()]
+    distance = np.abs(coordinates[:, None] - np.asarray(doflocs)[None]).max(axis=2)
     order = distance.argmin(axis=1)
     if distance.min(axis=1).max() > 1e-12 or len(set(order)) != len(doflocs):
         raise ValueError(f"the nodes of {vtk_name} are not those of the element")
@@ -119,7 +120,7 @@ class Output:
     write: Callable[[Solution, Path], object]  #: given a solution and the path
 
     def name(self, model: str) -> str:
-        """Of the file of a model."""
+        """Return the name of the file of a model."""
         return f"{self.stem}_{model}{self.ending}"
 
     @property

@@ -37,7 +37,9 @@ class Mesh:
 
 
 def mesh_of(surface: Surface) -> Mesh:
-    """Triangles of a drawn surface, welded where two pieces of it meet and split at sharp edges."""
+    """Return triangles of a drawn surface, welded where two pieces of it meet and split at sharp
+    edges.
+    """
     triangles = _triangles(surface)
     piece, edges = _creased(surface.points, triangles)
     _, first = np.unique(piece, return_index=True)
@@ -51,7 +53,7 @@ def mesh_of(surface: Surface) -> Mesh:
 
 
 def _triangles(surface: Surface) -> np.ndarray:
-    """Triangles of a surface between points of which none coincide."""
+    """Return triangles of a surface between points of which none coincide."""
     from scipy.spatial import cKDTree
 
     points = surface.points
@@ -68,7 +70,7 @@ def _triangles(surface: Surface) -> np.ndarray:
 
 
 def _halved(points: np.ndarray, quads: np.ndarray) -> np.ndarray:
-    """Quadrilaterals as two triangles each, along the shorter diagonal."""
+    """Return quadrilaterals as two triangles each, along the shorter diagonal."""
     first, second = (
         np.linalg.norm(points[quads[:, i + 2]] - points[quads[:, i]], axis=1) for i in (0, 1)
     )
@@ -88,16 +90,16 @@ def _creased(points: np.ndarray, triangles: np.ndarray) -> tuple[np.ndarray, np.
     following = np.roll(corner.reshape(-1, 3), -1, axis=1).ravel()
     start, end = triangles.ravel(), triangles.ravel()[following]
     # An edge runs the other way round in the triangle beyond it.
-    own, other = start * len(points) + end, end * len(points) + start
-    order = np.argsort(own)
-    beyond = order[np.searchsorted(own, other, sorter=order).clip(max=len(own) - 1)]
+    forward, backward = start * len(points) + end, end * len(points) + start
+    order = np.argsort(forward)
+    beyond = order[np.searchsorted(forward, backward, sorter=order).clip(max=len(forward) - 1)]
     cosine = np.einsum("ij,ij->i", normal[corner // 3], normal[beyond // 3])
-    sharp = (own[beyond] != other) | (cosine < CREASE)
+    sharp = (forward[beyond] != backward) | (cosine < CREASE)
     joins = corner[~sharp], following[beyond[~sharp]]
     graph = coo_matrix((np.ones(len(joins[0])), joins), shape=(len(corner), len(corner)))
     _, piece = connected_components(graph, directed=False)
-    once = sharp & (start < end)
-    return piece, np.column_stack([piece[once], piece[following[once]]])
+    edges = sharp & (start < end)
+    return piece, np.column_stack([piece[edges], piece[following[edges]]])
 
 
 def _along_meridians(points: np.ndarray) -> np.ndarray:
@@ -109,16 +111,14 @@ def _along_meridians(points: np.ndarray) -> np.ndarray:
 
 
 def _sorted(rows: np.ndarray) -> np.ndarray:
-    """Rows by their first number, then by the others."""
+    """Return rows by their first number, then by the others."""
     return rows[np.lexsort(rows.T[::-1])]
 
 
 def packed(values: np.ndarray, step: float = 1) -> str:
-    """Values as differences of successive whole numbers of steps, which stay below 2^30, deflated,
-    in base64.
-    """
-    apart = np.diff(np.rint(values / step).astype(np.int64), prepend=0)
-    counts = (2 * np.abs(apart) - (apart < 0)).astype("<u4")
+    """Pack values as deflated differences of whole steps below 2^30, in base64."""
+    steps = np.diff(np.rint(values / step).astype(np.int64), prepend=0)
+    counts = (2 * np.abs(steps) - (steps < 0)).astype("<u4")
     # All low bytes first: they differ, and the others seldom do.
     planes = counts.view(np.uint8).reshape(-1, 4).T
     return base64.b64encode(zlib.compress(planes.tobytes(), 9)).decode()

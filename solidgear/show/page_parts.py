@@ -20,7 +20,7 @@ class Contents:
     told: list[tuple[str, str]] = field(default_factory=list)
 
     def add(self, anchor: str, title: str) -> str:
-        """Heading of a further section."""
+        """Return the heading of a further section."""
         heading = f"{self.number.format(len(self.told) + 1)} {title}"
         self.told.append((anchor, heading))
         return heading
@@ -28,7 +28,7 @@ class Contents:
 
 @functools.cache
 def template(name: str):
-    """A page beside this file, ready to be filled."""
+    """Return the template of a page."""
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
     loader = FileSystemLoader(Path(__file__).parent)
@@ -42,7 +42,7 @@ def template(name: str):
 
 
 def data_uri(key: str, path: Path) -> str | None:
-    """A picture in a file as a data URI; None if it cannot be had or is none."""
+    """Return a picture in a file as a data URI; None if it cannot be read."""
     try:
         data = path.read_bytes()
     except OSError as error:

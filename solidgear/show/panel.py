@@ -54,7 +54,7 @@ class Axis(NamedTuple):
     shown: bool = True  #: of one that is not shown only the ends count
 
     def channel(self, room: float, more: Mapping[str, Any]) -> dict[str, Any]:
-        """The axis in Vega-Lite, its title in lines that fit a room (px)."""
+        """Return the axis in Vega-Lite, its title in lines that fit a room (px)."""
         kind = {"type": "log"} if self.log else {"zero": False}
         scale = {**kind, "domain": sorted(self.ends), "nice": False}
         scale["reverse"] = bool(self.ends[0] > self.ends[1])
@@ -75,7 +75,7 @@ class Axis(NamedTuple):
 
 
 def log_ticks(low: float, high: float) -> list[float]:
-    """Powers of ten between two ends, with their doubles and fives where these are few.
+    """Return powers of ten between two ends, with their doubles and fives where these are few.
 
     Examples
     --------
@@ -149,13 +149,13 @@ class Panel:
         those of the rows. Rows with a place that is no number, or none on a logarithmic axis, are
         left out.
         """
-        kept = [dict(row) for row in rows if self._placed(row)]
-        if kept:
+        placed = [dict(row) for row in rows if self._placed(row)]
+        if placed:
             mark = {"type": mark} if isinstance(mark, str) else dict(mark)
-            self.layers.append((mark, kept, encoding))
+            self.layers.append((mark, placed, encoding))
 
     def read(self, rows: Iterable[Mapping[str, Any]], colour: str) -> None:
-        """Add places to be read that nothing is drawn at: along a curve, or in a cell."""
+        """Add places to be read without a mark: along a curve, or in a cell."""
         self.draw({"type": "point", "size": 0, "clip": True, "color": colour}, rows)
 
     def _placed(self, row: Mapping[str, Any]) -> bool:
@@ -172,7 +172,7 @@ class Panel:
         return self.left + 1.5 * LETTER * len(wrapped(self.y.title, self.height))
 
     def spec(self, beside: float, width: float) -> dict[str, Any]:
-        """The panel in Vega-Lite, its axes so many px wide and so many from the left."""
+        """Return the panel in Vega-Lite, with axes `width` wide and `beside` from the left, px."""
         extent = beside - 1.5 * LETTER * len(wrapped(self.y.title, self.height))
         places = {
             "x": self.x.channel(width, self.below),
@@ -189,7 +189,9 @@ class Panel:
 
     def _add_upper(self, upper: Axis, layers: list, below: dict[str, Any], width: float) -> None:
         """Add an axis above, and leave the one below to a single layer."""
-        places = [one["encoding"]["x"] for one in layers if "field" in one["encoding"].get("x", {})]
+        places = [
+            layer["encoding"]["x"] for layer in layers if "field" in layer["encoding"].get("x", {})
+        ]
         for place in places[1:]:
             place["axis"] = None
         above = upper.channel(width, {"orient": "top", "labelOverlap": True})["axis"]
@@ -222,11 +224,11 @@ class Panel:
         return {"data": {"values": rows}, "mark": mark, "encoding": {**channels, **encoding}}
 
     def _looks(self, mark: str) -> dict[str, Any]:
-        """Channels by which a series is told from others."""
+        """Return the channels that distinguish series."""
         looks = self.series.values()
-        ranges = {"color": [one.colour for one in looks]}
+        ranges = {"color": [look.colour for look in looks]}
         if mark == "point":
-            ranges["shape"] = [one.shape for one in looks]
+            ranges["shape"] = [look.shape for look in looks]
         return {
             channel: {
                 "field": "name",
@@ -239,7 +241,7 @@ class Panel:
 
 
 def curve(x: np.ndarray, y: np.ndarray, **same: Any) -> list[dict[str, Any]]:
-    """Rows of a curve, with the channels that all of its places share.
+    """Return rows of a curve, with the channels that all of its places share.
 
     Examples
     --------
@@ -250,24 +252,25 @@ def curve(x: np.ndarray, y: np.ndarray, **same: Any) -> list[dict[str, Any]]:
 
 
 def lines_legend(columns: int) -> dict[str, Any]:
-    """Legend of curves above a panel, in Vega-Lite."""
+    """Return the legend of curves above a panel, in Vega-Lite."""
     return {"orient": "top", "columns": columns, "symbolType": "stroke", "symbolStrokeWidth": 3}
 
 
 def readout(name: str, *facts: tuple[str, str, str]) -> str:
-    """The words of a mark: a name, and what, value and unit a line; without a value, no line.
+    """Return the words of a mark: a name, and name, value and unit a line; no line without a
+    value.
 
     Examples
     --------
     >>> readout("beam", ("error", "3 %", ""), ("time", "2", "s"), ("remark", "", ""))
     'beam\\nerror: 3 %\\ntime: 2 s'
     """
-    lines = (f"{what}: {value} {unit}".rstrip() for what, value, unit in facts if value)
+    lines = (f"{fact}: {value} {unit}".rstrip() for fact, value, unit in facts if value)
     return "\n".join([name, *lines])
 
 
 def wrapped(text: str, room: float) -> list[str]:
-    """A text in lines that fit a room, px.
+    """Return a text in lines that fit a room, px.
 
     Examples
     --------
@@ -279,8 +282,8 @@ def wrapped(text: str, room: float) -> list[str]:
 
 
 def read_places(x: Any, y: Any, places: int = 100, log: bool = False) -> list[int]:
-    """Numbers of the places of a curve that are read: both ends, tops and dips, and so many of the
-    rest, evenly along the axis.
+    """Return indices of the places of a curve to be read: ends, tops and dips, and some others
+    evenly.
 
     Parameters
     ----------
@@ -300,7 +303,7 @@ def read_places(x: Any, y: Any, places: int = 100, log: bool = False) -> list[in
 
 
 def tolerance_line(panel: Panel, tolerance: float) -> None:
-    """The tolerance asked for as a line across a panel, named at its right end."""
+    """Draw the tolerance as a line across a panel, named at its right end."""
     panel.draw({"type": "rule", "color": TOLERANCE, "strokeDash": [5, 3]}, [{"y": tolerance}])
     name = {"type": "text", "color": TOLERANCE, "align": "right", "dy": -7}
     words = f"tolerance {100 * tolerance:.4g} %"

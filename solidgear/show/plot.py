@@ -86,7 +86,7 @@ class Chart:
     foot: str = ""
 
     def spec(self) -> dict[str, Any]:
-        """The chart in Vega-Lite."""
+        """Return the chart in Vega-Lite."""
         rows = [part for row in self.rows for part in _parts(row, self.width)]
         beside = max(panel.beside for row in rows for panel in row)
         drawn = [self._row(row, beside) for row in rows]
@@ -100,54 +100,50 @@ class Chart:
         return {"background": None, "config": CONFIG, "padding": 3, **out}
 
     def _row(self, row: list[Panel], beside: float) -> dict[str, Any]:
-        one = (self.width - BETWEEN * (len(row) - 1)) / len(row)
-        panels = [panel.spec(beside, one - beside - panel.right) for panel in row]
+        width = (self.width - BETWEEN * (len(row) - 1)) / len(row)
+        panels = [panel.spec(beside, width - beside - panel.right) for panel in row]
         return {"hconcat": panels, "resolve": SEPARATE}
 
     def svg(self, name: str = "part-") -> str:
-        """The chart as an SVG, without a ground; identifiers in it begin with a name."""
+        """Return the chart as an SVG, without a ground; identifiers in it begin with a name."""
         return _compact(_drawing_library().vegalite_to_svg(self.spec()), name)
 
     def write(self, file: Path, *beside: Path) -> Path:
-        """Write a picture, drawn once for all files it goes to, as their endings say: ``.png`` or
-        ``.svg``.
-        """
+        """Write a picture, drawn once for all its files, ``.png`` or ``.svg`` by their endings."""
         library = _drawing_library()
-        endings = {one: check_ending(one) for one in (file, *beside)}
+        endings = {path: check_ending(path) for path in (file, *beside)}
         svg = library.vegalite_to_svg({**self.spec(), "background": "#ffffff", "padding": 12})
-        for one, ending in endings.items():
+        for path, ending in endings.items():
             if ending == ".png":
                 data = library.svg_to_png(svg, scale=FINENESS)
             else:
                 data = _compact(svg, "part-").encode()
             try:
-                with whole(one) as half:
+                with whole(path) as half:
                     half.write_bytes(data)
             except OSError as error:
                 raise SolidgearError(
-                    f"{one}: cannot be written ({error.strerror or error})"
+                    f"{path}: cannot be written ({error.strerror or error})"
                 ) from error
         return file
 
 
 def in_columns(panels: Sequence[Panel], columns: int) -> list[list[Panel]]:
-    """Rows of so many panels."""
+    """Split panels into rows."""
     return [list(panels[k : k + columns]) for k in range(0, len(panels), columns)]
 
 
 def _parts(row: list[Panel], width: float) -> list[list[Panel]]:
-    """Rows of no more panels than there is room for."""
+    """Split rows of panels to the width."""
     return in_columns(row, max(1, int(width / row[0].least)))
 
 
 def _compact(svg: str, name: str) -> str:
-    """An SVG without what is not seen, places to a hundredth of a pixel, and its identifiers, which
-    vl-convert counts on from drawing to drawing, counted anew behind a name.
-    """
-    own: dict[str, str] = {}
+    """Return an SVG without invisible parts, coordinates to 0.01 px and identifiers under a name."""
+    names: dict[str, str] = {}
 
-    def tag(found: re.Match[str]) -> str:
-        text = found[0]
+    def tag(match: re.Match[str]) -> str:
+        text = match[0]
         if text.startswith(('<path class="background"', '<path class="foreground"')):
             return ""
         text = re.sub(r' (?:aria-roledescription|role|opacity)="(?:[a-z -]*|1)"', "", text)
@@ -156,17 +152,17 @@ def _compact(svg: str, name: str) -> str:
         text = re.sub(r'(?<= id=")[^"]+|(?<="url\(#)[^)]+', number, text)
         return re.sub(r' (?:d|transform)="[^"]*"', short, text)
 
-    def number(found: re.Match[str]) -> str:
-        return own.setdefault(found[0], f"{name}{len(own)}")
+    def number(match: re.Match[str]) -> str:
+        return names.setdefault(match[0], f"{name}{len(names)}")
 
-    def short(found: re.Match[str]) -> str:
-        return re.sub(r"(\.\d\d)\d+", r"\1", found[0])
+    def short(match: re.Match[str]) -> str:
+        return re.sub(r"(\.\d\d)\d+", r"\1", match[0])
 
     return re.sub(r"<[a-z][^>]*>", tag, svg)
 
 
-def check_ending(file: Path, known: Sequence[str] = FORMATS) -> str:
-    """The ending of a picture's name.
+def check_ending(file: Path, formats: Sequence[str] = FORMATS) -> str:
+    """Return the ending of a picture's name.
 
     Raises
     ------
@@ -179,20 +175,18 @@ def check_ending(file: Path, known: Sequence[str] = FORMATS) -> str:
     '.png'
     """
     ending = file.suffix.lower()
-    if ending not in known:
-        raise SolidgearError(f"{file}: no picture ends like that; use {' or '.join(known)}")
+    if ending not in formats:
+        raise SolidgearError(f"{file}: give a picture a name that ends in {' or '.join(formats)}")
     return ending
 
 
 @cache
 def _drawing_library() -> Any:
-    """vl-convert, which measures words in the letters that matplotlib brings: they are the same on
-    every machine, and wider than those that a browser may have instead.
-    """
+    """Return vl-convert with matplotlib's fonts, which are the same on every machine."""
     import vl_convert
 
-    found = find_spec("matplotlib")
-    for folder in (found and found.submodule_search_locations) or ():
+    spec = find_spec("matplotlib")
+    for folder in (spec and spec.submodule_search_locations) or ():
         vl_convert.register_font_directory(f"{folder}/mpl-data/fonts/ttf")
     return vl_convert
 
@@ -202,9 +196,7 @@ Make = Callable[[float], "Chart | None"]
 
 
 def page_svg(name: str, make: Make) -> bytes | None:
-    """A chart as it stands in a page: a wide drawing and one for a phone, of which ``style.html``
-    shows either. Its name has letters and underscores, and is of no other chart of the page.
-    """
+    """Return a chart for a page, wide and for a phone; ``style.html`` shows one of them."""
     drawings = []
     for kind, width in (("wide", WIDE), ("narrow", NARROW)):
         chart = make(width)

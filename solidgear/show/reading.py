@@ -25,68 +25,70 @@ FAINT = 1e-6
 
 
 def model_of(record: Record, key: str | None) -> ModelRecord:
-    """The record of a model; an empty one where there is none."""
+    """Return the record of a model; an empty one where there is none."""
     return record.models.get(key or "") or ModelRecord()
 
 
 def model_name(record: Record, key: str | None) -> str:
-    """The name of a model in a sentence; one without a title is called by its key."""
+    """Return the name of a model in a sentence, its key if it has no title."""
     return model_of(record, key).title or key or DASH
 
 
 def left_open(record: Record) -> str:
-    """Sentence on the range of first bending that open inputs leave; nothing where there are none."""
+    """Return the sentence on the range of first bending by open inputs; empty without any."""
     ranges = ", ".join(" ".join(part) for part in open_words.parts(record.open, FIRST_BENDING))
-    told = open_words.remark(record.open)
-    return f"First bending: {ranges}. {told}" if ranges else told
+    remark = open_words.remark(record.open)
+    return f"First bending: {ranges}. {remark}" if ranges else remark
 
 
 def heading(record: Record, key: str) -> str:
-    """The name of a model at the head of a narrow column."""
+    """Return the name of a model at the head of a narrow column."""
     model = model_of(record, key)
     return model.short or model.title or key
 
 
 def is_beam(record: Record, key: str) -> bool:
-    """True where a model is a beam."""
+    """Return True where a model is a beam."""
     return model_of(record, key).family == BEAM
 
 
 def entry(matrix: Sequence[Sequence[float | None]] | None, i: int, j: int) -> float | None:
-    """One entry of a matrix; None if there is none."""
+    """Return one entry of a matrix; None if there is none."""
     if matrix is None or i >= len(matrix) or j >= len(matrix[i]):
         return None
     return matrix[i][j]
 
 
 def value_of(model: ModelRecord, quantity: Quantity) -> float | None:
-    """The value of an entry of a matrix, at the main point, a further one or between points."""
+    """Return the value of an entry of a matrix, at the main point, a further one or between
+    points.
+    """
     if quantity.pair:
-        found = block(model.coupled, *quantity.pair, quantity.kind)
+        matrix = block(model.coupled, *quantity.pair, quantity.kind)
     else:
-        there = model.points.get(quantity.points[0]) if quantity.points else model
-        found = getattr(there, quantity.kind, None)
-    return None if found is None else quantity.of(found)
+        point = model.points.get(quantity.points[0]) if quantity.points else model
+        matrix = getattr(point, quantity.kind, None)
+    return None if matrix is None else quantity.of(matrix)
 
 
-def block(found: CoupledRecord | None, a: str, b: str, kind: str) -> Matrix | None:
-    """The 6x6 of two points; None where there is none."""
-    values = getattr(found, kind, None)
-    if found is None or values is None or not {a, b} <= set(found.ports):
+def block(coupled: CoupledRecord | None, a: str, b: str, kind: str) -> Matrix | None:
+    """Return the 6x6 of two points; None where there is none."""
+    values = getattr(coupled, kind, None)
+    if coupled is None or values is None or not {a, b} <= set(coupled.ports):
         return None
-    i, j = 6 * found.ports.index(a), 6 * found.ports.index(b)
+    i, j = 6 * coupled.ports.index(a), 6 * coupled.ports.index(b)
     return [row[j : j + 6] for row in values[i : i + 6]]
 
 
-def is_nothing(value: float | None, one: float | None, other: float | None) -> bool:
-    """True where a coupling is next to nothing beside two entries of its size."""
-    if value is None or one is None or other is None:
+def is_nothing(value: float | None, first: float | None, second: float | None) -> bool:
+    """Return True where a coupling is negligible beside two entries of its size."""
+    if value is None or first is None or second is None:
         return False
-    return abs(value) <= FAINT * abs(one * other) ** 0.5
+    return abs(value) <= FAINT * abs(first * second) ** 0.5
 
 
 def first_mode(model: ModelRecord, family: str) -> ModeRecord | None:
-    """The lowest elastic mode of a family ('bending', 'axial', 'torsion'), or None."""
+    """Return the lowest elastic mode of a family ('bending', 'axial', 'torsion'), or None."""
     for mode in model.modes:
         of_family = family in (mode.family, mode.name.family)
         if of_family and not mode.name.rigid and mode.frequency_hz is not None:
@@ -95,36 +97,34 @@ def first_mode(model: ModelRecord, family: str) -> ModeRecord | None:
 
 
 def mode_of(model: ModelRecord, name: str) -> ModeRecord | None:
-    """The mode that a name such as 'bending 2' means, or None."""
+    """Return the mode that a name such as 'bending 2' means, or None."""
     modes = sorted(model.modes, key=lambda mode: mode.frequency_hz or 0.0)
     place = meant(name, [mode.name for mode in modes])
     return None if place is None else modes[place]
 
 
 def first_frequency(model: ModelRecord, family: str) -> float | None:
-    """The frequency of `first_mode`, Hz."""
+    """Return the frequency of `first_mode`, Hz."""
     mode = first_mode(model, family)
     return mode.frequency_hz if mode else None
 
 
 def headline(record: Record, model: str, quantity: str) -> DeviationRecord | None:
-    """The deviation that stands for a model where there is room for one.
+    """Return the deviation that represents a model: like for like for a beam, as tied for a solid.
 
     A beam has no seat surface: its fair partner is the solid with section ties. A solid is compared
     as the scene has it.
     """
     rows = [r for r in record.deviations if r.model == model and r.quantity == quantity]
-    wanted = SECTION if is_beam(record, model) else SCENE
+    tie = SECTION if is_beam(record, model) else SCENE
     for row in rows:
-        if row.attachment == wanted:
+        if row.attachment == tie:
             return row
     return rows[0] if rows else None
 
 
 def is_resolved(row: DeviationRecord) -> bool:
-    """True where a deviation may be read as one; False only where it lies inside the error bars of
-    the models compared.
-    """
+    """Return True unless a deviation lies inside the error bars of both models."""
     if row.verdict is not None:
         return row.verdict != "not resolved"
     if row.band is None or row.relative is None:
@@ -133,9 +133,7 @@ def is_resolved(row: DeviationRecord) -> bool:
 
 
 def answer_seconds(model: ModelRecord) -> float | None:
-    """Seconds of an answer: building and solving. Error bars and variants are evidence on top, and in
-    the total only.
-    """
+    """Return seconds for building and solving, without error bars and variants."""
     total = 0.0
     for stage in ("build", "statics", "modes"):
         spent = model.seconds.get(stage)
@@ -146,9 +144,7 @@ def answer_seconds(model: ModelRecord) -> float | None:
 
 
 def validity(model: ModelRecord) -> str:
-    """``yes``, ``no``, ``open`` (not judged, or too close to the tolerance) or ``unknown`` where
-    the record says nothing.
-    """
+    """Return ``yes``, ``no``, ``open`` (not judged, or too close) or ``unknown``."""
     if model.valid is True:
         return "yes"
     if model.open:
@@ -157,14 +153,14 @@ def validity(model: ModelRecord) -> str:
 
 
 def reference_of(record: Record) -> str | None:
-    """The key of the model that the others are measured against."""
+    """Return the key of the reference model."""
     if record.verdict.reference:
         return record.verdict.reference
     return record.mac.reference if record.mac else None
 
 
 def relative_change(value: float | None, base: float | None) -> float | None:
-    """`value` over `base` less one; None where either is missing, or the base is zero."""
+    """Return `value` over `base` less one; None where either is missing, or the base is zero."""
     if not is_number(value) or not is_number(base) or base == 0:
         return None
     return value / base - 1

@@ -64,9 +64,8 @@ class RenderResult:
 
 
 def render_modes(jobs: Iterable[RenderJob], *, timeout: float = 120) -> list[RenderResult]:
-    """Draw deformed shafts, coloured by displacement, over their shape at rest, within so many
-    seconds of processor time for all of them; a result a job. Nothing is raised for a picture that
-    could not be drawn or written.
+    """Draw deformed shafts over their shape at rest within `seconds` of processor time; return a
+    result per job.
     """
     with Drawing(jobs, timeout=timeout) as drawing:
         return drawing.results()
@@ -118,42 +117,42 @@ class Drawing:
         return Path(self._folder.name)
 
     def _hand_over(self) -> None:
-        """The jobs as files, for the child to read."""
+        """Write the jobs as files for the child."""
         arrays = {
             f"{i}.{name}": getattr(job.surface, name)
             for i, job in enumerate(self.jobs)
             for name in ARRAYS
         }
         np.savez(self._room / "surfaces.npz", **arrays)
-        told = [{"title": j.title, "frames": list(j.frames), "along": j.along} for j in self.jobs]
-        (self._room / "jobs.json").write_text(json.dumps(told), encoding="utf-8")
+        jobs = [{"title": j.title, "frames": list(j.frames), "along": j.along} for j in self.jobs]
+        (self._room / "jobs.json").write_text(json.dumps(jobs), encoding="utf-8")
 
     def _start(self) -> str:
-        """Start a child on what is still to be drawn, in the next window; why it could not, if so."""
+        """Start a child on the remaining pictures in the next window; return why it could not."""
         env = dict(os.environ)
         window = self._windows.pop(0)
         if window:
             env[WINDOW] = window
         # The child must find the same solidgear, wherever the caller runs.
-        here = str(Path(__file__).resolve().parents[2])
-        env["PYTHONPATH"] = os.pathsep.join(filter(None, [here, env.get("PYTHONPATH")]))
+        root = str(Path(__file__).resolve().parents[2])
+        env["PYTHONPATH"] = os.pathsep.join(filter(None, [root, env.get("PYTHONPATH")]))
         command = [sys.executable, "-m", "solidgear.show.drawing", str(self._room)]
         try:
             # into a file: nobody empties a pipe meanwhile
-            with (self._room / SAID).open("wb") as said:
+            with (self._room / SAID).open("wb") as errors:
                 self._child = subprocess.Popen(
                     command,
                     env=env,
                     stdin=subprocess.DEVNULL,
                     stdout=subprocess.DEVNULL,
-                    stderr=said,
+                    stderr=errors,
                 )
         except OSError as error:
             return f"could not be started ({error})"
         return ""
 
     def _wait(self) -> str:
-        """Wait for the child; how it died, or nothing."""
+        """Wait for the child; return how it died, or an empty text."""
         child = self._child
         assert child is not None
         code = self._patience.wait(child)
@@ -169,7 +168,7 @@ class Drawing:
 
 
 def _windows() -> list[str | None]:
-    """VTK windows to try in turn; None leaves the choice to VTK."""
+    """Return VTK windows to try in turn; None leaves the choice to VTK."""
     if not sys.platform.startswith("linux") or WINDOW in os.environ:
         return [None]
     # A display that is set may still be dead, as over a lost ssh connection.
@@ -180,10 +179,10 @@ def _windows() -> list[str | None]:
 
 
 def _collect(room: Path, index: int, path: Path, end: str) -> str:
-    """Move a finished picture to its place; else the reason why there is none, and what mends it."""
-    drawn, said = room / f"{index}.png", room / f"{index}.txt"
-    if said.exists():
-        return f"the picture {path.name} could not be drawn: {said.read_text(encoding='utf-8')}"
+    """Move a finished picture to its place, or return why there is none and how to mend it."""
+    drawn, errors = room / f"{index}.png", room / f"{index}.txt"
+    if errors.exists():
+        return f"the picture {path.name} could not be drawn: {errors.read_text(encoding='utf-8')}"
     if drawn.exists():
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
@@ -192,5 +191,5 @@ def _collect(room: Path, index: int, path: Path, end: str) -> str:
         except OSError as error:
             return f"the picture {path} could not be written: {error.strerror or error}"
         return ""
-    what = end or "left no picture"
-    return f"the drawing process {what}; on Debian and Ubuntu OpenGL is mended by `{PACKAGES}`"
+    fault = end or "left no picture"
+    return f"the drawing process {fault}; on Debian and Ubuntu install OpenGL by `{PACKAGES}`"

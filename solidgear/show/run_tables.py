@@ -15,7 +15,7 @@ STAGES = {"band": "error bars"}
 
 
 def cost(record: Record) -> Table:
-    """Seconds of every stage and peak memory."""
+    """Return seconds of every stage and peak memory."""
     stages = dict.fromkeys(s for m in record.models.values() for s in m.seconds if s != "total")
     columns = [
         Column("model", lambda item: capital(model_name(record, item[0]))),
@@ -27,7 +27,7 @@ def cost(record: Record) -> Table:
         "Wall time in s and peak memory",
         columns,
         list(record.models.items()),
-        "Times of a single run on the machine named below: good for orders of magnitude.",
+        "Times of a single run on the machine named below: orders of magnitude only.",
     )
 
 
@@ -36,7 +36,7 @@ def _stage(name: str) -> Column:
 
 
 def provenance(record: Record) -> Table:
-    """Table of the origin of each class of number."""
+    """Return the table of the origin of each class of number."""
     reference = model_name(record, reference_of(record))
     ran = ", ".join(model_name(record, key) for key in record.models) or "no model"
     source = record.scene.get("source") or "source not given"
@@ -45,7 +45,7 @@ def provenance(record: Record) -> Table:
         ["stiffness, compliance, modes", f"this run, by: {ran}"],
         [
             "differences, correlation",
-            f"this run, against its {reference}: no error against reality",
+            f"this run, against its {reference}, not against reality",
         ],
         ["causes, attachments", "this run: the same model solved again with one thing switched"],
         ["error bars", "this run: solution verification on related meshes of the same model"],
@@ -53,7 +53,7 @@ def provenance(record: Record) -> Table:
         [
             "experiment",
             Cell(
-                "of free solids against measured resonances; none of bearings, seats, cuts and teeth",
+                "free solids against measured resonances; not bearings, seats, cuts and teeth",
                 "strong",
             ),
         ],
@@ -74,13 +74,13 @@ def _flat(value: Any) -> str:
 
 
 def pairs_of(mapping: Mapping[str, Any], caption: str) -> Table:
-    """A table of a mapping, an entry a row."""
+    """Return a table of a mapping, an entry a row."""
     rows = [[str(key), _flat(value)] for key, value in mapping.items()]
     return Table(caption, ["item", text("value")], rows, style="facts")
 
 
 def mesh(record: Record) -> Table:
-    """Facts of every mesh, a model a row."""
+    """Return facts of every mesh, a model a row."""
     rows = [
         [capital(model_name(record, key)), _flat(model.mesh)]
         for key, model in record.models.items()

@@ -20,11 +20,11 @@ from solidgear.show.command import NOT_REACHED
 from solidgear.show.words import is_number, percent
 
 #: where bars of a 3D solid come from whose mesh was set
-SECOND_MESH = "Bars: from a second, coarser mesh."
+SECOND_MESH = "Error bars: from a second, coarser mesh."
 
 
 def heading(scene: Scene, body: Body, settled: Settled | None) -> str:
-    """Scene, model, mesh and size."""
+    """Return the scene, model, mesh and size."""
     model = body.fidelity
     if settled is not None:
         model = f"{model}, {settled.setting} (auto)"
@@ -33,28 +33,28 @@ def heading(scene: Scene, body: Body, settled: Settled | None) -> str:
 
 
 def bar_lines(settled: Settled | None, bars: Mapping[Quantity, float] | None = None) -> list[str]:
-    """The largest of the bars that are shown, by default of all that were judged, and whether the
-    tolerance is kept, in plain text.
+    """Return the largest error bar shown, by default of all judged, and whether the tolerance is
+    kept.
     """
     if settled is None:
         return []
-    shown = settled.bars if bars is None else bars
-    return [*largest_bar(shown, settled.point), *sentences(settled)]
+    chosen = settled.bars if bars is None else bars
+    return [*largest_bar(chosen, settled.point), *sentences(settled)]
 
 
 def over_the_sweep(settled: Settled | None) -> list[str]:
-    """The same of a sweep, whose mesh is judged on the scene and at the ends of what varies."""
+    """Return the same for a sweep, judged on the scene and at the ends of the ranges."""
     if settled is None:
         return []
     mesh = f"Mesh: {settled.rung}, {settled.setting}."
-    where = f" over {settled.judged_on} bearing sets (the scene's and those at the ends)"
+    range_ = f" over {settled.judged_on} bearing sets (the scene's and those at the ends)"
     if settled.judged_on == 1:
-        where = " on the bearing set of the scene alone (what lies at the ends is refused)"
-    return [mesh, *largest_bar(settled.bars, settled.point, where), *sentences(settled)]
+        range_ = " on the scene's bearing set alone (those at the ends are refused)"
+    return [mesh, *largest_bar(settled.bars, settled.point, range_), *sentences(settled)]
 
 
-def largest_bar(bars: Mapping[Quantity, float], point: str, where: str = "") -> list[str]:
-    """Sentence on the quantity with the largest bar, if any has one; `point` is the main one."""
+def largest_bar(bars: Mapping[Quantity, float], point: str, range_: str = "") -> list[str]:
+    """Return the sentence on the quantity with the largest error bar; `point` is the main one."""
     top = widest(bars)
     if top is None:
         return []
@@ -62,77 +62,78 @@ def largest_bar(bars: Mapping[Quantity, float], point: str, where: str = "") -> 
     quantity, bar = top
     main = point if any(name.points for name in bars) else ""
     width = percent(bar, signed=False) if is_number(bar) else "unknown"
-    return [f"Largest mesh bar{where}: +- {width}, of {in_words(quantity, main)}."]
+    return [f"Largest error bar{range_}: +- {width}, of {in_words(quantity, main)}."]
 
 
-def without_bar(found: ModeSet, bars: Mapping[str, float]) -> list[str]:
-    """Names of elastic modes that have none."""
-    return [m.name for m in found.modes if m.frequency_hz > 0 and m.name not in bars]
+def without_bar(mode_set: ModeSet, bars: Mapping[str, float]) -> list[str]:
+    """Return names of elastic modes without an error bar."""
+    return [m.name for m in mode_set.modes if m.frequency_hz > 0 and m.name not in bars]
 
 
 def beyond(bars: Mapping[str, float], settled: Settled | None) -> list[str]:
-    """Sentences on bars that are not within the tolerance although those of what was judged are."""
+    """Return sentences on error bars beyond the tolerance of quantities that are not judged."""
     if settled is None or not settled.reached:
         return []
 
     wide = {name: bar for name, bar in bars.items() if bar > settled.tolerance}
     if not wide:
         return []
-    named = listed((f"{q} +- {percent(bar, signed=False)}" for q, bar in wide.items()), most=3)
+    names = listed((f"{q} +- {percent(bar, signed=False)}" for q, bar in wide.items()), most=3)
     return [
-        f"Beyond {percent(settled.tolerance, signed=False)}: {named}; the first of every "
-        "family are what the tolerance is kept for, a smaller --tol makes these narrower too."
+        f"Beyond {percent(settled.tolerance, signed=False)}: {names}; --tol holds the first mode "
+        "of every family, and a smaller one narrows these too."
     ]
 
 
 def unjudged(names: Sequence[str], model: str, *, second: bool = False) -> str:
-    """Reason why modes beside others have no bar, of a second mesh where that told the others; empty where
-    there are none.
+    """Return the reason why some modes have no error bar, `second` by a second mesh; empty without
+    such modes.
     """
     if not names:
         return ""
     if second:
-        return "the coarser mesh has no mode of that name, or no fewer cells around"
+        return "the coarser mesh has no such mode, or as many cells around"
     if LADDER[model].bounded:
-        return "no further mode of their family was found above, which a bar needs; raise -n"
-    return "the higher a mode, the more it asks of a mesh"
+        return "an error bar needs the next mode of the family; raise -n"
+    return "higher modes need finer meshes"
 
 
 def ended(settled: Settled | None) -> None:
-    """An exit code of its own where the tolerance is not kept."""
+    """Exit with code 3 where the tolerance is not kept."""
     if settled is not None and not settled.reached:
         raise typer.Exit(NOT_REACHED)
 
 
-def sentences(found: Answered | Settled) -> list[str]:
-    """Plain text of the choice: solids that could not answer and why, and whether the tolerance is kept.
+def sentences(answered: Answered | Settled) -> list[str]:
+    """Return sentences on solids that were skipped and why, and on the tolerance; skipped beams
+    are not named.
 
     Beams are passed over always, for they have no error of their own to show.
     """
     passed: dict[str, list[str]] = {}
-    for step in found.steps:
+    for step in answered.steps:
         if not step.valid and LADDER[step.rung].family != BEAM:
             passed.setdefault(step.why, []).append(step.rung)
-    lines = [f"Passed over: {', '.join(names)} ({why})." for why, names in passed.items()]
-    if found.missing:
-        lines.append(f"Not there: {_absent(found.missing)}.")
-    asked = f"{100 * found.tolerance:g} %"
-    if found.reached:
-        there = ", what is there" if found.missing else ""
-        lines.append(f"Within the {asked} asked{there}.")
+    lines = [f"Skipped: {', '.join(names)} ({reason})." for reason, names in passed.items()]
+    if answered.missing:
+        lines.append(f"No answer for {_absent(answered.missing)}.")
+    tolerance = f"{100 * answered.tolerance:g} %"
+    if answered.reached:
+        within = "All others are within" if answered.missing else "Within"
+        lines.append(f"{within} the {tolerance} asked.")
         return lines
-    why = next((step.why for step in found.steps if step.chosen and step.why), "")
-    lines.append(f"Not reached: {asked} was asked for{f'; {why}' if why else ''}.")
+    reason = next((step.why for step in answered.steps if step.chosen and step.why), "")
+    lines.append(f"Not reached: {tolerance} was asked for{f'; {reason}' if reason else ''}.")
     return lines
 
 
 def _absent(missing: Sequence[Quantity]) -> str:
-    """Quantities that a scene does not have, each kind with why."""
+    """Return quantities that a scene does not have, each kind with the reason."""
     free = [q for q in missing if not q.is_frequency]
     modes = [q for q in missing if q.is_frequency]
-    one = len(free) == 1
-    whys = [
-        (free, f"{'a motion' if one else 'motions'} that no bearing resists"),
+    single = len(free) == 1
+    reasons = [
+        (free, f"{'a motion' if single else 'motions'} that no bearing resists"),
         (modes, "no such mode among the lowest"),
     ]
-    return "; ".join(f"{', '.join(names)} ({why})" for names, why in whys if names)
+    return "; ".join(f"{', '.join(names)} ({reason})" for names, reason in reasons if names)

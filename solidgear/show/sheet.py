@@ -13,61 +13,59 @@ from solidgear.show.table import Table
 
 #: what charts say in words, by how their names begin
 WORDS = {
-    "response": "Dynamic mesh force and transmission error of all that is drawn.",
+    "response": "Dynamic mesh force and transmission error of each model.",
     "orders": (
         "Orders of the mesh and of both shafts over the speed of the pinion, and the natural "
-        "frequencies they meet. Colour: the mesh force along an order that the transmission "
-        "error has."
+        "frequencies they meet. Colour: mesh force along orders of the transmission error."
     ),
     "deflection": (
         "Deflection lines of every shaft in both planes, by every model; dashed lines are bearings."
     ),
     "turn_": (
-        "Mesh force of every planet over a turn of its carrier, from the position of the file on; "
-        "bearings have the stiffness that they have at rest."
+        "Mesh force of every planet over a turn of its carrier from the file's position on; "
+        "bearings have their stiffness at rest."
     ),
     "measured": (
-        "The measured spectrum with the orders that its peaks are at this speed, above the computed "
-        "mesh force over the same frequencies. Grey lines: natural frequencies."
+        "The measured spectrum, its peaks named by their orders at this speed, above the computed "
+        "mesh force. Grey lines: natural frequencies."
     ),
     "section_forces": (
-        "Section forces along the shaft; where two components are drawn, the dashed line is the size "
-        "of both."
+        "Section forces along the shaft; with two components, the dashed line is their resultant."
     ),
     "off": (
-        "How far each computed frequency is from the measured one; grey: two standard deviations of the "
-        "measured and the bar of the computed one."
+        "Difference of each computed frequency from the measured one; grey: two standard "
+        "deviations of the measured and the error bar of the computed one."
     ),
     "mac": (
-        "MAC of every measured shape (rows) and every computed mode: the share of the measured shape "
-        "that is the mode's, on the measuring points."
+        "MAC, the likeness of every measured shape (rows) and every computed mode at the "
+        "measuring points."
     ),
     "overlay": (
         "Measured (dark) and computed (green, with its band) responses at the same points; dots: "
-        "resonances that were found."
+        "resonances found."
     ),
-    "designs": "The goal in every design that was solved, each with its error bar.",
-    "sweep": "Natural frequencies and what else the rows tell, over the number that varies.",
+    "designs": "The goal in every design solved, each with its error bar.",
+    "sweep": "Natural frequencies and other columns over the number that varies.",
     "nonlinear": (
         "Dynamic mesh force over the speed of the pinion: periodic motions with backlash, stable and "
         "unstable, with the jumps between them, runs through the speeds, and the linear answer. Below: "
         "contact over the cycle, and the orders of the largest force."
     ),
     "housing": (
-        "Loads on the mounts of the housing and accelerations of its points, each of all three "
-        "directions together."
+        "Loads on the mounts of the housing and accelerations of its points, over all three "
+        "directions."
     ),
     "waterfall": (
         "Spectra of the mesh force along the run, each over 16 to 64 mesh cycles around its speed; grey: "
         "orders of the mesh."
     ),
-    "receptance": "Amplitude and phase of the receptance of every model drawn.",
+    "receptance": "Amplitude and phase of the receptance of every model.",
     "shapes": (
         "Motions of sections along both shafts in the lowest pairs of modes, in the plane of the "
-        "largest, which is one."
+        "largest, scaled to one."
     ),
-    "sensitivities": "Change of the number for one per cent more of each entry of the file.",
-    "shares": "Strain energy of every mode by what it is in.",
+    "sensitivities": "Change of the number for one per cent more of each entry.",
+    "shares": "Strain energy of every mode by part.",
 }
 
 
@@ -99,13 +97,12 @@ def write_sheet(
     verdict: Sequence[str] = (),
     sections: Sequence[Section] = (),
 ) -> Path:
-    """Write a page that needs no network and no other file: conclusions, cautions, charts with
-    names that begin with one of ``WORDS``, HTML of mode shapes, tables, sections, notes. The HTML
-    is taken as it is: none of it may come from a file unescaped.
+    """Write a page without network: conclusions, cautions, charts, HTML of shapes, tables and
+    notes.
     """
     from markupsafe import Markup
 
-    shown = [
+    drawn = [
         (s, [table for table in s.tables if table], [*_given(s), *_drawn(s.charts, s.title)])
         for s in sections
     ]
@@ -119,13 +116,13 @@ def write_sheet(
         notes=notes,
         cautions=cautions,
         verdict=verdict,
-        sections=[part for part in shown if part[0].words or part[1] or part[2]],
+        sections=[part for part in drawn if part[0].words or part[1] or part[2]],
     )
     return write_page(path, page)
 
 
 def _drawn(charts: Mapping[str, Make], title: str) -> list[tuple[str, str]]:
-    """Charts as they stand in the page, and their words; what has nothing to draw is left out."""
+    """Draw charts for the page with their words, without empty ones."""
     from markupsafe import Markup
 
     drawn = {name: page_svg(name, make) for name, make in charts.items()}
@@ -135,7 +132,7 @@ def _drawn(charts: Mapping[str, Make], title: str) -> list[tuple[str, str]]:
 
 
 def _given(section: Section) -> list[tuple[str, str]]:
-    """Drawings as they stand in the page, and their words."""
+    """Return drawings for the page with their words."""
     from markupsafe import Markup
 
     return [(Markup(svg.decode()), words) for words, svg in section.drawings.items() if svg]

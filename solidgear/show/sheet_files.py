@@ -29,10 +29,7 @@ def write_files(
     viewer: str = "",
     sections: Sequence[Section] = (),
 ) -> list[Path]:
-    """Write a page and the data it shows, both of the same name, tables for other programs by the
-    names of their files, and charts by those that the page has words for. The data and those tables
-    are in SI. Given are the page, the tables, the data, the charts.
-    """
+    """Write a page and its data (SI), tables by file name, and charts; return the paths."""
     folder.mkdir(parents=True, exist_ok=True)
     files = [table.write(folder / f"{stem}.csv") for stem, table in lines.items()]
     files.append(folder / f"{name}.json")
@@ -57,13 +54,13 @@ def write_files(
 
 
 def write_json(path: Path, data: Mapping[str, Any]) -> None:
-    """Plain data as a whole file or none."""
+    """Write plain data as a whole file or none."""
     with whole(path) as half:
         half.write_text(json.dumps(data, indent=1, allow_nan=False) + "\n", encoding="utf-8")
 
 
 def write_charts(stem: Path, make: Make) -> list[Path]:
-    """A chart as PNG and SVG beside each other."""
+    """Write a chart as PNG and SVG."""
     chart = make(WIDE)
     if chart is None:
         return []

@@ -24,7 +24,7 @@ SMALL = 0.05
 
 
 def scene(shaft: Any) -> Table:
-    """Parts of a shaft along its axis."""
+    """Return parts of a shaft along its axis."""
     rows: list[tuple[Any, ...]] = []
     for s in shaft.segments:
         rows.append((s.name, "segment", 1e3 * s.y0, 1e3 * s.y1, _diameters(s)))
@@ -73,12 +73,12 @@ def _diameters(segment: Any) -> str:
 
 
 def scene_figure(shaft: Any) -> Any:
-    """The dimensioned section of the report."""
+    """Return the dimensioned section of the report."""
     return draw(shaft.as_dict())
 
 
 def body(free_body: Body) -> Table:
-    """Blocks of a body."""
+    """Return blocks of a body."""
     rows = [
         (b.name, " ".join(DOF_NAMES[c] for c in b.components), b.size, b.mirror is not None)
         for b in free_body.blocks
@@ -92,7 +92,7 @@ def body(free_body: Body) -> Table:
 
 
 def mode_set(modes: Any) -> Table:
-    """Natural frequencies."""
+    """Return the natural frequencies."""
     rows = [(m.name, m.frequency_hz, m.multiplicity, m.waves, m.error) for m in modes.modes]
     return Table(
         f"Modes of the {modes.fidelity} body",
@@ -102,7 +102,7 @@ def mode_set(modes: Any) -> Table:
 
 
 def mode_set_figure(modes: Any, names: Sequence[str] = ()) -> Any:
-    """Section motions of elastic modes along the shaft: translations, of torsion the turns.
+    """Draw section motions of elastic modes along the shaft: translations, for torsion rotations.
 
     Parameters
     ----------
@@ -122,9 +122,9 @@ def mode_set_figure(modes: Any, names: Sequence[str] = ()) -> Any:
         moves, turns = np.abs(mode.motions[0]).max(axis=0).reshape(2, 3)
         # turns of a bent line say what the line says; where it stays, as in torsion, they are all
         bent = moves.max() > SMALL * turns.max() * np.ptp(modes.stations)
-        shown = range(3) if bent else range(3, 6)
+        components = range(3) if bent else range(3, 6)
         largest = (moves if bent else turns).max() or 1.0
-        for k in shown:
+        for k in components:
             if np.abs(mode.motions[0, :, k]).max() > SMALL * largest:
                 drawn_line = mode.motions[0, :, k] / largest
                 ax.plot(y, drawn_line, ".-", label=DOF_NAMES[k], markersize=4)
@@ -137,12 +137,12 @@ def mode_set_figure(modes: Any, names: Sequence[str] = ()) -> Any:
 
 
 def condensed(statics: Any, kind: str = "stiffness") -> Table:
-    """The 6x6 at a port, a stiffness or a compliance."""
+    """Return the 6x6 at a port, a stiffness or a compliance."""
     return _matrix(statics, kind, f"at {statics.port} ({statics.attachment})", DOF_NAMES, "free")
 
 
 def coupled(statics: Any, kind: str = "compliance") -> Table:
-    """The matrix between several ports, a stiffness or a compliance."""
+    """Return the matrix between several ports, a stiffness or a compliance."""
     heads = [f"{port} {name}" for port in statics.ports for name in DOF_NAMES]
     return _matrix(statics, kind, f"between {' and '.join(statics.ports)}", heads, "free together")
 
@@ -159,7 +159,7 @@ def _matrix(statics: Any, kind: str, place: str, heads: Sequence[str], free: str
 
 
 def comparison(compared: Any) -> Table:
-    """Verdict and first numbers of every model."""
+    """Return the verdict and first numbers of every model."""
     record, rows = compared.record, []
     for name, model in record.models.items():
         first = mode_of(model, "bending 1")
@@ -179,40 +179,49 @@ def comparison(compared: Any) -> Table:
 
 
 def answered(answer: Any) -> Table:
-    """Numbers with their bars."""
+    """Return numbers with their error bars."""
     rows = [(v.quantity, v.value, v.unit, bar_of(v)) for v in answer.values]
     words = "within" if answer.reached else "not within"
     return Table(
         f"Answer for {answer.scene}: {answer.rung}, {words} {percent(answer.tolerance, signed=False)}",
-        ("quantity", "value", "unit", "bar"),
+        ("quantity", "value", "unit", "error bar"),
         rows,
     )
 
 
 def swept(rows: Any) -> Table:
-    """Values that vary, the first natural frequencies with their bars, and why a row has none."""
+    """Return the varied values, the first natural frequencies with error bars, and why a row has
+    none.
+    """
     heads = [*rows.varied, *(name for name in ("f1_hz", "f2_hz", "f3_hz") if name in rows.columns)]
     columns = [*heads, "status"]
-    told = [tuple(_told(rows.columns, head, k) for head in columns) for k in range(len(rows))]
-    return Table("Rows of a sweep, SI", columns, told)
+    cells = [tuple(_told(rows.columns, head, k) for head in columns) for k in range(len(rows))]
+    return Table("Rows of a sweep, SI", columns, cells)
 
 
 def _told(columns: Mapping[str, list], head: str, k: int) -> str:
-    """A number of a row with its bar, where it has one."""
+    """Return a number of a row with its error bar, where it has one."""
     value, bar = (columns[name][k] if name in columns else None for name in (head, f"{head} bar"))
     if value is None or isinstance(value, str):
         return (value or "-")[:60]
     return f"{value:.6g}" if bar is None else f"{value:.6g} ± {bar:.1g}"
 
 
-def two_shafts(found: Any) -> Table:
-    """Numbers of two shafts, their differences and what of them is resolved."""
+def two_shafts(pair: Any) -> Table:
+    """Return numbers of two shafts, their differences and verdicts."""
     rows = [
-        (one.name, one.change.a, one.change.b, one.unit, percent(one.relative), one.verdict)
-        for one in found.changes
+        (
+            change.name,
+            change.change.a,
+            change.change.b,
+            change.unit,
+            percent(change.relative),
+            change.verdict,
+        )
+        for change in pair.changes
     ]
     return Table(
-        f"{found.a.label} beside {found.b.label}",
+        f"{pair.a.label} beside {pair.b.label}",
         ("number", "A", "B", "unit", "difference", ""),
         rows,
     )

@@ -22,7 +22,7 @@ HANDLE = 0.5
 
 
 def extent(scene: Mapping[str, Any]) -> tuple[float, float]:
-    """Length and largest radius of the shaft of a scene, m; zero without segments."""
+    """Return the length and largest radius of the shaft of a scene, m; zero without segments."""
     segments = scene.get("segments") or []
     radii = [max(s["outer0"], s["outer1"]) for s in segments]
     return max((s["y1"] for s in segments), default=0.0), max(radii, default=0.0)
@@ -31,8 +31,8 @@ def extent(scene: Mapping[str, Any]) -> tuple[float, float]:
 def draw(
     scene: Mapping[str, Any], width: float = WIDTH, room: tuple[float, float] | None = None
 ) -> Any:
-    """The figure, or None when the scene has no segments. It is as large as one of a shaft of the
-    length and largest radius of `room` would be, m; by default of its own.
+    """Draw the section of a scene, None without segments; `room` (length, largest radius) sets the
+    scale, m.
 
     The upper half is cut (hatched), the lower half shows the surface. Radii are to the same scale
     as lengths, unless the shaft is so slender that they have to be enlarged; then the sketch says
@@ -43,27 +43,27 @@ def draw(
     segments = scene.get("segments") or []
     if not segments:
         return None
-    length, own = extent(scene)
-    longest, radius = room or (length, own)
+    length, height_m = extent(scene)
+    longest, radius = room or (length, height_m)
     drawn = width - 2 * (BESIDE if width == WIDTH else NARROWLY)
     inch = min(drawn / longest, TALLEST / radius)  # inches per metre
     enlarged = 1.0 if radius * inch >= FLATTEST else FLATTEST / (radius * inch)
-    top = own * inch * enlarged
-    left = (width - longest * inch) / 2
+    top = height_m * inch * enlarged
+    margin = (width - longest * inch) / 2
 
     stations = [(b, False) for b in scene.get("bearings") or []]
     points = [port for port in (scene.get("port"), *(scene.get("further_ports") or [])) if port]
     stations += [(port, True) for port in points]
-    labels = _labels(stations, lambda y: left + y * inch, width)
-    ordinates = _staggered([(left + y * inch, f"{1e3 * y:.1f}") for y in _marks(scene, length)])
+    labels = _labels(stations, lambda y: margin + y * inch, width)
+    ordinates = _staggered([(margin + y * inch, f"{1e3 * y:.1f}") for y in _marks(scene, length)])
     above = top + 0.62 + 0.34 * (1 + max((level for *_, level in labels), default=0))
     notes = _notes(scene, enlarged)
     above += LINE * len(notes) + 0.1 * bool(notes)  # room over the names
     handles = _handles(segments, scene)
     columns = len(handles)
-    if sum(2 * _half(one.get_label()) + HANDLE for one in handles) > width:
+    if sum(2 * _half(handle.get_label()) + HANDLE for handle in handles) > width:
         columns = 2
-    chain = _chain(segments, lambda y: left + y * inch)
+    chain = _chain(segments, lambda y: margin + y * inch)
     deep = LINE * max((level for *_, level in chain), default=0)
     below = top + 1.62 + deep + LINE * max((level for *_, level in ordinates), default=0)
     below += LINE * (-(-len(handles) // max(columns, 1)) - 1)
@@ -72,10 +72,12 @@ def draw(
     ax = figure.add_axes((0, 0, 1, 1))
     ax.set(xlim=(0, width), ylim=(-below, above))
     ax.axis("off")
-    pen = Pen(ax, left, inch, inch * enlarged, top)
+    pen = Pen(ax, margin, inch, inch * enlarged, top)
     for s in segments:
         _segment(pen, s)
-    pen.line([left - 0.3, left + length * inch + 0.3], [0, 0], INK, 0.8, 4, dashes=(12, 3, 2, 3))
+    pen.line(
+        [margin - 0.3, margin + length * inch + 0.3], [0, 0], INK, 0.8, 4, dashes=(12, 3, 2, 3)
+    )
     for blend in scene.get("blends") or []:
         draw_blend(pen, blend, segments)
     for cut in scene.get("features") or []:
@@ -102,7 +104,7 @@ def draw(
 
 
 def _notes(scene: Mapping, enlarged: float) -> list[str]:
-    """Remarks on things that the drawing leaves out or has not to scale, a line each."""
+    """Return remarks on what the drawing leaves out or does not draw to scale."""
     notes = []
     if body := scene.get("body"):
         notes.append(
@@ -124,9 +126,7 @@ def _marks(scene: Mapping, length: float) -> list[float]:
 
 
 def _staggered(items: list[tuple]) -> list[tuple]:
-    """(x of the middle, text, more), and behind it the lowest level at which the text runs into no
-    earlier one.
-    """
+    """Return (x of the middle, text, more) with the lowest level at which texts do not overlap."""
     ends: list[float] = []
     placed = []
     for item in sorted(items, key=lambda item: item[:2]):
@@ -138,38 +138,38 @@ def _staggered(items: list[tuple]) -> list[tuple]:
 
 
 def _half(text: str) -> float:
-    """Half of the width of a text at the size of the labels, in."""
+    """Return half of the width of a text at the size of the labels, in."""
     return CHAR * max(len(line) for line in text.splitlines() or [""]) / 2
 
 
-def _labels(stations, at, width: float) -> list[tuple]:
-    """(x of the text, text, x of the station, whether it is a lumped point, level)."""
+def _labels(stations, place, width: float) -> list[tuple]:
+    """Return (x of the text, text, x of the station, whether it is a lumped point, level)."""
     texts = []
     for s, is_port in stations:
         name = str(s.get("name", ""))
         name = name if len(name) <= 22 else name[:21] + "…"
-        held = {"clamped": "clamp", "pinned": "pin"}.get(s.get("hold") or "", "bearing")
-        what = f"lumped point {name}" if is_port else f"{held} {name}"
+        kind = {"clamped": "clamp", "pinned": "pin"}.get(s.get("hold") or "", "bearing")
+        label = f"lumped point {name}" if is_port else f"{kind} {name}"
         surface = "span" if is_port else "seat"
         below = f"{s.get('attachment', '')}, {surface} {1e3 * (s['hi'] - s['lo']):.1f} mm"
-        text, x = f"{what}\n{below}", at(s["y"])
+        text, x = f"{label}\n{below}", place(s["y"])
         half = min(_half(text), width / 2)
         texts.append((min(max(x, half), width - half), text, x, is_port))
     return _staggered(texts)
 
 
-def _chain(segments, at) -> list[tuple]:
-    """(x of the middle, text, both ends on paper, level) of the length of every segment."""
-    found = []
+def _chain(segments, place) -> list[tuple]:
+    """Return (x of the middle, text, both ends on paper, level) of the length of every segment."""
+    dimensions = []
     for s in segments:
-        a, b = at(s["y0"]), at(s["y1"])
+        a, b = place(s["y0"]), place(s["y1"])
         text = f"{1e3 * (s['y1'] - s['y0']):.2f}".rstrip("0").rstrip(".")
-        found.append(((a + b) / 2, text, (a, b)))
-    return _staggered(found)
+        dimensions.append(((a + b) / 2, text, (a, b)))
+    return _staggered(dimensions)
 
 
 def _surface(segments, lo: float, hi: float) -> list[tuple[float, float]]:
-    """(y, outer radius) along the shaft from `lo` to `hi`, steps included."""
+    """Return (y, outer radius) along the shaft from `lo` to `hi`, steps included."""
     points = []
     for s in segments:
         a, b = max(lo, s["y0"]), min(hi, s["y1"])
@@ -180,7 +180,7 @@ def _surface(segments, lo: float, hi: float) -> list[tuple[float, float]]:
 
 
 def _segment(pen: Pen, s: Mapping) -> None:
-    """A segment, cut above and from outside below, with its diameters."""
+    """Draw a segment, cut above and from outside below, with its diameters."""
     x0, x1 = pen.x(s["y0"]), pen.x(s["y1"])
     o0, o1, i0, i1 = (pen.radial * s[k] for k in ("outer0", "outer1", "inner0", "inner1"))
     colour, along = FILL.get(s.get("part", "shaft"), FILL["shaft"]), [x0, x1, x1, x0]
@@ -211,7 +211,7 @@ def _diameter(pen: Pen, s: Mapping, x0: float, x1: float, room: float) -> None:
 
 
 def _seat(pen: Pen, s: Mapping, segments, side: int, colour: str, width: float, **look) -> None:
-    """The surface that carries a bearing or lumped point, on one side of the axis."""
+    """Draw the surface that carries a bearing or lumped point, on one side of the axis."""
     points = _surface(segments, s["lo"], s["hi"])
     x, r = [pen.x(y) for y, _ in points], [side * pen.radial * r for _, r in points]
     pen.line(x, r, colour, width, solid_capstyle="butt", **look)
@@ -226,7 +226,7 @@ SPRING = [
 
 
 def _bearing(pen: Pen, b: Mapping, segments) -> None:
-    """The seat of a bearing, and springs from it to the ground."""
+    """Draw the seat of a bearing, and springs from it to the ground."""
     middle = _surface(segments, b["y"] - 1e-6, b["y"] + 1e-6)
     radius = pen.radial * (middle[0][1] if middle else 0.0)
     x, ground = pen.x(b["y"]), pen.top + 0.38
@@ -242,7 +242,7 @@ def _bearing(pen: Pen, b: Mapping, segments) -> None:
 
 
 def _port(pen: Pen, port: Mapping, segments) -> None:
-    """A lumped point, and its spokes to the surface that carries it."""
+    """Draw a lumped point, and its spokes to the surface that carries it."""
     x = pen.x(port["y"])
     for side in (1, -1):
         _seat(pen, port, segments, side, SPAN, 4, alpha=0.9)
@@ -257,21 +257,21 @@ def _port(pen: Pen, port: Mapping, segments) -> None:
 
 
 def _lengths(pen: Pen, segments, chain: list[tuple], level: float) -> None:
-    """The chain of segment lengths; a text that has no room stands below it."""
+    """Draw the chain of segment lengths; a text without room stands below it."""
     for s in segments:
         for x, y in ((pen.x(s["y0"]), s["outer0"]), (pen.x(s["y1"]), s["outer1"])):
             pen.line([x, x], [-pen.radial * y - 0.04, level - 0.06], "#777777", 0.4, 1)
     arrow = {"arrowstyle": "<|-|>", "lw": 0.6, "shrinkA": 0, "shrinkB": 0, "color": INK}
     for middle, text, (a, b), step in chain:
         wide = b - a > CHAR * len(text) + 0.2
-        own = {**arrow, "mutation_scale": 6 if wide else 4}
-        pen.ax.annotate("", (a, level), (b, level), arrowprops=own)
+        look = {**arrow, "mutation_scale": 6 if wide else 4}
+        pen.ax.annotate("", (a, level), (b, level), arrowprops=look)
         place = level - 0.07 - LINE * (step - 1) if step else level + (0.02 if wide else 0.07)
         pen.words(middle, place, text, "black", 6, va="top" if step else "bottom", alpha=1.0)
 
 
 def _ruler(pen: Pen, ordinates, length: float, level: float) -> None:
-    """Positions from y = 0 of the ends, the bearings and the lumped point."""
+    """Draw positions from y = 0 of the ends, the bearings and the lumped point."""
     pen.line([pen.x(0), pen.x(length)], [level, level], INK, 0.6, 2)
     for x, text, step in ordinates:
         pen.line([x, x], [level + 0.05, level - 0.05 - 0.17 * step], INK, 0.6, 2)
@@ -280,7 +280,7 @@ def _ruler(pen: Pen, ordinates, length: float, level: float) -> None:
 
 
 def _handles(segments, scene) -> list[Any]:
-    """Entries of the legend."""
+    """Return entries of the legend."""
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 

@@ -12,14 +12,14 @@ CUT, MASS = "#8a1f1f", "#6b2e8a"
 
 
 def draw_feature(pen: Pen, feature: Mapping[str, Any], segments: Sequence[Mapping]) -> None:
-    """Draw a feature of the record of a scene, seen along x, whatever way it looks."""
-    here = next(s for s in segments if s["name"] == feature["segment"])
+    """Draw a feature of a scene, seen along x at any angle."""
+    segment = next(s for s in segments if s["name"] == feature["segment"])
     if "addendum" in feature:
-        _teeth(pen, feature, here)
+        _teeth(pen, feature, segment)
     elif "circle" in feature:
-        _holes(pen, feature, here)
+        _holes(pen, feature, segment)
     else:
-        _cut(pen, feature, here)
+        _cut(pen, feature, segment)
 
 
 def _name(feature: Mapping) -> str:
@@ -32,10 +32,10 @@ def _name(feature: Mapping) -> str:
     return f"{kind}{turn}" if feature["name"] == kind else f"{kind} {feature['name']}{turn}"
 
 
-def _cut(pen: Pen, cut: Mapping, here: Mapping) -> None:
+def _cut(pen: Pen, cut: Mapping, segment: Mapping) -> None:
     """Draw a cut into a segment."""
     lo, hi, lean = cut["y"], cut["y"] + cut.get("length", 0.0), 0.0
-    radius = here["outer0"]
+    radius = segment["outer0"]
     if "diameter" in cut:
         half = cut["diameter"] / 2 / math.cos(cut["inclination"])
         lo, hi, lean = lo - half, lo + half, radius * math.tan(cut["inclination"])
@@ -48,10 +48,10 @@ def _cut(pen: Pen, cut: Mapping, here: Mapping) -> None:
     pen.words(*place, _name(cut), CUT, va="top")
 
 
-def _teeth(pen: Pen, teeth: Mapping, here: Mapping) -> None:
-    """Tips and roots above, where the section shows a tooth; the run of the teeth below."""
-    x = [pen.x(here["y0"]), pen.x(here["y1"])]
-    ends = [pen.radial * here[k] for k in ("outer0", "outer1")]
+def _teeth(pen: Pen, teeth: Mapping, segment: Mapping) -> None:
+    """Draw tips and roots above, and the run of the teeth below."""
+    x = [pen.x(segment["y0"]), pen.x(segment["y1"])]
+    ends = [pen.radial * segment[k] for k in ("outer0", "outer1")]
     tip = 1 + 2 * teeth["addendum"] / teeth["count"]
     root = 1 - 2 * teeth["dedendum"] / teeth["count"]
     for side in (1, -1):
@@ -67,11 +67,11 @@ def _teeth(pen: Pen, teeth: Mapping, here: Mapping) -> None:
         angle, line = teeth["angle"] + 2 * math.pi * j / teeth["count"], []
         for i in range(steps + 1):
             t = i / steps
-            r = here["outer0"] + (here["outer1"] - here["outer0"]) * t
+            r = segment["outer0"] + (segment["outer1"] - segment["outer0"]) * t
             if math.sin(angle) > 0 and math.cos(angle) < 0:
                 line.append((x[0] + (x[1] - x[0]) * t, pen.radial * tip * r * math.cos(angle)))
-            slope = (here["outer1"] - here["outer0"]) / (here["y1"] - here["y0"])
-            step = (here["y1"] - here["y0"]) / steps * math.hypot(1.0, slope)
+            slope = (segment["outer1"] - segment["outer0"]) / (segment["y1"] - segment["y0"])
+            step = (segment["y1"] - segment["y0"]) / steps * math.hypot(1.0, slope)
             angle += lean * step / r
         if line:
             places, heights = zip(*line)
@@ -84,9 +84,9 @@ def _teeth(pen: Pen, teeth: Mapping, here: Mapping) -> None:
     pen.words(sum(x) / 2, 0.6 * sum(ends) / 2, text, CUT, va="top")
 
 
-def _holes(pen: Pen, bolts: Mapping, here: Mapping) -> None:
-    """The outlines of a hole above and below, hidden."""
-    lo, hi = here["y0"], here["y1"]
+def _holes(pen: Pen, bolts: Mapping, segment: Mapping) -> None:
+    """Draw the outlines of a hole above and below, hidden."""
+    lo, hi = segment["y0"], segment["y1"]
     if bolts.get("depth") is not None:
         lo, hi = (
             (lo, lo + bolts["depth"]) if bolts["side"] == "start" else (hi - bolts["depth"], hi)
@@ -102,7 +102,7 @@ def _holes(pen: Pen, bolts: Mapping, here: Mapping) -> None:
 
 
 def draw_blend(pen: Pen, blend: Mapping, segments) -> None:
-    """A fillet or chamfer, in both halves: what it fills or leaves."""
+    """Draw a fillet or chamfer in both halves."""
     r, y = blend["corner"]
     owner = next(s for s in segments if s["name"] == blend["owner"])
     added, outline = blend["edge"] == "root", blend["outline"]
@@ -120,13 +120,13 @@ def draw_blend(pen: Pen, blend: Mapping, segments) -> None:
     (r0, y0), (r1, y1) = outline[0], outline[-1]
     # beyond the outline, where there is no material
     away = 0.1 * (1 if y1 + y0 > 2 * y else -1) * (1 if added else -1)
-    up = 0.1 if blend["surface"] == "outer" else -0.1
-    place = pen.x((y0 + y1) / 2) + away, pen.radial * (r0 + r1) / 2 + up
+    offset = 0.1 if blend["surface"] == "outer" else -0.1
+    place = pen.x((y0 + y1) / 2) + away, pen.radial * (r0 + r1) / 2 + offset
     pen.words(*place, size, ha="left" if away > 0 else "right", size=7, pad=0.4)
 
 
 def draw_mass(pen: Pen, mass: Mapping) -> None:
-    """A rigid mass: its centre, joined to its station, with its name and size above."""
+    """Draw a rigid mass: its centre, joined to its station, with name and size above."""
     x, centre = pen.x(mass["y"]), pen.x(mass["y"] + mass["offset"][1])
     # seen along x: what lies towards +z is drawn upwards
     height = pen.radial * mass["offset"][2]

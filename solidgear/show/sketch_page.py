@@ -25,10 +25,7 @@ WITHOUT = {"Date": None, "Creator": None, "Format": None, "Type": None}
 def sketch_svg(
     name: str, scene: Mapping[str, Any], room: tuple[float, float] | None = None
 ) -> bytes | None:
-    """Both drawings of a scene, of which ``style.html`` shows either; None without segments. The
-    name has letters and underscores, and is of no other drawing of the page; `room` is that of
-    :func:`solidgear.show.sketch.draw`.
-    """
+    """Return the section of a scene, wide and for a phone; None without segments."""
     import matplotlib
 
     drawings = []

@@ -22,7 +22,7 @@ class Pen:
     top: float  #: largest radius
 
     def x(self, y: float) -> float:
-        """Place of a position along the shaft, m."""
+        """Return the place of a position along the shaft, m."""
         return self.left + y * self.inch
 
     def line(
@@ -34,7 +34,7 @@ class Pen:
         order: float = 5,
         **look: Any,
     ) -> None:
-        """A line through places, over what has a lower order."""
+        """Draw a line through places, over lower orders."""
         self.ax.plot(x, y, color=colour, lw=width, zorder=order, **look)
 
     def words(
@@ -52,9 +52,7 @@ class Pen:
         pad: float = 0.5,
         **look: Any,
     ) -> None:
-        """Words on white paper, more or less of it to be seen, with what was read out of a file as it
-        is.
-        """
+        """Draw words on white, texts from a file unchanged."""
         paper = {"facecolor": "white", "edgecolor": "none", "alpha": alpha, "pad": pad}
         how: dict[str, Any] = {"ha": ha, "va": va, "fontsize": size, "parse_math": False, **look}
         self.ax.text(x, y, text, color=colour, bbox=paper, zorder=order, **how)

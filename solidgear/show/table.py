@@ -66,31 +66,31 @@ class Column:
     kind: str = ""
 
     def written(self, value: Any, nothing: str = DASH) -> str:
-        """A value as this column writes it."""
+        """Return a value as this column writes it."""
         if value is None or isinstance(value, float) and not math.isfinite(value):
             return nothing
         return value if isinstance(value, str) else self.write(value)
 
 
 def text(head: str, of: Callable[[Any], Any] | None = None) -> Column:
-    """A column of texts, which may take several lines."""
+    """Return a column of texts, which may take several lines."""
     return Column(head, of, kind=TEXT)
 
 
 def word(head: str, of: Callable[[Any], Any] | None = None) -> Column:
-    """A column of single words."""
+    """Return a column of single words."""
     return Column(head, of, kind=WORD)
 
 
 def quantity(
     head: str, si: str, units: Units, of: Callable[[Any], Any] | None = None, digits: int = 5
 ) -> Column:
-    """A column of values of an SI unit, shown in `units`."""
+    """Return a column of values of an SI unit, shown in `units`."""
     return Column(f"{head}, {units.unit(si)}", of, partial(units.number, si=si, digits=digits))
 
 
 def given(head: str, si: str, units: Units, of: Callable[[Any], Any] | None = None) -> Column:
-    """A column of values out of a scene, without zeros behind them."""
+    """Return a column of values out of a scene, without zeros behind them."""
     return Column(f"{head}, {units.unit(si)}", of, partial(units.given, si=si))
 
 
@@ -160,7 +160,7 @@ class Table:
 
     @property
     def blocks(self) -> list[tuple[tuple[str, ...], list[list[Cell]]]]:
-        """Rows that belong together, and what stands over them."""
+        """Groups of rows, with their heading."""
         rows, many = self.cells, len(self.over) or 1
         size = math.ceil(len(rows) / many)
         over = self.over or [()]
@@ -173,15 +173,15 @@ class Table:
     def __repr__(self) -> str:
         if not self.rows:
             return self.title
-        shown = [self.heads, *self.texts[:MOST_ROWS]]
-        lines = [[in_ascii(text) for text in row] for row in shown]
+        texts = [self.heads, *self.texts[:MOST_ROWS]]
+        lines = [[in_ascii(text) for text in row] for row in texts]
         widths = [max(map(len, column)) for column in zip(*lines)]
-        left = len(self.rows) - MOST_ROWS
+        more = len(self.rows) - MOST_ROWS
         return "\n".join(
             [
                 self.title,
                 *("  " + "  ".join(map(str.ljust, line, widths)).rstrip() for line in lines),
-                *([f"  and {left} more"] if left > 0 else []),
+                *([f"  and {more} more"] if more > 0 else []),
             ]
         )
 
@@ -190,7 +190,7 @@ class Table:
         return str(template("parts.html").module.table(self))
 
     def css(self, k: int, cell: Cell | None = None) -> str:
-        """Classes of column `k` in the style sheet, or of a cell in it."""
+        """Return classes of column `k` in the style sheet, or of a cell in it."""
         kind = CSS[self.columns[k].kind] if k else ""
         if cell is None:
             return kind
@@ -199,7 +199,7 @@ class Table:
 
     # ---------------------------------------------------------------------- files
     def csv(self) -> str:
-        """The table as comma-separated values; nothing where there is no value."""
+        """Return the table as comma-separated values; empty where there is no value."""
         out = io.StringIO()
         writer = csv.writer(out, lineterminator="\n")
         writer.writerow(self.heads)
@@ -208,13 +208,13 @@ class Table:
         return out.getvalue()
 
     def write(self, path: Path) -> Path:
-        """Write it as comma-separated values; there is a whole file or none."""
+        """Write the table as comma-separated values, a whole file or none."""
         with whole(path) as half:
             half.write_text(self.csv(), encoding="utf-8", newline="")
         return path
 
     def to_dataframe(self) -> Any:
-        """As a data frame of pandas.
+        """Return the table as a data frame of pandas.
 
         Raises
         ------
@@ -227,12 +227,12 @@ class Table:
 
 
 def exact(value: float) -> str:
-    """A number for other programs."""
+    """Return a number for other programs."""
     return f"{value:.9g}"
 
 
 def numbers(columns: Mapping[str, Iterable[float]]) -> Table:
-    """Columns of numbers in SI by their heads, for other programs."""
+    """Return columns of numbers in SI by their heads, for other programs."""
     return Table("", [Column(head, write=exact) for head in columns], list(zip(*columns.values())))
 
 
@@ -251,39 +251,37 @@ LEAST_TEXT = 12
 
 
 def fitted(table: Table, console: Console, options: ConsoleOptions) -> RichTable:
-    """A table for a terminal of a width: texts and then heads take several lines, columns move
-    together, and no number is ever cut; what is wider still runs over.
-    """
-    shown = printed(table)
-    if _width(shown, console, options) <= options.max_width:
-        return shown
+    """Return a table for a terminal of a width: texts and heads wrap, numbers are never cut."""
+    rich_table = printed(table)
+    if _width(rich_table, console, options) <= options.max_width:
+        return rich_table
     columns = list(zip(table.columns, zip(*table.texts)))
     whole = [_least(column, cells, column.head.split("\n")) for column, cells in columns]
     broken = [_least(column, cells, column.head.split()) for column, cells in columns]
     # numbers without a line between them would run together
-    tight = TIGHT if shown.box else TIGHT[:1]
-    ways = [(shown.padding, whole), *((pad, broken) for pad in (shown.padding, *tight))]
+    tight = TIGHT if rich_table.box else TIGHT[:1]
+    ways = [(rich_table.padding, whole), *((pad, broken) for pad in (rich_table.padding, *tight))]
     for padding, widths in ways:
-        shown.padding = padding
-        for column, width in zip(shown.columns, widths):
+        rich_table.padding = padding
+        for column, width in zip(rich_table.columns, widths):
             column.width, column.no_wrap = width, False
-        spare = options.max_width - _width(shown, console, options)
+        spare = options.max_width - _width(rich_table, console, options)
         if spare >= 0:
-            _widen_texts(table, shown, spare)
-            return shown
-    shown.width = _width(shown, console, options)
-    return shown
+            _widen_texts(table, rich_table, spare)
+            return rich_table
+    rich_table.width = _width(rich_table, console, options)
+    return rich_table
 
 
-def _width(shown: RichTable, console: Console, options: ConsoleOptions) -> int:
-    """Characters that a table takes where it may take any."""
+def _width(rich_table: RichTable, console: Console, options: ConsoleOptions) -> int:
+    """Return the characters that a table takes without a limit."""
     from rich.measure import Measurement
 
-    return Measurement.get(console, options.update(max_width=1000), shown).maximum
+    return Measurement.get(console, options.update(max_width=1000), rich_table).maximum
 
 
 def _least(column: Column, cells: Iterable[str], heads: Iterable[str]) -> int:
-    """Characters of the widest cell or part of the head; of texts those of a word, or a few."""
+    """Return the characters of the widest cell or part of the head; for texts of a word."""
     parts = _widest([*heads, *cells])
     if column.kind != TEXT:
         return parts
@@ -294,23 +292,23 @@ def _least(column: Column, cells: Iterable[str], heads: Iterable[str]) -> int:
 def _widest(texts: Iterable[str]) -> int:
     from rich.cells import cell_len
 
-    return max((cell_len(in_ascii(one)) for one in texts), default=0)
+    return max((cell_len(in_ascii(cell)) for cell in texts), default=0)
 
 
-def _widen_texts(table: Table, shown: RichTable, spare: int) -> None:
-    """Share what is left of a line among columns of texts, none more than it needs."""
-    left = []
+def _widen_texts(table: Table, rich_table: RichTable, spare: int) -> None:
+    """Share the rest of a line among columns of texts."""
+    narrow = []
     for k, (column, cells) in enumerate(zip(table.columns, zip(*table.texts))):
         if column.kind == TEXT:
-            left.append((_widest(cells) - (shown.columns[k].width or 0), k))
-    for done, (needs, k) in enumerate(sorted(left)):
-        more = max(min(needs, spare // (len(left) - done)), 0)
-        shown.columns[k].width = (shown.columns[k].width or 0) + more
+            narrow.append((_widest(cells) - (rich_table.columns[k].width or 0), k))
+    for place, (needs, k) in enumerate(sorted(narrow)):
+        more = max(min(needs, spare // (len(narrow) - place)), 0)
+        rich_table.columns[k].width = (rich_table.columns[k].width or 0) + more
         spare -= more
 
 
 def printed(table: Table) -> RichTable:
-    """A table for a terminal.
+    """Return a table for a terminal.
 
     Texts go through :class:`rich.text.Text`, so that a name with brackets in it stays a name.
     """
@@ -319,7 +317,7 @@ def printed(table: Table) -> RichTable:
     from rich.text import Text
 
     boxes = {"ruled": box.HEAVY_HEAD, "bare": None}
-    shown = RichTable(
+    rich_table = RichTable(
         box=boxes.get(table.style, box.SIMPLE_HEAD),
         title=Text(in_ascii(table.title), "table.title") if table.title else None,
         title_justify="left",
@@ -328,25 +326,25 @@ def printed(table: Table) -> RichTable:
         **TERMINAL.get(table.style, TERMINAL[""]),
     )
     for column in table.columns:
-        shown.add_column(
+        rich_table.add_column(
             Text(in_ascii(column.head)),
             justify=SIDE[column.kind],
             no_wrap=column.kind != TEXT,
         )
     last = len(table.over) - 1
-    for k, (over, rows) in enumerate(table.blocks):
-        if over:
-            shown.add_row(*_spread(over, len(table.columns)), style="dim")
+    for k, (heading, rows) in enumerate(table.blocks):
+        if heading:
+            rich_table.add_row(*_spread(heading, len(table.columns)), style="dim")
         for row in rows:
             ends = k < last and row is rows[-1]
-            shown.add_row(*(Text(in_ascii(cell.value)) for cell in row), end_section=ends)
-    return shown
+            rich_table.add_row(*(Text(in_ascii(cell.value)) for cell in row), end_section=ends)
+    return rich_table
 
 
-def _spread(over: Sequence[str], columns: int) -> Iterable[str]:
-    """Texts in the middle of the equal shares of columns that they stand over."""
-    share = (columns - 1) // len(over)
+def _spread(heading: Sequence[str], columns: int) -> Iterable[str]:
+    """Return texts centred over their equal shares of columns."""
+    share = (columns - 1) // len(heading)
     cells = [""] * columns
-    for k, text in enumerate(over):
+    for k, text in enumerate(heading):
         cells[1 + k * share + share // 2] = in_ascii(text)
     return cells

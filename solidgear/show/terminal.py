@@ -32,9 +32,8 @@ VALID = {"yes": "yes", "no": "NO", "open": "?", "unknown": "?"}
 
 
 def final_table(record: Record) -> RenderableType:
-    """One line a model: validity, K_zz, C_zz, first bending, deviation from the reference, error
-    bar, size, time, in at most 80 columns; missing parts show as a dash. Below it what the marks
-    mean and why a model must not be trusted.
+    """Return one line per model in at most 80 columns, with notes and reasons below; missing parts
+    are dashes.
     """
     chosen = units_named(record.shown_in)
     table = Table("", _columns(record, chosen), list(record.models), style="narrow")
@@ -45,7 +44,7 @@ def final_table(record: Record) -> RenderableType:
 
 
 def _columns(record: Record, units: Units) -> list[Column]:
-    """Columns of the final table, which tell of a model by its key."""
+    """Return columns of the final table, by the key of a model."""
     models = record.models
 
     def entry(name: Quantity) -> Column:
@@ -58,8 +57,8 @@ def _columns(record: Record, units: Units) -> list[Column]:
         return Column(head, lambda key: _against_reference(record, key, name))
 
     def bar(key: str) -> float | None:
-        found = models[key].band
-        return found.compliance if found else None
+        summary = models[key].band
+        return summary.compliance if summary else None
 
     return [
         word("model", lambda key: reading.heading(record, key)[:10]),
@@ -84,7 +83,7 @@ def _columns(record: Record, units: Units) -> list[Column]:
 
 
 def _notes(record: Record, unresolved: bool) -> list[str]:
-    """Meaning of the marks of the final table."""
+    """Return the meaning of the marks of the final table."""
     notes = []
     reference = reading.reference_of(record)
     if reference:
@@ -97,41 +96,41 @@ def _notes(record: Record, unresolved: bool) -> list[str]:
         notes.append("n.r.: difference smaller than the error bars")
     if record.models:
         notes.append(
-            "fb1: first bending mode; bar C: error bar of the worst compliance; "
-            "time: building and solving, without the evidence"
+            "fb1: first bending mode; bar C: widest error bar of a compliance; time: building and "
+            "solving, without error bars"
         )
     if not record.complete:
-        notes.append("INCOMPLETE: the run was interrupted; what is missing shows as a dash")
+        notes.append("INCOMPLETE: the run was interrupted; a dash shows what is missing")
     return notes
 
 
 def _further_points(record: Record, units: Units) -> list[str]:
-    """Compliance at further lumped points, a line each, and the main point by name."""
+    """Return compliances at further lumped points, a line each, after the main point's name."""
     if not record.further_ports:
         return []
-    lines = [f"the table is of {record.port.name if record.port else 'the first point'}"]
+    lines = [f"the table is for {record.port.name if record.port else 'the first point'}"]
     for port in record.further_ports:
-        told = []
+        values = []
         for key, model in record.models.items():
             name = C_ZZ.at(port.name)
             value = units.number(reading.value_of(model, name), name.unit, 4)
-            apart = _against_reference(record, key, name)
-            told.append(f"{reading.heading(record, key)} {value} ({apart})")
-        lines.append(in_ascii(f"C_zz at {port.name}, {units.unit('m/N')}: {', '.join(told)}"))
+            difference = _against_reference(record, key, name)
+            values.append(f"{reading.heading(record, key)} {value} ({difference})")
+        lines.append(in_ascii(f"C_zz at {port.name}, {units.unit('m/N')}: {', '.join(values)}"))
     return lines
 
 
 def _reason(record: Record, key: str, model: ModelRecord) -> str:
-    """Reason why a model must not be trusted, or cannot be judged."""
-    worth = reading.validity(model)
-    if worth not in ("no", "open"):
+    """Return the reason why a model must not be trusted, or cannot be judged."""
+    state = reading.validity(model)
+    if state not in ("no", "open"):
         return ""
-    why = model.why_not or "not valid for this scene"
-    return f"{VALID[worth]:<4}{reading.model_name(record, key)}: {why}"
+    reason = model.why_not or "not valid for this scene"
+    return f"{VALID[state]:<4}{reading.model_name(record, key)}: {reason}"
 
 
 def _against_reference(record: Record, key: str, quantity: str) -> str:
-    """The difference of a model from the reference, for one cell."""
+    """Return the difference of a model from the reference, for one cell."""
     if key == reading.reference_of(record):
         return "ref."
     row = reading.headline(record, key, quantity)
@@ -141,12 +140,10 @@ def _against_reference(record: Record, key: str, quantity: str) -> str:
 
 
 def closing_lines(record: Record) -> list[str]:
-    """Lines below a verdict: cautions, modes that were counted, seconds and peak memory (plain
-    text).
-    """
+    """Return lines below a verdict: cautions, modes counted, seconds and peak memory."""
     lines = [f"caution: {w}" for w in record.warnings]
-    if told := reading.left_open(record):
-        lines.append(told)
+    if ranges := reading.left_open(record):
+        lines.append(ranges)
     trusted = record.verdict.trust
     counted = reading.model_of(record, trusted).evidence.complete
     if counted:
@@ -158,7 +155,7 @@ def closing_lines(record: Record) -> list[str]:
 
 
 def _memory(record: Record) -> str:
-    """Peak memory beside its estimate."""
+    """Return the peak memory beside its estimate."""
     if record.peak_mb is None:
         return ""
     peak = f", peak memory {record.peak_mb:.0f} MB"
@@ -168,11 +165,13 @@ def _memory(record: Record) -> str:
 
 
 def verdict_text(record: Record) -> str:
-    """The verdict in plain words, one statement a line (plain text: print it without markup)."""
+    """Return the verdict in plain words, one statement a line (plain text: print it without
+    markup).
+    """
     verdict = record.verdict
     if verdict == VerdictRecord():
-        return "No verdict: the run did not get that far."
-    trusted = "none of the models that ran"
+        return "No verdict: the run was interrupted before."
+    trusted = "no model that ran"
     if verdict.trust:
         trusted = reading.model_name(record, verdict.trust)
     lines = [f"Trust: {trusted}"]
@@ -191,9 +190,7 @@ def matrix_table(
     title: str = "",
     sizes: Sequence[Sequence[float]] | None = None,
 ) -> Table:
-    """A 6x6 with its units, titled by its kind; free components (None or NaN) show as a dash. See
-    :func:`solidgear.show.matrices.block`.
-    """
+    """Return a 6x6 with its units, titled by its kind; free components (None or NaN) are dashes."""
     chosen = units_named(units)
     rows = matrix.tolist() if hasattr(matrix, "tolist") else matrix
     # a weak coupling has few figures that mean something, and a row has 80 columns
@@ -207,8 +204,8 @@ def modes_table(
     bars: Mapping[str, float] | None = None,
     open_: OpenNumbers | None = None,
 ) -> Table:
-    """Natural frequencies with names and multiplicity, and where there are any relative bars by name
-    and ranges by what is open.
+    """Return natural frequencies with names and multiplicity, and error bars and ranges where
+    given.
     """
     columns = [
         text("mode", lambda m: m.name or None),
@@ -219,10 +216,10 @@ def modes_table(
     if bars:
 
         def bar(mode: ModeRecord) -> str:
-            own = bars.get(mode.name or "")
-            return "" if own is None else words.percent(own, signed=False)
+            width = bars.get(mode.name or "")
+            return "" if width is None else words.percent(width, signed=False)
 
-        columns.append(Column("bar", bar))
+        columns.append(Column("error bar", bar))
     note = ""
     if open_ is not None:
         columns += open_words.columns(open_, lambda mode: mode.name)

@@ -60,11 +60,11 @@ class Turned:
         return (self, *self.along)
 
     def index(self, name: str) -> int:
-        """Place of the shape of that name, also where bending is named by its plane; -1 if none."""
+        """Return the place of a shape by name, also by plane; -1 if there is none."""
         names = [shape.name for shape in self.shapes]
         plain = name.replace("bending z ", "bending ").replace("bending x ", "bending ")
-        found = [meant(wanted, names) for wanted in (name, plain)]
-        return next((place for place in found if place is not None), -1)
+        matches = [meant(candidate, names) for candidate in (name, plain)]
+        return next((place for place in matches if place is not None), -1)
 
 
 class Member(NamedTuple):
@@ -83,14 +83,14 @@ def turned(
     title: str = "",
     like: Sequence[Turned] = (),
 ) -> Turned:
-    """Surface and elastic mode shapes of a body, titled by its model; a shape takes the sign of the
-    one of the same name of a model that it is `like`.
+    """Return surface and elastic mode shapes of a body, with the signs of the models they are
+    `like`.
     """
     chosen: Any = getattr(modes, "modes", modes)
     elastic = [mode for mode in chosen if mode.frequency_hz > 0]
     alone = Member(body, np.eye(3), np.zeros(3), [mode.vectors[:2] for mode in elastic])
-    named = [(mode.name, mode.frequency_hz) for mode in elastic]
-    return together(title or body.fidelity, named, [alone], like)
+    labels = [(mode.name, mode.frequency_hz) for mode in elastic]
+    return together(title or body.fidelity, labels, [alone], like)
 
 
 def together(
@@ -99,9 +99,8 @@ def together(
     members: Sequence[Member],
     like: Sequence[Turned] = (),
 ) -> Turned:
-    """Several bodies that move in the same elastic modes (name, Hz), each in its place: the first,
-    with the others along. A shape takes the sign of the one of the same name of models that they
-    are `like`.
+    """Return several bodies that move in the same elastic modes (name, Hz), the first with the
+    others along.
     """
     if not modes:
         raise SolidgearError(f"the model {title} has no elastic mode to draw")
@@ -109,45 +108,46 @@ def together(
     shapes: list[list[Shape]] = [[] for _ in members]
     for k, (name, hz) in enumerate(modes):
         moved = [_moved(m.body, m.vectors[k], mesh) for m, mesh in zip(members, meshes)]
-        largest = max(np.linalg.norm(one, axis=1).max() for one in moved)
+        largest = max(np.linalg.norm(displacement, axis=1).max() for displacement in moved)
         if not np.isfinite(largest) or not largest > 0:
             raise SolidgearError(
                 f"{title}: the displacement of mode {name!r} is zero or not finite"
             )
-        means = [sections(mesh.points, one) for mesh, one in zip(meshes, moved)]
+        means = [sections(mesh.points, displacement) for mesh, displacement in zip(meshes, moved)]
         scale = _sign(np.vstack(means), name, like) / largest
         pair = len(members[0].vectors[k]) > 1
-        for own, one, mean in zip(shapes, moved, means):
-            own.append(Shape(name, hz, pair, _turns(mean), scale * one))
+        for shape, displacement, mean in zip(shapes, moved, means):
+            shape.append(Shape(name, hz, pair, _turns(mean), scale * displacement))
     bodies = [
-        Turned(title, mesh, tuple(own), member.rotation, member.origin)
-        for mesh, own, member in zip(meshes, shapes, members)
+        Turned(title, mesh, tuple(shape), member.rotation, member.origin)
+        for mesh, shape, member in zip(meshes, shapes, members)
     ]
     return replace(bodies[0], along=tuple(bodies[1:]))
 
 
 def _moved(body: Body, vectors: Sequence[Any], mesh: Mesh) -> np.ndarray:
-    """The displacement of a mode at the points of a mesh, up to a factor."""
+    """Return the displacement of a mode at the points of a mesh, up to a factor."""
     moved = [body.surface(vector).displacement[mesh.source] for vector in vectors]
     return moved[0] if len(moved) == 1 else symmetric(mesh.points, *moved)
 
 
-def symmetric(points: np.ndarray, one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """Of the shapes that a pair of the same modal mass spans, that symmetric about the plane of y
-    and z.
+def symmetric(points: np.ndarray, first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    """Return the shape in the span of a pair of modes that is symmetric about the plane of y and
+    z.
 
     On that plane a symmetric shape has no motion along x, so the combination with the least of it
     nearby is taken.
     """
     x, z = points[:, 0] ** 2, points[:, 2] ** 2
     near = np.divide(z, x + z, out=np.zeros_like(z), where=x + z > 0) ** 8
-    across = np.column_stack([one[:, 0], other[:, 0]])
+    across = np.column_stack([first[:, 0], second[:, 0]])
     _, v = np.linalg.eigh(across.T @ (near[:, None] * across))
-    return v[0, 0] * one + v[1, 0] * other
+    return v[0, 0] * first + v[1, 0] * second
 
 
 def sections(points: np.ndarray, moved: np.ndarray) -> np.ndarray:
-    """(SLICES, 7) mean motions in slices along the axis: x, y, z, swirl, breathing, ovalising.
+    """Return (SLICES, 7) mean motions in slices along the axis: x, y, z, swirl, breathing,
+    ovalising.
 
     Means over points, not over areas: enough to tell a shape from its negative.
     """
@@ -156,36 +156,40 @@ def sections(points: np.ndarray, moved: np.ndarray) -> np.ndarray:
     radial = (x * moved[:, 0] + z * moved[:, 2]) / r
     swirl = (z * moved[:, 0] - x * moved[:, 2]) / r
     twice, sine = (z**2 - x**2) / r**2, 2 * x * z / r**2
-    told = np.column_stack([moved, swirl, radial, radial * twice, swirl * sine])
+    columns = np.column_stack([moved, swirl, radial, radial * twice, swirl * sine])
     place = (SLICES * (y - y.min()) / np.ptp(y)).astype(int).clip(0, SLICES - 1)
     count = np.bincount(place, minlength=SLICES)
-    sums = np.column_stack([np.bincount(place, column, SLICES) for column in told.T])
+    sums = np.column_stack([np.bincount(place, column, SLICES) for column in columns.T])
     return sums / np.maximum(count, 1)[:, None]
 
 
 def _turns(means: np.ndarray) -> bool:
-    """True if the sections of a body do little but turn about its axis."""
+    """Return True if the sections of a body mainly rotate about its axis."""
     across, swirl = (means[:, :3] ** 2).sum(), (means[:, 3] ** 2).sum()
     return bool(swirl > TURNS * across)
 
 
 def _sign(means: np.ndarray, name: str, like: Sequence[Turned]) -> float:
-    """As the same mode of a model before; else so that the largest section motion is positive."""
+    """Return the sign of the same mode of a model before, or one that makes the largest motion
+    positive.
+    """
     largest = means.ravel()[np.abs(means).argmax()]
     for model in like:
-        at = model.index(name)
-        if at >= 0:
-            others = [sections(b.mesh.points, b.shapes[at].displacement) for b in model.bodies]
-            largest = (means * np.vstack(others)).sum()
+        place = model.index(name)
+        if place >= 0:
+            partners = [sections(b.mesh.points, b.shapes[place].displacement) for b in model.bodies]
+            largest = (means * np.vstack(partners)).sum()
             break
     return -1.0 if largest < 0 else 1.0
 
 
 def picks(models: Sequence[Turned]) -> list[Mapping[str, Any]]:
-    """Every mode that one of the models has, with its place in each (-1: not there), by frequency."""
+    """Return every mode of any model with its place in each (-1: missing), by frequency."""
     rows: dict[tuple[int, ...], dict[str, Any]] = {}
     for model in models:
         for shape in model.shapes:
-            at = tuple(other.index(shape.name) for other in models)
-            rows.setdefault(at, {"name": shape.name, "at": list(at), "hz": shape.frequency_hz})
+            places = tuple(partner.index(shape.name) for partner in models)
+            rows.setdefault(
+                places, {"name": shape.name, "at": list(places), "hz": shape.frequency_hz}
+            )
     return sorted(rows.values(), key=lambda row: row["hz"])

@@ -49,40 +49,40 @@ class Units:
         return "SI" if self is SI else f"{self.name.upper() if self is US else self.name} units"
 
     def unit(self, si: str) -> str:
-        """The name of an SI unit here."""
+        """Return the name of an SI unit here."""
         return self.of.get(si, (si, 1.0))[0]
 
     def value(self, value: float | None, si: str) -> float | None:
-        """A value of SI in this unit."""
+        """Return a value of SI in this unit."""
         return value * self.of.get(si, (si, 1.0))[1] if is_number(value) else None
 
     def values(self, values: np.ndarray, si: str) -> np.ndarray:
-        """Values of SI in this unit."""
+        """Return values of SI in this unit."""
         return values * self.of.get(si, (si, 1.0))[1]
 
     def number(self, value: float | None, si: str, digits: int = 5) -> str:
-        """A value of SI in this unit, without its name.
+        """Return a value of SI in this unit, without its name.
 
         Examples
         --------
         >>> ENGINEERING.number(4.7105e9, "N/m"), ENGINEERING.number(5.9612e-10, "m/N")
         ('4710.5', '0.59612')
         """
-        here = self.value(value, si)
+        converted = self.value(value, si)
         if self.exponents:
-            return engineering(here, digits)
-        return plain(here, digits)
+            return engineering(converted, digits)
+        return plain(converted, digits)
 
     def given(self, value: float | None, si: str) -> str:
-        """A number out of a scene: as it was given, without zeros behind it."""
-        here = self.value(value, si)
-        if here is None:
+        """Return a number of a scene as it was written, without zeros behind it."""
+        converted = self.value(value, si)
+        if converted is None:
             return DASH
-        written = f"{here:.6g}"
-        return engineering(here, 4) if "e" in written else written
+        written = f"{converted:.6g}"
+        return engineering(converted, 4) if "e" in written else written
 
     def fitting(self, values: Iterable[float], si: str) -> Units:
-        """The same with a prefix in which the largest of some values is no small fraction.
+        """Return these units with a prefix that suits the largest of some values.
 
         Examples
         --------
@@ -98,15 +98,13 @@ class Units:
         return replace(self, of={**self.of, si: (prefix + name[1:], factor * finer)})
 
     def text(self, value: float | None, si: str, digits: int = 5) -> str:
-        """The number with its unit."""
+        """Return the number with its unit."""
         number = self.number(value, si, digits)
         return number if number == DASH else f"{number} {self.unit(si)}"
 
 
 def plain(value: float | None, digits: int = 5) -> str:
-    """A number with all its digits, in groups of three from five digits on; an exponent only for
-    what is extremely large or small.
-    """
+    """Return a number with all its digits, in groups of three from five digits on."""
     if not is_number(value):
         return DASH
     if value == 0:
@@ -120,16 +118,14 @@ def plain(value: float | None, digits: int = 5) -> str:
 
 
 def digits_for(bar: float | None, least: int = 3, most: int = 6) -> int:
-    """Figures that a number with this relative bar deserves: up to the first uncertain one."""
+    """Return the figures that a number with this relative error bar deserves."""
     if not is_number(bar) or bar <= 0:
         return most - 1
     return min(max(round(-math.log10(bar)) + 1, least), most)
 
 
 def in_ascii(text: str) -> str:
-    """The same for terminals, which may know no Greek, and where groups of digits would look like
-    two columns.
-    """
+    """Return a text for terminals without Greek letters and groups of digits."""
     # between digits it groups; elsewhere it keeps a unit on one line
     ungrouped = re.sub(rf"(?<=\d){GROUP}(?=\d)", "", text)
     return ungrouped.translate(ASCII)
@@ -188,7 +184,7 @@ SYSTEMS = {units.name: units for units in (ENGINEERING, SI, US)}
 
 
 def units_named(name: str | Units) -> Units:
-    """A choice of units by its name.
+    """Return a choice of units by its name.
 
     Raises
     ------

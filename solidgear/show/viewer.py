@@ -68,8 +68,8 @@ class Turning:
         return write_page(path, viewer_page(self.models, self.title, still=still, first=self.first))
 
     def __repr__(self) -> str:
-        told = ", ".join(f"{m.title} ({len(m.shapes)} modes)" for m in self.models)
-        return f"Models to turn: {told}; write(path) makes a page"
+        titles = ", ".join(f"{m.title} ({len(m.shapes)} modes)" for m in self.models)
+        return f"Models to turn: {titles}; write(path) makes a page"
 
     def _repr_html_(self) -> str:
         from html import escape
@@ -80,7 +80,8 @@ class Turning:
 
 
 def turn(body: Body, modes: ModeSet, *others: tuple[Body, ModeSet]) -> Turning:
-    """Mode shapes in 3D that can be turned, animated and cut, of one model or several side by side.
+    """Mode shapes in 3D that can be turned, animated and cut, of one model or several side by
+    side.
 
     Parameters
     ----------
@@ -109,30 +110,29 @@ def turn(body: Body, modes: ModeSet, *others: tuple[Body, ModeSet]) -> Turning:
     Models to turn: timoshenko (3 modes); write(path) makes a page
     """
     models: list[Turned] = []
-    for one, its in ((body, modes), *others):
-        models.append(turned(one, its, like=models))
+    for model_body, mode_set in ((body, modes), *others):
+        models.append(turned(model_body, mode_set, like=models))
     return Turning(tuple(models))
 
 
 def viewer_fragment(models: Sequence[Turned], *, still: str = "", first: str = "") -> str:
-    """Markup, style, script and data of a viewer, between two comments by which :func:`fragment_of`
-    finds it in a page. Models past ``BUDGET`` are left out, but never the first; `still` is the
-    data URI of a picture for print and where the viewer cannot run, `first` the mode to open with.
+    """Return markup, style, script and data of a viewer, without models past ``BUDGET`` but the
+    first.
     """
     from markupsafe import Markup
 
-    kept = list(_within_budget(models))
-    models = models[: len(kept)]
+    drawn = list(_within_budget(models))
+    models = models[: len(drawn)]
     ramp = colours()(np.linspace(0, 1, STOPS))[:, :3]
     modes = picks(models)
-    told = {
+    payload = {
         "first": max(models[0].index(first or "bending 1"), 0),
         "ramp": ramp.ravel().round(3).tolist(),
-        "models": kept,
+        "models": drawn,
         "modes": modes,
     }
     # "</script" must not end the script that holds the data.
-    data = json.dumps(told, allow_nan=False).replace("<", "\\u003c")
+    data = json.dumps(payload, allow_nan=False).replace("<", "\\u003c")
     markup = template("viewer.html").render(
         data=Markup(data),
         script=Markup((Path(__file__).parent / "viewer.js").read_text(encoding="utf-8")),
@@ -147,7 +147,7 @@ def viewer_fragment(models: Sequence[Turned], *, still: str = "", first: str = "
 def viewer_page(
     models: Sequence[Turned], title: str = "", *, still: str = "", first: str = ""
 ) -> str:
-    """The viewer alone as a page; parameters as those of :func:`viewer_fragment`."""
+    """Return the viewer alone as a page; parameters as those of :func:`viewer_fragment`."""
     from markupsafe import Markup
 
     fragment = viewer_fragment(models, still=still, first=first)
@@ -157,8 +157,8 @@ def viewer_page(
 
 
 def fragment_of(page: str | os.PathLike, *, still: bool = True) -> str:
-    """The viewer in a page that :func:`viewer_page` wrote; empty if there is none. Without its `still`
-    picture where others follow in the page that takes it.
+    """Return the viewer in a page of :func:`viewer_page`, without its still picture; empty if
+    there is none.
     """
     try:
         text = Path(page).read_text(encoding="utf-8")
@@ -170,18 +170,18 @@ def fragment_of(page: str | os.PathLike, *, still: bool = True) -> str:
 
 
 def _within_budget(models: Sequence[Turned]) -> Iterator[dict[str, Any]]:
-    """Models for the script, as far as the budget goes."""
-    left = BUDGET
+    """Yield models for the script, as far as the budget goes."""
+    budget = BUDGET
     for k, model in enumerate(models):
-        told = _model(model)
-        left -= len(json.dumps(told))
-        if k and left < 0:
+        model_data = _model(model)
+        budget -= len(json.dumps(model_data))
+        if k and budget < 0:
             return
-        yield told
+        yield model_data
 
 
 def _model(model: Turned) -> dict[str, Any]:
-    """One model for the script; arrays go column by column."""
+    """Return one model for the script; arrays go column by column."""
     placed = np.vstack([b.mesh.points @ b.rotation.T + b.origin for b in model.bodies])
     low, high = placed.min(axis=0), placed.max(axis=0)
     length = float((high - low).max())
@@ -197,7 +197,7 @@ def _model(model: Turned) -> dict[str, Any]:
 
 
 def _body(body: Turned) -> dict[str, Any]:
-    """Surface of one body for the script, and the matrix that puts it in its place."""
+    """Return the surface of one body for the script, and the matrix that puts it in its place."""
     place = np.eye(4)
     place[:3, :3], place[:3, 3] = body.rotation, body.origin
     mesh = body.mesh
@@ -213,16 +213,18 @@ def _body(body: Turned) -> dict[str, Any]:
 
 
 def _shape(model: Turned, k: int) -> dict[str, Any]:
-    """One mode for the script: the motion of every body, and the reach of all along the axes."""
+    """Return one mode for the script: the motion of every body, and the reach of all along the
+    axes.
+    """
     shape = model.shapes[k]
-    own = [body.shapes[k] for body in model.bodies]
-    moved = [s.displacement @ b.rotation.T for s, b in zip(own, model.bodies)]
+    shapes = [body.shapes[k] for body in model.bodies]
+    moved = [s.displacement @ b.rotation.T for s, b in zip(shapes, model.bodies)]
     return {
         "name": shape.name,
         "hz": shape.frequency_hz,
         "pair": shape.pair,
         "most": np.abs(np.vstack(moved)).max(axis=0).tolist(),
         "step": 1 / SWINGS,
-        "moved": [packed(s.displacement.T.ravel(), 1 / SWINGS) for s in own],
-        "twists": [s.twists for s in own],
+        "moved": [packed(s.displacement.T.ravel(), 1 / SWINGS) for s in shapes],
+        "twists": [s.twists for s in shapes],
     }

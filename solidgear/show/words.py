@@ -11,13 +11,13 @@ DASH = "–"
 
 
 def is_number(value: Any) -> TypeGuard[float]:
-    """True for a finite number (a truth value is none)."""
+    """Return True for a finite number, and False for a truth value."""
     return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
 
 
 def engineering(value: float | None, digits: int = 5) -> str:
-    """`value` with an exponent that is a multiple of three, such as ``240.05e6``; exact zeros are
-    ``0``.
+    """Return `value` with an exponent that is a multiple of three, such as ``240.05e6``; exact
+    zeros are ``0``.
     """
     if not is_number(value):
         return DASH
@@ -32,7 +32,7 @@ def engineering(value: float | None, digits: int = 5) -> str:
 
 
 def percent(value: float | None, signed: bool = True) -> str:
-    """A fraction in per cent, to a resolution that suits its size."""
+    """Return a fraction in per cent, to a resolution that suits its size."""
     if not is_number(value):
         return DASH
     p = 100 * value
@@ -50,20 +50,20 @@ def percent(value: float | None, signed: bool = True) -> str:
 
 
 def bar_of(value: Any) -> str:
-    """The bar of a number in per cent, with a sign where the exact answer lies on one side only."""
+    """Return the error bar of a number in per cent, with a sign where it is one-sided."""
     sign = {"above": "+", "below": "-"}.get(value.side, "+- ")
     return f"{sign}{percent(value.bar, signed=False)}"
 
 
 def hertz(value: float | None) -> str:
-    """A frequency to five or six figures, without its unit."""
+    """Return a frequency to five or six figures, without its unit."""
     if not is_number(value):
         return DASH
     return f"{value:.1f}" if abs(value) >= 100 else f"{value:.5g}"
 
 
 def seconds(value: float | None) -> str:
-    """A duration in s, to about three figures, without its unit."""
+    """Return a duration in s, to about three figures, without its unit."""
     if not is_number(value):
         return DASH
     if value >= 100:
@@ -76,7 +76,7 @@ def seconds(value: float | None) -> str:
 
 
 def count(value: float | None) -> str:
-    """A large number in a small cell, such as ``94.1k``."""
+    """Return a large number in a small cell, such as ``94.1k``."""
     if not is_number(value):
         return DASH
     for size, mark in ((1e6, "M"), (1e3, "k")):
@@ -86,12 +86,12 @@ def count(value: float | None) -> str:
 
 
 def plus_minus(bar: float) -> str:
-    """A bar that lies on both sides."""
+    """Return a two-sided error bar as text."""
     return f"± {bar_percent(bar)}"
 
 
 def as_text(value: Any) -> str:
-    """A value as it is told where nothing says how."""
+    """Return a value as text, where no format is given."""
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, float):
@@ -100,44 +100,44 @@ def as_text(value: Any) -> str:
 
 
 def small(value: float) -> str:
-    """A residual, to two figures."""
+    """Return a residual, to two figures."""
     return f"{value:.2g}"
 
 
 def whole(value: float) -> str:
-    """The nearest whole number."""
+    """Return the nearest whole number."""
     return f"{value:.0f}"
 
 
 def grouped(value: int | None) -> str:
-    """A count with its thousands apart."""
+    """Return a count with its thousands apart."""
     return f"{value:,}".replace(",", " ") if is_number(value) else DASH
 
 
 def short_percent(value: float | None) -> str | None:
-    """A tolerance in per cent; None where there is none."""
+    """Return a tolerance in per cent; None where there is none."""
     return f"{100 * value:.4g} %" if is_number(value) else None
 
 
 def capital(text: str) -> str:
-    """The same text, its first letter large."""
+    """Return the text with its first letter large."""
     return text[:1].upper() + text[1:]
 
 
 def by_plane(names: Iterable[str]) -> str:
-    """A sentence, led by a space, on what bending 1 is where modes have the names of planes."""
+    """Return a sentence on bending 1 where modes are named by planes, after a space."""
     from solidgear.core.body.mode_names import ModeName  # which brings NumPy
 
     if not any(ModeName(name).plane for name in names):
         return ""
     return (
-        " Bending z and bending x are those in the plane of y and z and in that of x and y; bending 1 "
-        "and 2 without a plane are the first and second of both, in order of frequency."
+        " Bending z and x: in the plane of y and z, or of x and y; bending 1 and 2 without a "
+        "plane: the first two of both in order of frequency."
     )
 
 
 def bar_percent(value: float | None) -> str:
-    """An error bar in per cent; one beyond 100 % says nothing but that."""
+    """Return an error bar in per cent; beyond 100 % only that."""
     if is_number(value) and value > 1:
         return "> 100 %"
     return percent(value, signed=False)

@@ -33,7 +33,9 @@ class Acting(Group):
 
     torque: Annotated[
         str | None,
-        typer.Option(help='Of a train, such as "115 N*m"; by default its first operating point.'),
+        typer.Option(
+            help='Torque on a train, such as "115 N*m"; by default its first operating point.'
+        ),
     ] = None
     of: Annotated[
         str | None,
@@ -52,54 +54,54 @@ class Acting(Group):
         str | None,
         typer.Option(
             "--load",
-            help='Of a shaft, in place of the load in its file: "x=2 kN, z=-500 N" at the port.',
+            help='Load on a shaft in place of that in its file: "x=2 kN, z=-500 N" at the port.',
         ),
     ] = None
 
     def read(self, file: Path) -> Scene | tuple[Train, OperatingPoint]:
-        """A shaft under its load, or a train and its operating point; refuses options of the one
-        on a file of the other, and a train without operating point.
+        """Return a shaft under its load, or a train and its operating point; refuse options of the
+        other.
         """
         if is_train(file):
-            what = f"a shaft, and {file} is none: a train takes --torque"
-            refuse({"--load": self.load is not None}, what)
+            kind = f"a shaft, and {file} is a train: give --torque"
+            refuse({"--load": self.load is not None}, kind)
             return self._at_point(file)
         of_train = {"--torque": self.torque, "--point": self.point, "--weight": self.weight}
-        given = {option: value is not None for option, value in of_train.items()}
-        refuse(given, f"a train, and {file} is none: a shaft takes --load, or has [load]")
+        options = {option: value is not None for option, value in of_train.items()}
+        refuse(options, f"a train, and {file} is a shaft: give --load, or [load] in the file")
         scene = as_written(file)
         return scene if self.load is None else loaded_by(scene, self.load)
 
     def _at_point(self, file: Path) -> tuple[Train, OperatingPoint]:
         if self.torque is None:
-            what = f"a --torque, and {file} is none: write weight into its [operation]"
-            refuse({"--weight": self.weight is not None}, what)
+            kind = f"a --torque, and there is none: write weight into [operation] of {file}"
+            refuse({"--weight": self.weight is not None}, kind)
             train = load_train(file)
             if not train.operation:
                 raise SolidgearError(
                     f'{file}: no torque is given; write [operation] with torque = "115 N*m", or '
                     "give --torque"
                 )
-            named = self.point is not None
-            return train, named_point(train, self.point) if named else train.operation[0]
+            by_name = self.point is not None
+            return train, named_point(train, self.point) if by_name else train.operation[0]
         if self.point is not None:
             raise SolidgearError("give either --torque or --point, not both")
-        given: dict[str, Any] = {"torque": self.torque, "of": self.of, "weight": self.weight}
+        values: dict[str, Any] = {"torque": self.torque, "of": self.of, "weight": self.weight}
         try:
-            own = OperatingPoint(**{key: value for key, value in given.items() if value})
+            point = OperatingPoint(**{key: value for key, value in values.items() if value})
         except SceneError as error:
             raise SolidgearError(f"--torque {show(self.torque, 40)}: {error}") from None
         try:
-            train = load_train(file, own)
+            train = load_train(file, point)
         except SceneError as error:
             if error.path[:1] != ("operation",) or error.path[-1] != "of":
                 raise
             raise SolidgearError(f"--of {show(self.of, 40)}: {error.reason}") from None
-        return train, train.told(own)
+        return train, train.told(point)
 
 
 def load_in_words(scene: Scene, units: Units) -> str:
-    """The load of a scene, such as ``z 2000 N at pinion``."""
+    """Return the load of a scene in words, such as ``z 2000 N at pinion``."""
     six = scene.load.six if scene.load else [0.0] * 6
     parts = [
         f"{name} {units.text(float(value), si, 4)}"

@@ -38,11 +38,11 @@ def system_modes(
     models: Mix,
     pictures: Annotated[
         Path | None,
-        typer.Option("--pictures", help="Folder for a picture a mode, all shafts in place."),
+        typer.Option("--pictures", help="Folder for pictures of the modes, all shafts in place."),
     ] = None,
     mode: Annotated[
         list[int] | None,
-        typer.Option("--mode", help="Only draw this one, counted from 1 as listed; repeatable."),
+        typer.Option("--mode", help="Draw only this mode, counted from 1 as listed; repeatable."),
     ] = None,
     turn: Annotated[
         Path | None,
@@ -54,59 +54,59 @@ def system_modes(
     shop = models.workshop(reduced, train)
     if mode and pictures is None:
         raise SolidgearError("--mode says which mode to draw; add --pictures and a folder")
-    said = unit_slips(shop)
+    warnings = unit_slips(shop)
     mix = tuple(models.by_shaft(shop.train).values())
     count = shop.train.ask.modes
-    found = train_modes(shop, *mix, max_frequency=reduced.max_frequency, at_most=count)
+    system = train_modes(shop, *mix, max_frequency=reduced.max_frequency, at_most=count)
     if run.units != UNITS and turn is None:
         raise SolidgearError(
-            f"--units {run.units}: the table has Hz and rpm alone; add --turn model.html, whose page "
-            "shows the train in these units"
+            f"--units {run.units}: the table has Hz and rpm only; add --turn model.html for a "
+            "page in these units"
         )
-    drawn = _drawn(shop, pictures, mode, found) if pictures else []
+    drawn = _drawn(shop, pictures, mode, system) if pictures else []
     if turn is not None:
-        drawn += _turned(shop, found, turn, reduced.max_frequency, run.units, said)
+        drawn += _turned(shop, system, turn, reduced.max_frequency, run.units, warnings)
     if run.as_json:
-        cautions = {"cautions": [*said, *found.cautions]}
-        print(json.dumps(found.as_dict() | cautions, allow_nan=False))
+        cautions = {"cautions": [*warnings, *system.cautions]}
+        print(json.dumps(system.as_dict() | cautions, allow_nan=False))
         return
-    say(*found.heading(), *map(caution, said))
-    say(modes(found.as_dict(), numbered=True), *found.remarks(), *drawn)
+    say(*system.heading(), *map(caution, warnings))
+    say(modes(system.as_dict(), numbered=True), *system.remarks(), *drawn)
 
 
-def _drawn(shop, folder: Path, numbers: list[int] | None, found):
-    """Pictures of modes, and what is to be said of them."""
-    listed = [n for n, mode in enumerate(found.modes, start=1) if mode.frequency_hz > 0]
-    mix = found.models.values()
-    done = draw_modes(shop, *mix, folder=folder, numbers=numbers or listed).values()
-    written = [str(one.path) for one in done if one.ok]
+def _drawn(shop, folder: Path, numbers: list[int] | None, system):
+    """Draw pictures of modes and return the lines to print."""
+    listed = [n for n, mode in enumerate(system.modes, start=1) if mode.frequency_hz > 0]
+    mix = system.models.values()
+    pictures = draw_modes(shop, *mix, folder=folder, numbers=numbers or listed).values()
+    written = [str(picture.path) for picture in pictures if picture.ok]
     lines = [f"Written: {', '.join(written)}"] if written else []
-    return lines + sorted({one.reason for one in done if not one.ok})
+    return lines + sorted({picture.reason for picture in pictures if not picture.ok})
 
 
 def _turned(
-    shop, found, path: Path, max_frequency: float | None, units: str, slips: tuple[str, ...]
+    shop, system, path: Path, max_frequency: float | None, units: str, slips: tuple[str, ...]
 ) -> list[str]:
-    """Write the page in which modes can be turned; what is to be said of it."""
-    mix = found.models.values()
+    """Write the page of modes to turn and return the line to print."""
+    mix = system.models.values()
     models = turning_modes(shop, *mix, highest_hz=max_frequency)
-    names = [mode.name for mode in found.modes]
+    names = [mode.name for mode in system.modes]
     elastic = [shape.name for shape in models.shapes]
     first = next((name for name in elastic if "bending" in name), elastic[0])
-    still, said = still_picture(shop, *mix, number=names.index(first) + 1)
+    still, sentence = still_picture(shop, *mix, number=names.index(first) + 1)
     write_sheet(
         path,
-        found.train,
-        f"Natural frequencies and mode shapes: {mix_label(found.models)}.",
+        system.train,
+        f"Natural frequencies and mode shapes: {mix_label(system.models)}.",
         [
-            train_tables.modes(found.as_dict(), "Natural frequencies"),
+            train_tables.modes(system.as_dict(), "Natural frequencies"),
             train_tables.facts(train_data(shop), units_named(units)),
         ],
         viewer=viewer_fragment([models], still=still, first=first),
-        notes=found.notes(),
-        cautions=[*slips, *found.cautions],
+        notes=system.notes(),
+        cautions=[*slips, *system.cautions],
     )
-    return [*filter(None, [said]), f"Written: {path}"]
+    return [*filter(None, [sentence]), f"Written: {path}"]
 
 
 @command
@@ -126,23 +126,25 @@ def response(
     ] = None,
     orders: Annotated[
         int | None,
-        typer.Option("--orders", help="Orders of the mesh in orders.png; 3, or as many as given."),
+        typer.Option(
+            "--orders", help="Number of orders of the mesh in orders.png; 3, or as many as given."
+        ),
     ] = None,
     at: Speed,
     reduced: Reduced,
     run: Shown,
 ) -> None:
     shop = driven.workshop(reduced, train)
-    asked = at.asked(shop.train)
+    orders_asked = at.asked(shop.train)
     mixes, driver = driven.mixes(shop.train), shop.train.named_mesh(driven.mesh)
     how = {"highest_hz": reduced.max_frequency, "mesh": driver.name, **driven.losses}
     forces = _forces(force)
     with held(out):
-        turns = asked.turns or None
-        found = [respond(shop, *mix, forces=forces, turns=turns, **how) for mix in mixes]
+        turns = orders_asked.turns or None
+        responses = [respond(shop, *mix, forces=forces, turns=turns, **how) for mix in mixes]
         unpublished = shop.train.unpublished()
-        said = unit_slips(shop)
-        cautions = [*said, *found[0].cautions]
+        warnings = unit_slips(shop)
+        cautions = [*warnings, *responses[0].cautions]
         notes: dict = {"damping": driven.damping, "unpublished": unpublished, "cautions": cautions}
         title, band = shop.train.called, shop.train.ask.decibels
         if driver.label and not forces:
@@ -152,28 +154,30 @@ def response(
         lines = None if forces else order_map(shop, *mixes[0], mesh_orders=orders, **how)
         limit = reduced.max_frequency
         modes = lines.modes if lines else train_modes(shop, *mixes[0], max_frequency=limit).modes
-        there, told = asked.found(modes), train_data(shop)
-        top = loudest(found[0], modes, shop.train, shop.scenes, not forces, driver.name)
+        at_speed, description = orders_asked.found(modes), train_data(shop)
+        top = loudest(responses[0], modes, shop.train, shop.scenes, not forces, driver.name)
         notes |= {"loudest": top.as_dict()}
-        files = write_response(out, found, title, teeth, band, notes, lines, told, run.units, there)
+        files = write_response(
+            out, responses, title, teeth, band, notes, lines, description, run.units, at_speed
+        )
     if run.as_json:
         print((out / "response.json").read_text(encoding="utf-8"))
         return
     say(
-        f"{title}: {mix_label(found[0].models)}, {driven.damping} losses",
+        f"{title}: {mix_label(responses[0].models)}, {driven.damping} losses",
         soft_wrap=False,
     )
-    say(*top.sentences(), *map(caution, said))
-    tops = [(p.frequency_hz, p.force, p.mode) for p in found[0].peaks]
+    say(*top.sentences(), *map(caution, warnings))
+    tops = [(p.frequency_hz, p.force, p.mode) for p in responses[0].peaks]
     print_peaks(tops, "mesh force", "N", teeth, run.units)
-    if there is not None:
-        say_at_speed(there)
-    say(*unpublished_lines(unpublished), *map(caution, found[0].cautions))
+    if at_speed is not None:
+        say_at_speed(at_speed)
+    say(*unpublished_lines(unpublished), *map(caution, responses[0].cautions))
     say(f"Written: {', '.join(map(str, files))}")
 
 
 def _forces(texts: list[str] | None) -> dict:
-    """Six components at ports, from texts such as ``gear.gear:z=100``."""
+    """Return six components at ports, from texts such as ``gear.gear:z=100``."""
     out: dict = {}
     for text in texts or []:
         end, _, value = text.partition("=")
@@ -191,8 +195,8 @@ def _forces(texts: list[str] | None) -> dict:
 
 
 def end_of(option: str, text: str, more: str = "") -> tuple[str, str]:
-    """Port and component, from a text such as ``gear.gear:z``; what else follows is part of the
-    example in an error.
+    """Read port and component from a text such as ``gear.gear:z``; `more` completes the example in
+    an error.
     """
     port, _, dof = text.partition(":")
     if not port or dof not in DOF_NAMES:
@@ -203,7 +207,7 @@ def end_of(option: str, text: str, more: str = "") -> tuple[str, str]:
     return port, dof
 
 
-def print_peaks(found, what: str, si: str, teeth: float, units: str) -> None:
+def print_peaks(responses, name: str, si: str, teeth: float, units: str) -> None:
     """Print peaks (Hz, size in an SI unit, mode), or that there is none."""
-    told = peaks(found, what, si, teeth, units_named(units))
-    say(told if told else f"{told.title}: none in this range.", soft_wrap=False)
+    table = peaks(responses, name, si, teeth, units_named(units))
+    say(table if table else f"{table.title}: none in this range.", soft_wrap=False)

@@ -22,7 +22,7 @@ def load_train(path: str | os.PathLike, point: OperatingPoint | None = None) -> 
     path : str or path
         A TOML file; ``geometry/axle_overhung.toml`` describes the format.
     point : OperatingPoint, optional
-        At which bearings settle, in place of the points of the file.
+        Operating point for the bearings, in place of those of the file.
 
     Returns
     -------

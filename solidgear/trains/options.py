@@ -45,7 +45,7 @@ class Reduced(Group):
     """Options of every command on a train: how its shafts are reduced, and up to which frequency."""
 
     max_frequency: Annotated[
-        float | None, typer.Option(help="Hz; as the file says by default.")
+        float | None, typer.Option(help="Hz; by default max_frequency of the file.")
     ] = None
     reduction: Annotated[
         str,
@@ -58,8 +58,8 @@ class Reduced(Group):
         str | None,
         typer.Option(
             "--local-harmonics",
-            help="Harmonics n >= 2 of harmonic solids that the teeth drive where they touch, such as "
-            "2,3; by default as local_harmonics of each mesh in the file says.",
+            help="Harmonics n >= 2 of harmonic solids that teeth drive where they touch, such as "
+            "2,3; by default local_harmonics of each mesh in the file.",
         ),
     ] = None
     point: Annotated[
@@ -77,7 +77,7 @@ class Reduced(Group):
         return {f"--{k.replace('_', '-')}": v != usual[k] for k, v in vars(self).items()}
 
     def checked(self) -> Reduced:
-        """The same, once these options are sound."""
+        """Return these options once they are sound."""
         if not 1 <= self.kept <= MOST_KEPT:
             raise SolidgearError(f"--kept {show(self.kept)}: give 1 to {MOST_KEPT} modes")
         if self.max_frequency is not None and not self.max_frequency > 0:
@@ -88,20 +88,24 @@ class Reduced(Group):
 
     @property
     def harmonics(self) -> tuple[int, ...]:
-        """Those of ``--local-harmonics``; none where the file says."""
+        """Harmonics of ``--local-harmonics``; none where the file decides."""
         return () if self.local_harmonics is None else _harmonics(self.local_harmonics)
 
     def workshop(
         self, path: Path, settings: Mapping[str | tuple[str, str], Mapping] | None = None
     ) -> Workshop:
-        """Workshop of a train, once these options are sound, with builder options by side and model."""
+        """Return the workshop of a train, once these options are sound, with builder options by
+        side and model.
+        """
         self.checked()
         loaded = load_train(path)
         if self.point is not None:
             loaded = at_point(loaded, self.point)
         if self.harmonics:
-            own = {"local_harmonics": self.harmonics}
-            loaded = loaded.with_changes(meshes=tuple(m.with_changes(**own) for m in loaded.meshes))
+            extra = {"local_harmonics": self.harmonics}
+            loaded = loaded.with_changes(
+                meshes=tuple(m.with_changes(**extra) for m in loaded.meshes)
+            )
         try:
             return Workshop(loaded, self.reduction, self.kept, settings or {})
         except SceneError as error:  # what the mesh of a sound file cannot be
@@ -122,37 +126,39 @@ class Pair(Group):
     shafts: Annotated[
         list[str] | None,
         typer.Option(
-            "--shaft", help="Model of a shaft of another name, such as input=euler; repeatable."
+            "--shaft", help="Model of a shaft with another name, such as input=euler; repeatable."
         ),
     ] = None
 
     def by_shaft(self, train: Train) -> dict[str, str]:
-        """Models of the shafts of a train."""
+        """Return models of the shafts of a train."""
         return self.of(train.shafts, train.name)
 
     def of(self, shafts: Collection[str], name: str) -> dict[str, str]:
-        """Models of shafts, of a train by that name; refuses a shaft that it does not have."""
-        given = {s: m for s, m in (("pinion", self.pinion), ("gear", self.gear)) if m != MODEL}
+        """Return models of shafts by the name of each; refuse a shaft that the train does not
+        have.
+        """
+        models = {s: m for s, m in (("pinion", self.pinion), ("gear", self.gear)) if m != MODEL}
         for text in self.shafts or []:
             side, equals, model = text.partition("=")
             if not equals:
                 raise SolidgearError(f"--shaft {show(text, 40)}: write SHAFT=MODEL, input=euler")
-            given[side] = model
-        for side in given:
+            models[side] = model
+        for side in models:
             if side not in shafts:
-                known = listed(shafts)
-                raise SolidgearError(f"{name} has no shaft {show(side, 40)}; it has {known}")
-        return {side: given.get(side, MODEL) for side in shafts}
+                names = listed(shafts)
+                raise SolidgearError(f"{name} has no shaft {show(side, 40)}; it has {names}")
+        return {side: models.get(side, MODEL) for side in shafts}
 
 
 @dataclass(frozen=True)
 class Mix(Pair):
-    """The same with their builder options."""
+    """Models of the shafts with their builder options."""
 
     settings: ShaftSettings = None
 
     def workshop(self, reduced: Reduced, path: Path) -> Workshop:
-        """Workshop of a train with these builder options."""
+        """Return the workshop of a train with these builder options."""
         shop = reduced.workshop(path)
         shop.settings = of_shafts(self.settings, self.by_shaft(shop.train))
         return shop
@@ -176,57 +182,58 @@ class Driven(Mix):
         ),
     ] = "hysteretic"
     matched_at: Annotated[
-        float | None, typer.Option("--matched-at", help="Hz at which viscous losses match.")
+        float | None,
+        typer.Option("--matched-at", help="Frequency in Hz at which viscous losses match."),
     ] = None
 
     mesh: Annotated[
         str | None,
         typer.Option(
-            "--mesh", help="Whose transmission error drives the train, of several; the first."
+            "--mesh", help="Mesh whose transmission error drives the train; by default the first."
         ),
     ] = None
 
     def mixes(self, train: Train) -> list[tuple[str, ...]]:
-        """Models of all shafts, the first those that are told."""
+        """Return models of all shafts, the first for the numbers shown."""
         return [tuple(self.by_shaft(train).values()), *map(mix, self.against or [])]
 
     @property
     def losses(self) -> dict[str, Any]:
-        """Their kind, and the Hz at which viscous ones match."""
+        """Return the kind of losses, and the Hz at which viscous ones match."""
         return {"damping": self.damping, "matched_hz": self.matched_at or 0.0}
 
 
 def of_shafts(
     pairs: list[str] | None, models: Mapping[str, str]
 ) -> dict[str | tuple[str, str], dict[str, Any]]:
-    """Builder options of all shafts, by (side, model), from ``SIDE.key=value`` texts; of a lumped
-    or rigid shaft those of the body it comes from.
+    """Return builder options by (side, model) from ``SIDE.key=value``; a lumped or rigid shaft has
+    its body's.
     """
     out: dict[str | tuple[str, str], dict[str, Any]] = {}
-    given = options_by_name(pairs, models, "side", "pinion.order=3")
-    for side, options in given.items():
+    settings = options_by_name(pairs, models, "side", "pinion.order=3")
+    for side, options in settings.items():
         kind, base = checked_model(models[side])
         out[side, base or kind] = LADDER[base or kind].checked(options)
     return out
 
 
 def _harmonics(text: str) -> tuple[int, ...]:
-    """Numbers of waves from a text such as ``2,3``."""
+    """Read numbers of waves from a text such as ``2,3``."""
     try:
-        found = tuple(int(word) for word in text.split(",") if word.strip())
+        numbers = tuple(int(word) for word in text.split(",") if word.strip())
     except ValueError:
-        found = ()
-    sound = all(FIRST_HARMONIC <= n <= LAST_HARMONIC for n in found)
-    if not found or not sound or len(set(found)) < len(found):
+        numbers = ()
+    sound = all(FIRST_HARMONIC <= n <= LAST_HARMONIC for n in numbers)
+    if not numbers or not sound or len(set(numbers)) < len(numbers):
         raise SolidgearError(
             f"--local-harmonics {show(text, 40)}: write whole numbers from {FIRST_HARMONIC} to "
             f"{LAST_HARMONIC}, each once, such as 2,3"
         )
-    return found
+    return numbers
 
 
 def mix(text: str) -> tuple[str, ...]:
-    """Models of all shafts in the sequence of the file."""
+    """Return models of all shafts in the sequence of the file."""
     if "+" not in text:
         raise SolidgearError(f"--against {show(text, 40)}: write PINION+GEAR, such as euler+euler")
     return tuple(word.strip() for word in text.split("+"))

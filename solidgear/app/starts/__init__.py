@@ -21,7 +21,7 @@ SHAFTS = {
 
 
 def start(kind: str, name: str) -> dict[str, str]:
-    """Files to begin with.
+    """Return files to begin with.
 
     Parameters
     ----------

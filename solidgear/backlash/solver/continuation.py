@@ -272,7 +272,7 @@ def follow(
             return branch
         step /= 2
     raise SolidgearError(
-        f"the branch from {begin:g} rad/s comes back the way it went, at the shortest steps too"
+        f"the branch from {begin:g} rad/s turns back on itself at the shortest steps"
     )
 
 

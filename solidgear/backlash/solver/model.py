@@ -271,7 +271,9 @@ def remainder(
     if kind not in KINDS:
         raise SolidgearError(f"losses of the kind {kind!r} are unknown; use {', '.join(KINDS)}")
     if kind == "viscous" and not matched_hz > 0:
-        raise SolidgearError("viscous losses need the frequency, in Hz, at which they are told")
+        raise SolidgearError(
+            "viscous losses need the frequency, in Hz, at which their loss factors hold"
+        )
     sways = dict(sways or {})
     laws: list[tuple[Law, slice]] = []
     links: list[tuple[str, RowSpring]] = []

@@ -21,15 +21,15 @@ TIES = ("rigid", "section")
 def _bars(
     labels: list[str], columns: dict[str, list[float | None]], words: str, width: float
 ) -> Chart | None:
-    """Groups of horizontal bars of relative changes, each with its figure."""
+    """Draw groups of horizontal bars of relative changes, each with its figure."""
     sizes = [v for column in columns.values() for v in column if v is not None]
     if not sizes:
         return None
     reach, low, high = max(map(abs, sizes)) or 1.0, min(0.0, *sizes), max(0.0, *sizes)
     room = FIGURES * reach * (1 if width > NARROW else 2.2)
     ends = low - room * (low < 0) - 0.04 * reach, high + room * (high > 0) + 0.04 * reach
-    left = NAMES if width > NARROW else NARROW_NAMES
-    names = {float(i): "\n".join(wrapped(name, left - 10)) for i, name in enumerate(labels)}
+    margin = NAMES if width > NARROW else NARROW_NAMES
+    names = {float(i): "\n".join(wrapped(name, margin - 10)) for i, name in enumerate(labels)}
     lines = max(name.count("\n") + 1 for name in names.values())
     panel = Panel(
         Axis(words, ends, label=PERCENT),
@@ -37,7 +37,7 @@ def _bars(
         max(BAR * len(columns) + 6, 15 * lines) * len(labels),
         series={name: Series(colour) for name, colour in SHOWN.items() if name in columns},
         legend={"orient": "top", "direction": "horizontal"},
-        left=left,
+        left=margin,
     )
     rows = list(_rows(labels, columns))
     panel.draw({"type": "rect", "strokeWidth": 0}, [bar for bar, _ in rows])
@@ -50,7 +50,7 @@ def _bars(
 
 
 def _rows(labels: list[str], columns: dict[str, list[float | None]]):
-    """A bar and its figure, of every case and quantity."""
+    """Return a bar and a figure for every case and quantity."""
     thick = 0.8 / max(len(columns), 1)
     for k, (name, values) in enumerate(columns.items()):
         for i, value in enumerate(values):
@@ -64,11 +64,11 @@ def _rows(labels: list[str], columns: dict[str, list[float | None]]):
 
 
 def cause_chart(record: Record, width: float = WIDE) -> Chart | None:
-    """Changes that each assumption alone makes, as horizontal bars."""
+    """Chart changes by each assumption alone, as horizontal bars."""
     causes = [c for c in record.causes if any(c.quantities.get(q) is not None for q in SHOWN)]
     columns = {name: [cause.quantities.get(name) for cause in causes] for name in SHOWN}
     labels = [_label(record, cause) for cause in causes]
-    return _bars(labels, columns, "relative change when this alone is switched", width)
+    return _bars(labels, columns, "relative change when only this is switched", width)
 
 
 def _label(record: Record, cause: CauseRecord) -> str:
@@ -76,7 +76,7 @@ def _label(record: Record, cause: CauseRecord) -> str:
 
 
 def attachment_chart(record: Record, width: float = WIDE) -> Chart | None:
-    """Rigid and section ties against averaged ones, for compliance and first bending."""
+    """Chart rigid and section ties against averaged ones, for compliance and first bending."""
     labels = []
     columns: dict[str, list[float | None]] = {"C_zz": [], "bending 1": []}
     for key, ties in record.attachments.items():
@@ -86,8 +86,8 @@ def attachment_chart(record: Record, width: float = WIDE) -> Chart | None:
         for tie in TIES:
             if tie not in ties:
                 continue
-            own = ties[tie].quantities
+            quantities = ties[tie].quantities
             labels.append(f"{model_name(record, key)}\n{tie}")
             for name, column in columns.items():
-                column.append(relative_change(own.get(name), average.get(name)))
+                column.append(relative_change(quantities.get(name), average.get(name)))
     return _bars(labels, columns, "relative to averaged ties of the same model", width)

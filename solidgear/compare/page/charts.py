@@ -33,7 +33,7 @@ DESCRIBED: dict[str, Callable[[Record, float], Chart | None]] = {
 
 
 def _drawn(name: str, record: Record) -> bytes | None:
-    """A chart as it stands in the page."""
+    """Return a chart for the page."""
     return page_svg(name, partial(DESCRIBED[name], record))
 
 

@@ -20,11 +20,17 @@ AXIS = {
 
 
 def convergence_chart(record: Record, width: float = WIDE) -> Chart | None:
-    """Distance from the extrapolated value over mesh size or unknowns, log-log, with the error bar."""
-    found = []
+    """Chart the distance from the extrapolated value over mesh size or unknowns, log-log, with
+    error bars.
+    """
+    quantities = []
     for key, model in record.models.items():
-        found += _quantities(model_name(record, key), model)
-    return Chart(in_columns([_panel(one) for one in found], 2), width) if found else None
+        quantities += _quantities(model_name(record, key), model)
+    return (
+        Chart(in_columns([_panel(quantity) for quantity in quantities], 2), width)
+        if quantities
+        else None
+    )
 
 
 @dataclass(frozen=True)
@@ -44,12 +50,12 @@ class _Quantity:
 
 
 def _quantities(name: str, model: ModelRecord) -> list[_Quantity]:
-    """Those of a model that two meshes or more distinguish."""
+    """Return quantities of a model that two meshes or more distinguish."""
     if model.convergence is None:
         return []
     levels = model.convergence.levels
     along = _distinguished_by(levels)
-    found = []
+    quantities = []
     for quantity in CHARTED:
         bar = model.convergence.quantities.get(quantity, BarRecord())
         if not bar.extrapolated:
@@ -64,19 +70,21 @@ def _quantities(name: str, model: ModelRecord) -> list[_Quantity]:
                 spots.append((_on_axis(along, place), distance, level))
         if len(spots) >= 2:
             spots.sort(key=lambda spot: spot[:2])
-            found.append(_Quantity(name, model, quantity, along, spots, bar))
-    return found
+            quantities.append(_Quantity(name, model, quantity, along, spots, bar))
+    return quantities
 
 
 def _size(level: LevelRecord, along: str) -> float | None:
-    """Value of a mesh along an axis: its size, its order or its unknowns."""
+    """Return the value of a mesh along an axis: its size, its order or its unknowns."""
     if along == "h":
         return level.h
     return level.order if along == "order" else level.dofs
 
 
 def _distinguished_by(levels: list[LevelRecord]) -> str:
-    """Difference between the meshes: their size if all have one, else their order, else unknowns."""
+    """Return the difference between the meshes: their size if all have one, else their order, else
+    unknowns.
+    """
     for along in ("h", "order"):
         if levels and all((_size(level, along) or 0) > 0 for level in levels):
             return along
@@ -84,54 +92,56 @@ def _distinguished_by(levels: list[LevelRecord]) -> str:
 
 
 def _on_axis(along: str, value: float) -> float:
-    """Sizes in mm, orders as their inverse, so that finer is to the left."""
+    """Return sizes in mm, orders as their inverse, so that finer is to the left."""
     if along == "order":
         return 1 / value
     return 1e3 * value if along == "h" else value
 
 
-def _panel(one: _Quantity) -> Panel:
-    xs, ys, _ = zip(*one.spots)
+def _panel(quantity: _Quantity) -> Panel:
+    xs, ys, _ = zip(*quantity.spots)
     low, high = min(ys) / 3, max(ys) * 3
-    bar = one.bar.gci
+    bar = quantity.bar.gci
     if bar:
         low, high = min(low, bar / 3), max(high, bar * 2)
-    ticks = {x: _tick(one.along, x) for x in xs}  # at the meshes: three seldom span a decade
+    ticks = {x: _tick(quantity.along, x) for x in xs}  # at the meshes: three seldom span a decade
     ends = min(xs) / 1.25, max(xs) * 1.25
     panel = Panel(
-        Axis(AXIS[one.along], ends, log=True, ticks=ticks),
+        Axis(AXIS[quantity.along], ends, log=True, ticks=ticks),
         Axis("distance from extrapolated", (low, high), log=True, label=PERCENT),
         180,
-        f"{one.name}, {one.quantity}",
+        f"{quantity.name}, {quantity.quantity}",
     )
     if bar:
-        _shade(panel, low, one)
-    colour, shape = one.model.colour, SHAPES.get(one.model.marker, "circle")
-    rows = [{"x": x, "y": y, "readout": _words(one, y, level)} for x, y, level in one.spots]
+        _shade(panel, low, quantity)
+    colour, shape = quantity.model.colour, SHAPES.get(quantity.model.marker, "circle")
+    rows = [
+        {"x": x, "y": y, "readout": _words(quantity, y, level)} for x, y, level in quantity.spots
+    ]
     line = {"type": "line", "color": colour, "strokeWidth": 1.5}
-    panel.draw(line, [{"x": x, "y": y} for x, y, _ in one.spots])
+    panel.draw(line, [{"x": x, "y": y} for x, y, _ in quantity.spots])
     panel.draw({"type": "point", "filled": True, "color": colour, "shape": shape, "size": 55}, rows)
     return panel
 
 
-def _words(one: _Quantity, distance: float, level: LevelRecord) -> str:
-    """Words shown at the point of one mesh."""
+def _words(quantity: _Quantity, distance: float, level: LevelRecord) -> str:
+    """Return words shown at the point of one mesh."""
     return readout(
-        one.name,
-        (f"{one.quantity}, from extrapolated", percent(distance, signed=False), ""),
+        quantity.name,
+        (f"{quantity.quantity}, from extrapolated", percent(distance, signed=False), ""),
         ("mesh", str(level.mesh.get("element") or ""), ""),
         ("size h", f"{1e3 * level.h:.3g}" if level.h else "", "mm"),
         ("unknowns", grouped(level.dofs), ""),
     )
 
 
-def _shade(panel: Panel, low: float, one: _Quantity) -> None:
+def _shade(panel: Panel, low: float, quantity: _Quantity) -> None:
     """Shade the error bar, from the bottom of the panel up."""
-    bar, colour = one.bar.gci, one.model.colour
+    bar, colour = quantity.bar.gci, quantity.model.colour
     panel.draw({"type": "rect", "color": colour, "opacity": 0.12}, [{"y": low, "y2": bar}])
     panel.draw({"type": "rule", "color": colour, "strokeDash": [5, 3]}, [{"y": bar}])
-    factor = "" if one.bar.factor is None else f", factor {small(one.bar.factor)}"
-    words = f"bar {percent(bar, signed=False)}{factor}"
+    factor = "" if quantity.bar.factor is None else f", factor {small(quantity.bar.factor)}"
+    words = f"error bar {percent(bar, signed=False)}{factor}"
     name = {"type": "text", "align": "left", "dy": -7, "dx": 4}
     panel.draw(name, [{"y": bar, "text": words}], x={"value": 0})
 

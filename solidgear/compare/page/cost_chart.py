@@ -13,7 +13,7 @@ from solidgear.show.words import grouped, percent, seconds
 
 
 def cost_chart(record: Record, width: float = WIDE) -> Chart | None:
-    """Seconds against deviation from the reference, log-log, one point a model.
+    """Chart seconds against deviation from the reference, log-log, one point a model.
 
     The reference has no deviation; it stands at its own error bar, hollow, like every deviation that is
     not resolved.
@@ -22,7 +22,7 @@ def cost_chart(record: Record, width: float = WIDE) -> Chart | None:
     tolerance = record.verdict.tolerance
     if tolerance is not None and tolerance <= 0:
         tolerance = None
-    panels = [_panel(quantity, own, tolerance) for quantity, own in spots.items() if own]
+    panels = [_panel(quantity, points, tolerance) for quantity, points in spots.items() if points]
     return Chart([panels], width) if panels else None
 
 
@@ -43,7 +43,7 @@ class _Spot:
 
 
 def _spots(record: Record, quantity: str) -> list[_Spot]:
-    """The models of which both the time and the distance from the reference are known."""
+    """Return the models with known time and distance from the reference."""
     out = []
     for key, model in record.models.items():
         total = answer_seconds(model)
@@ -62,7 +62,9 @@ def _spots(record: Record, quantity: str) -> list[_Spot]:
 
 
 def _own_bar(model: ModelRecord, quantity: str) -> float | None:
-    """The error bar of a quantity, for compliances that of the worst; None where there is none."""
+    """Return the error bar of a quantity, for compliances that of the worst; None where there is
+    none.
+    """
     if model.band is None:
         return None
     bar = model.band.each.get(quantity)

@@ -32,25 +32,25 @@ RANKS = (COMPLIANCE, STIFFNESS, FREQUENCY)
 
 
 def _named(record: Record, key: str) -> str:
-    """The name of a model at the beginning of a cell."""
+    """Return the name of a model at the beginning of a cell."""
     return capital(model_name(record, key))
 
 
 def deviations(record: Record, units: Units = ENGINEERING) -> Table:
-    """All models against the reference, a quantity a row: as the scene is tied, and like for like."""
+    """Return all models against the reference, a quantity a row, as tied and like for like."""
     reference, tolerance = reference_of(record), record.verdict.tolerance
     pairs = list(dict.fromkeys((r.model, r.attachment) for r in record.deviations))
-    found = {(r.model, r.attachment, r.quantity): r for r in record.deviations}
+    by_key = {(r.model, r.attachment, r.quantity): r for r in record.deviations}
 
     def first(name: Quantity) -> DeviationRecord:
-        """The deviation that the value of a quantity is taken from."""
-        own = [r for r in record.deviations if r.quantity == name]
-        return next((r for r in own if r.attachment == SCENE), own[0])
+        """Return the deviation that the value of a quantity is taken from."""
+        rows_of_name = [r for r in record.deviations if r.quantity == name]
+        return next((r for r in rows_of_name if r.attachment == SCENE), rows_of_name[0])
 
     def apart(model: str, tie: str) -> Column:
         return Column(
             f"{_named(record, model)}, {_ties(tie)}",
-            lambda name: _deviation(found.get((model, tie, name)), tolerance),
+            lambda name: _deviation(by_key.get((model, tie, name)), tolerance),
             percent,
         )
 
@@ -61,7 +61,7 @@ def deviations(record: Record, units: Units = ENGINEERING) -> Table:
             model_name(record, reference),
             lambda name: _figure(first(name).reference_value, name.unit, units),
         ),
-        *(apart(*pair) for pair in pairs),
+        *(apart(model, tie) for model, tie in pairs),
     ]
     within = f" Bold: beyond the {short_percent(tolerance)} asked for." if tolerance else ""
     return Table(
@@ -70,18 +70,18 @@ def deviations(record: Record, units: Units = ENGINEERING) -> Table:
         sorted(
             dict.fromkeys(r.quantity for r in record.deviations), key=lambda q: RANKS.index(q.kind)
         ),
-        "In brackets and cursive: not resolved, smaller than the error bars of both models."
+        "In brackets and italics: not resolved, smaller than the error bars of both models."
         + within,
     )
 
 
 def _ties(attachment: str) -> str:
-    """Name of the ties with which two models were compared."""
+    """Return the name of the ties with which two models were compared."""
     return "as tied" if attachment == SCENE else f"{attachment} ties"
 
 
 def _deviation(row: DeviationRecord | None, tolerance: float | None) -> Any:
-    """The cell of one difference."""
+    """Return the cell of one difference."""
     if row is None:
         return None
     if not is_resolved(row):
@@ -91,27 +91,27 @@ def _deviation(row: DeviationRecord | None, tolerance: float | None) -> Any:
 
 
 def causes(record: Record) -> Table:
-    """Table of causes: the change by each assumption alone."""
+    """Return the table of causes: the change by each assumption alone."""
     columns = [
         Column("cause", lambda cause: cause.cause),
         text("what is switched", lambda cause: cause.change),
         text("in", lambda cause: model_name(record, cause.model)),
-        *(_changed(*shown) for shown in SHOWN.items()),
+        *(_changed(name, title) for name, title in SHOWN.items()),
     ]
     return Table("One assumption switched at a time", columns, record.causes)
 
 
-def _changed(name: Quantity, called: str) -> Column:
-    return Column(called, lambda cause: cause.quantities.get(name), percent)
+def _changed(name: Quantity, title: str) -> Column:
+    return Column(title, lambda cause: cause.quantities.get(name), percent)
 
 
 def attachments(record: Record, units: Units = ENGINEERING) -> Table:
-    """Table of attachments: the change by each way of holding the seats."""
+    """Return the table of attachments: the change by each way of holding the seats."""
     rows = [(key, tie) for key, ties in record.attachments.items() for tie in ties]
 
     def value(name: Quantity, key: str, tie: str) -> float | None:
-        there = record.attachments[key].get(tie)
-        return there.quantities.get(name) if there else None
+        record_of_tie = record.attachments[key].get(tie)
+        return record_of_tie.quantities.get(name) if record_of_tie else None
 
     def change(name: Quantity, key: str, tie: str) -> float | None:
         if tie == "average":
@@ -126,17 +126,17 @@ def attachments(record: Record, units: Units = ENGINEERING) -> Table:
         ]
 
     columns = [Column("model, ties", lambda row: f"{_named(record, row[0])}, {row[1]}")]
-    columns += [column for shown in SHOWN.items() for column in both(*shown)]
+    columns += [column for name, title in SHOWN.items() for column in both(name, title)]
     return Table("Three ways to hold the same surfaces", columns, rows)
 
 
 def _figure(value: float | None, si: str, units: Units) -> str:
-    """A value for a column that names its unit."""
+    """Return a value for a column that names its unit."""
     return hertz(value) if si == "Hz" else units.number(value, si)
 
 
 def levels(record: Record, units: Units = ENGINEERING) -> Table:
-    """Table of the meshes that the error bars come from."""
+    """Return the table of the meshes that the error bars come from."""
     rows = [
         (f"{_named(record, key)}, {n}", level)
         for key, model in record.models.items()
@@ -158,7 +158,7 @@ def levels(record: Record, units: Units = ENGINEERING) -> Table:
 
 
 def orders(record: Record) -> Table:
-    """Changes from mesh to mesh, and the error bars made of them, of what models are judged by."""
+    """Return changes from mesh to mesh, and the error bars made of them."""
     rows = []
     for key, model in record.models.items():
         bars = model.convergence.quantities if model.convergence else {}
@@ -169,7 +169,7 @@ def orders(record: Record) -> Table:
                 rows.append((f"{_named(record, key)}: {label}", bar))
     columns = [
         Column("quantity", lambda row: row[0]),
-        word("bar from", lambda row: row[1].method or None),
+        word("error bar from", lambda row: row[1].method or None),
         Column("last change", lambda row: row[1].change, unsigned),
         Column("over the one before", lambda row: row[1].reduction, small),
         Column("factor", lambda row: row[1].factor, small),
@@ -180,13 +180,13 @@ def orders(record: Record) -> Table:
         "Changes and error bars",
         columns,
         rows,
-        "Layers: errors shrink by a nearly fixed share, and the factor is measured on random "
-        "shafts. Of a coupling: shares of the geometric mean of its two diagonal entries.",
+        "With layers errors shrink by a nearly fixed share; the factor is measured on random "
+        "shafts. Couplings: relative to the geometric mean of both diagonal entries.",
     )
 
 
 def algebra(record: Record) -> Table:
-    """Residuals and counts that need no second mesh."""
+    """Return residuals and counts that need no second mesh."""
     rows = [
         (_named(record, key), model.evidence)
         for key, model in record.models.items()
@@ -203,18 +203,16 @@ def algebra(record: Record) -> Table:
         Column("no mode missed below, Hz", lambda row: _counted_below(row[1])),
     ]
     return Table(
-        "Algebraic checks of this run (relative; the smaller the better, but for the counts)",
+        "Algebraic checks of this run (relative, smaller is better, except for counts)",
         columns,
         rows,
-        "No mode missed: as many eigenvalues lie below as were found, by the inertia of a second "
-        "factor (Sylvester), less the error bars of what lies above.",
+        "No mode missed: a second factorisation (Sylvester) counts as many eigenvalues below as "
+        "were found, less the error bars of modes above.",
     )
 
 
 def _counted_below(evidence: EvidenceRecord) -> str:
-    """The frequency up to which the inertia of a factor confirms that every mode was found: of the
-    body, or of its mesh where no error bar tells more.
-    """
+    """Return the frequency below which no mode is missed, of the body or else of its mesh."""
     parts = evidence.mode_count
     if not parts or not all(part.get("checked") for part in parts):
         return "not counted"
@@ -224,37 +222,43 @@ def _counted_below(evidence: EvidenceRecord) -> str:
 
 
 def pairs(record: Record) -> Table:
-    """Modes of every model beside those of the reference, a mode a row."""
+    """Return modes of every model beside those of the reference, a mode a row."""
     if record.mac is None:
         return Table("", [])
     reference = model_name(record, record.mac.reference)
-    own = {
+    partners = {
         key: {pair.mode: pair for pair in table.pairs}
         for key, table in record.mac.models.items()
         if table.pairs
     }
 
-    def partner_in(found: dict[str, PartnerRecord]) -> Callable[[str], str | None]:
-        return lambda name: _pair(found.get(name))
+    def partner_in(partners_of_model: dict[str, PartnerRecord]) -> Callable[[str], str | None]:
+        return lambda name: _pair(partners_of_model.get(name))
 
     columns = [
         Column("mode", lambda name: name),
-        *(Column(_named(record, key), partner_in(found)) for key, found in own.items()),
+        *(
+            Column(_named(record, key), partner_in(partners_of_model))
+            for key, partners_of_model in partners.items()
+        ),
     ]
     return Table(
         f"MAC of every mode with its partner in the {reference}",
         columns,
-        list(dict.fromkeys(name for found in own.values() for name in found)),
-        "In brackets: the partner, where it has another name; less alike than "
-        f"{FOREIGN:g} is none.",
+        list(
+            dict.fromkeys(
+                name for partners_of_model in partners.values() for name in partners_of_model
+            )
+        ),
+        f"In brackets: the partner, where it has another name; a MAC below {FOREIGN:g} makes none.",
     )
 
 
 def _pair(pair: PartnerRecord | None) -> str | None:
-    """MAC of a mode and its partner, with the partner's name where it is another."""
+    """Return the MAC of a mode and its partner, with the partner's name where it differs."""
     if pair is None or pair.mac is None:
         return None
     if pair.mac < FOREIGN:
         return f"{pair.mac:.4f} (none)"
-    other = "" if pair.partner == pair.mode else f" ({pair.partner or 'none'})"
-    return f"{pair.mac:.4f}{other}"
+    partner = "" if pair.partner == pair.mode else f" ({pair.partner or 'none'})"
+    return f"{pair.mac:.4f}{partner}"

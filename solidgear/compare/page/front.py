@@ -57,9 +57,7 @@ HASH_DIGITS = 12
 
 
 def shown_model(record: Record) -> str | None:
-    """The model whose numbers stand on page one: the trusted one, else the reference, else the last
-    that was solved.
-    """
+    """Return the model on page one: the trusted one, else the reference, else the last solved."""
     solved = [key for key, model in record.models.items() if model.stiffness or model.modes]
     for key in (record.verdict.trust, reference_of(record)):
         if key in solved:
@@ -68,9 +66,7 @@ def shown_model(record: Record) -> str | None:
 
 
 def scene_hash(scene: Mapping[str, Any]) -> str:
-    """First figures of the SHA-256 of a scene as it was read: of its data, whatever its file looks
-    like.
-    """
+    """Return the first figures of the SHA-256 of a scene's data."""
     if not scene:
         return ""
     text = json.dumps(scene, sort_keys=True, ensure_ascii=True)
@@ -78,64 +74,64 @@ def scene_hash(scene: Mapping[str, Any]) -> str:
 
 
 def numbers(record: Record, units: Units) -> Table:
-    """Table of the numbers that were asked, each with its bar, from the model that is shown."""
+    """Return the numbers asked for, each with its error bar, from the model shown."""
     key = shown_model(record)
     model = model_of(record, key)
-    asked = (record.scene.get("ask") or {}).get("quantities") or []
-    names = [Quantity(q) for q in (*ROWS, *(q for q in asked if AT not in q))]
+    quantities = (record.scene.get("ask") or {}).get("quantities") or []
+    names = [Quantity(q) for q in (*ROWS, *(q for q in quantities if AT not in q))]
     # by the names that results have: a scene may write those of points in another way
-    names += [q for q in (record.verdict.judged if asked else ()) if q.points]
+    names += [q for q in (record.verdict.judged if quantities else ()) if q.points]
     cells = [_number(record, model, name, _label(name), units) for name in dict.fromkeys(names)]
     cells += _other_direction(record, model, units)
     caption = f"At the lumped point {(record.scene.get('port') or {}).get('name', '')}".strip()
     if key:
         caption += f", by the {model_name(record, key)}"
-    told = open_words.remark(record.open)
-    rest = told or "it says nothing of bearings or load."
+    remark = open_words.remark(record.open)
+    end = remark or "open data of bearings or load are not included."
     return Table(
         caption,
-        ["quantity", "value", "bar"],
+        ["quantity", "value", "error bar"],
         [row for row in cells if row],
-        "K holds all other motions still, C leaves them free. The mesh bar is what mesh and solver "
-        f"leave open{'. ' if told else '; '}{rest}",
+        "K: all other motions held; C: left free. The error bar holds the error of mesh and "
+        f"solver{'. ' if remark else '; '}{end}",
         style="numbers",
     )
 
 
 def _label(name: Quantity) -> str:
-    """A quantity in words, with its points, and its symbol."""
-    said = {**ROWS, **ON_REQUEST}.get(name.symbol, "")
-    at = " under loads on ".join(name.points)
-    symbol = "" if said and name.is_frequency else name.symbol
-    return ", ".join(filter(None, (said, at, symbol)))
+    """Return a quantity in words, with its points, and its symbol."""
+    words = {**ROWS, **ON_REQUEST}.get(name.symbol, "")
+    places = " under loads on ".join(name.points)
+    symbol = "" if words and name.is_frequency else name.symbol
+    return ", ".join(filter(None, (words, places, symbol)))
 
 
 def _number(
     record: Record, model: ModelRecord, name: Quantity, label: str, units: Units
 ) -> list[Any]:
-    """The cells of one quantity; none where there is no such number."""
+    """Return the cells of one quantity; none where there is no such number."""
     value = _frequency(model, name) if name.is_frequency else value_of(model, name)
     if value is None or value == 0:
         return []
     bar = model.band.each.get(name) if model.band else None
-    told = units.text(value, name.unit, digits_for(bar))
+    written = units.text(value, name.unit, digits_for(bar))
     ranges = open_words.parts(record.open, name)
-    mesh = "no bar" if bar is None else plus_minus(bar)
+    mesh = "no error bar" if bar is None else plus_minus(bar)
     if ranges:
         mesh = "\n".join([mesh if bar is None else f"mesh {mesh}", *map(" ".join, ranges)])
-    return [label, Cell(told, "strong"), mesh]
+    return [label, Cell(written, "strong"), mesh]
 
 
 def _frequency(model: ModelRecord, name: Quantity) -> float | None:
-    mode, asked = mode_of(model, name), ModeName(name)
+    mode, named = mode_of(model, name), ModeName(name)
     exact = mode.frequency_hz if mode else None
-    return exact if exact is not None or asked.number != 1 else first_frequency(model, asked.family)
+    return exact if exact is not None or named.number != 1 else first_frequency(model, named.family)
 
 
 def _other_direction(record: Record, model: ModelRecord, units: Units) -> Iterable[list[Any]]:
-    """The other direction across the shaft, where bearings or features make it another number."""
-    one, other = (entry(model.stiffness, i, i) for i in (2, 0))
-    change = relative_change(other, one)
+    """Return the stiffness in the other direction across the shaft, where it differs."""
+    k_zz, k_xx = (entry(model.stiffness, i, i) for i in (2, 0))
+    change = relative_change(k_xx, k_zz)
     if change is None or abs(change) <= ALIKE:
         return []
     return [
@@ -144,17 +140,17 @@ def _other_direction(record: Record, model: ModelRecord, units: Units) -> Iterab
 
 
 def reasons(record: Record) -> list[str]:
-    """Reasons to trust the shown model, in three plain sentences; without a verdict, why there is none."""
+    """Return three sentences on why to trust the model shown, or why there is no verdict."""
     verdict = record.verdict
     if verdict == VerdictRecord():
-        return ["The run did not get far enough to give a verdict."]
+        return ["The run was interrupted before the verdict."]
     if not verdict.trust:
         return list(verdict.sentences[:3])
     return [_own(record), _second(record), _others(record)]
 
 
 def _own(record: Record) -> str:
-    """Sentence on the trusted model's own error bars."""
+    """Return the sentence on the trusted model's own error bars."""
     trust = record.verdict.trust
     model = model_of(record, trust)
     solves = f", which solves {model.theory}," if model.theory else ""
@@ -162,17 +158,17 @@ def _own(record: Record) -> str:
     judged = record.verdict.judged or list(map(Quantity, bars))
     c = max((bars[q] or 0.0 for q in judged if q.kind == COMPLIANCE and q in bars), default=None)
     sure = [(c, "compliance"), (bars.get(FIRST_BENDING), "first bending")]
-    told = [f"{bar_percent(bar)} in {what}" for bar, what in sure if bar is not None]
-    asked = short_percent(record.verdict.tolerance)
-    wanted = f"; {asked} was asked for" if asked else ""
-    known = f" is sure of its own numbers to {' and '.join(told)}" if told else " judges the others"
-    return f"The {model_name(record, trust)}{solves}{known}{wanted}."
+    errors = [f"{bar_percent(bar)} in {kind}" for bar, kind in sure if bar is not None]
+    tolerance = short_percent(record.verdict.tolerance)
+    end = f"; {tolerance} was asked for" if tolerance else ""
+    claim = f" has an own error of {' and '.join(errors)}" if errors else " judges the others"
+    return f"The {model_name(record, trust)}{solves}{claim}{end}."
 
 
 def _second(record: Record) -> str:
-    """Sentence on the distance of a second solid from the trusted one."""
+    """Return the sentence on the distance of a second solid from the trusted one."""
     trust, judged = record.verdict.trust, record.verdict.judged
-    told = []
+    sentences = []
     for key, model in record.models.items():
         rows = [
             r
@@ -187,16 +183,16 @@ def _second(record: Record) -> str:
             continue
         worst = max(abs(r.relative or 0.0) for r in rows)
         text = (
-            f"The {model_name(record, key)}, solved apart, differs from it by at most "
+            f"The {model_name(record, key)}, solved independently, differs from it by at most "
             f"{percent(worst, False)} in any judged number"
         )
         inside = not any(is_resolved(r) for r in rows)
-        told.append(text + (", less than the bars of both." if inside else "."))
-    return " ".join(told) or "No second solid was solved that could confirm it."
+        sentences.append(text + (", less than both error bars." if inside else "."))
+    return " ".join(sentences) or "No second solid was solved to confirm it."
 
 
 def _others(record: Record) -> str:
-    """Sentence on cheaper models: those that will do, and those that will not."""
+    """Return the sentence on cheaper models, those that are enough and those that are not."""
     verdict = record.verdict
     tolerance = short_percent(verdict.tolerance) or "the tolerance"
     out = [model_name(record, k) for k, m in record.models.items() if validity(m) == "no"]
@@ -204,9 +200,9 @@ def _others(record: Record) -> str:
     cheapest = verdict.cheapest
     if cheapest and cheapest != verdict.trust:
         only = " for first bending and below" if model_of(record, cheapest).family == LUMPED else ""
-        text = f"The {model_name(record, cheapest)} will do as well within {tolerance}{only}"
+        text = f"The {model_name(record, cheapest)} is enough within {tolerance}{only}"
         return f"{text}; {keep}." if keep else f"{text}."
-    text = f"No cheaper model is known to stay within {tolerance}"
+    text = f"No cheaper model was shown to be within {tolerance}"
     return f"{text}: {keep}." if keep else f"{text}."
 
 
@@ -215,12 +211,12 @@ def _listed(names: list[str]) -> str:
 
 
 def stamp(record: Record) -> list[tuple[str, str]]:
-    """Date, version and scene of the run, as (what, value)."""
-    of = record.environment
+    """Return date, version and scene of the run as (name, value)."""
+    environment = record.environment
     facts = [
         ("scene", str(record.scene.get("name") or "")),
         ("scene hash", scene_hash(record.scene)),
-        ("date", str(of.get("date") or "")),
-        ("solidgear", str(of.get("solidgear") or "")),
+        ("date", str(environment.get("date") or "")),
+        ("solidgear", str(environment.get("solidgear") or "")),
     ]
-    return [(what, value or DASH) for what, value in facts]
+    return [(fact, value or DASH) for fact, value in facts]

@@ -29,9 +29,8 @@ log = logging.getLogger(__name__)
 
 
 def write_report(record: Record, folder: Path, drawn: Drawn | None = None) -> Path:
-    """Write ``report.html``, whole or not at all, in the units that the record was shown in. Parts
-    that it lacks are left out; mode shapes and pictures that it names are taken from the folder,
-    `drawn` are charts that were drawn before.
+    """Write ``report.html``, whole or not at all, in the units of the record; `drawn` are charts
+    drawn before.
     """
     folder.mkdir(parents=True, exist_ok=True)
     target = folder / "report.html"
@@ -41,14 +40,18 @@ def write_report(record: Record, folder: Path, drawn: Drawn | None = None) -> Pa
 
 
 def render_page(record: Record, folder: Path, drawn: Drawn | None = None) -> str:
-    """The page as text; parameters and errors are those of `write_report`."""
+    """Return the page as text; parameters and errors are those of `write_report`."""
     from markupsafe import Markup
 
     chosen = units_named(record.shown_in)
     drawn = drawn or drawn_charts(record, folder)
     pictures = _pictures(record, folder)
-    shown = any(uri for several in pictures.values() for _, uri in several)
-    viewer = fragment_of(folder / TURNED, still=not shown) if TURNED in (record.files or ()) else ""
+    has_pictures = any(uri for several in pictures.values() for _, uri in several)
+    viewer = (
+        fragment_of(folder / TURNED, still=not has_pictures)
+        if TURNED in (record.files or ())
+        else ""
+    )
     return template("report.html").render(
         **_opening(record, chosen),
         **_tables(record, chosen),
@@ -72,13 +75,11 @@ class Drawn(NamedTuple):
 
 
 def drawn_charts(record: Record, folder: Path) -> Drawn:
-    """All charts of the page of a record, which need none of its pictures; in the folder of the page
-    a race may have left its rows.
-    """
+    """Draw all charts of the page of a record; a race may have left its rows in the folder."""
     out = Drawn({}, [])
     for name, chart in {
         **charts.CHARTS,
-        "speed": lambda found: race_tables.chart(folder, found.scene),
+        "speed": lambda race: race_tables.chart(folder, race.scene),
     }.items():
         try:
             out.svg[name] = chart(record)
@@ -90,7 +91,7 @@ def drawn_charts(record: Record, folder: Path) -> Drawn:
 
 
 def _opening(record: Record, units: Units) -> dict[str, Any]:
-    """Contents of page one: the numbers, the model they come from, and why it is trusted."""
+    """Return contents of page one: the numbers, their model, and why it is trusted."""
     scene, verdict = record.scene, record.verdict
     return {
         "title": scene.get("title") or scene.get("name") or "shaft",
@@ -107,22 +108,22 @@ def _opening(record: Record, units: Units) -> dict[str, Any]:
 
 
 def _where(record: Record) -> dict[str, Any] | None:
-    """Contents of the section on the places where the error of the judge sits."""
-    found = record.where
-    if found is None:
+    """Return contents of the section on the places where the error comes from."""
+    where_record = record.where
+    if where_record is None:
         return None
     return {
-        "sentence": found.sentence,
-        "quantity": found.quantity,
-        "order": found.order,
-        "name": model_name(record, found.model),
-        "total": percent(found.total, signed=False),
+        "sentence": where_record.sentence,
+        "quantity": where_record.quantity,
+        "order": where_record.order,
+        "name": model_name(record, where_record.model),
+        "total": percent(where_record.total, signed=False),
     }
 
 
 def _tables(record: Record, units: Units) -> dict[str, Any]:
-    """All tables of the page, by their names in the template."""
-    scene, own = record.scene, front.shown_model(record)
+    """Return all tables of the page, by their names in the template."""
+    scene, shown_key = record.scene, front.shown_model(record)
     matrices = result_tables.matrices(record, units)
     return {
         "scene_facts": input_tables.scene_facts(record, units),
@@ -131,12 +132,12 @@ def _tables(record: Record, units: Units) -> dict[str, Any]:
         "bearings": input_tables.bearings(scene, units),
         "budget": open_words.budget(record.open),
         "masses": input_tables.masses(scene, units),
-        "own_matrices": matrices.get(own or "", []),
-        "own_frequencies": result_tables.own_frequencies(record, own),
+        "own_matrices": matrices.get(shown_key or "", []),
+        "own_frequencies": result_tables.own_frequencies(record, shown_key),
         "models": result_tables.models(record),
         "summary": result_tables.summary(record, units),
         # a compliance is the inverse of what is shown
-        "other_matrices": [found[0] for key, found in matrices.items() if key != own],
+        "other_matrices": [both[0] for key, both in matrices.items() if key != shown_key],
         "points": point_tables.points(record, units),
         "point_matrices": point_tables.matrices(record, units),
         "frequencies": result_tables.frequencies(record),
@@ -158,12 +159,12 @@ def _tables(record: Record, units: Units) -> dict[str, Any]:
 
 
 def _pictures(record: Record, folder: Path) -> dict[str, list[tuple[str, str | None]]]:
-    """(caption, data URI or None when the picture could not be had), of the model shown on page one
-    and of the others: only files inside the folder of the report, results must not pull in others.
+    """Return (caption, data URI or None) of the model on page one and of the others, inside the
+    folder only.
     """
-    own = front.shown_model(record)
-    shown: dict[str, list[tuple[str, str | None]]] = {"own_renders": [], "other_renders": []}
+    shown_key = front.shown_model(record)
+    renders: dict[str, list[tuple[str, str | None]]] = {"own_renders": [], "other_renders": []}
     for key, name in record.images.items():
         picture = capital(model_name(record, key)), data_uri(key, folder / Path(name).name)
-        shown["own_renders" if key == own else "other_renders"].append(picture)
-    return shown
+        renders["own_renders" if key == shown_key else "other_renders"].append(picture)
+    return renders

@@ -14,10 +14,10 @@ Item = tuple[str, LumpedVariant]
 
 
 def lumped_tables(record: Record) -> list[Table]:
-    """One table of first bending side by side, one of the synthesis in detail per body; none where
-    the scene does not ask for lumped synthesis.
+    """Return first bending side by side and one table of synthesis per body, where the scene asks
+    for it.
     """
-    lumped = {key: found for key, found in record.lumped.items() if found.variants}
+    lumped = {key: synthesis for key, synthesis in record.lumped.items() if synthesis.variants}
     if not lumped or not (record.scene.get("ask") or {}).get("lumped"):
         return []
     methods = list(next(iter(lumped.values())).variants)
@@ -27,7 +27,7 @@ def lumped_tables(record: Record) -> list[Table]:
         *(_method(method) for method in methods),
     ]
     title = "First bending, Hz: each body and the lumped models made from it"
-    details = [_detail(model_name(record, key), found) for key, found in lumped.items()]
+    details = [_detail(model_name(record, key), synthesis) for key, synthesis in lumped.items()]
     return [Table(title, columns, list(lumped.items())), *details]
 
 
@@ -36,7 +36,7 @@ def _method(name: str) -> Column:
 
 
 def _first(variant: LumpedVariant | None) -> str:
-    """First bending of a variant, and its error."""
+    """Return the first bending of a variant, and its error."""
     if variant is None or not variant.feasible:
         return "no solution"
     text = hertz(variant.frequency_hz)
@@ -45,8 +45,8 @@ def _first(variant: LumpedVariant | None) -> str:
     return f"{text} ({percent(variant.frequency_error)})"
 
 
-def _detail(name: str, found: LumpedRecord) -> Table:
-    """The synthesis from one body, a method a row."""
+def _detail(name: str, synthesis: LumpedRecord) -> Table:
+    """Return the synthesis from one body, a method a row."""
 
     def mass(i: int, j: int) -> Callable[[Item], float | None]:
         return lambda item: entry(item[1].mass, i, j)
@@ -61,11 +61,11 @@ def _detail(name: str, found: LumpedRecord) -> Table:
         Column("valid to, Hz", lambda item: item[1].valid_to_hz, hertz),
         text("verdict", lambda item: item[1].verdict),
     ]
-    share = DASH if found.static_share is None else f"{found.static_share:.4f}"
+    share = DASH if synthesis.static_share is None else f"{synthesis.static_share:.4f}"
     return Table(
         f"Lumped from the {name}: slope and kinetic energy against its first bending mode",
         columns,
-        list(found.variants.items()),
-        "Share of the mode's strain energy that a static shape with the same lumped-point motion "
-        f"holds: {share}; equations 52 and 53 need exactly 1.",
+        list(synthesis.variants.items()),
+        "Strain energy of the static shape with the mode's lumped-point motion, as a share of the "
+        f"mode's: {share}; equations 52 and 53 need exactly 1.",
     )

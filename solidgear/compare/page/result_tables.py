@@ -51,13 +51,13 @@ WORTH = {
 
 
 def across(record: Record, title: str, rows: list[list[Any]], note: str, head: str) -> Table:
-    """Quantities down, models across: four models fit a page, thirteen columns do not."""
+    """Return a table with quantities down and models across."""
     names = [capital(model_name(record, key)) for key in record.models]
     return Table(title, [head, *names], rows if names else [], note, "summary")
 
 
 def summary(record: Record, units: Units = ENGINEERING) -> Table:
-    """The results of every model in short."""
+    """Return the results of every model in short."""
 
     def row(label: str, cell: Callable[[str, ModelRecord], Any]) -> list[Any]:
         return [label, *(cell(key, model) for key, model in record.models.items())]
@@ -84,8 +84,8 @@ def summary(record: Record, units: Units = ENGINEERING) -> Table:
         row("degrees of freedom", lambda _, m: grouped(m.dofs)),
     ]
     note = (
-        "“Against reference” compares beams with section ties on both sides, where they have a "
-        "like-for-like partner, and solids as the scene has them."
+        "“Against reference” compares beams like for like, with section ties on both sides, where "
+        "that is known, and solids as the scene is tied."
     )
     return across(
         record, "Results at the lumped point, attachments of the scene", rows, note, "quantity"
@@ -93,58 +93,59 @@ def summary(record: Record, units: Units = ENGINEERING) -> Table:
 
 
 def models(record: Record) -> Table:
-    """Table of models that may be used, and why the others not: a model a row."""
-    of, tolerance = record.models, short_percent(record.verdict.tolerance)
+    """Return models that may be used, and why others may not, a model a row."""
+    records, tolerance = record.models, short_percent(record.verdict.tolerance)
     columns = [
         Column("model", lambda key: capital(model_name(record, key))),
         Column(
-            f"within {tolerance}" if tolerance else "valid", lambda key: WORTH[validity(of[key])]
+            f"within {tolerance}" if tolerance else "valid",
+            lambda key: WORTH[validity(records[key])],
         ),
-        Column("first bending, Hz", lambda key: first_frequency(of[key], "bending"), hertz),
+        Column("first bending, Hz", lambda key: first_frequency(records[key], "bending"), hertz),
         Column("first bending off", lambda key: apart(record, key, FIRST_BENDING)),
         Column("C_zz off", lambda key: apart(record, key, C_ZZ)),
-        Column("time, s", lambda key: answer_seconds(of[key]), seconds),
-        text("why not", lambda key: of[key].why_not or ""),
+        Column("time, s", lambda key: answer_seconds(records[key]), seconds),
+        text("why not", lambda key: records[key].why_not or ""),
     ]
-    return Table("Models of this scene", columns, list(of))
+    return Table("Models of this scene", columns, list(records))
 
 
 def apart(record: Record, key: str, quantity: str) -> Cell | None:
-    """Deviation of a model from the reference, with less weight where bars do not tell them apart.
-    Quantities are such as ``C_zz@gear`` at a further point, ``C_zz@wheel@pinion`` between two.
+    """Return the deviation of a model from the reference, weaker where error bars do not resolve
+    it.
     """
     if key == reference_of(record):
         return Cell("reference", "quiet")
-    found = headline(record, key, quantity)
-    if found is None:
+    deviation = headline(record, key, quantity)
+    if deviation is None:
         return None
-    difference = percent(found.relative)
-    if is_resolved(found):
+    difference = percent(deviation.relative)
+    if is_resolved(deviation):
         return Cell(difference)
     return Cell(f"not resolved ({difference})", "quiet")
 
 
 def matrices(record: Record, units: Units = ENGINEERING) -> dict[str, list[Table]]:
-    """The matrices of every model; the lumped one stands on those of another, shown there."""
+    """Return the matrices of every model but the lumped one, which has another's."""
     out = {}
     for key, model in record.models.items():
         if model.family == LUMPED:
             continue
         name = model_name(record, key)
-        both = (("stiffness", model.stiffness), ("compliance", model.compliance))
+        kinds = (("stiffness", model.stiffness), ("compliance", model.compliance))
         free = record.port.free if record.port else []
-        shown = [
+        tables = [
             block(values, kind, units, capital(f"{name}: {kind}"), free)
-            for kind, values in both
+            for kind, values in kinds
             if values
         ]
-        if shown:
-            out[key] = shown
+        if tables:
+            out[key] = tables
     return out
 
 
 def own_frequencies(record: Record, key: str | None) -> Table:
-    """Natural frequencies of one model with their bars."""
+    """Return natural frequencies of one model with their error bars."""
     model = model_of(record, key)
     each = model.band.each if model.band else {}
     # in two planes that differ, the first ones of both are judged
@@ -153,25 +154,25 @@ def own_frequencies(record: Record, key: str | None) -> Table:
         Column("mode", lambda m: m.name),
         Column("Hz", lambda m: RIGID if m.frequency_hz == 0 else m.frequency_hz, hertz),
         Column("shapes", lambda m: m.multiplicity),
-        Column("bar", lambda m: each.get(judged.get(id(m), m.name)), plus_minus),
+        Column("error bar", lambda m: each.get(judged.get(id(m), m.name)), plus_minus),
     ]
-    found = Table(
+    table = Table(
         f"Natural frequencies of the {model_name(record, key)}", columns, in_order(model.modes)
     )
-    found.note = "Two shapes: a pair of the same frequency in two planes."
-    if any(bar is None and hz != RIGID for _, hz, _, bar in found.rows):
-        found.note += " A dash: no bar of its own; the higher a mode, the more it asks of a mesh."
-    found.note += by_plane(mode.name for mode in model.modes)
-    return found
+    table.note = "Two shapes: a pair of the same frequency in two planes."
+    if any(bar is None and hz != RIGID for _, hz, _, bar in table.rows):
+        table.note += " A dash: no error bar; higher modes need finer meshes."
+    table.note += by_plane(mode.name for mode in model.modes)
+    return table
 
 
 def in_order(modes: Iterable[ModeRecord]) -> list[ModeRecord]:
-    """Modes from the lowest up."""
+    """Return modes from the lowest up."""
     return sorted(modes, key=lambda m: m.frequency_hz or 0.0)
 
 
 def frequencies(record: Record) -> Table:
-    """Natural frequencies, a mode a row and a model a column."""
+    """Return the natural frequencies, a mode a row and a model a column."""
     reference = reference_of(record)
     modes = {key: {m.name: m for m in model.modes} for key, model in record.models.items()}
     # a mode stands where the reference has it, else where the first model that has it does
@@ -205,7 +206,7 @@ def frequencies(record: Record) -> Table:
 
 
 def _frequency(mode: ModeRecord | None, base: ModeRecord | None) -> str | None:
-    """The frequency of a mode, and in brackets how far it is from that of `base`."""
+    """Return the frequency of a mode, and in brackets its difference from `base`."""
     if mode is None:
         return None
     if mode.frequency_hz == 0:

@@ -27,14 +27,14 @@ CLOSE, LARGEST, SMALL = 170.0, 200.0, 0.02
 MOST_PLACES, WORTH_NAMING = 5, 5e-4
 
 
-def draw_where(file: Path, where: WhereRecord, title: str = "") -> None:
+def draw_where(file: Path, places: WhereRecord, title: str = "") -> None:
     """Write the picture.
 
     Parameters
     ----------
     file : Path
         Its ending, ``.png`` or ``.svg``, says what it becomes.
-    where : WhereRecord
+    places : WhereRecord
         Cells with their shares, whose magnitudes are drawn; places worth it are named.
 
     Raises
@@ -42,12 +42,12 @@ def draw_where(file: Path, where: WhereRecord, title: str = "") -> None:
     SolidgearError
         For another ending, or a file that cannot be written.
     """
-    _chart(where, title, WIDE).write(file)
+    _chart(places, title, WIDE).write(file)
 
 
-def _chart(where: WhereRecord, title: str, width: float) -> Chart:
-    points, cells, shares = map(np.array, (where.points, where.cells, where.shares))
-    places = [p for p in worth_naming(where.rows) if p.y is not None and p.r is not None]
+def _chart(record: WhereRecord, title: str, width: float) -> Chart:
+    points, cells, shares = map(np.array, (record.points, record.cells, record.shares))
+    places = [p for p in worth_naming(record.rows) if p.y is not None and p.r is not None]
     r, y = 1e3 * points
     length, radius = np.ptp(y), r.max()
     stretch = max(1.0, length / (SLENDEREST * radius))
@@ -71,9 +71,9 @@ def _chart(where: WhereRecord, title: str, width: float) -> Chart:
         for number, (place, height) in enumerate(zip(places, heights), 1)
     ]
     panel.draw("rule", [{key: row[key] for key in ("x", "y", "y2")} for row in numbers])
-    over = [{"x": row["x"], "y": row["y2"], "text": row["text"]} for row in numbers]
-    panel.draw({"type": "point", "size": 300, "fill": "#ffffff", "stroke": GREY}, over)
-    panel.draw({"type": "text", "baseline": "middle", "fontWeight": "bold"}, over)
+    labels = [{"x": row["x"], "y": row["y2"], "text": row["text"]} for row in numbers]
+    panel.draw({"type": "point", "size": 300, "fill": "#ffffff", "stroke": GREY}, labels)
+    panel.draw({"type": "text", "baseline": "middle", "fontWeight": "bold"}, labels)
     names = [
         f"{number}: {place.what}, y = {1e3 * place.y:.4g} mm, {100 * place.share:.2g} %"
         for number, place in enumerate(places, 1)
@@ -81,22 +81,22 @@ def _chart(where: WhereRecord, title: str, width: float) -> Chart:
     drawn_as = "" if stretch == 1.0 else f"radius drawn {stretch:.2g} times as large"
     close = _close(points, places)[: int(width / CLOSE)]
     insets = [_inset(corners, shares, places[n - 1], n, half) for n, half in close]
-    one = (width - BETWEEN * (len(insets) - 1)) / max(len(insets), 1)
+    inset_width = (width - BETWEEN * (len(insets) - 1)) / max(len(insets), 1)
     for inset in insets:  # as wide as high, beside axes as wide as those above
-        inset.height = min(one - panel.beside - inset.right, LARGEST)
-        inset.right = one - panel.beside - inset.height
+        inset.height = min(inset_width - panel.beside - inset.right, LARGEST)
+        inset.right = inset_width - panel.beside - inset.height
     rows_of = [[panel], insets] if insets else [[panel]]
     return Chart(rows_of, width, "; ".join(filter(None, (title, drawn_as))), "\n".join(names))
 
 
 def _inset(corners, shares, place: Any, number: int, half: float) -> Panel:
-    """Cells at a place from close by, so many metres to either side."""
+    """Return cells near a place, so many metres to either side."""
     centre = 1e3 * np.array([place.y, place.r])
     low, high = centre - 1e3 * half, centre + 1e3 * half
-    seen = np.all((corners.min(axis=1) < high) & (corners.max(axis=1) > low), axis=1)
-    across, up = (Axis("", ends, grid=False) for ends in zip(low.tolist(), high.tolist()))
-    panel = Panel(across, up, CLOSE, f"{number}, {2e3 * half:.2g} mm wide", least=CLOSE)
-    _draw(panel, corners[seen], shares[seen], None)
+    inside = np.all((corners.min(axis=1) < high) & (corners.max(axis=1) > low), axis=1)
+    across, height = (Axis("", ends, grid=False) for ends in zip(low.tolist(), high.tolist()))
+    panel = Panel(across, height, CLOSE, f"{number}, {2e3 * half:.2g} mm wide", least=CLOSE)
+    _draw(panel, corners[inside], shares[inside], None)
     return panel
 
 
@@ -126,8 +126,8 @@ def _words(y: float, r: float, share: float) -> str:
 
 
 def _close(points: np.ndarray, places: Sequence[Any]) -> list[tuple[int, float]]:
-    """Numbers of the places towards which cells are too small to be seen, and half the width (m) of
-    what shows them: between the smallest of them and the wall.
+    """Return numbers of places with cells too small to be seen, and half the width (m) of an
+    inset.
     """
     out = []
     for number, place in enumerate(places, 1):
@@ -139,26 +139,26 @@ def _close(points: np.ndarray, places: Sequence[Any]) -> list[tuple[int, float]]
 
 
 def _raised(spots: Sequence[tuple[float, float]]) -> list[float]:
-    """Heights (px) of the numbers of places, over them and none on another."""
-    taken: list[tuple[float, float]] = []
+    """Return heights (px) of the numbers of places, so that none overlap."""
+    occupied: list[tuple[float, float]] = []
     for x, y in spots:
         y += DIGIT
-        while any(abs(x - a) < DIGIT and abs(y - b) < DIGIT for a, b in taken):
+        while any(abs(x - a) < DIGIT and abs(y - b) < DIGIT for a, b in occupied):
             y += 1.01 * DIGIT
-        taken.append((x, y))
-    return [y for _, y in taken]
+        occupied.append((x, y))
+    return [y for _, y in occupied]
 
 
 def where_chart(record: Record, width: float = WIDE) -> Chart | None:
-    """Places of the error of the judge; None without a record of them."""
-    where = record.where
-    if where is None or not where.cells:
+    """Chart the places of the reference's error; None without a record."""
+    places = record.where
+    if places is None or not places.cells:
         return None
-    return _chart(where, "", width)
+    return _chart(places, "", width)
 
 
 def worth_naming(rows: Sequence[Any]) -> list[Any]:
-    """The first few places whose share is worth a word.
+    """Return the first few places with a share worth a word.
 
     Parameters
     ----------

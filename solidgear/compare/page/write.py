@@ -80,14 +80,16 @@ def write_all(
     return folder
 
 
-def _try(record: Record, what: str, action: Callable[..., Any], *arguments: Any) -> Any:
-    """Result of something the numbers do not depend on; a failure becomes a warning, and None."""
+def _try(record: Record, name: str, action: Callable[..., Any], *arguments: Any) -> Any:
+    """Return the result of an action that numbers do not depend on; a failure becomes a warning
+    and None.
+    """
     try:
         return action(*arguments)
     except OSError:
         raise
     except Exception as error:
-        _leave_out(record, f"{what} left out: {error}")
+        _leave_out(record, f"{name} left out: {error}")
         return None
 
 
@@ -97,7 +99,7 @@ def _leave_out(record: Record, sentence: str) -> None:
 
 
 def _jobs(record: Record, shapes: dict[str, Solution], folder: Path) -> dict[str, RenderJob]:
-    """The pictures to be drawn, by model."""
+    """Return the pictures to be drawn, by model."""
     jobs: dict[str, RenderJob] = {}
     for model, solution in shapes.items():
         name = _drawn_mode(solution.modes)
@@ -113,19 +115,19 @@ def _jobs(record: Record, shapes: dict[str, Solution], folder: Path) -> dict[str
 
 
 def _note(record: Record, jobs: Iterable[str], results: Iterable[RenderResult]) -> None:
-    """Note in the record the pictures that were drawn, and why others were left out."""
+    """Record the pictures that were drawn, and why others were left out."""
     reasons: dict[str, list[str]] = {}
-    for model, done in zip(jobs, results):
-        if done.ok:
-            record.images[model] = done.path.name
+    for model, result in zip(jobs, results):
+        if result.ok:
+            record.images[model] = result.path.name
         else:
-            reasons.setdefault(done.reason, []).append(model)
+            reasons.setdefault(result.reason, []).append(model)
     for reason, models in reasons.items():
         _leave_out(record, f"render of {', '.join(models)} left out: {reason}")
 
 
 def _write_turned(record: Record, shapes: dict[str, Solution], folder: Path) -> None:
-    """The page of mode shapes, the most detailed models first."""
+    """Write the page of mode shapes, the most detailed models first."""
     still = ""
     models: list[Turned] = []
     for key, solution in reversed(shapes.items()):
@@ -140,7 +142,7 @@ def _write_turned(record: Record, shapes: dict[str, Solution], folder: Path) -> 
 
 
 def _drawn_mode(modes: ModeSet) -> str | None:
-    """The mode that a report shows: first bending, else the lowest elastic one."""
+    """Return the mode that a report shows: first bending, else the lowest elastic one."""
     if modes.named(MODE):
         return MODE
     for mode in modes.modes:
@@ -158,7 +160,7 @@ class Drawn:
     title: str
 
     def job(self, name: str, path: Path) -> RenderJob:
-        """A picture of the mode of that name.
+        """Return a picture of the mode of that name.
 
         Raises
         ------
@@ -186,31 +188,29 @@ def render_mode(drawn: Drawn, name: str, path: Path) -> Path:
     job = drawn.job(name, path)
     prepare(path.parent)
     try:
-        (done,) = render_modes([job])
+        (result,) = render_modes([job])
     except OSError as error:  # the drawing process is handed its shape in a temporary file
         raise SolidgearError(
             f"--out {path}: drawing stopped ({error.strerror or error}); "
             "free some space there and in the folder for temporary files"
         ) from error
-    if not done.ok:
-        raise SolidgearError(done.reason)
-    return done.path
+    if not result.ok:
+        raise SolidgearError(result.reason)
+    return result.path
 
 
 def turn_modes(drawn: Sequence[Drawn], path: Path, title: str, name: str) -> tuple[Path, str]:
-    """Write a page in which all modes of models side by side can be turned, opened with the named
-    one, and with a picture of it by the first model for print; why there is no such picture, if so.
-    """
+    """Write a page of all modes to turn; return its path and why it has no picture for print."""
     prepare(path.parent)
     models: list[Turned] = []
-    for one in drawn:
-        one.job(name, path)
-        models.append(turned(one.body, one.modes, one.title, models))
-    still, said = "", ""
+    for drawing in drawn:
+        drawing.job(name, path)
+        models.append(turned(drawing.body, drawing.modes, drawing.title, models))
+    still, sentence = "", ""
     with tempfile.TemporaryDirectory(prefix="solidgear-turn-") as folder:
         try:
             picture = render_mode(drawn[0], name, Path(folder) / "mode.png")
             still = data_uri("mode", picture) or ""
         except SolidgearError as error:
-            said = f"no picture for print in {path.name}: {error}"
-    return Turning(tuple(models), title, name).write(path, still=still), said
+            sentence = f"no picture for print in {path.name}: {error}"
+    return Turning(tuple(models), title, name).write(path, still=still), sentence

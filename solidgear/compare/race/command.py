@@ -35,14 +35,14 @@ def chart(
         typer.Option(
             "--out",
             "-o",
-            help="Folder for rows.csv, machine.json and speed_accuracy.png; a report of "
-            "`compare` there gets the section.",
+            help="Folder for rows.csv, machine.json and speed_accuracy.png; a report of `compare` "
+            "there gets the chart.",
         ),
     ] = Path("out"),
     full: Annotated[
         bool,
         typer.Option(
-            "--full", help="More levels, larger solids, a surer reference, an hour and more."
+            "--full", help="More meshes, larger solids, a finer reference; an hour and more."
         ),
     ] = False,
     runs: Annotated[
@@ -52,36 +52,36 @@ def chart(
         float | None,
         typer.Option(
             "--budget",
-            help="Seconds of processor time for the points, those of the reference not counted; levels that would not "
-            "fit are left out and named. 120, or 3600 with --full.",
+            help="Seconds of processor time for the points, without the reference; meshes that do "
+            "not fit are skipped and named. 120, or 3600 with --full.",
         ),
     ] = None,
     run: Run,
 ) -> None:
-    found, reported = run_chart(
+    raced, reported = run_chart(
         load(scene), out, full=full, runs=runs, budget=budget, quiet=run.as_json
     )
     if run.as_json:
         record = {
-            "scene": found.scene["name"],
-            "complete": found.complete,
-            "reference": found.reference,
-            "setup": found.setup,
-            "seconds": found.seconds,
-            "rows": records(found),
+            "scene": raced.scene["name"],
+            "complete": raced.complete,
+            "reference": raced.reference,
+            "setup": raced.setup,
+            "seconds": raced.seconds,
+            "rows": records(raced),
         }
         print(json.dumps(record, allow_nan=False))
     else:
-        say(*front_table(found), soft_wrap=False)
-        failed = [row for row in found.rows if row.status == "failed"]
-        told = (f"failed: {row.series}, level {row.level}: {row.reason}" for row in failed)
-        say(*told, soft_wrap=False)
-        if left_out(found):
+        say(*front_table(raced), soft_wrap=False)
+        failed = [row for row in raced.rows if row.status == "failed"]
+        failures = (f"failed: {row.series}, level {row.level}: {row.reason}" for row in failed)
+        say(*failures, soft_wrap=False)
+        if left_out(raced):
             say(
-                f"left out ({found.budget:g} s of processor time for the points; reasons in {out / 'rows.csv'}): {left_out(found)}"
+                f"left out ({raced.budget:g} s of processor time for the points; reasons in {out / 'rows.csv'}): {left_out(raced)}"
             )
         say(f"Chart: {out / PICTURE}" + (f", and in {out / 'report.html'}" if reported else ""))
-    if not found.complete:
+    if not raced.complete:
         raise typer.Exit(130)
 
 
@@ -111,22 +111,22 @@ def run_chart(
             clear_halves(folder)
             earlier = _earlier(folder, scene)
             progress("set-up costs, in a fresh interpreter")
-            once = setup_seconds()
-            found = race(
+            setup = setup_seconds()
+            raced = race(
                 scene,
                 plan(scene, full),
                 runs=runs,
                 budget=budget,
                 sure=FULL_SURE if full else None,
-                setup=once,
+                setup=setup,
                 progress=progress,
                 keep=functools.partial(write_rows, folder=folder),
             )
             progress("chart")
-            draw(found, folder / PICTURE)
+            draw(raced, folder / PICTURE)
             if earlier is not None:
                 write_report(earlier, folder)
-            return found, earlier is not None
+            return raced, earlier is not None
     except OSError as error:
         raise SolidgearError(
             f"--out {out}: writing stopped ({error.strerror or error}); files already there are whole"
@@ -134,9 +134,7 @@ def run_chart(
 
 
 def _earlier(folder: Path, scene: Scene) -> Record | None:
-    """The record of an earlier comparison of the same scene, whose report gets the chart; None
-    where there is none.
-    """
+    """Return the record of an earlier comparison of the same scene; None where there is none."""
     path = folder / "results.json"
     try:
         results = json.loads(path.read_text(encoding="utf-8"))

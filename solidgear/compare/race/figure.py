@@ -34,7 +34,9 @@ def draw(race: Race, path) -> Path:
 
 
 def race_chart(race: Race, width: float = WIDE) -> Chart:
-    """Panels of error over seconds and over unknowns, one line of panels a quantity, log-log."""
+    """Return panels of error over seconds and over unknowns, one line of panels a quantity,
+    log-log.
+    """
     panels = [[_panel(race, q, cost) for cost in COSTS] for q in race.reference["values"]]
     title = race.scene.get("title") or race.scene.get("name", "")
     words = f"{title}: error against cost" + ("" if race.complete else " (interrupted)")
@@ -52,7 +54,7 @@ def _panel(race: Race, quantity: str, cost: str) -> Panel:
         290.0,
         left=72.0,
     )
-    left, right = panel.x.ends
+    left, high = panel.x.ends
     _bar(panel, bar, low)
     tolerance = (race.scene.get("ask") or {}).get("tolerance")
     if is_number(tolerance) and low < tolerance < top:
@@ -64,20 +66,20 @@ def _panel(race: Race, quantity: str, cost: str) -> Panel:
         _crosses(panel, rows, quantity, cost, top / 1.5)
     if cost in race.reference:
         _reference(panel, race, quantity, cost, max(bar, low))
-    if cost == "seconds" and left < setup < right:
+    if cost == "seconds" and left < setup < high:
         _setup(panel, setup)
     return panel
 
 
 def _reach(race: Race, cost: str) -> tuple[float, float]:
-    """Both ends of the axis of a cost."""
+    """Return both ends of the axis of a cost."""
     costs = [getattr(row, cost) for row in race.rows if row.status in ("ok", "failed")]
-    known = [value for value in costs if value] or [1.0]
-    return min(known) / 2.2, max(max(known) * 2.2, 1.5 * race.reference.get(cost, 0.0))
+    positive = [value for value in costs if value] or [1.0]
+    return min(positive) / 2.2, max(max(positive) * 2.2, 1.5 * race.reference.get(cost, 0.0))
 
 
 def _heights(race: Race, quantity: str) -> tuple[float, float]:
-    """Both ends of the axis of errors.
+    """Return both ends of the axis of errors.
 
     An error bar far below every error is named at the bottom, so that it does not squeeze what there is
     to see.
@@ -90,12 +92,12 @@ def _heights(race: Race, quantity: str) -> tuple[float, float]:
             continue
         like = row.like_for_like.get(quantity) if error else None
         errors += [error, like or bar]
-    known = [error for error in errors if error > 0] or [1e-3]
-    return max(bar / 2.5, min(known) / 40), max(known) * 4
+    positive = [error for error in errors if error > 0] or [1e-3]
+    return max(bar / 2.5, min(positive) / 40), max(positive) * 4
 
 
 def _bar(panel: Panel, bar: float, low: float) -> None:
-    """Shade the errors that the reference does not resolve, and name its bar."""
+    """Shade errors that the reference does not resolve, and name its error bar."""
     floor = max(bar, low)
     if bar > 0:
         panel.draw({"type": "rect", "color": "#00805e", "opacity": 0.13}, [{"y": low, "y2": floor}])
@@ -106,7 +108,7 @@ def _bar(panel: Panel, bar: float, low: float) -> None:
 
 
 def _reference(panel: Panel, race: Race, quantity: str, cost: str, floor: float) -> None:
-    """The reference itself, at its own error bar."""
+    """Draw the reference at its own error bar."""
     words = readout(
         f"reference, {race.reference['model']}",
         ("own error bar", percent(race.reference["bands"][quantity], signed=False), ""),
@@ -119,7 +121,7 @@ def _reference(panel: Panel, race: Race, quantity: str, cost: str, floor: float)
 
 
 def _front(panel: Panel, race: Race, quantity: str, cost: str) -> None:
-    """The Pareto front as steps, from the top of the panel to its right end."""
+    """Draw the Pareto front as steps, from the top of the panel to its right end."""
     steps = race.front(quantity, cost)
     if not steps:
         return
@@ -131,14 +133,14 @@ def _front(panel: Panel, race: Race, quantity: str, cost: str) -> None:
 
 
 def _setup(panel: Panel, spent: float) -> None:
-    """Time that a process pays once, as an upright line."""
+    """Draw the time that a process pays once, as an upright line."""
     panel.draw({"type": "rule", "color": GREY, "strokeDash": [1, 2]}, [{"x": spent}])
     name = {"type": "text", "angle": -90, "align": "right", "dy": -6, "fontSize": 10, "color": GREY}
     panel.draw(name, [{"x": spent, "text": "set-up, once a process"}], y={"value": 4})
 
 
 def _series(panel: Panel, race: Race, rows: list[Row], quantity: str, cost: str) -> None:
-    """A line through the levels of a series, and their points."""
+    """Draw a line through the levels of a series, and their points."""
     look = Look(rows[0].series, rows[0].family)
     spots = []
     for row in rows:
@@ -148,22 +150,22 @@ def _series(panel: Panel, race: Race, rows: list[Row], quantity: str, cost: str)
             spots.append((row, {**place, "readout": _words(race, row, look.series, quantity)}))
     line = {"type": "line", "color": look.colour, "strokeWidth": look.width}
     line |= {"strokeDash": look.dash, "opacity": 0.75 if look.uniform else 1.0}
-    panel.draw(line, [{"x": at["x"], "y": at["y"]} for _, at in spots])
+    panel.draw(line, [{"x": spot["x"], "y": spot["y"]} for _, spot in spots])
     if cost == "seconds":
         panel.draw(
             {"type": "rule", "color": look.colour, "opacity": 0.45},
             [
-                {"x": min(row.samples), "x2": max(row.samples), "y": at["y"]}
-                for row, at in spots
+                {"x": min(row.samples), "x2": max(row.samples), "y": spot["y"]}
+                for row, spot in spots
                 if len(row.samples) > 1
             ],
         )
-    panel.draw(look.marks, [at for _, at in spots])
-    unresolved = [at for row, at in spots if not race.resolved(row, quantity)]
+    panel.draw(look.marks, [spot for _, spot in spots])
+    unresolved = [spot for row, spot in spots if not race.resolved(row, quantity)]
     _arrows(panel, unresolved, look.colour)
-    beside = [(at, _beside(look, row)) for row, at in spots]
+    partners = [(spot, _beside(look, row)) for row, spot in spots]
     text = {"type": "text", "color": look.colour, "fontSize": 10}
-    names = [{"x": at["x"], "y": at["y"], "text": words} for at, words in beside if words]
+    names = [{"x": spot["x"], "y": spot["y"], "text": words} for spot, words in partners if words]
     panel.draw(text | {"align": "right", "dx": -6, "dy": 9}, names)
     if spots and not look.converges:
         _like_for_like(panel, race, look, spots, quantity)
@@ -172,12 +174,12 @@ def _series(panel: Panel, race: Race, rows: list[Row], quantity: str, cost: str)
         place = {"align": "left", "dx": 8, "dy": -8}
         if look.family == "lumped":
             place = {"align": "center", "dy": 16}
-        at = spots[-1][1]
-        panel.draw(text | place, [{"x": at["x"], "y": at["y"], "text": look.series}])
+        spot = spots[-1][1]
+        panel.draw(text | place, [{"x": spot["x"], "y": spot["y"], "text": look.series}])
 
 
 def _words(race: Race, row: Row, name: str, quantity: str) -> str:
-    """Words shown at the point of one level of a series."""
+    """Return words shown at the point of one level of a series."""
     return readout(
         name,
         (f"error of {quantity}", error_text(race, row, quantity), ""),
@@ -188,7 +190,7 @@ def _words(race: Race, row: Row, name: str, quantity: str) -> str:
 
 
 def _beside(look: Look, row: Row) -> str:
-    """The order or the tolerance of a level, written beside it."""
+    """Return the order or the tolerance of a level, written beside it."""
     if look.series == ORDERS:
         return f"p{row.options['order']}"
     return f"{100 * row.options['tol']:g} %" if look.family == AUTOMATIC else ""
@@ -198,36 +200,36 @@ def _arrows(panel: Panel, spots: list[dict[str, Any]], colour: str) -> None:
     """Draw arrows below points on the bar: the error may be smaller."""
     head = {"type": "point", "shape": "triangle-down", "color": colour, "filled": True, "size": 30}
     for size, dy in ((head, 13), ({**head, "shape": "stroke", "angle": 90, "size": 60}, 8)):
-        panel.draw({**size, "yOffset": dy}, [{"x": at["x"], "y": at["y"]} for at in spots])
+        panel.draw({**size, "yOffset": dy}, [{"x": spot["x"], "y": spot["y"]} for spot in spots])
 
 
 def _like_for_like(panel: Panel, race: Race, look: Look, spots: list, quantity: str) -> None:
-    """Errors against the solid with the same ties, hollow at the other end of a dotted line."""
+    """Draw errors against the solid with the same ties, hollow at the end of a dotted line."""
     rows = [
         {
-            "x": at["x"],
-            "y": at["y"],
+            "x": spot["x"],
+            "y": spot["y"],
             "y2": row.like_for_like.get(quantity),
-            "readout": at["readout"],
+            "readout": spot["readout"],
         }
-        for row, at in spots
+        for row, spot in spots
     ]
-    known = [row for row in rows if row["y2"]]
+    pairs = [row for row in rows if row["y2"]]
     dots = {"type": "rule", "color": look.colour, "strokeDash": [2, 2]}
-    panel.draw(dots, [{key: row[key] for key in ("x", "y", "y2")} for row in known])
+    panel.draw(dots, [{key: row[key] for key in ("x", "y", "y2")} for row in pairs])
     hollow = [
         {
             "x": row["x"],
             "y": row["y2"],
             "readout": row["readout"].replace("\n", ", like for like\n", 1),
         }
-        for row in known
+        for row in pairs
     ]
     panel.draw({**look.marks, "fill": "#ffffff"}, hollow)
 
 
 def _crosses(panel: Panel, rows: list[Row], quantity: str, cost: str, height: float) -> None:
-    """Rows that failed, or have no such number, at the top."""
+    """Draw rows that failed, or have no such number, at the top."""
     colour = Look(rows[0].series, rows[0].family).colour
     missing = [
         {"x": getattr(row, cost), "y": height}

@@ -32,7 +32,7 @@ MARKS: tuple[tuple[str, Any, Any], ...] = (
         {"stroke": REFERENCE, "fill": "#ffffff", "shape": SHAPES["*"], "size": 80},
     ),
     (
-        "below the bar: not resolved",
+        "below the error bar: not resolved",
         None,
         {"fill": MARK, "stroke": MARK, "shape": "triangle-down"},
     ),
@@ -41,7 +41,7 @@ MARKS: tuple[tuple[str, Any, Any], ...] = (
 
 
 def legend(race: Race, width: float) -> Panel:
-    """A head for each family and its series, then what marks mean, in columns."""
+    """Return a heading for each family with its series, then the meaning of marks, in columns."""
     entries: list[tuple[str, Any, Any]] = []
     for family, series in looks(race).items():
         if family not in ("lumped", AUTOMATIC):  # their one series has their name
@@ -77,7 +77,7 @@ def _entry(panel: Panel, x: float, y: float, words: str, line: Any, marker: Any)
 
 
 def footer(race: Race) -> str:
-    """The reference, how times were taken, the machine, and what was left out."""
+    """Return sentences on the reference, times, machine and skipped cases."""
     machine = race.environment
     lines = [
         _reference(race),
@@ -87,7 +87,8 @@ def footer(race: Race) -> str:
     ]
     if left_out(race):
         lines.append(
-            f"Left out ({race.budget:g} s of processor time for the points): {left_out(race)}; reasons in rows.csv."
+            f"Skipped ({race.budget:g} s of processor time for the points): {left_out(race)}; "
+            "reasons in rows.csv."
         )
     return "\n".join(lines)
 
@@ -96,7 +97,7 @@ def _reference(race: Race) -> str:
     reference = race.reference
     return (
         f"Reference: {reference['model']}, {reference['setting']}, {reference['unknowns']} "
-        f"unknowns, {seconds(reference['seconds'])} s a run; its error bar is as `answer` tells it."
+        f"unknowns, {seconds(reference['seconds'])} s a run; its error bar is that of `answer`."
     )
 
 
@@ -106,6 +107,6 @@ def _times(race: Race) -> str:
     if runs and min(runs) < race.runs:
         words += f" (slow cases down to {min(runs)})"
     if race.setup:
-        setup = ", ".join(f"{what} {seconds(spent)} s" for what, spent in race.setup.items())
+        setup = ", ".join(f"{name} {seconds(spent)} s" for name, spent in race.setup.items())
         words += f". Set-up, not in it: {setup}"
     return words + "."

@@ -40,7 +40,9 @@ def write_rows(race: Race, folder: Path) -> None:
 
 
 def read_race(folder) -> Race | None:
-    """The race that `write_rows` left in a folder; None where there is none that can be read."""
+    """Return the race that `write_rows` left in a folder; None where there is none that can be
+    read.
+    """
     folder = Path(folder)
     if not (folder / MACHINE).exists() or not (folder / ROWS).exists():
         return None
@@ -56,7 +58,7 @@ def read_race(folder) -> Race | None:
 
 
 def records(race: Race) -> list[dict]:
-    """One flat record a row, as in ``rows.csv``; what a row does not have is None."""
+    """Return one flat record a row, as in ``rows.csv``; missing values are None."""
     fronts = {(q, cost): race.front(q, cost) for q in race.reference["values"] for cost in COSTS}
     out = []
     for row in race.rows:
@@ -69,21 +71,21 @@ def records(race: Race) -> list[dict]:
         record["samples"] = " ".join(repr(s) for s in row.samples)
         for q in CHARTED:
             record[_column(q)] = row.values.get(q)
-        for what in (*CHARTED, WHOLE):
-            record[f"error_{_column(what)}"] = row.errors.get(what)
+        for quantity in (*CHARTED, WHOLE):
+            record[f"error_{_column(quantity)}"] = row.errors.get(quantity)
         for q in CHARTED:
             record[f"like_for_like_{_column(q)}"] = row.like_for_like.get(q)
         for q in race.reference["values"]:
             record[f"resolved_{_column(q)}"] = _resolved(race, row, q)
-            on = [cost for cost in COSTS if any(row is other for other in fronts[q, cost])]
+            on = [cost for cost in COSTS if any(row is member for member in fronts[q, cost])]
             record[f"front_{_column(q)}"] = " ".join(on)
         out.append(record)
     return out
 
 
 def _resolved(race: Race, row: Row, quantity: str) -> str:
-    """``yes`` where the error of a row lies above the error bar of the reference, else ``no``; empty
-    where it has none.
+    """Return ``yes`` for an error above the reference's error bar, else ``no``; empty without an
+    error.
     """
     if quantity not in row.errors:
         return ""
@@ -91,7 +93,7 @@ def _resolved(race: Race, row: Row, quantity: str) -> str:
 
 
 def options_text(row: Row) -> str:
-    """Builder options as they follow ``--set``."""
+    """Return the builder options as they follow ``--set``."""
     parts = []
     for name, value in row.options.items():
         parts.append(f"{name}={value:.6g}" if isinstance(value, float) else f"{name}={value}")
@@ -99,13 +101,11 @@ def options_text(row: Row) -> str:
 
 
 def error_text(race: Race, row: Row, quantity: str) -> str:
-    """Error of a row in per cent, a beam's like for like after a stroke; what the reference does
-    not resolve as its error bar; without one the reason why there is none.
-    """
-    found = race.error(row, quantity)
-    if found is None:
+    """Return the error of a row in per cent, with a beam's like for like after a slash."""
+    error = race.error(row, quantity)
+    if error is None:
         return row.reason or row.status if row.status != "ok" else f"found no {quantity}"
-    text = percent(found, signed=False)
+    text = percent(error, signed=False)
     if not race.resolved(row, quantity):
         text = f"< {text}"
     like = row.like_for_like.get(quantity)
@@ -141,13 +141,13 @@ def _row(line: Mapping[str, str]) -> Row:
 
 
 def _numbers(line: Mapping[str, str], quantities: Iterable[str], prefix: str) -> dict[str, float]:
-    """The numbers of a line, by quantity; empty cells are left out."""
-    found = {}
+    """Return the numbers of a line, by quantity; empty cells are left out."""
+    numbers = {}
     for quantity in quantities:
         text = line.get(prefix + _column(quantity))
         if text:
-            found[quantity] = float(text)
-    return found
+            numbers[quantity] = float(text)
+    return numbers
 
 
 def _value(text: str):
@@ -158,7 +158,7 @@ def _value(text: str):
 
 
 def left_out(race: Race) -> str:
-    """The levels that were left out, in a line; empty when there are none."""
+    """Return the levels that were left out, in a line; empty when there are none."""
     first: dict[str, int] = {}
     for r in race.rows:
         if r.status == "left out":

@@ -61,7 +61,7 @@ class Look:
 
     @property
     def converges(self) -> bool:
-        """True where its levels refine one mesh."""
+        """True where the levels refine one mesh."""
         return self.family not in SCATTERED
 
     @property
@@ -74,7 +74,7 @@ class Look:
 
     @property
     def fill(self) -> str:
-        """Inside of its markers; an empty one means like for like."""
+        """Inside of the markers; empty means like for like."""
         if not self.uniform:
             return self.colour
         parts = (int(self.colour[k : k + 2], 16) for k in (1, 3, 5))
@@ -82,13 +82,13 @@ class Look:
 
     @property
     def marks(self) -> dict[str, Any]:
-        """Its markers, in Vega-Lite."""
+        """Markers in Vega-Lite."""
         look = {"type": "point", "shape": self.shape, "stroke": self.colour, "fill": self.fill}
         return look | {"size": 45, "strokeWidth": 1}
 
     @property
     def name(self) -> str:
-        """As the legend has it, under the name of the family."""
+        """Name in the legend, below the family."""
         if self.family == AUTOMATIC:
             return "automatic, by tolerance:\nall meshes tried"
         name = self.series.replace("harmonic ", "")
@@ -96,16 +96,16 @@ class Look:
 
 
 def looks(race: Race) -> dict[str, list[Look]]:
-    """The series of a race by family, in the order of the legend."""
-    found: dict[str, list[Look]] = {family: [] for family in FAMILIES}
+    """Return the series of a race by family, in the order of the legend."""
+    by_family: dict[str, list[Look]] = {family: [] for family in FAMILIES}
     for row in race.rows:
         look = Look(row.series, row.family)
-        same = found.setdefault(row.family, [])
+        same = by_family.setdefault(row.family, [])
         if look not in same:
             same.append(look)
-    return {family: series for family, series in found.items() if series}
+    return {family: series for family, series in by_family.items() if series}
 
 
 def family_name(family: str) -> str:
-    """As the legend has it."""
+    """Return the name of a family in the legend."""
     return FAMILIES[family][0] if family in FAMILIES else family

@@ -30,26 +30,26 @@ CAPTION = (
 
 
 def front_rows(race: Race) -> list[tuple[Row, list[str]]]:
-    """Rows on a front over seconds, cheapest first, and of which quantities."""
+    """Return rows on a front over seconds, cheapest first, and their quantities."""
     on = {q: race.front(q) for q in race.reference["values"]}
     rows = []
     for row in race.rows:
-        names = [q for q, front in on.items() if any(row is other for other in front)]
+        names = [q for q, front in on.items() if any(row is member for member in front)]
         if names:
             rows.append((row, names))
     return sorted(rows, key=lambda pair: pair[0].seconds or 0.0)
 
 
 def front_columns(race: Race, narrow: bool = False) -> list[Column]:
-    """Columns of the front, for a page or, narrow, for a terminal."""
+    """Return columns of the front, for a page or, narrow, for a terminal."""
     names = {"bending 1": "f1"} if narrow else {}
 
     def error(q: str) -> Column:
         def of(row: tuple[Row, list[str]]) -> str:
-            told = error_text(race, row[0], q)
+            text_ = error_text(race, row[0], q)
             if not narrow:
-                return told
-            return told.replace(" %", "%") + ("*" if q in row[1] else " ")
+                return text_
+            return text_.replace(" %", "%") + ("*" if q in row[1] else " ")
 
         return Column(f"error {'' if narrow else 'of '}{names.get(q, q)}", of)
 
@@ -70,19 +70,17 @@ def front_columns(race: Race, narrow: bool = False) -> list[Column]:
 
 
 def front_table(race: Race) -> tuple[Table, str]:
-    """The Pareto front over seconds in 80 columns, and what its marks mean."""
+    """Return the Pareto front over seconds in 80 columns, and the meaning of its marks."""
     title = "Pareto front over wall time"
     notes = (
-        "*: on the front of this quantity; <: below the error bar of the reference\n"
-        "after the stroke: like for like, section ties on both sides; no cancellation counts"
+        "*: on the front of this quantity; <: below the error bar of the reference\nafter the "
+        "slash: like for like, section ties on both sides; cancellations do not count"
     )
     return Table(title, front_columns(race, True), front_rows(race), style="narrow"), notes
 
 
 def chart(folder, scene: Mapping) -> bytes | None:
-    """The chart of a race in its folder, ready to stand in the report; None where there is none of
-    this scene.
-    """
+    """Return the chart of a race in its folder for the report; None without a race of this scene."""
     race = _of_scene(folder, scene)
     return None if race is None else page_svg("speed", lambda width: race_chart(race, width))
 
@@ -93,15 +91,13 @@ def _of_scene(folder, scene: Mapping) -> Race | None:
 
 
 def section(folder, scene: Mapping) -> dict | None:
-    """Words and tables of a race in its folder, beside its chart in the report; None where there is
-    none of this scene.
-    """
+    """Return words and tables of a race in its folder; None without a race of this scene."""
     race = _of_scene(folder, scene)
     if race is None:
         return None
     note = (
-        "“<”: below the error bar of the reference, which is shown instead. After the stroke: "
-        "like for like, with section ties on both sides. No cancellation counts on the front."
+        "“<”: below the error bar of the reference, which is shown instead. After the slash: like "
+        "for like, with section ties on both sides. Cancellations do not count."
     )
     lost = [
         word("case", lambda r: f"{r.series}, level {r.level}"),
@@ -119,7 +115,7 @@ def section(folder, scene: Mapping) -> dict | None:
                 list(race.setup.items()),
             ),
             Table(
-                "Failed, left out, or with something missing",
+                "Failed, skipped, or incomplete",
                 lost,
                 [r for r in race.rows if r.status != "ok" or r.reason],
             ),

@@ -166,9 +166,9 @@ def _reference(scene, sure: float, n: int, progress) -> tuple[dict, np.ndarray]:
     have = [q for q in CHARTED if q in values and math.isfinite(settled.bars.get(q, math.inf))]
     if not have:
         raise SolidgearError(
-            f"nothing to chart: the reference, the {model.title}, tells neither "
-            f"{' nor '.join(CHARTED)} at port {scene.port.name!r} with an error bar "
-            "(bearings must resist z there)"
+            f"nothing to chart: the reference, the {model.title}, has neither "
+            f"{' nor '.join(CHARTED)} at port {scene.port.name!r} with an error bar (bearings "
+            "must resist z there)"
         )
     like: dict[Quantity, float] = {}
     if model.bounded:  # beams are of revolution, as it is; section ties ask less of its mesh
@@ -302,7 +302,7 @@ def _admit(row: Row, chart: Race, first: dict[tuple, float], spent: float) -> No
     runs = 1 if row.level == 1 else _most_runs(guess, chart.runs)
     if spent + owed + guess * runs > chart.budget:
         row.status = "left out"
-        row.reason = f"the budget of {chart.budget:g} s would not hold it" + (
+        row.reason = f"it does not fit into the budget of {chart.budget:g} s" + (
             f" (about {guess:.2g} s a run)" if math.isfinite(guess) else ""
         )
 

@@ -14,6 +14,8 @@ from solidgear.show.words import hertz, percent
 
 #: entries of the input that are named in a sentence
 NAMED = 3
+#: letters of an entry in a sentence
+WIDTH = 30
 
 
 S = TypeVar("S", bound=Side)
@@ -60,13 +62,16 @@ def inputs(differences: Sequence[Difference]) -> str:
     if not differences:
         return "Nothing differs in the input."
     if not numbers:
-        return "The input differs in words alone (titles, sources): no number can."
-    paths = [d.path for d in numbers[:NAMED]]
+        return "Only words differ in the input (titles, sources), so that no number does."
+    changes = []
+    for difference in numbers[:NAMED]:
+        a, b = difference.texts(WIDTH)
+        if a is None or b is None:
+            changes.append(f"{difference.path} {'added' if a is None else 'removed'}")
+        else:
+            changes.append(f"{difference.path} from {a} to {b}")
     more = f" and {len(numbers) - NAMED} more" if len(numbers) > NAMED else ""
-    differ = "1 entry of the input differs"
-    if len(numbers) > 1:
-        differ = f"{len(numbers)} entries of the input differ"
-    return f"{differ}: {', '.join(paths)}{more}."
+    return f"Changed: {'; '.join(changes)}{more}."
 
 
 def resolved(changes: Sequence[Change], plural: str) -> Iterator[str]:
@@ -77,10 +82,8 @@ def resolved(changes: Sequence[Change], plural: str) -> Iterator[str]:
     count, sure = len(verdicts), verdicts.count("resolved")
     if not verdicts or "no band" in verdicts:
         return
-    how_many = {0: "none", count: "all"}.get(sure, str(sure))
-    differ = "differs" if sure == 1 else "differ"
-    rest = ", the rest do not" if 0 < sure < count else ""
-    yield f"Of {count} {plural} {how_many} {differ} by more than both bars (resolved){rest}."
+    how_many = {0: "None of", count: "All"}.get(sure, f"{sure} of")
+    yield f"{how_many} {count} {plural} changed by more than their error bars."
 
 
 def modes(mode_pairs: Sequence[ModePair[Any]], place: str) -> Iterator[str]:
@@ -93,14 +96,14 @@ def modes(mode_pairs: Sequence[ModePair[Any]], place: str) -> Iterator[str]:
     by_shape = [pair for pair in pairs if pair[0].mac is not None] or pairs
     moved = max(by_shape, key=lambda pair: abs(pair[1].relative or 0.0), default=None)
     if moved is not None and moved[1].verdict != "not resolved":
-        yield f"Moves most: {_moved(*moved)}."
+        yield f"Largest change: {_moved(*moved)}."
     for letter, alone in (
         ("A", [p.a for p in mode_pairs if p.b is None]),
         ("B", [p.b for p in mode_pairs if p.a is None]),
     ):
         labels = [f"{m.name} ({hertz(m.frequency_hz)} Hz)" for m in alone if m is not None]
         if labels:
-            yield f"Without a partner {place}, of {letter}: {', '.join(labels)}."
+            yield f"Only in {letter}, without a partner {place}: {', '.join(labels)}."
 
 
 def both_names(a: str, b: str) -> str:

@@ -54,6 +54,8 @@ TWINS = {
 SAME = 1e-9
 #: numbers that a sentence names as not resolved
 NAMED = 4
+#: words behind a difference, by its verdict
+DOUBTS = {"resolved": "", "not resolved": "; not resolved", "no band": "; no error bar"}
 NEITHER = "Neither is better in the numbers"
 
 
@@ -267,9 +269,9 @@ def _paired(a: OneShaft, b: OneShaft) -> tuple[list[ModePair[BarredMode]], str]:
         [shaft.seen(m) for m in shaft.modes.whole.modes if m.frequency_hz > 0] for shaft in (a, b)
     )
     same_shape: list[ModePair[BarredMode]] = []
-    words = "by name, for both shafts are not told at the same places along the axis"
+    words = "by name, since the shafts are not divided at the same places along the axis"
     if _same_stations(a.modes, b.modes):
-        words = "by the motions of sections along the axis, and by name where no shape is certain"
+        words = "by the motions of sections along the axis, or by name where no shape is certain"
         for p in pair_modes(b.modes, a.modes):
             partners = [m for m in (p.mode, *p.others) if m is not None and p.certain]
             same_shape += [
@@ -338,8 +340,8 @@ def _open_ranges(shafts: TwoShafts, number: NumberChange) -> str:
         return ""
     words = " and ".join(f"{range_} in {letter}" for letter, range_ in ranges.items())
     widest = max(abs(end or 0.0) for r in records if r for end in (r.total.low, r.total.high))
-    more = ", more than the difference" if widest > _size(number) else ""
-    return f"; data leave open {words}{more}"
+    more = ", which is more than the difference" if widest > _size(number) else ""
+    return f"; range from the data {words}{more}"
 
 
 def _numbers(shafts: TwoShafts, units: Units) -> Iterator[str]:
@@ -347,12 +349,12 @@ def _numbers(shafts: TwoShafts, units: Units) -> Iterator[str]:
     yield from beside.resolved([n.change for n in statics], "compliances and stiffnesses")
     moved = [n for n in statics if n.verdict != "not resolved" and n.relative is not None]
     if moved:
-        yield f"Moves most of them: {_change_text(max(moved, key=_size), units)}."
+        yield f"Largest change: {_change_text(max(moved, key=_size), units)}."
     unsure = [n for n in shafts.changes if n.verdict == "not resolved" and n.change.difference]
     if unsure:
         names = ", ".join(number.name for number in unsure[:NAMED])
         more = f" and {len(unsure) - NAMED} more" if len(unsure) > NAMED else ""
-        yield f"Not resolved, for both bars hold their differences: {names}{more}."
+        yield f"Changed by less than both error bars: {names}{more}."
     yield f"Mass of the shaft: {_change_text(shafts['mass'], units)}."
 
 
@@ -369,14 +371,15 @@ def _change_text(number: NumberChange, units: Units) -> str:
     if number.unit != "kg":
         name = f"{number.name}, "
         if change.band:
-            bars = f", both bars {percent(change.band / number.scale, signed=False)}"
-    return f"{name}from {values} ({percent(number.relative)}{bars}; {number.verdict})"
+            bars = f", both error bars {percent(change.band / number.scale, signed=False)}"
+    doubt = DOUBTS[number.verdict]
+    return f"{name}from {values} ({percent(number.relative)}{bars}{doubt})"
 
 
 def _alone(shafts: TwoShafts) -> Iterator[str]:
     for letter, names in shafts.alone.items():
         if names:
-            yield f"Only {letter} has {', '.join(names)}: the other has no such motion that is held, or no such mode."
+            yield f"Only {letter} has {', '.join(names)}."
     points = [shaft.scene.port.name for shaft in shafts.both]
     if points[0] != points[1]:
         yield f"The lumped point is {points[0]} of A and {points[1]} of B."
@@ -389,21 +392,21 @@ def _solved(shafts: TwoShafts) -> Iterator[str]:
         by = f"A by the {titles[0]}, B by the {titles[1]}"
     asked = {shaft.scene.ask.tolerance for shaft in shafts.both}
     smaller = "the smaller tolerance of both" if len(asked) > 1 else "the tolerance of both"
-    yield f"{by}, to bars of {percent(shafts.tolerance, signed=False)}: a tenth of {smaller}."
+    yield f"{by}, to error bars of {percent(shafts.tolerance, signed=False)}: a tenth of {smaller}."
     for shaft in shafts.both:
         if not shaft.settled.reached:
             yield _not_reached(shaft)
     if any(b.catalogue is not None for shaft in shafts.both for b in shaft.scene.bearings):
-        yield "Bars are those of mesh and solver, not what data of catalogue bearings leave open."
+        yield "Error bars are for mesh and solver, not for open data of catalogue bearings."
 
 
 def _not_reached(shaft: OneShaft) -> str:
     largest = shaft.settled.largest
     if largest is None:
-        return f"{shaft.letter} has no bars."
+        return f"{shaft.letter} has no error bars."
     name, bar = largest
     width = percent(bar, signed=False) if is_number(bar) else "unknown"
-    return f"Not reached by {shaft.letter}: the largest bar is {width}, of {name}."
+    return f"Not reached by {shaft.letter}: the largest error bar is {width}, of {name}."
 
 
 def results(shafts: TwoShafts) -> dict[str, Any]:

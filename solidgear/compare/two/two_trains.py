@@ -193,8 +193,8 @@ def two_trains(
             f"{name} has the shafts {listed(shop.scenes)}" for name, shop in zip(names, workshops)
         ]
         raise SolidgearError(
-            f"{' and '.join(shafts)}: two trains are compared where both call their shafts alike, in "
-            "the same sequence"
+            f"{' and '.join(shafts)}: to compare two trains, give their shafts the same names in the "
+            "same order"
         )
     mix = first.models_by_shaft(models or (JUDGE,))
     driver = first.train.named_mesh(mesh).name
@@ -258,7 +258,7 @@ def _one_train(
     response = replace(response, name=f"{letter}: {name}")
     system = shop.system(*models)
     system_modes, motions = modes_and_motions(shop, system, highest * BEYOND, ends)
-    progress(f"{letter}: how sure its frequencies are")
+    progress(f"{letter}: error bars of its frequencies")
     modes = barred_modes(shop, system, system_modes, mix)
     loaded = None
     settles = all(model.partition("/")[0] not in LUMPED for model in models)
@@ -424,26 +424,26 @@ def _at_rest(trains: TwoTrains, units: Units) -> Iterator[str]:
             r if in_trains == letters else f"{r} ({in_trains[0]})"
             for r, in_trains in letters_by_range.items()
         ]
-        yield f"Data of bearings leave open, alike in both: {'; '.join(ranges)}."
+        yield f"Range from the data of bearings, shared by both: {'; '.join(ranges)}."
 
 
 def _sure(trains: TwoTrains) -> str:
     bars = [m.bar for p in trains.modes for m in (p.a, p.b) if m is not None and m.bar is not None]
     reason = (
-        "amplitudes have none, and hang on losses and transmission error as both files give them"
+        "amplitudes have none, and depend on losses and transmission error as given in both files"
     )
     if not bars:
         return (
-            "No error bars: without a harmonic shaft there are none, so that no difference is "
-            f"called resolved; {reason}."
+            "No error bars without a harmonic shaft, so that no difference is called resolved; "
+            f"{reason}."
         )
     stations = [
         b for train in trains.both for s in train.workshop.scenes.values() for b in s.bearings
     ]
     catalogued = any(getattr(b, "catalogue", None) is not None for b in stations)
-    left_out = ", not what data of catalogue bearings leave open" if catalogued else ""
+    left_out = ", not open data of catalogue bearings" if catalogued else ""
     return (
-        f"Error bars are those of frequencies, {percent(max(bars), signed=False)} at most (meshes of "
+        f"Error bars are for frequencies, {percent(max(bars), signed=False)} at most (meshes of "
         f"harmonic shafts, reduction{left_out}); {reason}."
     )
 

@@ -32,192 +32,192 @@ FILED = ("response", "shares")
 REACTED = ("[N]", "[N m]")
 EXCITED = "Steady response to the transmission error of each file."
 REACTIONS = (
-    f"Those of {100 * LARGE:g} % of the largest of their kind or more, and the largest of every "
-    "bearing. All are in results.json and in the tables response_a.csv and response_b.csv."
+    f"From {100 * LARGE:g} % of the largest of their kind on, and the largest of every bearing. "
+    "All are in results.json, response_a.csv and response_b.csv."
 )
-MOTIONS = "In the axes of each shaft's own file: y along the shaft, x and z across it."
+MOTIONS = "In the axes of each shaft's file: y along the shaft, x and z across it."
 
 
-def write_two_trains(found: Any, out: str | os.PathLike, units: Units) -> Path:
+def write_two_trains(pair: Any, out: str | os.PathLike, units: Units) -> Path:
     """Write results.json, the responses as tables, the charts and report.html; the path is that of
     the page.
     """
-    charts = charts_of(found, units)
+    charts = charts_of(pair, units)
     return beside.write_beside(
-        found,
-        partial(_sections, found, charts, units),
+        pair,
+        partial(_sections, pair, charts, units),
         out,
         units,
         lines={
-            f"response_{key}": over_frequency(one.response, _teeth(found, one))
-            for key, one in zip("ab", found.both)
+            f"response_{key}": over_frequency(train.response, _teeth(pair, train))
+            for key, train in zip("ab", pair.both)
         },
         charts={name: charts[name] for name in FILED},
     )
 
 
-def printed(found: Any, units: Units) -> tuple[Any, ...]:
-    """Tables and sentences for a terminal."""
+def printed(pair: Any, units: Units) -> tuple[Any, ...]:
+    """Return tables and sentences for a terminal."""
     return (
-        beside.inputs(found, beside.SHORT),
-        beside.modes(found),
-        tables.peaks(found, units),
-        *map(in_ascii, found.told(units)),
-        *found.results["unpublished_lines"],
+        beside.inputs(pair, beside.SHORT),
+        beside.modes(pair),
+        tables.peaks(pair, units),
+        *map(in_ascii, pair.told(units)),
+        *pair.results["unpublished_lines"],
     )
 
 
-def charts_of(found: Any, units: Units) -> dict[str, Make]:
-    """Charts by their names: response, shares, and those of reactions and motions, numbered."""
-    both = [one.response for one in found.both]
-    teeth, its = (_teeth(found, one) for one in found.both)
-    shared = teeth if (teeth, teeth.of) == (its, its.of) else None
+def charts_of(pair: Any, units: Units) -> dict[str, Make]:
+    """Return charts by their names: response, shares, and those of reactions and motions,
+    numbered.
+    """
+    responses = [train.response for train in pair.both]
+    teeth, teeth_b = (_teeth(pair, train) for train in pair.both)
+    shared = teeth if (teeth, teeth.of) == (teeth_b, teeth_b.of) else None
     charts: dict[str, Make] = {
-        "response": partial(response_chart, both, "", shared, None, {}, units),
-        "shares": partial(shares_chart, _bars(found)),
+        "response": partial(response_chart, responses, "", shared, None, {}, units),
+        "shares": partial(shares_chart, _bars(pair)),
     }
-    forces, moved = reactions(found), motions(found)
+    forces, moved = reactions(pair), motions(pair)
     for name, groups in (
-        ("response", [others(found)]),
+        ("response", [others(pair)]),
         ("reactions", [[c for c in forces if c[0].endswith(f" {unit}")] for unit in REACTED]),
-        ("motions", [[c for c in moved if _place(c[0]) == side] for side in found.models]),
-        ("housing", [train_tables.housing_columns(found)]),
+        ("motions", [[c for c in moved if _place(c[0]) == side] for side in pair.models]),
+        ("housing", [train_tables.housing_columns(pair)]),
     ):
-        for k, own in enumerate(_pages(groups)):
-            charts[f"{name}_{k}"] = partial(columns_chart, both, own, shared, units)
+        for k, group in enumerate(_pages(groups)):
+            charts[f"{name}_{k}"] = partial(columns_chart, responses, group, shared, units)
     return charts
 
 
-def _teeth(found: Any, one: Any) -> Any:
-    train = one.workshop.train
-    return train.per_turn(train.named_mesh(found.mesh))
+def _teeth(pair: Any, side: Any) -> Any:
+    train = side.workshop.train
+    return train.per_turn(train.named_mesh(pair.mesh))
 
 
 def _place(column: str) -> str:
-    """Shaft or bearing that a column of a component is of."""
+    """Return the shaft or bearing of a column of a component."""
     return column.partition(" [")[0].rpartition(" ")[0]
 
 
-def others(found: Any) -> list[tuple[str, str]]:
-    """Columns of forces of meshes that do not drive, and what they are called."""
-    return [*found.forces.items()][1:]
+def others(pair: Any) -> list[tuple[str, str]]:
+    """Return columns of forces of meshes that do not drive, with their titles."""
+    return [*pair.forces.items()][1:]
 
 
-def reactions(found: Any) -> list[tuple[str, str]]:
-    """Columns of bearing reactions that are large, or the largest of their bearing, and what they are
-    called; forces before moments, shaft by shaft.
-    """
+def reactions(pair: Any) -> list[tuple[str, str]]:
+    """Return columns of large bearing reactions with their titles, forces before moments."""
     out: list[tuple[str, str]] = []
-    turn = [*found.models]
+    turn = [*pair.models]
     for unit in REACTED:
         sizes: dict[tuple[str, str], float] = {}
-        for column in found.columns:
+        for column in pair.columns:
             bearing, _, dof = column.removesuffix(f" {unit}").rpartition(" ")
             if " bearing " in column and column.endswith(unit):
-                tops = [one.largest(column) for one in found.both]
+                tops = [train.largest(column) for train in pair.both]
                 sizes[bearing, dof] = max(top[1] for top in tops if top is not None)
         largest = max(sizes.values(), default=0.0)
         by_bearing = sorted(
             sizes.items(),
-            key=lambda one: (turn.index(one[0][0].partition(" bearing ")[0]), one[0][0]),
+            key=lambda train: (turn.index(train[0][0].partition(" bearing ")[0]), train[0][0]),
         )
         for (bearing, dof), size in by_bearing:
-            own = max(other for (name, _), other in sizes.items() if name == bearing)
-            if size > 0 and (size == own or size >= LARGE * largest):
+            largest_load = max(load for (name, _), load in sizes.items() if name == bearing)
+            if size > 0 and (size == largest_load or size >= LARGE * largest):
                 out.append((f"{bearing} {dof} {unit}", f"{bearing}, {dof}"))
     return out
 
 
 def _pages(groups: Sequence[list[tuple[str, str]]]) -> Iterator[list[tuple[str, str]]]:
-    """Columns that share a chart: those of a group, and no more than a sheet takes."""
-    for own in groups:
-        charts = math.ceil(len(own) / MOST_PANELS)
-        size = 2 * math.ceil(len(own) / charts / 2) if own else 1  # alike, whole rows of two
-        yield from (own[k : k + size] for k in range(0, len(own), size))
+    """Split columns into groups that share a chart."""
+    for group in groups:
+        charts = math.ceil(len(group) / MOST_PANELS)
+        size = 2 * math.ceil(len(group) / charts / 2) if group else 1  # alike, whole rows of two
+        yield from (group[k : k + size] for k in range(0, len(group), size))
 
 
-def motions(found: Any) -> list[tuple[str, str]]:
-    """Columns of the motions of the main lumped points, and what they are called."""
+def motions(pair: Any) -> list[tuple[str, str]]:
+    """Return columns of the motions of the main lumped points, with their titles."""
     return [
         (column, f"{_place(column)}, {column.partition(' [')[0].rpartition(' ')[2]}")
-        for column in found.columns
-        if _place(column) in found.models
+        for column in pair.columns
+        if _place(column) in pair.models
     ]
 
 
-def _bars(found: Any) -> list[tuple[str, Sequence[Bar]]]:
+def _bars(trains: Any) -> list[tuple[str, Sequence[Bar]]]:
     out: list[tuple[str, Sequence[Bar]]] = []
-    for pair in found.modes:
+    for pair in trains.modes:
         bars = [
-            Bar(letter, one.name, one.frequency_hz, one.shares)
-            for letter, one in (("A", pair.a), ("B", pair.b))
-            if one is not None
+            Bar(letter, mode.name, mode.frequency_hz, mode.shares)
+            for letter, mode in (("A", pair.a), ("B", pair.b))
+            if mode is not None
         ]
         out.append((bars[0].name, bars))
     return out
 
 
-def _sections(found: Any, charts: Mapping[str, Make], units: Units) -> list[Section]:
-    results = found.results
-    loaded = [one for one in found.both if found.misalignment()]
+def _sections(pair: Any, charts: Mapping[str, Make], units: Units) -> list[Section]:
+    results = pair.results
+    loaded = [side for side in pair.both if pair.misalignment()]
     points = []
-    for one in loaded:
-        told = [
+    for side in loaded:
+        sentences = [
             units.text(size, "N", 4) + name.removeprefix("mesh")
-            for name, size in one.loaded.mesh_forces.items()
+            for name, size in side.loaded.mesh_forces.items()
         ]
-        at = one.loaded.point.label
-        points.append(f"{one.letter} at {at}: {', '.join(told)} along the line of action.")
+        point = side.loaded.point.label
+        points.append(f"{side.letter} at {point}: {', '.join(sentences)} along the line of action.")
     facts = [
-        train_tables.facts(train, units, f"Train {one.label}")
-        for train, one in zip(results["trains"].values(), found.both)
+        train_tables.facts(train, units, f"Train {side.label}")
+        for train, side in zip(results["trains"].values(), pair.both)
     ]
     machine = pairs_of(results["environment"], "Environment of the run")
 
-    def section(name: str, title: str, words: str, *told: Table) -> Section:
-        own = {key: make for key, make in charts.items() if key.partition("_")[0] == name}
-        return Section(name, title, words, own, told)
+    def section(name: str, title: str, words: str, *sentences: Table) -> Section:
+        drawn = {key: make for key, make in charts.items() if key.partition("_")[0] == name}
+        return Section(name, title, words, drawn, sentences)
 
     return [
         section(
             "input",
             "Input",
-            "" if found.inputs else beside.SAME,
-            beside.inputs(found),
+            "" if pair.inputs else beside.SAME,
+            beside.inputs(pair),
         ),
         section(
             "response",
             "Mesh force",
             EXCITED,
-            tables.peaks(found, units),
-            *tables.largest(found, others(found), units),
+            tables.peaks(pair, units),
+            *tables.largest(pair, others(pair), units),
         ),
-        section("modes", "Modes", "", beside.modes(found)),
+        section("modes", "Modes", "", beside.modes(pair)),
         section(
             "reactions",
             "Bearing reactions",
             REACTIONS,
-            *tables.largest(found, reactions(found), units),
+            *tables.largest(pair, reactions(pair), units),
         ),
         section(
             "motions",
             "Motions of the lumped points",
             MOTIONS,
-            *tables.largest(found, motions(found), units),
+            *tables.largest(pair, motions(pair), units),
         ),
         section(
             "housing",
             "Housing",
             "",
-            *tables.largest(found, train_tables.housing_columns(found), units),
+            *tables.largest(pair, train_tables.housing_columns(pair), units),
         ),
-        section("shares", "Strain energy", "", tables.shares(found)),
+        section("shares", "Strain energy", "", tables.shares(pair)),
         section(
             "rest",
             "Under torque",
             " ".join(points),
-            *([tables.misalignment(found, units)] if loaded else []),
-            *([tables.bearing_loads(found, units)] if loaded else []),
+            *([tables.misalignment(pair, units)] if loaded else []),
+            *([tables.bearing_loads(pair, units)] if loaded else []),
         ),
         section("trains", "Both trains", " ".join(results["unpublished_lines"]), *facts, machine),
     ]
@@ -251,15 +251,15 @@ class Bar(NamedTuple):
 
 
 def shares_chart(modes: Sequence[tuple[str, Sequence[Bar]]], width: float = WIDE) -> Chart | None:
-    """Stacked bars of the shares of modes, each with its name and what it is in both things, or in
-    one; None without any.
+    """Chart the shares of modes as stacked bars, each with its name in both trains; None without
+    any.
     """
     places = list(dict.fromkeys(p for _, bars in modes for bar in bars for p in bar.shares))
     if not modes:
         return None
-    left = NAMES if width > NARROW else NARROW_NAMES
-    most, low = max(len(bars) for _, bars in modes), -LETTER / (width - left - 2 * LETTER)
-    names = {float(k): "\n".join(wrapped(name, left - 10)) for k, (name, _) in enumerate(modes)}
+    margin = NAMES if width > NARROW else NARROW_NAMES
+    most, low = max(len(bars) for _, bars in modes), -LETTER / (width - margin - 2 * LETTER)
+    names = {float(k): "\n".join(wrapped(name, margin - 10)) for k, (name, _) in enumerate(modes)}
     lines = max(name.count("\n") + 1 for name in names.values())
     panel = Panel(
         Axis("share of the strain energy", (low, 1.0), label=PERCENT),
@@ -267,22 +267,26 @@ def shares_chart(modes: Sequence[tuple[str, Sequence[Bar]]], width: float = WIDE
         max(BAR * most + 8, 15 * lines + 2) * len(modes),
         series={place: Series(colour) for place, colour in _colours(places).items()},
         legend={"orient": "top", "columns": int(width / PLACE), "symbolType": "square"},
-        left=left,
+        left=margin,
     )
     thick = 0.84 / most
     pieces: list[dict[str, Any]] = []
     letters: list[dict[str, Any]] = []
     for k, (_, bars) in enumerate(modes):
-        at = [k + (i - (len(bars) - 1) / 2) * thick for i in range(len(bars))]
-        letters += [{"x": low / 2, "y": y, "text": bar.letter} for y, bar in zip(at, bars)]
-        pieces += [piece for y, bar in zip(at, bars) for piece in _pieces(bar, y, 0.45 * thick)]
+        heights = [k + (i - (len(bars) - 1) / 2) * thick for i in range(len(bars))]
+        letters += [{"x": low / 2, "y": y, "text": bar.letter} for y, bar in zip(heights, bars)]
+        pieces += [
+            piece for y, bar in zip(heights, bars) for piece in _pieces(bar, y, 0.45 * thick)
+        ]
     panel.draw({"type": "text", "baseline": "middle", "fontSize": 10}, letters)
     panel.draw({"type": "rect", "strokeWidth": 0}, pieces)
     for colour in (INK, "#ffffff"):
-        own = [p for p in pieces if (panel.series[p["name"]].colour in LIGHT) == (colour == INK)]
+        labelled = [
+            p for p in pieces if (panel.series[p["name"]].colour in LIGHT) == (colour == INK)
+        ]
         figures = [
             {"x": (p["x"] + p["x2"]) / 2, "y": (p["y"] + p["y2"]) / 2, "text": f"{100 * size:.0f}"}
-            for p in own
+            for p in labelled
             if (size := p["x2"] - p["x"]) >= WORTH_A_FIGURE
         ]
         look = {"type": "text", "baseline": "middle", "fontSize": 9, "color": colour}
@@ -291,16 +295,16 @@ def shares_chart(modes: Sequence[tuple[str, Sequence[Bar]]], width: float = WIDE
 
 
 def _colours(places: Sequence[str]) -> dict[str, str]:
-    """Colour of every place."""
+    """Return the colour of every place."""
     if len(places) <= len(COLOURS):
         return dict(zip(places, COLOURS))
-    left = {kind: cycle(own) for kind, own in OF_KIND.items()}
+    cycles = {kind: cycle(palette) for kind, palette in OF_KIND.items()}
     meshes = cycle(OF_MESHES)
-    return {place: next(left.get(place.rpartition(" ")[2], meshes)) for place in places}
+    return {place: next(cycles.get(place.rpartition(" ")[2], meshes)) for place in places}
 
 
 def _pieces(bar: Bar, y: float, half: float) -> Iterator[dict[str, Any]]:
-    """Pieces of a bar."""
+    """Yield pieces of a bar."""
     x = 0.0
     for place, share in bar.shares.items():
         words = readout(

@@ -17,10 +17,10 @@ from solidgear.strength.deflection.tables import meanings
 LEAST_SHARE = 0.0005
 
 
-def peaks(found: Any, units: Units = ENGINEERING) -> Table:
-    """Peaks of the mesh force side by side."""
+def peaks(pair: Any, units: Units = ENGINEERING) -> Table:
+    """Return peaks of the mesh force side by side."""
     columns = [
-        text("mode that makes it", lambda p: names(p, "mode")),
+        text("its mode", lambda p: names(p, "mode")),
         Column("A, Hz", lambda p: its(p.a, "frequency_hz"), hertz),
         Column("B, Hz", lambda p: its(p.b, "frequency_hz"), hertz),
         Column("difference", _shift),
@@ -28,8 +28,8 @@ def peaks(found: Any, units: Units = ENGINEERING) -> Table:
         quantity("B", "N", units, lambda p: its(p.b, "force"), 4),
         Column("B over A", lambda p: _decibels(p.decibels)),
     ]
-    note = "Peaks of one mode stand in one row. A dash: no peak there in the other train."
-    return Table("Peaks of the mesh force", columns, found.peaks, note, style="ruled")
+    note = "Peaks of the same mode share a row. A dash: no peak in the other train."
+    return Table("Peaks of the mesh force", columns, pair.peaks, note, style="ruled")
 
 
 def _shift(pair: Any) -> str | None:
@@ -53,22 +53,20 @@ KINDS = {
 
 
 def largest(
-    found: Any, columns: Sequence[tuple[str, str]], units: Units = ENGINEERING
+    pair: Any, columns: Sequence[tuple[str, str]], units: Units = ENGINEERING
 ) -> list[Table]:
-    """Largest amplitudes of columns of the responses, each by its name with the unit and what it is
-    called; a table for every unit.
-    """
+    """Return largest amplitudes of columns of the responses, a table for every unit."""
     out = []
     for si, title in KINDS.items():
-        shown = f"{si} moved" if si in ("m", "rad") else si
+        dimension = f"{si} moved" if si in ("m", "rad") else si
         rows = [
-            (name, *(one.largest(column) for one in found.both), found.decibels(column))
+            (name, *(train.largest(column) for train in pair.both), pair.decibels(column))
             for column, name in columns
             if column.endswith(f" [{si}]")
         ]
         heads: list[Column] = [text("", lambda row: row[0])]
         for k, letter in ((1, "A"), (2, "B")):
-            heads.append(quantity(letter, shown, units, partial(_top, k, 1), 4))
+            heads.append(quantity(letter, dimension, units, partial(_top, k, 1), 4))
             heads.append(Column(f"{letter}, at Hz", partial(_top, k, 0), hertz))
         heads.append(Column("B over A", lambda row: _decibels(row[3])))
         out.append(Table(f"Largest {title} over frequency", heads, rows))
@@ -79,15 +77,15 @@ def _top(k: int, i: int, row: Any) -> float | None:
     return None if row[k] is None else row[k][i]
 
 
-def shares(found: Any) -> Table:
-    """Strain energy of every mode by what it is in, A and B in turn."""
+def shares(trains: Any) -> Table:
+    """Return strain energy of every mode by part, A and B in turn."""
     rows = [
-        (pair, one, letter)
-        for pair in found.modes
-        for letter, one in (("A", pair.a), ("B", pair.b))
-        if one is not None
+        (pair, mode, letter)
+        for pair in trains.modes
+        for letter, mode in (("A", pair.a), ("B", pair.b))
+        if mode is not None
     ]
-    places = list(dict.fromkeys(place for _, one, _ in rows for place in one.shares))
+    places = list(dict.fromkeys(place for _, mode, _ in rows for place in mode.shares))
     columns = [
         text("mode", lambda row: f"{row[2]}: {row[1].name}"),
         Column("Hz", lambda row: row[1].frequency_hz, hertz),
@@ -101,31 +99,31 @@ def _share(place: str, row: Any) -> str | None:
     return f"{100 * share:.1f}" if share >= LEAST_SHARE else None
 
 
-def misalignment(found: Any, units: Units = ENGINEERING) -> Table:
-    """Misalignment of both trains at rest under load."""
-    opens = [{m.name: m.open for m in one.loaded.misalignment} for one in found.both]
+def misalignment(pair: Any, units: Units = ENGINEERING) -> Table:
+    """Return the misalignment of both trains at rest under load."""
+    opens = [{m.name: m.open for m in train.loaded.misalignment} for train in pair.both]
     columns = [
         word("of the axes", lambda row: f"{row[0]}, {units.unit(row[1])}"),
         *(Column(letter, partial(_value, key, units)) for letter, key in (("A", "a"), ("B", "b"))),
         Column("difference", lambda row: _apart(row, units)),
     ]
-    told = found.misalignment()
-    shown = {row[0] for row in told}
-    both = [m for m in found.a.loaded.misalignment if m.name in shown] if told else []
-    note = f"{meanings(both, units)}."
-    if any(change.band is not None for *_, change in told):
-        columns.append(Column("both bars", lambda row: band(row[3])))
+    rows = pair.misalignment()
+    shown_names = {row[0] for row in rows}
+    measures = [m for m in pair.a.loaded.misalignment if m.name in shown_names] if rows else []
+    note = f"{meanings(measures, units)}."
+    if any(change.band is not None for *_, change in rows):
+        columns.append(Column("both error bars", lambda row: band(row[3])))
         columns.append(word("", lambda row: row[3].verdict))
-        note += " Both bars: the sum of what the meshes of both leave, relative to A."
+        note += " Both error bars: sum of both mesh errors, relative to A."
     for letter, ranges in zip("AB", opens):
-        if any(ranges[row[0]] is not None for row in told):
-            columns.append(Column(f"left open, {letter}", partial(_range, ranges, units)))
-    if any(ranges[row[0]] is not None for row in told for ranges in opens):
+        if any(ranges[row[0]] is not None for row in rows):
+            columns.append(Column(f"range, {letter}", partial(_range, ranges, units)))
+    if any(ranges[row[0]] is not None for row in rows for ranges in opens):
         note += (
-            " Left open: by estimated insides and classes of clearance of bearings, which both trains "
+            " Range: by estimated insides and classes of clearance of bearings, which both trains "
             "may share."
         )
-    return Table("Misalignment", columns, told, note)
+    return Table("Misalignment", columns, rows, note)
 
 
 def _value(key: str, units: Units, row: Any) -> str:
@@ -133,8 +131,8 @@ def _value(key: str, units: Units, row: Any) -> str:
 
 
 def _apart(row: Any, units: Units) -> str | Cell:
-    told = units.number(row[3].difference, row[1], 3)
-    return Cell(told, "unresolved") if row[3].verdict == "not resolved" else told
+    difference = units.number(row[3].difference, row[1], 3)
+    return Cell(difference, "unresolved") if row[3].verdict == "not resolved" else difference
 
 
 def _range(ranges: Any, units: Units, row: Any) -> str | None:
@@ -144,22 +142,24 @@ def _range(ranges: Any, units: Units, row: Any) -> str | None:
     return f"{low} to {high}"
 
 
-def bearing_loads(found: Any, units: Units = ENGINEERING) -> Table:
-    """Loads of all bearings of both trains at rest under load."""
+def bearing_loads(pair: Any, units: Units = ENGINEERING) -> Table:
+    """Return loads of all bearings of both trains at rest under load."""
     loads = [
-        {f"{s.name}.{b.name}": b for s in one.loaded.shafts for b in s.bearings}
-        for one in found.both
+        {f"{s.name}.{b.name}": b for s in train.loaded.shafts for b in s.bearings}
+        for train in pair.both
     ]
     columns = [word("bearing", lambda name: name)]
-    for what, si, of in (
+    for title, si, component in (
         ("radial", "N", lambda b: b.radial),
         ("axial", "N", lambda b: float(b.load[1])),
         ("moment", "N m", lambda b: b.moment),
     ):
-        for letter, own in zip("AB", loads):
-            columns.append(quantity(f"{what} {letter}", si, units, partial(_load, own, of), 4))
-    for letter, own in zip("AB", loads):
-        columns.append(Column(f"radial {letter} at, deg", partial(_azimuth, own)))
+        for letter, side_loads in zip("AB", loads):
+            columns.append(
+                quantity(f"{title} {letter}", si, units, partial(_load, side_loads, component), 4)
+            )
+    for letter, side_loads in zip("AB", loads):
+        columns.append(Column(f"radial {letter} at, deg", partial(_azimuth, side_loads)))
     note = (
         "Load of the shaft on the bearing; radial loads act at an angle from x towards z. They have "
         "no error bar."
@@ -167,9 +167,9 @@ def bearing_loads(found: Any, units: Units = ENGINEERING) -> Table:
     return Table("Bearing loads", columns, list(dict.fromkeys([*loads[0], *loads[1]])), note)
 
 
-def _load(own: dict[str, Any], of: Callable[[Any], float], name: str) -> float | None:
-    return of(own[name]) if name in own else None
+def _load(loads: dict[str, Any], component: Callable[[Any], float], name: str) -> float | None:
+    return component(loads[name]) if name in loads else None
 
 
-def _azimuth(own: dict[str, Any], name: str) -> str | None:
-    return f"{degrees(own[name].azimuth):.0f}" if name in own else None
+def _azimuth(loads: dict[str, Any], name: str) -> str | None:
+    return f"{degrees(loads[name].azimuth):.0f}" if name in loads else None

@@ -155,18 +155,18 @@ class Body(Displayed):
     mesh : dict
         Facts about the discretisation, for the record.
     geometry : Drawing or None
-        The mesh as its builder has it, which knows how it is drawn
+        The builder's mesh, which draws itself
         (:class:`solidgear.core.body.surface.Drawing`).
     further : object or None
         Builder of further circumferential families, such as
         :class:`solidgear.core.models.harmonic.circumferential.Families`; None where the blocks are all that the
-        model knows.
+        model has.
     cache : Cache
-        What solvers have worked out about this body, such as its factors.
+        Results of solvers for this body, such as its factors.
     factoring : Factoring
         How its matrices are to be factored.
     remedies : callable, optional
-        ``remedies(body, error)`` adds to a refusal of its factors what to do instead.
+        ``remedies(body, error)`` adds advice where its factors do not fit.
 
     Examples
     --------

@@ -109,12 +109,12 @@ def answer(
     Returns
     -------
     Answered
-        After the last mesh that could be solved; ``reached`` says whether it will do.
+        After the last mesh that could be solved; ``reached`` says whether it is within the tolerance.
 
     Raises
     ------
     SolidgearError
-        For a tolerance that is none or that arithmetic does not allow, an unknown quantity, or a
+        For a tolerance that is not usable, an unknown quantity, or a
         scene that no model can answer.
 
     Examples
@@ -163,8 +163,7 @@ def solve_cheapest(
             name,
             setting="",
             valid=False,
-            why="no error of their own to show; the coarsest solid, which could show it, "
-            "costs as much and is better",
+            why="beams cannot show their own error",
         )
         for name in LADDER.of(BEAM)
     ]
@@ -239,13 +238,15 @@ def asked_for(scene: Scene, ask: Iterable[str] | str) -> tuple[Quantity, ...]:
             word = _lowest(scene, int(place[1]))
         if requested.points and word in QUANTITIES:
             if word.is_frequency:
-                raise SolidgearError(f"ask: {name}: a frequency is not of a point; ask for {word}")
+                raise SolidgearError(
+                    f"ask: {name}: a frequency belongs to the whole shaft; ask for {word}"
+                )
             word = canonical_name(scene, requested)
         elif requested.points or word not in (*QUANTITIES, *ACROSS):
             quantities = (*QUANTITIES, *ACROSS, *WORDS, "f1")
             if place is not None:
                 raise SolidgearError(
-                    f"ask: {name} is {word} here, which has no bar of its own in an answer; ask for "
+                    f"ask: {name} is {word} here, for which answer has no error bar; ask for "
                     f"{', '.join(q for q in QUANTITIES if q.is_frequency)}, or run solidgear modes"
                 )
             raise SolidgearError(

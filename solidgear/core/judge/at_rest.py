@@ -58,5 +58,6 @@ def opened_words(
     most = [name for name in most if opened[name] >= WORTH_NAMING * largest]
     modes_text = listed((f"{name} by {100 * opened[name]:.2g} %" for name in most), most=MOST_NAMED)
     return [
-        f"natural frequencies are those at rest; {speed_text} spin moves {modes_text}, up and down (first order)"
+        f"natural frequencies are those at rest; {speed_text} spin moves {modes_text} up and down "
+        "(first order)"
     ]

@@ -157,9 +157,9 @@ def same_size(coarser: Sequence[float], finer: Sequence[float]) -> str:
     ratio, place = min((a / b, k) for k, (a, b) in enumerate(zip(coarser, finer)))
     sides = f"{1e3 * coarser[place]:.3g} mm and {1e3 * finer[place]:.3g} mm"
     return (
-        f"the last two meshes tell no error bar, since the {SIDES[place]} sides of their cells are "
-        f"{'as long' if ratio < 1 + SAME_SIZE else 'hardly shorter'}, {sides}: list a mesh with half "
-        "of that in every direction"
+        f"no error bar from the last two meshes, since the {SIDES[place]} sides of their cells "
+        f"are {'as long' if ratio < 1 + SAME_SIZE else 'hardly shorter'}, {sides}: list a mesh "
+        "with half of that in every direction"
     )
 
 

@@ -98,8 +98,8 @@ def shoulder_cause(
         ).with_attachment("section")
     except SolidgearError:
         tell(
-            "the share of the shoulders is left out: the shaft at its smallest diameter would be "
-            "thinner than one of its bores"
+            "the effect of the shoulders is not computed: a shaft of the smallest diameter would "
+            "be thinner than one of the bores"
         )
         return None
     beam, solid = _solve(plain, "timoshenko"), _solve(plain, "harmonic", **options)

@@ -27,7 +27,7 @@ def completeness(evidence: dict, model: str) -> str:
     counted_rows = [row for row in rows if row["counted"]]
     text = f"{_reach(evidence)}: {_listed(counted_rows)}"
     if LADDER[model].family == BEAM:
-        return f"{text}; a beam knows no others."
+        return f"{text}; a beam has no others."
     uncounted = _uncounted([row for row in rows if not row["counted"]])
     return f"{text}; {uncounted}." if uncounted else f"{text}."
 
@@ -42,7 +42,7 @@ def cut_short(modes: Iterable[Mode], n: int, asked_hz: float | None, option: str
         return []  # all that there are up to it
     return [
         f"the list ends with the {n} elastic shapes asked for, at {elastic[-1].frequency_hz:.4g} "
-        f"Hz, and {asked_hz:g} Hz are asked for: there may be more between; raise "
+        f"Hz, below the {asked_hz:g} Hz asked for; raise "
         f"{option + ', or ' if option else ''}modes under [ask]"
     ]
 
@@ -50,8 +50,8 @@ def cut_short(modes: Iterable[Mode], n: int, asked_hz: float | None, option: str
 def split_apart(evidence: dict) -> list[str]:
     """Return sentences on pairs that a mesh has split further than meshes like it do."""
     return [
-        f"the mesh splits the pair {name} by {split:.1e}, where the body has one frequency: refine "
-        "it, or use hexahedra or the harmonic model."
+        f"the mesh splits the pair {name} by {split:.1e}, although the body has one frequency: "
+        "refine it, or use hexahedra or the harmonic model."
         for name, split in evidence.get("split_pairs", ())
     ]
 
@@ -60,11 +60,11 @@ def _reach(evidence: dict) -> str:
     """State how far a count reaches: into the body, where the error bars of the modes above the
     list are known.
     """
-    method = "counted by the inertia of a second factor"
+    method = "counted by a second factorisation"
     if COMPLETE not in evidence:
         return (
-            f"No mode of this mesh missed below {evidence[COUNTED]:.6g} Hz ({method}; without error "
-            "bars the body itself may have one)"
+            f"No mode of this mesh missed below {evidence[COUNTED]:.6g} Hz ({method}; the body "
+            "itself may have one more, since there are no error bars)"
         )
     suffix = (
         "" if evidence[COMPLETE] == evidence[COUNTED] else ", less error bars of what lies above"

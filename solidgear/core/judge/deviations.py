@@ -20,8 +20,8 @@ from solidgear.core.solve.modes import ModeSet
 
 WITHIN, OPEN, BEYOND = "within", "open", "beyond"
 TIES = {
-    SCENE: "with the attachments of the scene",
-    SECTION: "like for like (section means everywhere)",
+    SCENE: "",
+    SECTION: " like for like",
 }
 
 
@@ -78,7 +78,7 @@ class Deviation:
     def side(self) -> str:
         """Meaning of the sign to an engineer."""
         if self.quantity.diagonals:
-            return "off (of the geometric mean of the two diagonal entries)"
+            return "of the geometric mean of both diagonal entries off"
         if self.quantity.kind == COMPLIANCE:
             return "too small (too stiff)" if self.relative < 0 else "too large (too soft)"
         return "too high" if self.relative > 0 else "too low"
@@ -180,7 +180,7 @@ class Partners:
         if pair.certain and pair.mode is not None:
             pairing = ""
             if pair.mode.name != name:
-                pairing = f"paired by shape, MAC {pair.mac:.2f}: it calls the mode {pair.mode.name}"
+                pairing = f"paired by shape, MAC {pair.mac:.2f}, with its {pair.mode.name}"
             return pair.mode.frequency_hz, pairing
         place = int(
             np.searchsorted(_ascending(self.reference), pair.reference.frequency_hz * (1 - 1e-9))
@@ -189,7 +189,7 @@ class Partners:
         if place >= len(frequencies):
             return None, ""
         pairing = (
-            f"no shape is certainly the same, so number {place + 1} in ascending order is compared"
+            f"no shape is certainly the same: compared by number {place + 1} in ascending order"
         )
         return float(frequencies[place]), pairing
 

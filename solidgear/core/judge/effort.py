@@ -38,7 +38,7 @@ def heavy_meshes(scene: Scene, model: Model) -> Iterator[str]:
     """Yield the cost of the two coarsest meshes of a solid, which an error bar needs, in sentences
     where it is much; meshes that may be large are made and counted.
     """
-    places = ("its coarsest mesh", "the next, without which there is no bar,")
+    places = ("its coarsest mesh", "the next, without which there is no error bar,")
     words = []
     for position, level in zip(places, model.meshes_of(scene, {}).levels):
         if model.rough_unknowns(scene, level) < MAYBE_HEAVY:

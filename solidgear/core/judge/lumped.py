@@ -169,8 +169,8 @@ def _judged(
 ) -> Judgement:
     """Judge the lumped model by the stiffness of the source model and by the first bending."""
     if not base.valid:
-        state = base.why_not if base.open else f"which is out: {base.why_not}"
-        reason = f"its stiffness is that of the {LADDER[source].title}, {state}"
+        state = base.why_not if base.open else f"which is not valid: {base.why_not}"
+        reason = f"it has the stiffness of the {LADDER[source].title}, {state}"
         return Judgement(False, reason, open=base.open)
     if against := objections("lumped", notices):
         return Judgement(False, against[0])
@@ -180,7 +180,7 @@ def _judged(
         or variant.frequency_hz is None
         or lumped_record.frequency_hz is None
     ):
-        reason = "not judged: there is no first bending of a trusted model to hold it against"
+        reason = "not judged: no trusted model has a first bending mode"
         return Judgement(False, reason, open=True)
     gap = variant.frequency_hz / reference_hz - 1
     kind = gap_verdict(gap, bar, tolerance)
@@ -191,15 +191,12 @@ def _judged(
         )
         lowest = lumped_record.frequency_hz / reference_hz - 1
         if gap_verdict(lowest, bar, tolerance) == BEYOND:
-            reason += (
-                ": masses are lumped in the z plane, and the first bending of this shaft "
-                "is not in it"
-            )
+            reason += ": masses are lumped in the z plane, and this shaft first bends in another"
         return Judgement(False, reason)
     if kind == OPEN:
         reason = (
-            f"not judged: its first bending is {100 * gap:+.1f} % off, and with the error bar of the "
-            f"reference that may be more or less than the {100 * tolerance:g} % asked for"
+            f"not judged: its first bending is {100 * gap:+.1f} % off, and with the reference's "
+            f"error bar may or may not be within the {100 * tolerance:g} % asked for"
         )
         return Judgement(False, reason, open=True)
     return Judgement(True)

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 
 Progress = Callable[[str], None]
 #: reason for no bar
-ONE_MESH = "the mesh is that of the file, and nothing finer tells how good it is"
+ONE_MESH = "the mesh is that of the file, and there is no finer one to judge it by"
 #: reasons for no narrower one
 NO_FINER = "no finer mesh is calibrated"
 FINER_FILE = "list a finer mesh beside those of the file"
@@ -292,21 +292,21 @@ class Refinement:
             return FINER_FILE if self.error_bars else same_size(*self.sizes[-2:])
         count = len(self.levels)
         tried = "one mesh" if count == 1 else f"{count} meshes"
-        return f"{tried} did not do; most of the bar comes from {self.worst_place()}"
+        return f"{tried} was too coarse; most of the error bar comes from {self.worst_place()}"
 
     def in_vain(self) -> str:
         """Return the reason why no finer mesh would help; empty if one may."""
         bars = [step.bar for step in self.steps if step.bar is not None]
         if self.model.bounded and len(bars) > 3 and bars[-1] > FUTILE * bars[-3]:
-            return f"finer meshes no longer help; most of the bar comes from {self.worst_place()}"
+            return f"finer meshes no longer help; most of the error bar comes from {self.worst_place()}"
         floors, wide = self.floors(), self.unmet()
         if not wide or not all(floors.get(q, 0.0) > self.tol for q in wide):
             return ""
         top = max(wide, key=floors.__getitem__)
         return (
-            f"no mesh makes bars of {few(wide)} as narrow: the {self.model.title} is sure "
-            "of a quantity to a share of what features change of it, here to "
-            f"{100 * floors[top]:.2g} % of {top} at best"
+            f"no mesh makes the error bars of {few(wide)} as narrow: the {self.model.title} "
+            f"leaves an error that grows with what features change, here {100 * floors[top]:.2g} "
+            f"% of {top} at least"
         )
 
 

@@ -428,4 +428,4 @@ def _add_variants(scene: Scene, solution: Solution, progress: Progress) -> None:
                         variant, body, as_supports(variant), None, unbooked
                     )
             except SolidgearError as error:
-                log.info("%s: attachment %s left out: %s", solution.model, attachment, error)
+                log.info("%s: attachment %s skipped: %s", solution.model, attachment, error)

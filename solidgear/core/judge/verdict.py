@@ -40,16 +40,16 @@ def trusted(
     inside the tolerance, or None and the reason why there is none.
     """
     names = tuple(names)
-    reason = "no solid was run, and a beam cannot judge itself"
+    reason = "no solid was run, and a beam has no error bar"
     for model in LADDER.of(SOLID):
         if model not in solutions:
             continue
         worst = solutions[model].worst_bar(names)
         if worst is None:
-            reason = f"the {LADDER[model].title} has no error bar of its own ({_reason(solutions[model])})"
+            reason = f"the {LADDER[model].title} has no error bar ({_reason(solutions[model])})"
         elif worst > tolerance:
             reason = (
-                f"the own error of the {LADDER[model].title} may be {percent(worst)}, more than the "
+                f"the {LADDER[model].title} itself may be {percent(worst)} off, more than the "
                 f"{percent(tolerance)} asked for"
             )
         else:
@@ -126,9 +126,7 @@ def _judged(
         worst = solution.worst_bar(judged)
         if worst is None or worst > tolerance:
             text = (
-                "it has no error bar of its own"
-                if worst is None
-                else f"its own error may be {percent(worst)}"
+                "it has no error bar" if worst is None else f"its own error may be {percent(worst)}"
             )
             return Judgement(
                 False,
@@ -165,15 +163,15 @@ def _quantity_text(gap: Deviation, solutions: dict[str, Solution]) -> str:
 def _gap_reason(gap: Deviation, solutions: dict[str, Solution], kind: str, tolerance: float) -> str:
     text = (
         f"{_quantity_text(gap, solutions)} is {percent(gap.size)} {gap.side} against the "
-        f"{LADDER[gap.reference].title} {TIES[gap.attachment]}"
+        f"{LADDER[gap.reference].title}{TIES[gap.attachment]}"
     )
     if gap.pairing:
         text += f" ({gap.pairing})"
     if kind == BEYOND:
         return f"{text}, more than the {percent(tolerance)} asked for"
     return (
-        f"{text}, which with an error bar of {percent(gap.bar or 0.0)} may or may not be within the "
-        f"{percent(tolerance)} asked for"
+        f"{text}, and with an error bar of {percent(gap.bar or 0.0)} may or may not be within "
+        f"the {percent(tolerance)} asked for"
     )
 
 
@@ -217,20 +215,23 @@ def _other_solid(
     if not model_gaps:
         return []
     worst = max(gap.size for gap in model_gaps)
-    text = f"The {LADDER[model].title}, {kind}, is within {percent(worst)} of it in every judged number"
+    text = (
+        f"The {LADDER[model].title}, {kind}, is within {percent(worst)} of it in every judged "
+        "number"
+    )
     # a number without an error bar of its own may err by all of a gap
     error_bars = solution.error_bars.get(SCENE, {})
     unknown = [gap.quantity for gap in model_gaps if gap.quantity not in error_bars]
     if len(unknown) == len(model_gaps):
-        return [f"{text}; it has no error bars of its own, which would tell whose the gaps are."]
+        return [f"{text}; it has no error bars, so it is not known which of both is off."]
     outside = [
         g.quantity for g in model_gaps if g.quantity in error_bars and g.verdict == "resolved"
     ]
     text += f", beyond the error bars in {', '.join(outside)}" if outside else ""
     if unknown:
-        return [f"{text}; of {', '.join(unknown)} it has no error bar of its own."]
+        return [f"{text}; it has no error bar for {', '.join(unknown)}."]
     return [
-        f"{text}{'; all gaps lie inside the error bars (not resolved)' if not outside else ''}."
+        f"{text}{'; all differences lie inside the error bars (not resolved)' if not outside else ''}."
     ]
 
 
@@ -257,7 +258,7 @@ def _all_of(names: list[str]) -> str:
 
 def _cheapest(solutions, cheapest, tolerance) -> list[str]:
     if not cheapest:
-        return [f"No model is known to be within {percent(tolerance)}."]
+        return [f"No model was shown to be within {percent(tolerance)}; one may still be."]
     return [
         f"Cheapest model within {percent(tolerance)}: {LADDER[cheapest].title} ({_cost(solutions[cheapest])})."
     ]
@@ -280,15 +281,15 @@ def _beams(solutions, gaps, judged, tolerance) -> list[str]:
         seat_gap, section_gap = scene.size, like.size
         if seat_gap > tolerance >= section_gap:
             out.append(
-                f"What puts the {LADDER[model].title} out is the tie, not the beam: "
-                f"{_quantity_text(scene, solutions)} is {percent(seat_gap)} off at the scene's seats, which "
-                f"distort sections, and nothing is more than {percent(section_gap)} off like for like."
+                f"The seats, not the beam, put the {LADDER[model].title} out: "
+                f"{_quantity_text(scene, solutions)} is {percent(seat_gap)} off as the scene is "
+                f"tied, and nothing is more than {percent(section_gap)} off like for like."
             )
         elif seat_gap <= tolerance < section_gap:
             out.append(
-                f"The {LADDER[model].title} looks within {percent(seat_gap)} at the scene's seats but "
-                f"is {percent(section_gap)} off in {_quantity_text(like, solutions)} like for like: "
-                "seat flexibility, which a beam has not, hides part of its excess stiffness."
+                f"The {LADDER[model].title} agrees within {percent(seat_gap)} by luck: like for "
+                f"like it is {percent(section_gap)} off in {_quantity_text(like, solutions)}, and "
+                "soft seats, which a beam leaves out, cancel that at this seat width."
             )
     return out
 

@@ -79,7 +79,7 @@ def recorded_places(scene: Scene, solution: Solution) -> WhereRecord | None:
 def _sentence(quantity: Quantity, shares: list[tuple[Place, float]]) -> str:
     """Say in words where most of an error sits."""
     (first, most), *others = shares
-    sentence = f"{100 * most:.0f} % of what is left in {quantity} sits {_at(first)}"
+    sentence = f"{100 * most:.0f} % of the error bar of {quantity} arises {_at(first)}"
     if most >= 0.5 or not others:
         return sentence
     second, less = others[0]
@@ -108,7 +108,8 @@ def _shares(
     error_bar, score = judged.error_bars[quantity], judged.scores[quantity]
     if _rounding(error_bar):
         raise SolidgearError(
-            f"the bar of {quantity} is {error_bar.width:.1e}, which is rounding; there is no error to place"
+            f"the error bar of {quantity} is {error_bar.width:.1e}, which is rounding, so that there is "
+            "no place to show"
         )
     return error_bar, score / score.sum()
 

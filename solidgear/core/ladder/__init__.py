@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from solidgear.core.scene.shaft import Shaft
 
 #: advice where no model fits
-NO_MODEL = "no model holds all that the scene has"
+NO_MODEL = "no model solves all features of the scene"
 
 
 def way_out(scene: Any) -> str:
@@ -37,9 +37,8 @@ def way_out(scene: Any) -> str:
     if not fit:
         return NO_MODEL
     return (
-        f'{NO_MODEL}; write model = "pitch_cone" for {feature_labels(cut)}, '
-        "which leaves out the shape of the "
-        f"teeth and keeps their pitch surface, and use {' or '.join(fit)}"
+        f'{NO_MODEL}; write model = "pitch_cone" for {feature_labels(cut)}, which replaces teeth by '
+        f"their pitch surface, and use {' or '.join(fit)}"
     )
 
 

@@ -72,7 +72,7 @@ class Model:
 
     def builder(self) -> Callable[..., Body]:
         """Import and return the builder: ``builder(scene, **options)`` gives the free body."""
-        raise NotImplementedError(f"the {self.title} has no body of its own")
+        raise NotImplementedError(f"the {self.title} has no body")
 
     def build(self, scene: Any, **options: Any) -> Body:
         """Build the free body of a scene, by options of the builder within their limits."""
@@ -126,7 +126,7 @@ class Model:
         if self.for_features and not any(f.sort in self.holds for f in with_smeared):
             kinds = sorted(kind for kind, cls in added("feature").items() if cls.sort in self.holds)
             return (
-                f"the {self.title} is made for features, and the scene has none of: "
+                f"the {self.title} needs features, and the scene has none of: "
                 f"{listed(kind.replace('_', ' ') for kind in kinds)}"
             )
         sorts = {f.sort for f in features}
@@ -137,7 +137,7 @@ class Model:
             return ""
         if BODIES in sorts and BODIES not in self.holds:
             (body,) = (f for f in features if f.sort == BODIES)
-            return f"the {self.title} is of a shaft, and a {body.what} has no axis"
+            return f"the {self.title} is for shafts, and a {body.what} has no axis"
         strange = [f for f in features if f.sort not in self.holds]
         unfit = (
             f"the {self.title} is {self._nature} and the scene has "
@@ -145,7 +145,7 @@ class Model:
         )
         if not self.holds:
             return f"{unfit}: it would answer for the plain part"
-        return unfit if strange else f"{unfit}, which no mesh holds together"
+        return unfit if strange else f"{unfit}, and no mesh has both"
 
     def concerns(self, scene: Any) -> bool:
         """Return True where it is among the models solved for a scene when none is named."""

@@ -167,7 +167,7 @@ class _Remedies:
 
         single, files = {"precision": "single"}, {"out_of_core": True}
         for words, more, note in (
-            ("--set precision=single", single, "same digits, solutions refined in double"),
+            ("--set precision=single", single, "same digits, refined in double precision"),
             ("--set out_of_core=true", files, "the factor in files, several times slower"),
             ("--set precision=single --set out_of_core=true", {**single, **files}, ""),
         ):

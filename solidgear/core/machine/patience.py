@@ -59,7 +59,7 @@ class Patience:
                 self.reason = f"took more than {self.seconds:g} s of processor time"
             elif clock - checked > self.seconds:
                 if taken - checked_taken < STILL * (clock - checked):
-                    self.reason = f"stood still for {self.seconds:g} s"
+                    self.reason = f"made no progress for {self.seconds:g} s"
                 checked, checked_taken = clock, taken
         else:
             child.kill()

@@ -192,9 +192,9 @@ def _beside_blocks(
             for c in j.corners
         ):
             raise SolidgearError(
-                f"a seat ends or is held at y = {mark.y:.6g} m, among the cells of the "
+                f"a seat ends or is held at y = {mark.y:.6g} m, inside the cells of the "
                 f'{near[0].corners[0].kind} "{near[0].corners[0].name}" at {near[0].y:.6g} m; '
-                "move the one or the other"
+                "move one of them"
             )
     return out
 

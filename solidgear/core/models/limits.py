@@ -49,9 +49,8 @@ def countable(model: str, scene: Shaft, size: float, refinement: float) -> float
     lines = extent / size * refinement
     if lines > MOST_LINES:
         raise SolidgearError(
-            f"{model}: cells of {size / refinement:.3g} m would make {lines:.3g} lines of them, "
+            f"{model}: cells of {size / refinement:.3g} m would make {lines:.3g} lines of cells, "
             f"more than {MOST_LINES}; give size of at least "
-            f"{extent * refinement / MOST_LINES:.3g} m "
-            "or a smaller refinement"
+            f"{extent * refinement / MOST_LINES:.3g} m or a smaller refinement"
         )
     return size

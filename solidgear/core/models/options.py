@@ -80,7 +80,7 @@ BEAM_OPTIONS = {
     "shear": Option("Timoshenko if true, Euler-Bernoulli if not", "flag"),
     "rotary_inertia": Option("whether sections carry rotary inertia in bending", "flag"),
     "head": Option(
-        "follow the taper of cones, or take the cylinder of their mean radii",
+        "follow the taper of cones, or take cylinders of their mean radii",
         "choice",
         choices=("cone", "mean"),
     ),
@@ -115,7 +115,7 @@ HARMONIC_OPTIONS = {
     "refinement": _REFINEMENT,
     "attachments": _TIES,
     "families": Option(
-        "families of motion to build; what needs the others is then not answered",
+        "families of motion to build; numbers that need others are not answered",
         "several",
         choices=("bending", "axial", "torsion"),
         optional=True,
@@ -128,14 +128,14 @@ HARMONIC_OPTIONS = {
         why="the lowest modes of the thinnest and shortest tube a scene may have take fewer",
     ),
     "cuts": Option(
-        "corners of the mesh, y and r in m, and how often the cells around each are cut towards it",
+        "corners of the mesh, y and r in m, and how often cells around each are cut towards it",
         "places",
         least=1,
         most=12,
         why="further cuts are thinner than rounding allows",
     ),
     "across": Option("points on sides of cells, y and r in m, to draw lines through", "places"),
-    "plain": Option("whether one cell fills every band and strip", "flag"),
+    "plain": Option("whether every band and strip is one cell", "flag"),
 }
 
 CORRECTED_OPTIONS = {
@@ -160,11 +160,13 @@ _GRADED = Option(
 #: do not see these
 FACTORING_OPTIONS = {
     "precision": Option(
-        "of the factor; solutions are refined in double precision", "choice", choices=PRECISIONS
+        "precision of the factor; solutions are refined in double precision",
+        "choice",
+        choices=PRECISIONS,
     ),
     "out_of_core": Option("whether the factor is kept in files, in the folder TMPDIR", "flag"),
     "engine": Option(
-        "who factors: this program, or PETSc under mpirun by MUMPS or (statics only) by multigrid",
+        "solver: this program, or PETSc under mpirun by MUMPS or (statics only) by multigrid",
         "choice",
         choices=ENGINES,
     ),
@@ -173,7 +175,7 @@ FACTORING_OPTIONS = {
         "whole",
         least=1,
         most=4096,
-        why="more rows a rank than ranks is what pays",
+        why="more ranks do not pay",
     ),
 }
 
@@ -182,14 +184,12 @@ SECTOR_OPTIONS = {
     "graded_size": _GRADED,
     "refinement": _REFINEMENT,
     "material_port": Option(
-        "whether the lumped point follows the mean of the material of its span, not of its surface",
+        "whether the lumped point follows the mean of its span's material, not of its surface",
         "flag",
     ),
     "ovalising": HARMONIC_OPTIONS["ovalising"],
     "attachments": _TIES,
-    "half": Option(
-        "whether a sector that is even about its middle is solved by half of it", "flag"
-    ),
+    "half": Option("whether a sector with a mirror plane is solved by half of it", "flag"),
     **FACTORING_OPTIONS,
 }
 
@@ -209,7 +209,7 @@ SOLID_OPTIONS = {
     "attachments": _TIES,
     "half": Option("whether a part with a mirror plane is solved in halves", "flag"),
     "coarser": Option(
-        "of a list of mesh files, how many come after the one that is solved",
+        "number of mesh files in the list after the one that is solved",
         "whole",
         least=0,
         most=4,

@@ -186,7 +186,7 @@ class _PortLoads:
         least = np.linalg.eigvalsh(inner)[0] if len(inner) else 1.0
         if least < TOGETHER:
             raise SolidgearError(
-                f"the ports {', '.join(names)} cannot all be moved apart; leave one out"
+                f"the ports {', '.join(names)} cannot all move independently; leave one out"
             )
         self._scaled, self._inner = scaled, sla.cho_factor(inner) if len(inner) else None
         self.balanced = self._q / size[:, None]

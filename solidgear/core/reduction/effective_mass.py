@@ -123,7 +123,7 @@ def _thesis(point: LumpedPoint, receptance) -> Synthesis:
                 "thesis",
                 mass,
                 receptance,
-                "equations 52 and 53 are met: the mode is a static shape",
+                "equations 52 and 53 hold: the mode is a static shape",
                 numbers,
             )
         return _none(

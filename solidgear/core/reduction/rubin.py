@@ -76,8 +76,8 @@ def rubin(body: Body, n: int = 30, ports: PortChoice | None = None, steps: int =
     Returns
     -------
     Superelement
-        Without motions that move no port (ovalising families of a harmonic solid), which no
-        spring on a port drives.
+        Motions that move no port (ovalising families of a harmonic solid) are not in it: no
+        spring on a port acts on them.
 
     Raises
     ------

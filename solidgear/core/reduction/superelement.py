@@ -197,7 +197,7 @@ def chosen_ports(body: Body, ports: PortChoice | None) -> dict[str, int]:
     for choice in ports:
         name, attachment = (choice, None) if isinstance(choice, str) else choice
         if name in out:
-            raise SolidgearError(f"the port {name!r} is asked for twice; a part holds it once")
+            raise SolidgearError(f"the port {name!r} is given twice; give it once")
         out[name] = body.port_index(name, attachment)
     return out
 

@@ -22,7 +22,8 @@ def _read_quantity(value: Any) -> Quantity:
         raise SceneError(f"must be {_KNOWN}")
     if quantity.points and quantity.is_frequency:
         raise SceneError(
-            f"only compliances and stiffnesses are of a point; write {quantity.symbol} without {AT}"
+            f"only compliances and stiffnesses belong to a point; write {quantity.symbol} without "
+            f"{AT}"
         )
     if quantity.points == ("",):
         raise SceneError(f"names no point behind {AT}; write for example {quantity.at('gear')}")
@@ -33,7 +34,7 @@ Asked = Annotated[Quantity, BeforeValidator(_read_quantity)]
 
 
 class Ask(Model):
-    """Questions: number of modes, frequency range, tolerance, and quantities that judge models.
+    """The questions: number of modes, highest frequency, tolerance, and quantities to judge by.
 
     Attributes
     ----------
@@ -44,7 +45,7 @@ class Ask(Model):
     tolerance : float
         Relative, between 0 and 1.
     quantities : tuple of Quantity
-        Those that judge models, from `QUANTITIES`, at a further lumped point as
+        Quantities that models are judged by, from `QUANTITIES`, at a further lumped point as
         ``C_zz@name``; empty is the usual set, compliances at every point with first bending and
         first axial mode.
 

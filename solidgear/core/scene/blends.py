@@ -164,8 +164,8 @@ class _Blend(Placed):
             if abs(before - after) <= 1e-9 * max(before, after):
                 surface_name = "outer radius" if outer else "bore"
                 raise SceneError(
-                    f"the {surface_name} does not jump at y = {self.y:.6g} m; a {self.what} sits at a step "
-                    "or at the edge of an end face",
+                    f"the {surface_name} has no step at y = {self.y:.6g} m; a {self.what} needs a step or "
+                    "the edge of an end face",
                     path=("y",),
                 )
             edge = edge or "root"
@@ -185,7 +185,7 @@ class _Blend(Placed):
         if edge == "root" and low and high and low.material != high.material:
             raise SceneError(
                 f'"{low.name}" and "{high.name}" are of two materials; a {self.what} at their '
-                "root would be of neither",
+                "root is not possible",
                 path=("y",),
             )
         axial, radial = self.extents
@@ -209,8 +209,8 @@ class _Blend(Placed):
         near = [k for k, y in enumerate(ends) if abs(y - self.y) <= TOUCH]
         if not near:
             raise SceneError(
-                f"no segment begins or ends at y = {self.y:.6g} m; a {self.what} sits at a step "
-                'or at the edge of an end face, such as "<segment>.end"',
+                f"no segment begins or ends at y = {self.y:.6g} m; a {self.what} needs a step or "
+                'the edge of an end face, such as "<segment>.end"',
                 path=("y",),
             )
         k = near[0]

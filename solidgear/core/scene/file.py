@@ -109,7 +109,7 @@ class ScenePartFile(SceneFile):
         for key, verb in (("segment", "describes the shaft"), ("feature", "is cut into segments")):
             if getattr(self, key):
                 raise SceneError(
-                    f"a [[{key}]] {verb}, which a [body] does itself; leave one of both out",
+                    f"a [[{key}]] {verb}, as a [body] does; leave one of them out",
                     path=(key,),
                 )
         return self
@@ -127,8 +127,8 @@ def scene_of(raw: Table, file_path: str, part_of: Reader = PARTS.refuse_parts) -
     """Resolve the tables of a scene file; files that it names lie relative to `file_path`."""
     if describes_train(raw):
         raise SceneError(
-            "describes a train of shafts and not a shaft; run solidgear compare, check, "
-            "system-modes, response or receptance on it, or read it with solidgear.load_train"
+            "describes a train, not one shaft; run solidgear compare, check, system-modes, "
+            "response or receptance on it, or read it with solidgear.load_train"
         ).located(raw, where=place_of(file_path))
     try:
         return _Reading(dict(raw), file_path, part_of).scene()
@@ -322,7 +322,9 @@ class _Reading:
             ]
         reason = f"unknown kind; write one of {', '.join(map(repr, kinds))}"
         if "kind" not in table:
-            reason = 'this key is missing; it says what the feature is, such as kind = "keyway"'
+            reason = (
+                'this key is missing; it gives the sort of the feature, such as kind = "keyway"'
+            )
         self.problems.append(SceneError(reason, path=(*path, "kind")))
         return []
 

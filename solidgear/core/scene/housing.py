@@ -33,7 +33,7 @@ def rigid_motions(entries: Mapping[str, Any]) -> tuple[str, ...]:
         i, j, _ = STIFFNESS_NAMES.get(name, (-1, -1, ""))
         for k in {i, j} & set(rigid):
             raise SceneError(
-                f"couples {DOF_NAMES[k]}, which is rigid as long as {OWN[k]} is not given",
+                f"couples {DOF_NAMES[k]}, which is rigid unless {OWN[k]} is given",
                 path=(name,),
             )
     return tuple(DOF_NAMES[k] for k in rigid)
@@ -77,8 +77,8 @@ class Elastic(Model):
                 raise SceneError(f"has entries in {name}, which is rigid", path=("matrix",))
             if 0 < spring < SOFTEST:
                 raise SceneError(
-                    f"the stiffness in {name} is {spring:.6g}, below {SOFTEST:g} in SI, "
-                    "which is no spring: write 0",
+                    f"the stiffness in {name} is {spring:.6g}, below {SOFTEST:g} in SI, too soft for "
+                    "a spring: write 0",
                     path=("matrix",),
                 )
         return self

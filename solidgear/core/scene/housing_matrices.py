@@ -80,15 +80,15 @@ class HousingMatrices:
         least = np.sqrt(np.abs(np.linalg.eigvalsh(rigid_basis.T @ operator @ rigid_basis)).max())
         if not len(square) or square[0] <= 0:
             raise self._wrong(
-                "its stiffness leaves more than six motions free, or is negative in one; a rigid "
-                "housing is told by mass, inertia and centre"
+                "its stiffness leaves more than six motions free, or is negative in one; for a "
+                "rigid housing give mass, inertia and centre"
             )
         omega = np.sqrt(square)
         if least > STILL * omega[0]:
             frequency = least / (2 * np.pi)
             raise self._wrong(
-                f"its stiffness resists rigid motions like a mode at {frequency:.4g} Hz, and must not: "
-                "give that of the free body, in SI, with positions in the axes of the train"
+                f"its stiffness resists rigid motions (mode at {frequency:.4g} Hz): give the free "
+                "body's, in SI, with positions in the axes of the train"
             )
         return omega, (lower @ elastic_basis @ turn * omega).T
 

@@ -26,9 +26,8 @@ class BearingLoad(Model):
         about = [key for key in data if key.lower() in ABOUT_AXIS]
         if about:
             raise SceneError(
-                "no bearing carries a moment about the axis of the shaft, which turns freely: write "
-                "forces x, y, z and tilting moments thx, thz alone; a torque is that of an "
-                '[operation] of a train, or of solidgear stress --drive "A=115 N*m"',
+                "bearings carry no moment about the axis: write x, y, z, thx and thz alone; give "
+                'a torque by [operation] of a train, or solidgear stress --drive "A=115 N*m"',
                 path=(about[0],),
                 value=show(data[about[0]]),
             )

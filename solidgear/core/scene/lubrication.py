@@ -55,7 +55,7 @@ class Lubrication(Model):
     reliability : float
         Share of bearings that reach the modified life.
     speed : float or None
-        Of the shaft, rad/s, where a bearing gives none.
+        Of the shaft, rad/s, where a bearing does not give one.
 
     Raises
     ------

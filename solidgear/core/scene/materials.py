@@ -48,8 +48,8 @@ MATERIALS = {
 }
 #: materials without constants, and why
 NONE_OF_ITS_OWN = {
-    "lamination": "a laminated stack has no E of its own: it is soft in bending and along the axis, "
-    "by how it is pressed and welded; give the E that makes a measured first bending right",
+    "lamination": "a laminated stack has no fixed E, since pressing and welding decide; give the E that "
+    "fits a measured first bending",
 }
 
 

@@ -50,13 +50,13 @@ class Scene(Displayed, Model):
     segments : tuple of Segment
         End to end from y = 0.
     material : Material
-        That of segments without one of their own.
+        Material of segments without one.
     bearings : tuple of Bearing
     masses : tuple of PointMass
     features : tuple of Keyway, Flat or CrossHole
-        Cuts out of the shaft that are not of revolution.
+        Cuts and teeth, which are not of revolution.
     body : BodyFile or None
-        The part from a file of which the segments are the round part.
+        The part from a file, whose round part the segments are.
     blends : tuple of Fillet or Chamfer
         At the edges of the shaft, which stays of revolution.
     housing_axial : float or None
@@ -64,7 +64,7 @@ class Scene(Displayed, Model):
     housing : Housing or None
         A rigid housing of all bearings on a 6x6 spring; in place of `housing_axial`.
     port : Port
-        The lumped point; of several, the main one.
+        The lumped point; with several, the main one.
     further_ports : tuple of Port
         Other lumped points, such as a second gear.
     load : BearingLoad or None
@@ -77,7 +77,7 @@ class Scene(Displayed, Model):
     Raises
     ------
     SceneError
-        Every problem of its parts, of segments that are no shaft, and of seats that do not lie on
+        Every problem of its parts, of segments that do not fit, and of seats that do not lie on
         it.
 
     Examples

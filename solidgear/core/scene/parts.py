@@ -52,9 +52,9 @@ class Material(Model):
     density : float
         kg/m3.
     strength : Strength or None
-        Of which ratings of fatigue are made.
+        For ratings of fatigue.
     name : str
-        As reports call it; nothing is read out of it.
+        Name in reports, without effect.
 
     Raises
     ------

@@ -92,7 +92,7 @@ def fields_on_patch(
     words: Any, table: Mapping[str, Any], places: Any, *sizes: str
 ) -> dict[str, Any]:
     """Return the fields of a station on a patch; along y it is as long as the patch is large."""
-    reason = "a patch has its place and size itself; leave one of both out"
+    reason = "a patch has its place and size itself; leave one of them out"
     words.refuse(reason, "position", "from_", "at", "attach_to", "span", "seat", table=None)
     words.refuse(reason, "face", "seat_width", table=table)
     patch = places.patch(words.patch, words.point)
@@ -108,7 +108,7 @@ def patch_problems(station: Any) -> Iterator[SceneError]:
     if station.patch is None:
         return
     if station.attachment == "section":
-        yield SceneError("a patch is no section: use average or rigid", path=("attachment",))
+        yield SceneError("a patch has no section: use average or rigid", path=("attachment",))
     if getattr(station, "catalogue", None) is not None:
         reason = "catalogue data are of a bearing around an axis: give a stiffness, or hold"
         yield SceneError(reason, path=("catalogue",))

@@ -54,7 +54,10 @@ def keys_of(path: str, tables: Tables) -> Keys:
             remainder = _after(remainder, word)
             keys.append(word)
         else:
-            reason = f"holds {show(table, 40)}, in which there is no {_word(remainder)}"
+            reason = (
+                f"is {show(table, 40)}, which has no {_word(remainder)}; write a table to vary "
+                f"{_word(remainder)}"
+            )
             raise SceneError(reason, field=label_of(tuple(keys), tables))
         table = _child(table, keys[-1]) if remainder else _value(table, keys[-1])
     if isinstance(table, list) and len(table) == 1 and isinstance(table[0], Mapping):

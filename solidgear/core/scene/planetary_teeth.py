@@ -31,7 +31,8 @@ class PlanetaryTeeth:
     pressure_angle : float
         Transverse, rad.
     ratio : float, optional
-        Of the speeds of sun and carrier where a source gives it, to be checked against the teeth.
+        Ratio of the speeds of sun and carrier where it is given elsewhere, to be checked by the
+        teeth.
     helix : float
         Helix angle at the pitch circles, rad; positive of a right-handed sun.
 

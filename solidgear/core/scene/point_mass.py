@@ -21,7 +21,7 @@ class PointMass(Placed):
     Attributes
     ----------
     name : str
-        Made by the scene where it is not given.
+        Without it, the scene makes one.
     mass : float
         kg.
     inertia : tuple of float
@@ -126,7 +126,7 @@ def check_inertia(inertia: tuple[float, float, float]) -> None:
         raise SceneError("a moment of inertia must not be negative", path=("inertia",))
     if 2 * max(inertia) > (1 + 1e-9) * sum(inertia):
         raise SceneError(
-            "one moment of inertia is larger than the sum of the other two, which no body has; "
+            "one moment of inertia is larger than the sum of the other two, which is impossible; "
             "a thin disc across the shaft has [I, 2 I, I]",
             path=("inertia",),
         )

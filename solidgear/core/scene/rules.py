@@ -44,7 +44,7 @@ SMALLEST_BLEND = 2e-3
 MOST_OF_FACE, MOST_OF_LENGTH = 0.95, 0.95
 
 ONE_HOUSING = (
-    "is the entry kyy of a housing's stiffness, all other motions rigid; leave one of both out"
+    "is the entry kyy of a housing's stiffness, all other motions rigid; leave one of them out"
 )
 
 
@@ -63,7 +63,7 @@ def too_many(plural: str, count: int, most: int) -> str:
     """Return the reason to refuse a list longer than that of any shaft."""
     hint = ""
     if plural == "segments":
-        hint = "; let pieces that are one be one segment, and a few cones stand for a curve"
+        hint = "; join pieces into one segment, and use a few cones for a curve"
     return f"{count} {plural} are more than the {most} a shaft may have{hint}"
 
 
@@ -209,8 +209,8 @@ def _two_preloads(rows: Sequence[tuple[int, Bearing, BearingData]]) -> Iterator[
             f"{force:.6g} N at {b.name!r}" for force, (_, b, _) in zip(forces, rows)
         )
         yield SceneError(
-            f"two bearings that hold the shaft against each other feel one preload, and this is "
-            f"{forces_text}; give it once, at either",
+            f"a pair of bearings has one preload, but here are {forces_text}; "
+            "give it once, at either",
             path=("bearings", rows[1][0], "catalogue", "preload"),
         )
 
@@ -259,9 +259,7 @@ def station_problems(
             )
         names.add(station.name)
         if kind == "attached span" and len(ports) > 1 and AT in station.name:
-            reason = (
-                "the name of one of several points has no @, which stands before it in C_zz@name"
-            )
+            reason = "the name of a point must not contain @, which separates it in C_zz@name"
             yield SceneError(reason, path=(*path[:-1], "name"))
         if getattr(station, "patch", None) is not None:
             continue
@@ -302,7 +300,7 @@ def no_term(quantity: Quantity, points: Sequence[str]) -> str:
     if len(points) == 2 and quantity.kind == STIFFNESS:
         compliance = f"C{quantity.symbol[1:]}{AT}{AT.join(points)}"
         return (
-            "a stiffness between points depends on which of them are held; ask for the compliance, "
+            "a stiffness between points depends on which are held; ask for the compliance "
             f"{compliance}, or run solidgear stiffness --port {','.join(points)}"
         )
     return ""
@@ -402,8 +400,8 @@ def _misfit(blend, corner, segments, earlier, stations, features) -> tuple[str, 
             return "y", f'this edge has "{neighbour.name}" already'
     if min(corner.axial, corner.radial) < SMALLEST_BLEND * corner.r:
         return key, (
-            f"a {kind} under {SMALLEST_BLEND:g} of the radius, {corner.r:.6g} m, is no {kind}: "
-            "leave it out, or look at the units"
+            f"a {kind} under {SMALLEST_BLEND:g} of the radius, {corner.r:.6g} m, is too small: "
+            "leave it out, or check the units"
         )
     face = _face_height(corner, segments)
     if corner.radial > face + TOUCH:
@@ -439,15 +437,15 @@ def _misfit(blend, corner, segments, earlier, stations, features) -> tuple[str, 
         ends_inside = [y for y in (s.lo, s.hi) if lo + TOUCH < y < hi - TOUCH]
         if ends_inside:
             return key, (
-                f'{reach}, and the seat of "{s.name}" ends inside of that, at '
-                f"{ends_inside[0]:.6g} m; let it end elsewhere"
+                f'{reach}, and the seat of "{s.name}" ends inside it, at {ends_inside[0]:.6g} m; '
+                "let it end elsewhere"
             )
         # the face itself is plane at the end of a shaft
         at_end = abs(s.y - corner.y) <= TOUCH and corner.y in (0.0, segments[-1].y1)
         if lo - TOUCH <= s.y <= hi + TOUCH and not at_end:
             return key, (
-                f'{reach}, and "{s.name}" is at {s.y:.6g} m; put the one or the other elsewhere, '
-                "since no section there is plane"
+                f'{reach}, and "{s.name}" is at {s.y:.6g} m, where no section is plane; move one '
+                "of them"
             )
     for f in features:
         first, last = f.span(segments)

@@ -54,7 +54,7 @@ class Bearing(Placed):
     Attributes
     ----------
     name : str
-        By which results, loads and sweeps call it.
+        Name in results, loads and sweeps.
     y : float
         Middle of the seat, m; `position`, as in a file, is the same.
     seat_width : float
@@ -63,34 +63,34 @@ class Bearing(Placed):
         6x6 of the bearing alone, SI, order (x, y, z, thx, thy, thz). The constructor also takes it
         as `stiffness`: six rows, or named entries. None as long as catalogue data are not solved.
     catalogue : Catalogue or None
-        What the stiffness comes from, where it was not given.
+        Catalogue data that the stiffness comes from, where it is not given.
     axial_series : tuple of float
         Springs in series with its axial stiffness, N/m.
     housing : Elastic or None
-        What its outer ring stands in, in series with all of it.
+        Stiffness under its outer ring, in series with all of it.
     scale : float
-        Factor on the stiffness of all that; loads under which it settles are found without it.
+        Factor on its whole stiffness; bearing loads are found without it.
     attachment : {'average', 'rigid', 'section'}
         How the seat follows the bearing.
     status : str
-        Where its numbers come from: published, identified, assumed, measured, or of catalogue data
+        Source of its numbers: published, identified, assumed, measured, or for catalogue data
         calculated (inner geometry given) or estimated.
     note : str
         Free text.
     support : {'locating', 'floating'} or None
-        A floating one slides in its seat and carries nothing along y; without a word cylindrical
+        A floating bearing slides in its seat and carries nothing along y; by default cylindrical
         and needle rollers float, and all others locate.
     hold : {'clamped', 'pinned'} or None
-        In place of a stiffness: nothing moves, or nothing moves but turns.
+        In place of a stiffness: no motion, or rotations only.
     face : {'start', 'end'} or None
         The end face whose middle it holds, as a section; the seat is then the rim beside that face.
     patch : Patch or None
-        Of a body without an axis, the faces that it holds, at their point.
+        Faces that it holds, on a body without an axis.
 
     Raises
     ------
     SceneError
-        A matrix that is not symmetric, is indefinite, or holds springs too soft to be any; a face
+        A matrix that is not symmetric, is indefinite, or has too soft springs; a face
         attached in another way than as a section.
 
     Examples
@@ -149,7 +149,7 @@ class Bearing(Placed):
         if words.patch is not None:
             return fields_on_patch(words, table, places, "seat_width")
         if words.seat is not None:
-            reason = "a seat has its place and width in seat; leave one of both out"
+            reason = "a seat has its place and width in seat; leave one of them out"
             words.refuse(reason, "position", "from_", "face", "seat_width", table=table)
             lo, hi = places.span_of_seat(words.seat, "position and seat_width") or (None, None)
             if lo is None or hi is None:
@@ -186,8 +186,8 @@ class Bearing(Placed):
         for name, k in zip(DOF_NAMES, np.diag(self.matrix)):
             if 0 < k < SOFTEST:
                 raise SceneError(
-                    f"the stiffness in {name} is {k:.6g}, below {SOFTEST:g} in SI, "
-                    "which is no spring: write 0",
+                    f"the stiffness in {name} is {k:.6g}, below {SOFTEST:g} in SI, too soft for a "
+                    "spring: write 0",
                     path=("matrix",),
                 )
         return self
@@ -324,7 +324,7 @@ class Port(Placed):
         Span of the surface that carries it, m.
     attachment : {'average', 'rigid', 'section'}
     patch : Patch or None
-        Of a body without an axis, the faces that carry it, and the point itself.
+        Faces that carry it and the point itself, on a body without an axis.
 
     Raises
     ------

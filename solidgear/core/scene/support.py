@@ -74,8 +74,8 @@ def support_problems(bearing: Bearing) -> Iterator[SceneError]:
         return
     if data is not None and data.one_sided:
         yield SceneError(
-            f"a {data.arrangement} {kind} bearing that slides is pressed by nothing: two rows float "
-            'together as one bearing with arrangement = "O" or "X" and row_distance',
+            f"a {data.arrangement} {kind} bearing cannot float, since nothing presses it: write "
+            'two rows as one bearing with arrangement = "O" or "X" and row_distance',
             path=("support",),
         )
     if bearing.axial_series:

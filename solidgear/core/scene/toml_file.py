@@ -93,7 +93,7 @@ def _bytes(file_path: str) -> bytes:
 def _text(file_path: str) -> str:
     data = _bytes(file_path)
     if len(data) > LARGEST:
-        raise SceneError(f"this is no scene: it is larger than {LARGEST // 1000} kB")
+        raise SceneError(f"this is not a scene: it is larger than {LARGEST // 1000} kB")
     if data.startswith((b"\xff\xfe", b"\xfe\xff")) or b"\0" in data:
         raise SceneError(
             f"not UTF-8 text (byte {max(data.find(0), 0)}): it is UTF-16 or no text at all; "

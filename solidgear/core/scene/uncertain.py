@@ -159,7 +159,7 @@ def _read(scene: Scene, path: str, text: Any) -> Uncertain:
     if not 0 < low <= 1 + 1e-9 or not high >= 1 - 1e-9 or not low < high:
         nominal = "1" if dimension == FACTOR else f"{value:.6g} in SI"
         raise SceneError(
-            f"must be a range above zero that holds what the scene says, {nominal}",
+            f"must be a range above zero that contains the scene's value, {nominal}",
             value=show(text),
         )
     return Uncertain(path=path, said=text, low=low, high=high)
@@ -197,7 +197,7 @@ def _entry(scene: Scene, path: str) -> tuple[float, str]:
             value = data.preload.force or data.preload.displacement
             dimension = "load" if data.preload.force else "length"
     if not isinstance(value, float) or value == 0:
-        raise SceneError(f"this is no entry with a value here that can have a range; {_KNOWN}")
+        raise SceneError(f"this entry cannot have a range here; {_KNOWN}")
     return value, dimension
 
 

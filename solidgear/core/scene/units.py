@@ -139,8 +139,8 @@ def quantity(value: Any, dimension: str) -> float:
         raise SceneError(f'must be a finite number, for example "{example}"', value=show(value))
     if abs(number) > LARGEST:
         raise SceneError(
-            f"is larger than {LARGEST:g}{f' {si}' if si else ''}, beyond anything physical; "
-            f'write for example "{example}"',
+            f"is larger than {LARGEST:g}{f' {si}' if si else ''}, which is not physical; write "
+            f'for example "{example}"',
             value=show(value),
         )
     return number
@@ -333,7 +333,8 @@ AxialSpring = Annotated[
     _in("force_per_length"),
     _POSITIVE,
     _must(
-        lambda v: v >= SOFTEST, f"is softer than {SOFTEST:g} N/m, which is no spring: leave it out"
+        lambda v: v >= SOFTEST,
+        f"is softer than {SOFTEST:g} N/m, too soft for a spring: leave it out",
     ),
 ]
 Newtons = Annotated[float, _in("load")]
@@ -348,7 +349,7 @@ Viscosity = Annotated[
     _POSITIVE,
     _must(
         lambda v: 1e-7 <= v <= 1e-1,
-        "is no viscosity of an oil at work, which are 1 to 10000 mm^2/s: probably wrong units",
+        "is outside 1 to 10000 mm^2/s, the viscosities of oils at work: probably wrong units",
     ),
 ]
 PositiveSpeed = Annotated[Speed, _POSITIVE]

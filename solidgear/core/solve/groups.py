@@ -201,8 +201,8 @@ def complete(part: Part, reach: float, method: str | None) -> dict:
             part.verdict = {
                 "checked": False,
                 "why": (
-                    f"the stiffest cell lies {stiffest:.0e} times above the modes, "
-                    "so that rounding turns signs of the factor"
+                    f"the stiffest cell lies {stiffest:.0e} times above the modes, so that "
+                    "rounding changes signs of the factor"
                 ),
             }
             return part.verdict

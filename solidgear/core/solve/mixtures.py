@@ -34,9 +34,9 @@ class Mixture(NamedTuple):
     def sentence(self) -> str:
         """Sentence for a reader."""
         return (
-            f"{self.name} and {self.partner} ({100 * self.gap:+.2g} %) are mixtures of the same two "
-            f"motions, the first {100 * self.share:.0f} % what its name says: another mesh or model may "
-            "call them the other way round, and a bar holds the mode, whatever its name"
+            f"{self.name} and {self.partner} ({100 * self.gap:+.2g} % apart) are mixtures of the "
+            f"same two motions, the first {100 * self.share:.0f} % as named: another mesh or "
+            "model may swap the names, and error bars hold for the mode, whatever its name"
         )
 
 

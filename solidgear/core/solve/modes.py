@@ -175,13 +175,13 @@ def modes(
         Eigensolver; None takes the quickest for the size and the back end (see
         :func:`solidgear.core.solve.eigen.lowest`).
     count : bool
-        Check by the inertia of another factor that no mode was missed (Sylvester's law); costs
+        Check by a second factorisation that no mode was missed (Sylvester's law of inertia); costs
         about one more factorisation.
     ovalising : bool
         Solve the families of two waves around and more that begin below the highest mode reported,
         for a body that can build them (a harmonic solid).
     stations : int
-        Number of sections along the shaft at which motions of every mode are given.
+        Number of sections along the shaft whose motions are given for every mode.
 
     Returns
     -------
@@ -354,17 +354,16 @@ def _sound(body: Body, mode: Mode, parts: list[Part]) -> Mode:
         )
         if _by_springs(mode, parts) > mode.error / 2:
             raise SolidgearError(
-                f"{doubt}: bearings resist it by the difference of far larger stiffnesses that "
-                "couple, and its sixteen digits are not enough; give the bearing a stiffness that "
-                "is clearly positive in every direction, or zero"
+                f"{doubt}: bearings resist it by a small difference of large coupled stiffnesses; "
+                "give the bearing a stiffness that is clearly positive in every direction, or zero"
             )
         highest = (
             max(part.supported.highest for part in parts) / (2 * np.pi * mode.frequency_hz) ** 2
         )
         raise SolidgearError(
-            f"{doubt}: the smallest cell of the {body.fidelity} body is so stiff that the "
-            f"eigenvalues span {np.log10(highest):.0f} digits of the 16 there are; use a coarser "
-            "mesh (lower order, fewer layers), or a beam for a shaft as slender as this"
+            f"{doubt}: the smallest cell of the {body.fidelity} body is so stiff that eigenvalues "
+            f"span {np.log10(highest):.0f} of 16 digits; use a coarser mesh (lower order, fewer "
+            "layers), or a beam for so slender a shaft"
         )
     return mode
 

@@ -72,8 +72,8 @@ class ContactWrench:
         if min(abs(fx), abs(fy)) < 1e-9 * np.linalg.norm(self.force):
             axis = "x" if abs(fx) < abs(fy) else "y"
             raise SolidgearError(
-                f"the formulas of the thesis divide by the force along {axis}, and the cells have "
-                "none; use the point on the central axis"
+                f"the formulas of the thesis divide by the force along {axis}, which is zero; use "
+                "the point on the central axis"
             )
         y = self.centre[1]
         x = (self.moment[2] + fx * y) / fy

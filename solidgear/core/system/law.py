@@ -213,7 +213,7 @@ class Gap:
 
     def _force_at(self, force: float) -> Force:
         if force < 0 and self.coast == 0:
-            raise SolidgearError("a contact that holds on one side alone carries no force back")
+            raise SolidgearError("a contact on one side only carries no force back")
         inside = self.depth(force) * (1 + 1e-12) if self.pieces else self.depth(force)
         return self.force(np.array([[inside]]), np.zeros((1, 1)))
 

@@ -175,7 +175,7 @@ class SteadyState:
             gap = value[:, None] - w2
             if np.any(np.abs(gap) <= ON_A_POLE * w2):
                 raise SolidgearError(
-                    "a frequency is that of a mode, and nothing damps it; give damping or a loss"
+                    "a frequency equals that of an undamped mode; give damping or a loss"
                 )
             out = ((rows @ shapes) @ ((work @ load)[:, None] / gap)).T
         return out + free_motion(self.system, w2, load, rows).T

@@ -85,8 +85,8 @@ class CrossHole(Cut):
             )
         elif self.offset and abs(self.offset) + self.diameter / 2 > segment.outer0 - least:
             yield SceneError(
-                f"the hole runs out of the side of the shaft: beside half its diameter the offset "
-                f"may be {segment.outer0 - least - self.diameter / 2:.6g} m",
+                "the hole runs out of the side of the shaft: with its diameter the offset may be "
+                f"{segment.outer0 - least - self.diameter / 2:.6g} m at most",
                 path=("offset",),
             )
         elif segment.inner0 and abs(abs(self.offset) - self.diameter / 2 - segment.inner0) < least:

@@ -181,7 +181,7 @@ class Long(Cut):
             )
         elif self.depth < SMALLEST * segment.outer0:
             yield SceneError(
-                f"a {self.what} under a hundredth of the radius, {segment.outer0:.6g} m, is no feature: "
-                "leave it out, or look at the units",
+                f"a {self.what} under a hundredth of the radius, {segment.outer0:.6g} m, is too "
+                "small: leave it out, or check the units",
                 path=("depth",),
             )

@@ -39,7 +39,7 @@ class Keyway(Long):
         yield from self._deep(segment)
         if self.width >= segment.outer0:
             yield SceneError(
-                f"a keyway wider than the radius, {segment.outer0:.6g} m, is no keyway",
+                f"must not be wider than the radius, {segment.outer0:.6g} m",
                 path=("width",),
             )
         elif self.width < SMALLEST * segment.outer0:

@@ -79,7 +79,7 @@ class _Toothed(OnSegment):
     def _is_a_tooth(self):
         if self.addendum + self.dedendum == 0:
             raise SceneError(
-                "teeth without height are the plain segment: leave the feature out",
+                "teeth without height: leave the feature out",
                 path=("dedendum",),
             )
         pitch = 2 * math.pi / self.count
@@ -90,7 +90,7 @@ class _Toothed(OnSegment):
             )
         if self.root_half > pitch / 2 - LEAST_LAND * pitch:
             raise SceneError(
-                "the roots of neighbouring teeth all but touch: give a smaller dedendum, "
+                "the roots of neighbouring teeth almost touch: give a smaller dedendum, "
                 "half_thickness or flank_angle",
                 path=("dedendum",),
             )

@@ -174,7 +174,7 @@ def not_together(scene: Any) -> str:
     for teeth in toothed.values():
         label = f'{teeth.what} "{teeth.name}"'
         if teeth.spiral_angle:
-            return f"a mesh with {label} is twisted, and what is cut beside it would be with it"
+            return f"a mesh with {label} is twisted, and would twist cuts beside it"
         pitch, first = 2 * math.pi / teeth.count, next(iter(toothed.values()))
         difference = (middle(teeth, 1) - middle(first, 1) + pitch / 2) % pitch - pitch / 2
         if abs(difference) > SAME_ANGLE:

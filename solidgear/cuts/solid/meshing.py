@@ -118,8 +118,8 @@ def featured_mesh(
             removed = sum(gmsh.model.occ.getMass(3, piece) for piece in pieces)
             filling = filled(
                 gmsh,
-                "gmsh could not mesh the shaft with its features ({}): "
-                "change refinement a little, or look for features that all but touch",
+                "gmsh could not mesh the shaft with its features ({}): change refinement a "
+                "little, or look for features that almost touch",
             )
         of_part = {tag: share for tag, share in filling.straightened.items() if tag not in pieces}
         return replace(filling, straightened=of_part), np.isin(filling.volume, pieces), removed
@@ -140,8 +140,8 @@ def featured_mesh(
     if lacking > OF_CUT:
         names = ", ".join(f'"{f.name}"' for f in features)
         raise MeshError(
-            f"the elements of {names} miss {100 * lacking:.2g} % of the {1e9 * removed:.6g} mm^3 that "
-            f"the solid cut out of the mesh has, more than {OF_CUT:.0%}: raise refinement"
+            f"the elements of {names} miss {100 * lacking:.2g} % of the {1e9 * removed:.6g} mm^3 "
+            f"to be cut out, more than {OF_CUT:.0%}: raise refinement"
         )
     quality = check_filling(filling, volume=volume, rtol=arcs)
     segment = segment_of_elements(mesh, outline.segments)

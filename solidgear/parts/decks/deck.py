@@ -103,7 +103,7 @@ def reader_of(path: str) -> str:
         if re.search(begins, text, re.I | re.M):
             return module
     raise MeshError(
-        f"a mesh file that ends in {ending or 'nothing'} is unknown, and what is in it is neither "
+        f"a mesh file that ends in {ending or 'nothing'} is unknown, and its content is neither "
         f"Nastran, Abaqus nor a universal file; known are {', '.join(FORMATS)}"
     )
 
@@ -115,7 +115,7 @@ def text_of(path: str) -> str:
     except OSError as error:
         raise MeshError(f"cannot be read ({error.strerror or error})") from None
     if b"\0" in content:
-        raise MeshError("is no text: it holds zero bytes")
+        raise MeshError("is not a text: it holds zero bytes")
     return content.decode("utf-8", "replace")
 
 
@@ -132,9 +132,7 @@ def one_kind(counts: dict[str, int]) -> str:
         )
     if len(volumes) > 1 or volumes[0] not in KINDS:
         content = ", ".join(f"{counts[kind]} {kind}" for kind in volumes)
-        raise MeshError(
-            f"holds {content}; wanted is one kind of {', '.join(KINDS)}, for no other is assembled"
-        )
+        raise MeshError(f"holds {content}; write one kind of {', '.join(KINDS)}")
     return volumes[0]
 
 
@@ -166,8 +164,8 @@ class Lines:
             place, first = self.nodes[number]
             if self.places[place] != tuple(point):
                 raise MeshError(
-                    f"line {line}: node {number} is there a second time, at another place than in "
-                    f"line {first}"
+                    f"line {line}: node {number} is given twice, at another position than in line "
+                    f"{first}"
                 )
             return
         self.nodes[number] = (len(self.places), line)
@@ -177,8 +175,7 @@ class Lines:
         """Add an element of a volume."""
         if number in self._lines:
             raise MeshError(
-                f"line {line}: element {number} is there a second time, first in line "
-                f"{self._lines[number]}"
+                f"line {line}: element {number} is given twice, first in line {self._lines[number]}"
             )
         self._lines[number] = line
         self.elements.append(Element(number, line, kind, nodes))
@@ -246,7 +243,7 @@ class Lines:
             more = f", and {len(spare) - 1} more like it," if len(spare) > 1 else ""
             raise MeshError(
                 f"line {self.nodes[spare[0]][1]}: node {spare[0]}{more} belongs to no element: "
-                "lines of elements are missing, or else leave such nodes out"
+                "add the missing lines of elements, or leave such nodes out"
             )
 
 

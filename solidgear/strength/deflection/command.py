@@ -35,8 +35,8 @@ def deflect(
         list[str] | None,
         typer.Option(
             *BY_MODEL,
-            help="Model of every shaft; repeatable, the finest last. By default rigid (trains), "
-            "euler, timoshenko and harmonic.",
+            help="Model of every shaft; repeatable, the finest last. By default rigid (trains "
+            "only), euler, timoshenko and harmonic.",
         ),
     ] = None,
     out: Annotated[
@@ -45,13 +45,16 @@ def deflect(
     ] = None,
     run: Shown,
 ) -> None:
-    given = acting.read(file)
+    loaded = acting.read(file)
     with held(out) if out else nullcontext(), run.progress() as progress:
-        if isinstance(given, tuple):
-            every = acting.torque is None and acting.point is None and len(given[0].operation) > 1
-            data, lines = _train(*given, models, out, run.units, progress, every)
+        if isinstance(loaded, tuple):
+            train, point = loaded
+            every_point = (
+                acting.torque is None and acting.point is None and len(train.operation) > 1
+            )
+            data, lines = _train(train, point, models, out, run.units, progress, every_point)
         else:
-            data, lines = _shaft(file, given, models, out, run.units, progress)
+            data, lines = _shaft(file, loaded, models, out, run.units, progress)
     if run.as_json:
         print(json.dumps(data, allow_nan=False))
         return
@@ -60,53 +63,60 @@ def deflect(
 
 def _train(
     train: Train,
-    at: OperatingPoint,
+    point: OperatingPoint,
     models: list[str] | None,
     out: Path | None,
     units: str,
     progress: Progress,
-    every: bool,
+    every_point: bool,
 ) -> tuple[dict, list]:
-    found = of_train.deflect_train(Workshop(train), at, models or of_train.MODELS, progress, every)
-    shown, judge = units_named(units), found.judge
-    over = tables.over_points(found.points, shown)
-    turning = tables.over_a_turn(judge.turns, shown)
+    deflected = of_train.deflect_train(
+        Workshop(train), point, models or of_train.MODELS, progress, every_point
+    )
+    chosen_units, judge = units_named(units), deflected.judge
+    point_tables = tables.over_points(deflected.points, chosen_units)
+    turning = tables.over_a_turn(judge.turns, chosen_units)
     force = ", ".join(
-        shown.text(size, "N", 5)
+        chosen_units.text(size, "N", 5)
         + name.removeprefix("mesh")
         + (" (each planet)" if name in [stage.name for stage in train.stages] else "")
         for name, size in judge.mesh_forces.items()
     )
-    lead = f"At {at.label}: {force} along the line of action."
-    sense = senses_sentence(found.senses)
+    lead = f"At {point.label}: {force} along the line of action."
+    sense = senses_sentence(deflected.senses)
     lines: list[Any] = [
-        f"{found.title} at {at.label}",
-        f"Mesh force {force} along the line of action, {'coast' if at.coast else 'drive'} flank.",
+        f"{deflected.title} at {point.label}",
+        f"Mesh force {force} along the line of action, {'coast' if point.coast else 'drive'} flank.",
         f"{sense[0].upper()}{sense[1:]}.",
-        *filter(None, [tables.misalignment(found, shown)]),  # none of planets alone
-        *tables.bearings(judge.shafts, shown),
-        tables.displacements(judge.shafts, shown),
-        *tables.housing(judge, shown),
+        *filter(None, [tables.misalignment(deflected, chosen_units)]),  # none of planets alone
+        *tables.bearings(judge.shafts, chosen_units),
+        tables.displacements(judge.shafts, chosen_units),
+        *tables.housing(judge, chosen_units),
         *turning,
-        *over,
-        found.verdict(),
+        *point_tables,
+        deflected.verdict(),
         *judge.notes,
-        *map(caution, found.cautions),
+        *map(caution, deflected.cautions),
     ]
     if out:
         files = write_deflection(
             out,
-            {one.model: one.shafts for one in found.solutions},
-            found.as_dict(),
-            f"{found.title}: deflection",
-            f"{lead} {found.verdict()}",
-            [tables.misalignment(found, shown), *turning, *over, *tables.housing(judge, shown)],
-            [sense, *judge.notes, *found.cautions],
-            shown,
+            {model.model: model.shafts for model in deflected.solutions},
+            deflected.as_dict(),
+            f"{deflected.title}: deflection",
+            f"{lead} {deflected.verdict()}",
+            [
+                tables.misalignment(deflected, chosen_units),
+                *turning,
+                *point_tables,
+                *tables.housing(judge, chosen_units),
+            ],
+            [sense, *judge.notes, *deflected.cautions],
+            chosen_units,
             judge.turns,
         )
         lines.append(f"Written: {', '.join(map(str, files))}")
-    return found.as_dict(), lines
+    return deflected.as_dict(), lines
 
 
 def _shaft(
@@ -118,25 +128,25 @@ def _shaft(
     progress: Progress,
 ) -> tuple[dict, list]:
     with explained(file):
-        found = deflection.deflect_scene(scene, models or deflection.MODELS, progress)
-    shown, judge = units_named(units), found.shafts[-1]
-    lead = f"Under {load_in_words(scene, shown)}; numbers by {judge.model}."
+        deflected = deflection.deflect_scene(scene, models or deflection.MODELS, progress)
+    chosen_units, judge = units_named(units), deflected.shafts[-1]
+    lead = f"Under {load_in_words(scene, chosen_units)}; numbers by {judge.model}."
     note = f"No error bars: {deflection.WITHOUT_BAR}."
-    moved = tables.models(found.shafts, scene.port.name, note, shown)
+    moved = tables.models(deflected.shafts, scene.port.name, note, chosen_units)
     lines: list[Any] = [
-        found.title,
+        deflected.title,
         lead,
         moved,
-        *tables.bearings([judge], shown),
-        tables.displacements([judge], shown),
+        *tables.bearings([judge], chosen_units),
+        tables.displacements([judge], chosen_units),
         *map(caution, judge.notes),
     ]
     if out:
-        shafts = {shaft.model: [shaft] for shaft in found.shafts}
+        shafts = {shaft.model: [shaft] for shaft in deflected.shafts}
         told_first = [moved]
-        title = f"{found.title}: deflection"
+        title = f"{deflected.title}: deflection"
         files = write_deflection(
-            out, shafts, found.as_dict(), title, lead, told_first, judge.notes, shown
+            out, shafts, deflected.as_dict(), title, lead, told_first, judge.notes, chosen_units
         )
         lines.append(f"Written: {', '.join(map(str, files))}")
-    return found.as_dict(), lines
+    return deflected.as_dict(), lines

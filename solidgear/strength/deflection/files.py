@@ -24,28 +24,29 @@ def write_deflection(
     data: Mapping[str, Any],
     title: str,
     lead: str,
-    told: Sequence[Table] = (),
+    summaries: Sequence[Table] = (),
     cautions: Sequence[str] = (),
     units: str | Units = ENGINEERING,
     turns: Sequence[Any] = (),
 ) -> list[Path]:
-    """Write page, data, chart, and a CSV a shaft with its line by the judge, the last of the
-    models; of planetary stages the forces over a turn. `data` is in SI, chart and page in `units`;
-    `told` stands before the tables of displacements and bearings.
-    """
-    shown = units_named(units)
+    """Write page, data, charts and a CSV per shaft; `data` is in SI, chart and page in `units`."""
+    chosen_units = units_named(units)
     judge = list(models.values())[-1]
-    charts = {"deflection": partial(deflection_chart, models, title, shown)}
+    charts = {"deflection": partial(deflection_chart, models, title, chosen_units)}
     lines = {f"deflection_{shaft.name}": tables.line(shaft) for shaft in judge}
     for turn in turns:
-        charts[f"turn_{turn.stage}"] = partial(turn_chart, turn, shown)
+        charts[f"turn_{turn.stage}"] = partial(turn_chart, turn, chosen_units)
         lines[f"turn_{turn.stage}"] = tables.turn_lines(turn)
     return write_files(
         folder,
         "deflection",
         title,
         lead,
-        [*told, *tables.bearings(judge, shown), tables.displacements(judge, shown)],
+        [
+            *summaries,
+            *tables.bearings(judge, chosen_units),
+            tables.displacements(judge, chosen_units),
+        ],
         data,
         lines=lines,
         charts=charts,
@@ -54,7 +55,7 @@ def write_deflection(
 
 
 def turn_chart(turn: Any, units: Units = ENGINEERING, width: float = WIDE) -> Chart:
-    """Mesh force of every planet of a stage over a turn of the carrier."""
+    """Chart the mesh force of every planet of a stage over a turn of the carrier."""
     names = [f"planet {k}" for k in range(1, turn.force.shape[1] + 1)]
     looks = {name: Series(COLOURS[k % len(COLOURS)]) for k, name in enumerate(names)}
     angle = np.degrees(np.append(turn.angle, 2 * np.pi))
@@ -69,12 +70,12 @@ def turn_chart(turn: Any, units: Units = ENGINEERING, width: float = WIDE) -> Ch
         series=looks,
         legend=lines_legend(6),
     )
-    for name, own in zip(names, force.T):
-        panel.draw("line", curve(angle, own, name=name))
-        read = curve(angle, own)
+    for name, values in zip(names, force.T):
+        panel.draw("line", curve(angle, values, name=name))
+        read = curve(angle, values)
         for row in read:
-            at, size = ("at", f"{row['x']:.0f}", "°"), ("", f"{row['y']:.4g}", unit)
-            row["readout"] = readout(name, at, size)
+            position, size = ("at", f"{row['x']:.0f}", "°"), ("", f"{row['y']:.4g}", unit)
+            row["readout"] = readout(name, position, size)
         panel.read(read, looks[name].colour)
     return Chart([[panel]], width, f"Mesh forces over a turn of the carrier ({turn.stage})")
 
@@ -84,16 +85,18 @@ PLANES = {"x": (0, 5), "z": (2, 3)}
 
 
 def deflection_chart(
-    found: Mapping[str, Sequence[Any]],
+    shafts: Mapping[str, Sequence[Any]],
     title: str,
     units: Units = ENGINEERING,
     width: float = WIDE,
 ) -> Chart:
-    """Deflection of every shaft in both planes by every model, the last of them the reference."""
-    looks = {name: Series(COLOURS[k % len(COLOURS)]) for k, name in enumerate(found)}
-    names = [shaft.name for shaft in next(iter(found.values()))]
+    """Chart the deflection of every shaft in both planes by every model, the last of them the
+    reference.
+    """
+    looks = {name: Series(COLOURS[k % len(COLOURS)]) for k, name in enumerate(shafts)}
+    names = [shaft.name for shaft in next(iter(shafts.values()))]
     panels = [
-        _panel(found, looks, k, plane, units, width, first=k == 0 and plane == "x")
+        _panel(shafts, looks, k, plane, units, width, first=k == 0 and plane == "x")
         for k in range(len(names))
         for plane in PLANES
     ]
@@ -102,7 +105,7 @@ def deflection_chart(
 
 
 def _panel(
-    found: Mapping[str, Sequence[Any]],
+    by_model: Mapping[str, Sequence[Any]],
     looks: Mapping[str, Series],
     k: int,
     plane: str,
@@ -110,9 +113,9 @@ def _panel(
     width: float,
     first: bool,
 ) -> Panel:
-    """One shaft in one plane."""
+    """Return the panel of one shaft in one plane."""
     component = PLANES[plane][0]
-    shafts = {name: own[k] for name, own in found.items()}
+    shafts = {name: lines[k] for name, lines in by_model.items()}
     reference = list(shafts.values())[-1]
     along = {name: units.values(s.stations, "m") for name, s in shafts.items()}
     moved = {name: units.values(s.line[:, component], "m moved") for name, s in shafts.items()}
@@ -137,14 +140,14 @@ def _panel(
         panel.draw("line", curve(along[model], moved[model], name=model))
         read = curve(along[model], moved[model])
         for row in read:
-            at, size = ("y", f"{row['x']:.1f}", length), (plane, f"{row['y']:.3g}", unit)
-            row["readout"] = readout(model, at, size)
+            abscissa, size = ("y", f"{row['x']:.1f}", length), (plane, f"{row['y']:.3g}", unit)
+            row["readout"] = readout(model, abscissa, size)
         panel.read(read, looks[model].colour)
     return panel
 
 
 def _ends(values: np.ndarray) -> tuple[float, float]:
-    """Ends of an axis that holds all values and zero, with room."""
+    """Return ends of an axis that holds all values and zero, with room."""
     low, high = min(values.min(), 0.0), max(values.max(), 0.0)
     room = 0.12 * (high - low) or 1.0
     return float(low - room), float(high + room)

@@ -32,7 +32,7 @@ SHAFT = "shaft"
 #: modes kept of a body for statics
 FEW = 6
 #: why numbers have no error bar
-WITHOUT_BAR = "each model is solved on its usual mesh alone; solidgear stiffness shows error bars"
+WITHOUT_BAR = "each model is solved on one mesh; solidgear stiffness shows error bars"
 
 
 @dataclass(frozen=True, eq=False)

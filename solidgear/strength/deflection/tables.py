@@ -20,53 +20,53 @@ ROUNDING = 1e-9
 LOAD_OF = ("N",) * 3 + ("N m",) * 3
 
 
-def misalignment(found: Any, units: Units = ENGINEERING) -> Table:
-    """Misalignment by every model, with its bar and what bearings leave open."""
-    judge = found.judge
+def misalignment(deflected: Any, units: Units = ENGINEERING) -> Table:
+    """Return misalignment by every model, with error bar and range by bearing data."""
+    judge = deflected.judge
     columns = [word("of the axes", lambda m: f"{m.name}, {units.unit(m.unit)}")]
-    columns += [Column(one.model, partial(_of, one, units)) for one in found.solutions]
+    columns += [Column(model.model, partial(_of, model, units)) for model in deflected.solutions]
     columns.append(Column("error bar", _bar))
     if any(m.open is not None for m in judge.misalignment):
-        columns.append(Column("left open", lambda m: _range(m, units)))
+        columns.append(Column("range", lambda m: _range(m, units)))
     note = (
-        f"{meanings(judge.misalignment, units)}. Error bar: what the mesh of the last model leaves, by local problems; models "
-        "differ by what their theory leaves out."
+        f"{meanings(judge.misalignment, units)}. Error bar: of the last model's mesh, "
+        "by local problems; models differ by what their theory leaves out."
     )
     if any(m.open is not None for m in judge.misalignment):
-        note += " Left open: by estimated insides and classes of clearance of the bearings."
+        note += " Range: by estimated insides and classes of clearance of the bearings."
     return Table("Misalignment", columns, judge.misalignment, note)
 
 
 def meanings(measures: Sequence[Any], units: Units) -> str:
-    """Meanings of all numbers, each once for all meshes, with the faces that they are over."""
+    """Return the meanings of all numbers, each once for all meshes, with their faces."""
     meanings = {m.name.removesuffix(m.mesh): m.meaning for m in measures}
     faces: dict[str, list[str]] = {}
     for m in measures:
         if m.face is not None:
             faces.setdefault(units.given(m.face, "m"), []).append(m.mesh.strip())
     unit = units.unit("m")
-    over = ", ".join(f"{face} {unit} {listed(meshes)}" for face, meshes in faces.items())
+    parts = ", ".join(f"{face} {unit} {listed(meshes)}" for face, meshes in faces.items())
     width = (
-        f"the face ({over})" if len(faces) > 1 else "".join(f"{f} {unit} of face" for f in faces)
+        f"the face ({parts})" if len(faces) > 1 else "".join(f"{f} {unit} of face" for f in faces)
     )
     each = (f"{name}: {meaning}" for name, meaning in meanings.items())
     return "; ".join(each).replace("the face", width)
 
 
 def over_a_turn(turns: Sequence[Any], units: Units = ENGINEERING) -> list[Table]:
-    """Mesh forces of planets over a turn of their carrier, a table for each stage."""
+    """Return the mesh forces of planets over a turn of their carrier, a table for each stage."""
 
     def column(title: str, key: str) -> Column:
         return quantity(title, "N", units, lambda planet: getattr(planet, key), 4)
 
     note = (
-        "Of each planet with the sun, and for it spins freely with the ring alike; bearings with the "
-        "stiffness that they have here. Here: at the position of the file; once a turn: amplitude "
-        "at the frequency of the carrier."
+        "Force of each planet with the sun, and with the ring alike, since it spins freely; "
+        "bearings have their stiffness at this position. Here: at the file's position; once a "
+        "turn: amplitude at the carrier's frequency."
     )
     return [
         Table(
-            f"Mesh forces over a turn of the carrier ({one.stage})",
+            f"Mesh forces over a turn of the carrier ({turn.stage})",
             [
                 Column("planet", lambda planet: planet.planet),
                 column("here", "at"),
@@ -75,27 +75,29 @@ def over_a_turn(turns: Sequence[Any], units: Units = ENGINEERING) -> list[Table]
                 column("largest", "most"),
                 column("once a turn", "once"),
             ],
-            one.planets,
+            turn.planets,
             note,
         )
-        for one in turns
+        for turn in turns
     ]
 
 
 def turn_lines(turn: Any) -> Table:
-    """Mesh force of every planet over the angle of the carrier in SI, for other programs."""
+    """Return the mesh force of every planet over the angle of the carrier in SI, for other
+    programs.
+    """
     forces = {f"planet {k} [N]": force for k, force in enumerate(turn.force.T, start=1)}
     return numbers({"carrier [rad]": turn.angle, **forces})
 
 
 def over_points(points: Sequence[Any], units: Units = ENGINEERING) -> list[Table]:
-    """Misalignment and radial bearing loads at all operating points of a train, by one model; none
-    for one point, of which there are tables already.
+    """Return misalignment and radial bearing loads over several operating points; none for one
+    point.
     """
     if not points:
         return []
     first = points[0]
-    at = text("at", lambda one: one.point.label)
+    label = text("at", lambda deflected: deflected.point.label)
     forces = [
         quantity("mesh force" + name.removeprefix("mesh"), "N", units, partial(_force, name), 4)
         for name in first.mesh_forces
@@ -105,8 +107,8 @@ def over_points(points: Sequence[Any], units: Units = ENGINEERING) -> list[Table
         for k, m in enumerate(first.misalignment)
     ]
     widest = [_widest(points, k) for k in range(len(first.misalignment))]
-    told = [f"{m.name} {bar}" for m, bar in zip(first.misalignment, widest) if bar]
-    note = f"By {first.model}; error bars {', '.join(told)} at most." if told else ""
+    bars = [f"{m.name} {bar}" for m, bar in zip(first.misalignment, widest) if bar]
+    note = f"By {first.model}; error bars {', '.join(bars)} at most." if bars else ""
     ends = [
         (s, f"{shaft.name}.{b.name}")
         for s, shaft in enumerate(first.shafts)
@@ -114,34 +116,34 @@ def over_points(points: Sequence[Any], units: Units = ENGINEERING) -> list[Table
     ]
     carried = [quantity(end, "N", units, partial(_radial, s, end), 4) for s, end in ends]
     return [
-        Table("Misalignment over the operating points", [at, *forces, *lie], points, note),
-        Table("Radial bearing loads over the operating points", [at, *carried], points),
+        Table("Misalignment over the operating points", [label, *forces, *lie], points, note),
+        Table("Radial bearing loads over the operating points", [label, *carried], points),
     ]
 
 
-def _force(name: str, one: Any) -> float:
-    return one.mesh_forces[name]
+def _force(name: str, deflected: Any) -> float:
+    return deflected.mesh_forces[name]
 
 
-def _lies(k: int, one: Any) -> float:
-    return one.misalignment[k].value
+def _lies(k: int, deflected: Any) -> float:
+    return deflected.misalignment[k].value
 
 
-def _radial(side: int, end: str, one: Any) -> float:
-    shaft = one.shafts[side]
+def _radial(side: int, end: str, deflected: Any) -> float:
+    shaft = deflected.shafts[side]
     return next(b.radial for b in shaft.bearings if f"{shaft.name}.{b.name}" == end)
 
 
 def _widest(points: Sequence[Any], k: int) -> str | None:
-    """Widest error bar of a number over all points, in per cent of its largest value."""
-    own = [one.misalignment[k] for one in points]
-    largest = max(abs(m.value) for m in own)
-    bars = [m.bar for m in own if m.bar is not None]
+    """Return the widest error bar of a number over all points, in per cent of its largest value."""
+    measures = [deflected.misalignment[k] for deflected in points]
+    largest = max(abs(m.value) for m in measures)
+    bars = [m.bar for m in measures if m.bar is not None]
     return f"± {max(100 * max(bars) / largest, LEAST):.2g} %" if bars and largest else None
 
 
-def _of(one: Any, units: Units, measured: Any) -> str:
-    value = next(m.value for m in one.misalignment if m.name == measured.name)
+def _of(deflected: Any, units: Units, measured: Any) -> str:
+    value = next(m.value for m in deflected.misalignment if m.name == measured.name)
     return units.number(value, measured.unit, 3)
 
 
@@ -160,21 +162,19 @@ def _range(measured: Any, units: Units) -> str | None:
 
 
 def displacements(shafts: Sequence[Any], units: Units = ENGINEERING) -> Table:
-    """Motion of every lumped point and bearing."""
+    """Return the motion of every lumped point and bearing."""
     rows = [(f"{s.name}.{name}", six) for s in shafts for name, six in s.ports.items()]
     columns = [word("place", lambda row: row[0]), *_six(units, lambda row: row[1])]
-    note = "From where nothing is loaded, in the axes of each shaft's scene, y along it."
+    note = "Relative to the unloaded state, in the axes of each shaft's scene, y along it."
     return Table("Displacements", columns, rows, note)
 
 
-def housing(found: Any, units: Units = ENGINEERING) -> list[Table]:
-    """Load on every mount of the housing of a train, and how the housing moves; none without
-    one.
-    """
-    if not found.mounts:
+def housing(deflected: Any, units: Units = ENGINEERING) -> list[Table]:
+    """Return loads on the mounts of a housing and its motion; none without one."""
+    if not deflected.mounts:
         return []
 
-    most = [max(abs(six[k].value) for six in found.mounts.values()) for k in range(6)]
+    most = [max(abs(six[k].value) for six in deflected.mounts.values()) for k in range(6)]
 
     def one(k: int, row: tuple[str, Sequence[Any]]) -> float:
         return _of_weight(row[1][k].value, most[3 * (k // 3) :][:3])
@@ -182,30 +182,30 @@ def housing(found: Any, units: Units = ENGINEERING) -> list[Table]:
     name, six = word("mount", lambda row: row[0]), enumerate(zip(DOFS, LOAD_OF))
     carried = [quantity(dof, si, units, partial(one, k), 4) for k, (dof, si) in six]
     note = "Load of the housing on each mount, in the axes of the first shaft's scene."
-    moved = [("centre of mass", [m.value for m in found.displacement["housing"]])]
+    moved = [("centre of mass", [m.value for m in deflected.displacement["housing"]])]
     place = word("place", lambda row: row[0])
     return [
-        Table("Mount loads", [name, *carried], [*found.mounts.items()], note),
+        Table("Mount loads", [name, *carried], [*deflected.mounts.items()], note),
         Table("Motion of the housing", [place, *_six(units, lambda row: row[1])], moved),
     ]
 
 
-def _of_weight(value: float, alike: Sequence[float]) -> float:
-    """A value, and zero for one that is rounding beside the largest of its kind."""
-    return float(value) if abs(value) > ROUNDING * max(map(abs, alike)) else 0.0
+def _of_weight(value: float, column: Sequence[float]) -> float:
+    """Return a value, or zero if it is rounding beside the largest of its column."""
+    return float(value) if abs(value) > ROUNDING * max(map(abs, column)) else 0.0
 
 
 def models(shafts: Sequence[Any], port: str, note: str, units: Units = ENGINEERING) -> Table:
-    """Motion of one place by every model, of which there is a shaft each."""
+    """Return the motion of one place by every model."""
     columns = [word("model", lambda s: s.model), *_six(units, lambda s: s.ports[port])]
     return Table(f"Motion of {port}", columns, shafts, note)
 
 
-def _six(units: Units, of: Callable[[Any], Any]) -> list[Column]:
-    """Columns of the six components of a motion."""
+def _six(units: Units, motion: Callable[[Any], Any]) -> list[Column]:
+    """Return columns of the six components of a motion."""
 
     def one(k: int, item: Any) -> float:
-        six = of(item)
+        six = motion(item)
         return _of_weight(six[k], six[:3] if k < 3 else six[3:])
 
     return [
@@ -214,7 +214,7 @@ def _six(units: Units, of: Callable[[Any], Any]) -> list[Column]:
 
 
 def bearings(shafts: Sequence[Any], units: Units = ENGINEERING) -> list[Table]:
-    """Load of every bearing, and how those of catalogue data carry it."""
+    """Return loads of every bearing, and the elements that carry them in catalogue bearings."""
     rows = [(f"{s.name}.{b.name}", b) for s in shafts for b in s.bearings]
     inside = [row for row in rows if row[1].rows]
     name = word("bearing", lambda row: row[0])
@@ -233,7 +233,7 @@ def bearings(shafts: Sequence[Any], units: Units = ENGINEERING) -> list[Table]:
         ]
         note += (
             " C0/P0: static safety (ISO 76); L10r: basic reference life (ISO/TS 16281) in 1e6 "
-            "revolutions; solidgear bearing tells how sure both are, and adds up a duty table."
+            "revolutions; solidgear bearing shows their ranges and duty tables."
         )
     out = [Table("Bearing loads", loads, rows, note)]
     if inside:
@@ -245,9 +245,9 @@ def bearings(shafts: Sequence[Any], units: Units = ENGINEERING) -> list[Table]:
             quantity("clearance", "m moved", units, lambda row: row[1].clearance, 3),
         ]
         note = (
-            "Elements that carry of all, row by row; largest load of one; largest pressure at both rings, by "
-            "Hertz or lamina by lamina; "
-            "radial clearance once mounted and warm."
+            "Number of loaded elements of all, row by row; largest load of an element; largest "
+            "pressure at both rings, by Hertz or in slices; radial clearance once mounted and "
+            "warm."
         )
         out.append(Table("Inside the bearings", carried, inside, note))
     return out
@@ -263,8 +263,8 @@ def _life(bearing: Any, name: str, unit: float) -> str | None:
 def _elements(bearing: Any) -> str | Cell | None:
     if not bearing.rows:
         return None
-    told = ", ".join(f"{n}/{len(row.load)}" for n, row in zip(bearing.loaded, bearing.rows))
-    return told if any(bearing.loaded) else Cell("none", "bad")
+    counts = ", ".join(f"{n}/{len(row.load)}" for n, row in zip(bearing.loaded, bearing.rows))
+    return counts if any(bearing.loaded) else Cell("none", "bad")
 
 
 def _largest(bearing: Any) -> float | None:
@@ -272,6 +272,6 @@ def _largest(bearing: Any) -> float | None:
 
 
 def line(shaft: Any) -> Table:
-    """Deflection line of a shaft in SI, for other programs."""
+    """Return the deflection line of a shaft in SI, for other programs."""
     heads = [f"{dof} [{si.split()[0]}]" for dof, si in zip(DOFS, SI_OF)]
     return numbers({"y [m]": shaft.stations, **dict(zip(heads, shaft.line.T))})

@@ -156,20 +156,20 @@ class Deflections:
     def verdict(self) -> str:
         """Return a sentence on the cheapest model for the misalignment."""
         if not self.judge.misalignment:
-            return "No gears of two shafts mesh, by whose misalignment models are judged."
+            return "No gears mesh, whose misalignment could judge the models."
         if not self.standings:
-            return "One model was solved: which is enough is not judged."
+            return "One model was solved, so that none is judged."
         demand = f"{100 * self.tolerance:g} % of the misalignment at {self.judge.point.label}"
         if self.cheapest is None:
             near = min(self.standings, key=lambda standing: abs(standing.gap))
             return (
-                f"No cheaper model is known to hold {demand}: use {self.judge.model}. The nearest, "
-                f"{near.model}, is {100 * abs(near.gap):.2g} % off in {near.worst}."
+                f"No cheaper model was shown to be within {demand}: use {self.judge.model}. The "
+                f"nearest, {near.model}, is {100 * abs(near.gap):.2g} % off in {near.worst}."
             )
         standing = self.cheapest
         return (
-            f"Cheapest model that holds {demand}: {standing.model} "
-            f"({100 * standing.gap:.2g} % off in {standing.worst})."
+            f"Cheapest model within {demand}: {standing.model} ({100 * standing.gap:.2g} % off in "
+            f"{standing.worst})."
         )
 
     def as_dict(self) -> dict:
@@ -249,8 +249,7 @@ def deflections(
     for model in by_shaft.values():
         if model.partition("/")[0] in LUMPED:
             raise SolidgearError(
-                f"a {model} shaft has its bearings condensed into it, and no places of their own; "
-                f"use one of {', '.join(MODELS)}"
+                f"a {model} shaft has its bearings condensed into it; use one of {', '.join(MODELS)}"
             )
     for side, model in by_shaft.items():
         workshop.shaft_model(side, model)  # no settling to be timed
@@ -302,7 +301,7 @@ def _solution(
     )
     notes = [*state.notes, *(note for shaft in shafts for note in shaft.notes)]
     if housed:
-        notes.append(f"deflection lines of {listed(housed)} are told against the housing")
+        notes.append(f"deflection lines of {listed(housed)} are relative to the housing")
     displacement = {}
     for side, shaft in workshop.train.shafts.items():
         for port in shaft.gears:
@@ -314,7 +313,7 @@ def _solution(
             "of its centre", MOVED, system.motion(BOX), state, bars
         )
         if workshop.train.stages:
-            notes.append("forces over a turn of a carrier are not told beside a housing")
+            notes.append("forces over a turn of a carrier are not computed with a housing")
     mounts = {
         name: _six_measures("on it", FORCE_UNITS, rows, state, bars)
         for name, rows in mount_rows(workshop.train, system).items()

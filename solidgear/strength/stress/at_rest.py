@@ -35,7 +35,7 @@ from solidgear.trains.load.operation import Operating, OperatingState
 #: default model on which shafts and bearings settle
 MODEL = LADDER.judges[0]
 #: caution on the results without an error bar
-WITHOUT_BAR = "reactions and section forces are those of one mesh; form factors have error bars"
+WITHOUT_BAR = "form factors have error bars; reactions and section forces come from one mesh"
 
 Progress = Callable[[str], None]
 
@@ -130,8 +130,8 @@ def stress_of_scene(
     load, port, drive = load_of(scene), scene.port.name, drive or {}
     if port in drive:
         raise SolidgearError(
-            f'the torque at "{port}" enters where the gear takes it out: name the bearing, mass or '
-            "point where a coupling or spline brings it"
+            f'the torque at "{port}" enters where the gear takes it out; name the bearing, mass '
+            "or point of the coupling or spline"
         )
     progress(model)
     at_rest = ShaftAtRest(_settling(scene, model), model)
@@ -159,27 +159,24 @@ def _file_cautions(file: BodyFile | None, scene: Scene) -> Iterator[str]:
         return
     if not file.round:
         yield (
-            f"{file.name} is not of revolution: stress is that of its round part, without what is cut "
-            "into it or stands out"
+            f"{file.name} is not of revolution: stress is for its round part, without cuts and "
+            "projections"
         )
     if cones := len(file.tori) - len(scene.blends):
         yield (
-            f"{cones} of {len(file.tori)} arcs of {file.name} are short cones here, and corners between "
-            "them are none of the part: fillets are quarters of a turn at the root of a shoulder, "
-            "outside of seats"
+            f"{cones} of {len(file.tori)} arcs of {file.name} are modelled as short cones, so "
+            "they have no stress; only quarter-circle fillets at a shoulder, outside seats, have "
+            "one"
         )
 
 
 def _load_cautions(scene: Scene, drive: Mapping[str, float]) -> Iterator[str]:
     """Yield sentences on loads that do not act on a shaft, and perhaps should."""
     if not drive:
-        yield (
-            "no torque runs along the shaft: a [load] has forces and tilting moments; --drive says "
-            "where a torque enters"
-        )
+        yield ("no torque runs along the shaft; --drive says where one enters")
     for point in scene.further_ports:
         if point.name not in drive:
-            yield f'nothing acts at the point "{point.name}": [load] is that of "{scene.port.name}"'
+            yield f'nothing acts at the point "{point.name}"; [load] acts at "{scene.port.name}"'
 
 
 def stress_of_train(
@@ -239,8 +236,8 @@ def _torque_cautions(train: Train) -> Iterator[str]:
         side, port = rotor.shaft, train.spring_port(name)
         if [*train.shafts[side].gears] == [port]:
             yield (
-                f"no torque runs along the {side}: {name}.spring is at the teeth "
-                f'(at = "{port}"); put it where the torque enters'
+                f"no torque runs along the {side}, since {name}.spring is at the teeth (at = "
+                f'"{port}"); put it where the torque enters'
             )
 
 

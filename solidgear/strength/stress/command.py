@@ -28,7 +28,8 @@ class Rated(Group):
     """Data that a rating by DIN 743 needs beyond the file; what is not given is assumed."""
 
     roughness: Annotated[
-        str | None, typer.Option(help='Rz of the fillets, such as "6.3 um"; else K_F is 1.')
+        str | None,
+        typer.Option(help='Roughness Rz of the fillets, such as "6.3 um"; else K_F is 1.'),
     ] = None
     ultimate_at_size: Annotated[
         float | None,
@@ -50,15 +51,16 @@ class Rated(Group):
         bool,
         typer.Option(
             "--constant-mean",
-            help="Mean stress stays as loads grow (case 1 of the norm); else it grows (case 2).",
+            help="Mean stress stays as loads grow (case 1 of the norm); by default it grows (case "
+            "2).",
         ),
     ] = False
 
     def conditions(self) -> Conditions:
-        """The same as read; a value that is none is refused with its option."""
-        given = {f.name: getattr(self, f.name) for f in fields(self)}
+        """Return the options read as conditions of a rating; refuse one that cannot be read."""
+        values = {f.name: getattr(self, f.name) for f in fields(self)}
         try:
-            return Conditions(**{name: v for name, v in given.items() if v is not None})
+            return Conditions(**{name: v for name, v in values.items() if v is not None})
         except SceneError as error:
             first = error.problems[0]
             option = f"--{str(first.path[0]).replace('_', '-')}"
@@ -73,16 +75,16 @@ def stress(
     drive: Annotated[
         list[str] | None,
         typer.Option(
-            help='Of a shaft: torque that enters at a bearing, mass or point, such as "B=115 N*m", '
-            "and leaves at the port; repeatable."
+            help='Torque that enters a shaft at a bearing, mass or point, such as "B=115 N*m", and '
+            "leaves at the port; repeatable."
         ),
     ] = None,
     fidelity: Annotated[
-        Choice, typer.Option(*BY_MODEL, help="Model on which shafts and bearings settle.")
+        Choice, typer.Option(*BY_MODEL, help="Model for bearing reactions.")
     ] = MODEL,
     tol: Annotated[
         float,
-        relative("--tol", "Bar allowed of a form factor."),
+        relative("--tol", "Error bar allowed for a form factor."),
     ] = 0.01,
     rated: Rated,
     out: Annotated[
@@ -91,42 +93,41 @@ def stress(
     ] = None,
     run: Shown,
 ) -> None:
-    asked, given, shown = (
-        StressSettings(tol, rated.conditions()),
-        acting.read(file),
-        units_named(run.units),
-    )
+    settings = StressSettings(tol, rated.conditions())
+    loading = acting.read(file)
+    units = units_named(run.units)
     torques = dict(map(_torque, drive or ()))
     with held(out) if out else nullcontext(), run.progress() as progress:
-        if isinstance(given, tuple):
-            instead = "springs of engine and load bring its torques"
-            refuse({"--drive": bool(drive)}, f"a shaft, and {file} is none: {instead}")
-            found = stress_of_train(*given, str(fidelity), asked, progress)
-            force = shown.text(found.under["mesh_force"], "N", 5)
-            lead = f"At {given[1].label}: mesh force {force} along the line of action"
+        if isinstance(loading, tuple):
+            instead = "torques come by the springs of engine and load"
+            refuse({"--drive": bool(drive)}, f"a shaft, and {file} is a train: {instead}")
+            train, point = loading
+            stressed = stress_of_train(train, point, str(fidelity), settings, progress)
+            force = units.text(stressed.under["mesh_force"], "N", 5)
+            lead = f"At {point.label}: mesh force {force} along the line of action"
         else:
             with explained(file):
-                found = stress_of_scene(given, str(fidelity), torques, asked, progress)
-            lead = f"Under {load_in_words(given, shown)}"
+                stressed = stress_of_scene(loading, str(fidelity), torques, settings, progress)
+            lead = f"Under {load_in_words(loading, units)}"
             for name, torque in torques.items():
-                lead += f", and {shown.text(torque, 'N m', 4)} from {name} to {given.port.name}"
-        lead += f"; bearing reactions by {found.model}."
-        files = write_stress(out, found, lead, shown) if out else []
+                lead += f", and {units.text(torque, 'N m', 4)} from {name} to {loading.port.name}"
+        lead += f"; bearing reactions by {stressed.model}."
+        files = write_stress(out, stressed, lead, units) if out else []
     if run.as_json:
-        print(json.dumps(found.as_dict(), allow_nan=False))
+        print(json.dumps(stressed.as_dict(), allow_nan=False))
     else:
-        say(f"{found.title}: stress", lead, soft_wrap=False)
-        for shaft in found.shafts:
-            say(*shaft_tables(found, shaft, shown, every=False), soft_wrap=False)
-        say(*filter(None, [in_ascii(headline(found, shown))]), soft_wrap=False)
-        say(*sentences(found, shown), *map(caution, found.cautions), soft_wrap=False)
+        say(f"{stressed.title}: stress", lead, soft_wrap=False)
+        for shaft in stressed.shafts:
+            say(*shaft_tables(stressed, shaft, units, every=False), soft_wrap=False)
+        say(*filter(None, [in_ascii(headline(stressed, units))]), soft_wrap=False)
+        say(*sentences(stressed, units), *map(caution, stressed.cautions), soft_wrap=False)
         say(*([f"Written: {', '.join(map(str, files))}"] if files else []), soft_wrap=False)
-    if not found.reached:
+    if not stressed.reached:
         raise typer.Exit(NOT_REACHED)
 
 
 def _torque(text: str) -> tuple[str, float]:
-    """Name and torque, N m, from ``B=115 N*m``."""
+    """Return the name and torque, N m, from ``B=115 N*m``."""
     name, sep, value = (part.strip() for part in text.partition("="))
     if not sep or not name:
         raise SolidgearError(f'--drive {show(text)}: write NAME=TORQUE, such as "B=115 N*m"')

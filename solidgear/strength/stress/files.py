@@ -19,58 +19,54 @@ if TYPE_CHECKING:
 
 
 def write_stress(
-    folder: Path, found: StressAtRest, lead: str, units: Units = ENGINEERING
+    folder: Path, stressed: StressAtRest, lead: str, units: Units = ENGINEERING
 ) -> list[Path]:
-    """Write the stress of shafts into a folder: ``stress.html``, then a CSV of section forces a
-    shaft, the JSON, and the charts; `lead` says under what they are loaded.
-    """
+    """Write ``stress.html``, section forces as CSV, JSON and charts; `lead` names the loads."""
     lines: dict[str, Table] = {}
     charts: dict[str, Make] = {}
-    for shaft in found.shafts:
+    for shaft in stressed.shafts:
         name = f"section_forces_{re.sub(r'[^A-Za-z0-9_-]', '_', shaft.name)}"
         lines[name] = tables.components(shaft.found.forces)
-        title = f"Section forces, {shaft.name}" if len(found.shafts) > 1 else "Section forces"
+        title = f"Section forces, {shaft.name}" if len(stressed.shafts) > 1 else "Section forces"
         charts[name] = partial(section_chart, shaft.found.forces, title, units)
     return write_files(
         folder,
         "stress",
-        f"{found.title}: stress",
-        f"{lead} {headline(found, units)}".strip(),
-        [table for shaft in found.shafts for table in shaft_tables(found, shaft, units)],
-        found.as_dict(),
+        f"{stressed.title}: stress",
+        f"{lead} {headline(stressed, units)}".strip(),
+        [table for shaft in stressed.shafts for table in shaft_tables(stressed, shaft, units)],
+        stressed.as_dict(),
         lines=lines,
         charts=charts,
-        notes=sentences(found, units),
-        cautions=found.cautions,
+        notes=sentences(stressed, units),
+        cautions=stressed.cautions,
     )
 
 
 def shaft_tables(
-    found: StressAtRest, shaft: StressedShaft, units: Units = ENGINEERING, every: bool = True
+    stressed: StressAtRest, shaft: StressedShaft, units: Units = ENGINEERING, every: bool = True
 ) -> list[Table]:
-    """Tables of one shaft, those without a row left out; the rating of every fillet or that of the
-    worst alone.
-    """
-    own = shaft.found
-    rated = [notch for notch in own.worst if notch.rating is not None]
+    """Return tables of one shaft without empty ones; ratings of `every` fillet or of the worst."""
+    stress = shaft.found
+    rated = [notch for notch in stress.worst if notch.rating is not None]
     out = [
-        tables.section_forces(own.forces, units, shaft.open_moment, found.open_by),
-        tables.nominal_stress(own, units),
-        tables.fillets(own, units),
-        tables.surface_stress(own, shaft.open, units, found.open_by),
-        tables.form_factors(own),
-        tables.safeties(own),
+        tables.section_forces(stress.forces, units, shaft.open_moment, stressed.open_by),
+        tables.nominal_stress(stress, units),
+        tables.fillets(stress, units),
+        tables.surface_stress(stress, shaft.open, units, stressed.open_by),
+        tables.form_factors(stress),
+        tables.safeties(stress),
         *(tables.rating(notch, units) for notch in rated[: None if every else 1]),
     ]
-    if len(found.shafts) > 1:
+    if len(stressed.shafts) > 1:
         for table in out:
             table.title = f"{table.title}, {shaft.name}"
     return [table for table in out if table]
 
 
-def headline(found: StressAtRest, units: Units = ENGINEERING) -> str:
-    """Sentence on the worst fillet of all shafts; empty where none has one."""
-    worst = [(shaft, shaft.found.worst[0]) for shaft in found.shafts if shaft.found.notches]
+def headline(stressed: StressAtRest, units: Units = ENGINEERING) -> str:
+    """Return the sentence on the worst fillet of all shafts; empty where none has one."""
+    worst = [(shaft, shaft.found.worst[0]) for shaft in stressed.shafts if shaft.found.notches]
     if not worst:
         return ""
     shaft, notch = min(worst, key=lambda pair: pair[1].severity)
@@ -78,29 +74,29 @@ def headline(found: StressAtRest, units: Units = ENGINEERING) -> str:
         units.number(stress, tables.STRESS, digits)
         for stress, digits in ((notch.local.amplitude, 4), (notch.local.amplitude_bar, 2))
     )
-    where = f"{shaft.name}, {notch.name}" if len(found.shafts) > 1 else notch.name
-    told = f"Worst at {where}: {value} ± {bar} {units.unit(tables.STRESS)} by bending"
+    place = f"{shaft.name}, {notch.name}" if len(stressed.shafts) > 1 else notch.name
+    sentence = f"Worst at {place}: {value} ± {bar} {units.unit(tables.STRESS)} by bending"
     if notch.rating is not None:
         fatigue, yielding = map(tables.safety, (notch.rating.fatigue, notch.rating.yielding))
-        told += f", safety {fatigue} against fatigue and {yielding} against yielding by DIN 743"
-    return f"{told}."
+        sentence += f", safety {fatigue} against fatigue and {yielding} against yielding by DIN 743"
+    return f"{sentence}."
 
 
-def sentences(found: StressAtRest, units: Units = ENGINEERING) -> list[str]:
-    """Sentences on the shafts: places without a stress, and what was left out."""
+def sentences(stressed: StressAtRest, units: Units = ENGINEERING) -> list[str]:
+    """Return sentences on the shafts: places without a stress, and what was left out."""
     out = []
-    for shaft in found.shafts:
-        lead = f"{shaft.name}: " if len(found.shafts) > 1 else ""
-        told = tables.remarks(shaft.found, units)
+    for shaft in stressed.shafts:
+        lead = f"{shaft.name}: " if len(stressed.shafts) > 1 else ""
+        remarks = tables.remarks(shaft.found, units)
         if not shaft.found.notches:
-            told.insert(0, "no shoulder has a fillet: there is no stress to be told of any.")
+            remarks.insert(0, "no shoulder has a fillet, so there is no stress on one.")
         if shaft.weak:
             names = ", ".join(f'"{name}"' for name in shaft.weak)
-            told.append(
-                f"not rated: the material of {names} has no strength; write it beside E, nu and "
-                'density as strength = { yield_point = "700 MPa", ultimate = "1000 MPa" }.'
+            remarks.append(
+                f"not rated: the material of {names} has no strength; write strength = {{ "
+                'yield_point = "700 MPa", ultimate = "1000 MPa" } beside E, nu and density.'
             )
-        out += [lead + one for one in told]
+        out += [lead + remark for remark in remarks]
     return [*out, ELASTIC]
 
 

@@ -251,8 +251,8 @@ def _solved(
         profiles = _profiles(piece, body, section, radius)
     except FactorError:
         raise SolidgearError(
-            f'fillet "{piece.corner.name}": cells of the mesh around it fold, of order {order}; make '
-            "it, or what lies beside it, smaller"
+            f'fillet "{piece.corner.name}": cells of order {order} around it fold; make it or its '
+            "neighbours smaller"
         ) from None
     return sum(block.size for block in body.blocks if block.mirror is None), profiles
 

@@ -34,7 +34,7 @@ def section_chart(
     units: Units = ENGINEERING,
     width: float = WIDE,
 ) -> Chart:
-    """Section forces over the length of a shaft, one kind below the other.
+    """Chart the section forces over the length of a shaft, one kind below the other.
 
     Parameters
     ----------
@@ -61,10 +61,12 @@ def _panel(
     units: Units,
     last: bool,
 ) -> Panel:
-    """One kind of section force."""
+    """Return the panel of one kind of section force."""
     y = units.values(np.repeat(forces.y, 2), "m")
-    both = np.stack([forces.left, forces.right], axis=1).reshape(-1, 6)
-    curves = {key: (y, units.values(both[:, at], si)) for key, at in components.items()}
+    sides = np.stack([forces.left, forces.right], axis=1).reshape(-1, 6)
+    curves = {
+        key: (y, units.values(sides[:, component], si)) for key, component in components.items()
+    }
     if len(curves) > 1:
         curves[name.split()[-1]] = _size(*curves.values())
     series = {key: Series(COLOURS.get(key, SIZE if len(curves) > 1 else ALONE)) for key in curves}
@@ -92,11 +94,13 @@ def _panel(
 
 
 def _size(
-    one: tuple[np.ndarray, np.ndarray], other: tuple[np.ndarray, np.ndarray]
+    a: tuple[np.ndarray, np.ndarray], b: tuple[np.ndarray, np.ndarray]
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Size of two components that are straight between loads: places and values."""
+    """Return the resultant of two components that are straight between loads, as places and
+    values.
+    """
     share = np.linspace(0.0, 1.0, BETWEEN)
-    (y, first), (_, second) = one, other
+    (y, first), (_, second) = a, b
 
     def fine(values: np.ndarray) -> np.ndarray:
         return (values[1:-1:2, None] * (1 - share) + values[2::2, None] * share).ravel()
@@ -107,7 +111,7 @@ def _size(
 def _read(
     forces: SectionForces, y, key: str, values, unit: str, length: str
 ) -> list[dict[str, Any]]:
-    """Places to be read: both sides of every load."""
+    """Return places to be read: both sides of every load."""
     rows = curve(y, values)
     for k, row in enumerate(rows):
         name = f"{key} {'beyond' if k % 2 else 'before'} {forces.names[k // 2] or 'end'}"
@@ -117,7 +121,7 @@ def _read(
 
 
 def _ends(curves: list[np.ndarray]) -> tuple[float, float]:
-    """Ends of an axis that hold curves and zero, with some room."""
+    """Return ends of an axis that hold curves and zero, with some room."""
     low, high = min(0.0, *(c.min() for c in curves)), max(0.0, *(c.max() for c in curves))
     room = 0.08 * (high - low) or 1.0
     return float(low - room if low < 0 else -0.3 * room), float(

@@ -141,8 +141,8 @@ def on_ports(scene: Scene, loads: Mapping[str, ArrayLike]) -> list[Load]:
     for name, load in loads.items():
         if name not in stations:
             raise SolidgearError(
-                f'load on "{name}": the shaft has nothing of that name'
-                f"{nearest(name, stations)}; it has {listed(stations)}"
+                f'load on "{name}": the shaft has no such place{nearest(name, stations)}; it has '
+                f"{listed(stations)}"
             )
         six = np.asarray(load, float)
         if six.shape != (6,) or not np.isfinite(six).all():

@@ -146,7 +146,7 @@ def shaft_stress(
     gravity : (3,) array_like, optional
         m/s^2; where the loads balance the weight of the shaft too.
     tolerance : float
-        Relative bar of form factors at which to stop.
+        Relative error bar of form factors at which to stop.
     conditions : Conditions, optional
         Of the rating by DIN 743.
     progress : callable, optional
@@ -159,7 +159,7 @@ def shaft_stress(
     Raises
     ------
     SolidgearError
-        For loads that do not balance, or on nothing that the shaft has, or a tolerance beyond all
+        For loads that do not balance, or at places that the shaft does not have, or a tolerance beyond all
         meshes.
 
     Examples
@@ -181,7 +181,7 @@ def shaft_stress(
     conditions = conditions or Conditions()
     seats = [(s.lo, s.hi) for s in scene.stations if np.any(loads.get(s.name, 0.0))]
     remarks = [
-        f'{feature.what} "{feature.name}": its own stress concentration is not in these numbers'
+        f'{feature.what} "{feature.name}": its stress concentration is not included'
         for feature in scene.features
     ]
     notches = []
@@ -205,7 +205,8 @@ def check_tolerance(tolerance: float) -> None:
     """Refuse a relative error bar that no mesh reaches."""
     if not FINEST <= tolerance < 1:
         raise SolidgearError(
-            f"tolerance = {tolerance}: relative bars of form factors go from {FINEST:g} to 1"
+            f"tolerance = {tolerance}: give a relative error bar of form factors from {FINEST:g} "
+            "to 1"
         )
 
 
@@ -318,10 +319,10 @@ def _remark(
     nearest = min(gaps, default=np.inf) / (2 * fillet.section.outer)
     if nearest < NEAR:
         distance = f"{nearest:.2g} diameters away" if nearest > TOUCHING else "right beside it"
-        remarks.append(f"a load enters {distance}: its own disturbance is not in the factors")
+        remarks.append(f"a load enters {distance}: its local effect is not in the factors")
     if fillet.widest > tolerance:
         remarks.append(
-            f"bar {100 * fillet.widest:.2g} %, above the {100 * tolerance:.2g} % asked for"
+            f"error bar {100 * fillet.widest:.2g} %, above the {100 * tolerance:.2g} % asked for"
         )
     if by_shear > SHEARED:
         share = f"{100 * by_shear:.0f} % above" if np.isfinite(by_shear) else "not"

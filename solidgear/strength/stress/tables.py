@@ -31,8 +31,8 @@ COMPONENTS = (
     ("T", 4, "N m"),
 )
 CONVENTION = (
-    "What the part beyond a cut exerts on the part before it; M about the middle of the section. "
-    "Exact statics; loads act at the middle of what carries them."
+    "Force of the part beyond a cut on the part before it; M about the middle of the section. "
+    "Exact statics; loads act at the middle of their seats."
 )
 LOADS = ("tension", "bending", "torsion")
 #: stress on a fillet by what brings it, as attributes of nominal and local stress
@@ -51,8 +51,8 @@ def section_forces(
     open_: tuple[float, float] | None = None,
     open_by: str = "",
 ) -> Table:
-    """Sizes of the section forces on both sides of every place where something acts; `open_` is the
-    range of the largest bending moment, N m, that `open_by` leaves open.
+    """Return section forces on both sides of every load; `open_` is the range of the largest
+    moment, N m.
     """
     rows = [
         (y, name, side, six[1], math.hypot(six[0], six[2]), math.hypot(six[3], six[5]), six[4])
@@ -79,13 +79,13 @@ def section_forces(
 
 
 def _of_weight(values: Iterable[float]) -> Callable[[float], float]:
-    """Values as they are, and zero for those that are nothing beside the largest of them."""
+    """Return values, with zero for those that are rounding beside the largest."""
     least = NOTHING * max(map(abs, values), default=0.0)
     return lambda value: value if abs(value) > least else 0.0
 
 
 def components(forces: SectionForces) -> Table:
-    """All six components on both sides of every place, in SI, for other programs."""
+    """Return all six components on both sides of every place, in SI, for other programs."""
     heads = [f"{name} [{si}]" for name, _, si in COMPONENTS]
     columns = ["y [m]", "acts there", "side", *heads]
     rows = [
@@ -96,27 +96,25 @@ def components(forces: SectionForces) -> Table:
 
 
 def _sides(forces: SectionForces, names: Sequence[str]) -> list[tuple[float, str, str, np.ndarray]]:
-    """Place, what acts there, side and section forces; without places without a name, and without
-    what lies outside of the shaft.
-    """
+    """Yield place, load, side and section forces, without places off the shaft or without a name."""
     last = len(forces.y) - 1
     ends = {0: names[0] or "end", last: names[-1] or "end"}
     out = []
     for k, (y, name) in enumerate(zip(forces.y.tolist(), names)):
-        named = ends.get(k, name)
-        out += [(y, named, "before", forces.left[k])] if named and k else []
-        out += [(y, named, "beyond", forces.right[k])] if named and k < last else []
+        label = ends.get(k, name)
+        out += [(y, label, "before", forces.left[k])] if label and k else []
+        out += [(y, label, "beyond", forces.right[k])] if label and k < last else []
     return out
 
 
-def nominal_stress(found: ShaftStress, units: Units = ENGINEERING) -> Table:
-    """Nominal stress on both sides of every load and joint."""
-    rows = [row for row in found.nominal if row.forces.any()]
+def nominal_stress(shaft_stress: ShaftStress, units: Units = ENGINEERING) -> Table:
+    """Return the nominal stress on both sides of every load and joint."""
+    rows = [row for row in shaft_stress.nominal if row.forces.any()]
     kinds = {"sigma_N": "tension", "sigma_b": "bending", "tau_t": "torsion", "tau_q": "shear"}
-    told = _of_weight(getattr(row.stress, kind) for row in rows for kind in kinds.values())
+    weighty = _of_weight(getattr(row.stress, kind) for row in rows for kind in kinds.values())
 
     def stress(head: str, kind: str) -> Column:
-        return _stress(head, units, lambda row: told(getattr(row.stress, kind)))
+        return _stress(head, units, lambda row: weighty(getattr(row.stress, kind)))
 
     columns = [
         quantity("y", "m", units, lambda row: row.y),
@@ -126,19 +124,19 @@ def nominal_stress(found: ShaftStress, units: Units = ENGINEERING) -> Table:
         *(stress(head, kind) for head, kind in kinds.items()),
     ]
     note = (
-        "Plain sections: N/A, M a/I, T a/(2 I). The shaft turns under loads at rest: bending is an "
-        "amplitude of every point of the surface, the rest a mean. tau_q is that at the neutral axis."
+        "Plain sections: N/A, M a/I, T a/(2 I). The shaft turns under loads at rest: bending is "
+        "an amplitude of every point of the surface, the rest a mean. tau_q: at the neutral axis."
     )
     return Table(f"Nominal stress, {units.unit(STRESS)}", columns, rows, note)
 
 
-def _stress(head: str, units: Units, of: Callable[[Any], float], digits: int = 4) -> Column:
-    """A column of stresses of a table that has their unit in its title."""
-    return Column(head, of, partial(units.number, si=STRESS, digits=digits))
+def _stress(head: str, units: Units, value: Callable[[Any], float], digits: int = 4) -> Column:
+    """Return a column of stresses for a table with their unit in its title."""
+    return Column(head, value, partial(units.number, si=STRESS, digits=digits))
 
 
-def fillets(found: ShaftStress, units: Units = ENGINEERING) -> Table:
-    """Places and sizes of the fillets, and what a user must know of each."""
+def fillets(stress: ShaftStress, units: Units = ENGINEERING) -> Table:
+    """Return places, sizes and remarks of the fillets."""
     columns = [
         text("fillet", lambda notch: notch.name),
         quantity("y", "m", units, lambda notch: notch.y),
@@ -147,37 +145,34 @@ def fillets(found: ShaftStress, units: Units = ENGINEERING) -> Table:
         Column("D/d", lambda notch: notch.large / notch.small, lambda v: plain(v, 4)),
         text("to be known", lambda notch: notch.remark or None),
     ]
-    note = "y: where the fillet meets its cylinder, whose section forces and nominal stress it has."
-    return Table("Fillets", columns, found.notches, note)
+    note = "y: where the fillet meets its cylinder, with section forces and nominal stress there."
+    return Table("Fillets", columns, stress.notches, note)
 
 
 def surface_stress(
-    found: ShaftStress,
+    stress: ShaftStress,
     open_: Mapping[str, tuple[float, float]],
     units: Units = ENGINEERING,
     open_by: str = "",
 ) -> Table:
-    """Stress on the fillets under the loads, with its bar, and the range of amplitudes by fillet,
-    Pa, that `open_by` leaves open.
-    """
+    """Return stress on the fillets with error bars, and ranges of amplitudes by `open_by`, Pa."""
     columns = [
         text("fillet", lambda row: row[0].name),
         word("by", lambda row: row[1]),
         _stress("nominal", units, lambda row: getattr(row[0].nominal, row[1])),
         _stress("surface", units, lambda row: getattr(row[0].local, BY[row[1]])),
-        _stress("bar", units, lambda row: getattr(row[0].local, f"{BY[row[1]]}_bar"), 2),
+        _stress("error bar", units, lambda row: getattr(row[0].local, f"{BY[row[1]]}_bar"), 2),
     ]
     note = (
-        "Surface: along the meridian where it is largest, by bending the amplitude of the turning "
-        "shaft, with what the shear force does there, so that it is not Kt times the nominal one; by "
-        "tension a mean; by torsion the shear at the same place, a mean. Bar: of the harmonic solid "
-        "around the fillet."
+        "Surface: largest stress along the meridian: by bending the amplitude of the turning "
+        "shaft, shear force included, so that it is not Kt times nominal; by tension and torsion "
+        "(shear at the same place) a mean. Error bar: of the harmonic solid around the fillet."
     )
     if open_:
-        columns.append(Column("left open", partial(_open, open_, units)))
-        note += f" Left open: by {open_by} of the bearings."
+        columns.append(Column("range", partial(_open, open_, units)))
+        note += f" Range: by {open_by} of the bearings."
     title = f"Stress on the fillets, {units.unit(STRESS)}"
-    return Table(title, columns, _by_load(found.notches), note)
+    return Table(title, columns, _by_load(stress.notches), note)
 
 
 def _open(
@@ -189,8 +184,8 @@ def _open(
     return f"{low} to {high}"
 
 
-def form_factors(found: ShaftStress) -> Table:
-    """Form factors and fatigue notch factors of the fillets beside published ones."""
+def form_factors(stress: ShaftStress) -> Table:
+    """Return the form factors and fatigue notch factors of the fillets beside published ones."""
 
     def published(source: str) -> Column:
         def factor(row: tuple[Notch, str]) -> float | None:
@@ -204,30 +199,30 @@ def form_factors(found: ShaftStress) -> Table:
 
         return Column(head, factor, _factor)
 
-    sources = dict.fromkeys(source for notch in found.notches for source in notch.published)
+    sources = dict.fromkeys(source for notch in stress.notches for source in notch.published)
     columns = [
         text("fillet", lambda row: row[0].name),
         word("by", lambda row: row[1]),
         Column("Kt", lambda row: row[0].found.factors[row[1]].value, _factor),
-        Column("bar", lambda row: _bar(row[0], row[1])),
+        Column("error bar", lambda row: _bar(row[0], row[1])),
         *map(published, sources),
     ]
     note = (
-        "Kt: largest surface stress over nominal stress of the section where the fillet meets its "
-        "cylinder, by the harmonic solid of this shaft around it. "
+        "Kt: largest surface stress over nominal stress where the fillet meets its cylinder, by "
+        "the harmonic solid around it. "
     )
     if sources:
         note += (
-            f"{' and '.join(sources)}: published factors of plain shoulders of solid shafts, which in "
-            "tension and bending lie up to 20 % below those of elasticity. "
+            f"{' and '.join(sources)}: published factors of plain shoulders on solid shafts, in "
+            "tension and bending up to 20 % below elasticity. "
         )
-    if any(notch.fatigue for notch in found.notches):
+    if any(notch.fatigue for notch in stress.notches):
         columns += [fatigue("Kf", "notch"), fatigue("norm", "norm_notch")]
         note += (
             "Kf = Kt/n, the support number n by DIN 743-2 and the stress gradient of the solid; "
             "norm: that of its own factor and gradient."
         )
-    return Table("Form factors", columns, _by_load(found.notches), note.strip())
+    return Table("Form factors", columns, _by_load(stress.notches), note.strip())
 
 
 def _by_load(notches: Sequence[Notch]) -> list[tuple[Notch, str]]:
@@ -243,26 +238,26 @@ def _bar(notch: Notch, load: str) -> str:
     return percent(factor.bar / factor.value, signed=False)
 
 
-def safeties(found: ShaftStress) -> Table:
-    """Safeties of all fillets that are rated, the least first."""
+def safeties(stress: ShaftStress) -> Table:
+    """Return safeties of all fillets that are rated, the least first."""
     columns = [
         text("fillet", lambda notch: notch.name),
         Column("S, fatigue", lambda notch: safety(notch.rating.fatigue)),
-        Column("less by the bar", lambda notch: plain(notch.rating.fatigue_bar, 2)),
+        Column("less by the error bar", lambda notch: plain(notch.rating.fatigue_bar, 2)),
         Column("S, yielding", lambda notch: safety(notch.rating.yielding)),
     ]
-    rows = [notch for notch in found.worst if notch.rating is not None]
+    rows = [notch for notch in stress.worst if notch.rating is not None]
     note = (
-        f"The norm asks for {LEAST:g} where loads and strength are sure. Less by the bar: what S "
-        "loses where Kt lies at the upper end of its bar."
+        f"The norm asks for {LEAST:g} where loads and strength are known. Less by the error bar: "
+        "loss of S with Kt at the upper end of its error bar."
     )
     return Table("Safety by DIN 743", columns, rows, note)
 
 
 def rating(notch: Notch, units: Units = ENGINEERING) -> Table:
-    """Rating of one fillet that has one by DIN 743, every factor with its source."""
+    """Return the rating of one fillet by DIN 743, every factor with its source."""
     assert notch.rating is not None
-    found: Rating = notch.rating
+    record: Rating = notch.rating
     columns = [
         word("", lambda entry: entry.symbol),
         text("what", lambda entry: _named(entry, units)),
@@ -270,12 +265,12 @@ def rating(notch: Notch, units: Units = ENGINEERING) -> Table:
         text("source", _source),
     ]
     note = (
-        f"Safety against fatigue {safety(found.fatigue)}, against yielding "
-        f"{safety(found.yielding)}. Of nominal stress, as the norm has it: without shear forces."
+        f"Safety against fatigue {safety(record.fatigue)}, against yielding "
+        f"{safety(record.yielding)}, by nominal stress without shear forces, as in the norm."
     )
-    if found.assumed:
-        note += f" Assumed, for nobody gave it: {', '.join(found.assumed)}."
-    return Table(f"DIN 743 at {notch.name}", columns, list(found.entries), note)
+    if record.assumed:
+        note += f" Assumed, since not given: {', '.join(record.assumed)}."
+    return Table(f"DIN 743 at {notch.name}", columns, list(record.entries), note)
 
 
 def _named(entry: Entry, units: Units) -> str:
@@ -283,8 +278,8 @@ def _named(entry: Entry, units: Units) -> str:
     return f"{entry.what}, {unit}" if unit else entry.what
 
 
-def _value(at: int, units: Units, entry: Entry) -> str | None:
-    value = entry.values[at]
+def _value(place: int, units: Units, entry: Entry) -> str | None:
+    value = entry.values[place]
     if value is None:
         return None
     if entry.unit == "Pa":
@@ -297,23 +292,23 @@ def _source(entry: Entry) -> str | Cell:
 
 
 def safety(value: float) -> str:
-    """A safety as it is written."""
+    """Return a safety as text."""
     return plain(value, 3) if math.isfinite(value) else "endless"
 
 
-def remarks(found: ShaftStress, units: Units = ENGINEERING) -> list[str]:
-    """Sentences on places without a number, and on what is left out."""
+def remarks(stress: ShaftStress, units: Units = ENGINEERING) -> list[str]:
+    """Return sentences on places without a number, and on what is left out."""
     out = []
-    for chamfered, what in ((False, "sharp corners"), (True, "chamfers, two obtuse corners each")):
+    for chamfered, kind in ((False, "sharp corners"), (True, "chamfers, two obtuse corners each")):
         places = [
-            f"y = {units.text(one.y, 'm')} ({'in the bore, ' if one.surface == 'bore' else ''}"
-            f"{' to '.join(one.between)})"
-            for one in found.sharp
-            if one.chamfered == chamfered
+            f"y = {units.text(corner.y, 'm')} ({'in the bore, ' if corner.surface == 'bore' else ''}"
+            f"{' to '.join(corner.between)})"
+            for corner in stress.sharp
+            if corner.chamfered == chamfered
         ]
         if places:
             out.append(
-                f"{what} at {listed(places)}: a stress does not exist there, it grows without end "
-                "as a mesh is refined; give fillets."
+                f"{kind} at {listed(places)}: no stress there, since it grows without limit as a "
+                "mesh is refined; give fillets."
             )
-    return out + [f"{remark}." for remark in found.remarks]
+    return out + [f"{remark}." for remark in stress.remarks]

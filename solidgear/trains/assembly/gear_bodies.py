@@ -83,8 +83,8 @@ def gear_cautions(train: Train, contacts: Mapping[str, Contact]) -> Iterator[str
         if not _flank_is_given(train, k):
             yield (
                 f"{prefix}loaded_side is not given: the {pair.pinion.flank} flank of the "
-                f"{pair.shafts[0]} is taken to carry; the other one moves numbers where bearings "
-                "differ across the shaft"
+                f"{pair.shafts[0]} is taken to carry; the other flank gives other numbers where "
+                "bearings differ between x and z"
             )
         if (fit := fit_of(pair)) is not None:
             yield from (prefix + text for text in backlash_cautions(fit, pair.mesh.backlash))
@@ -148,9 +148,9 @@ def _body_below_teeth(
             inertia = mass * (wheel.radius**2 + body**2) / 2
             ring = f", a ring of {mass:.3g} kg and {inertia:.3g} kg m^2,"
         yield (
-            f"the teeth of the {label} roll at {_mm(wheel.radius)} from the axis, and the shaft "
-            f"below them ends at {_mm(body)}: what lies between{ring} is in no model; correct "
-            "teeth or module, make the segment as large, or give the gear a head"
+            f"the teeth of the {label} roll at {_mm(wheel.radius)} from the axis, but the shaft "
+            f"ends at {_mm(body)}: the material between{ring} is in no model; correct teeth or "
+            "module, make the segment as large, or give the gear a head"
         )
     if body > wheel.tip + ABOVE * wheel.module:
         yield (

@@ -246,10 +246,10 @@ def housing_cautions(
         return []
     if (matrices := train.housing.matrices) is None:
         return [
-            "the housing is rigid: what its walls give, and their modes, are in no number and in no "
-            "bar; matrices of it tell both"
+            "the housing is rigid: elastic walls and their modes are left out of numbers and "
+            "error bars; give matrices for them"
         ]
-    out = ["what the matrices of the housing leave out is in no bar and in no bound"]
+    out = ["error bars and bounds leave out errors in the matrices of the housing"]
     for side in train.housed:
         turn, origin = places[side]
         for bearing in train.shafts[side].scene.bearings:
@@ -257,8 +257,8 @@ def housing_cautions(
             distance = np.linalg.norm(matrices.positions[name] - origin - turn[:, 1] * bearing.y)
             if distance > ASTRAY:
                 out.append(
-                    f"point {name!r} of the housing lies {1e3 * distance:.3g} mm from that bearing, which "
-                    "it is taken to carry over that distance rigidly"
+                    f"point {name!r} of the housing lies {1e3 * distance:.3g} mm from that bearing; "
+                    "the distance is taken as rigid"
                 )
     return out
 

@@ -40,8 +40,8 @@ def contacts(train: Train, coast: bool | None = None) -> dict[str, Contact]:
             shared, first = next(shared_shafts, None), after.shafts[0]
             role = "pinion" if shared in (None, first) else "gear"
             raise SceneError(
-                f"the flanks of {before.name} and of {after.name} turn the {shared or first} the same "
-                "way, so that no torque passes it: name the other flank of one of them",
+                f"the flanks of {before.name} and {after.name} turn the {shared or first} the "
+                "same way, so that no torque passes it; name the other flank of one of them",
                 path=(*after.paths[role], "loaded_side"),
             )
     return mesh_contacts
@@ -73,9 +73,9 @@ def _turns_and_signs(
             )
         if (mismatch := abs(power_in / power_out + 1)) > LOCKED:
             raise SceneError(
-                f"closes a loop in which lever arms turn the {joint.shafts[1]} by {100 * mismatch:.2g} % other "
-                "than the rest of it, so that it is locked: let lines of action follow from gear "
-                "geometry (pressure_angle), or give them all digits",
+                f"closes a loop that is locked, since its lever arms turn the {joint.shafts[1]} "
+                f"by {100 * mismatch:.2g} % more or less than the other meshes do; give pressure_angle "
+                "in place of lines of action, or give these all digits",
                 path=("mesh", k, "between"),
             )
         signs[joint.name] = -float(np.sign(power_in) * _power_sign(train, joint))

@@ -74,8 +74,8 @@ def local_teeth(
     rigid = [s.name for s in scene.stations if s.attachment == "rigid"]
     if rigid:
         raise SolidgearError(
-            f"[mesh] local_harmonics: the seat {rigid[0]} of the {side}'s shaft is tied rigidly "
-            "and holds all waves around it; use attachment average or section"
+            f"[mesh] local_harmonics: the seat {rigid[0]} of the {side}'s shaft is tied rigidly, "
+            "which suppresses all waves around it; use attachment average or section"
         )
     seats: dict[tuple[str, int], np.ndarray] = {}
     mesh_ports = []
@@ -131,15 +131,15 @@ def _local_line(workshop: Workshop, system: System, pair: Pair) -> str:
     listed = ", ".join(map(str, sorted(pair.mesh.local_harmonics)))
     if not compliance:
         return (
-            f"Local harmonics {listed} are asked for{' of' if suffix else ''}{suffix}, and neither shaft is a "
-            "harmonic solid: they are left out."
+            f"Local harmonics {listed}{' of' if suffix else ''}{suffix} are left out, since neither "
+            "shaft is a harmonic solid."
         )
     share = 100 * sum(compliance.values()) * workshop.contacts[pair.name].stiffness
     values = ", ".join(f"{side} {value:.2e} m/N" for side, value in compliance.items())
     return (
-        f"Local mesh point{suffix}: harmonics n = {listed} on one tooth pitch of the seat; they give way "
-        f"by {values}, {share:.2g} % of the compliance of the mesh, which a stiffness found on whole "
-        "elastic gears holds already."
+        f"Local mesh point{suffix}: harmonics n = {listed} on one tooth pitch of the seat add "
+        f"{values}, {share:.2g} % of the mesh compliance; a mesh stiffness found on whole elastic "
+        "gears includes that already."
     )
 
 

@@ -212,7 +212,8 @@ class Workshop:
         load.
         """
         unloaded = [
-            f"bearing {end} carries nothing at {self.train.point.label}: it has no stiffness there"
+            f"bearing {end} carries no load at {self.train.point.label}, so it has no stiffness "
+            "there"
             for end in self.train.unloaded
             if self.train.point is not None
         ]
@@ -251,8 +252,8 @@ class Workshop:
         else:
             if side in self.train.housed:
                 raise SolidgearError(
-                    f"a {kind} shaft has its bearings condensed to ground, and those of the {side} "
-                    f"stand in a housing; use one of {', '.join(LADDER.bodies)}, {RIGID}"
+                    f"a {kind} shaft has its bearings condensed to ground, but those of the "
+                    f"{side} stand in a housing; use one of {', '.join(LADDER.bodies)}, {RIGID}"
                 )
             # a shaft that is a carrier may have no gear: it is held at its main lumped point
             scene = self.scenes[side]

@@ -100,8 +100,8 @@ def lumped(shaft_model: ShaftModel, kind: str, scene: Scene, gears: Sequence[str
         return condensed
     if len(gears) > 1:
         raise SolidgearError(
-            f"a {kind} shaft has its whole mass at one point, and the {shaft_model.side} carries several "
-            f"gears, which share it in no one way; use lumped, or one of {listed(LADDER.bodies)}"
+            f"a {kind} shaft has its mass at one point, but the {shaft_model.side} carries several "
+            f"gears; use lumped, or one of {listed(LADDER.bodies)}"
         )
     rigid = _mass_about(shaft_model.body, scene.port.y)
     if kind == "lumped-old":

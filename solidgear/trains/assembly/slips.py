@@ -28,8 +28,8 @@ def unit_slips(workshop: Workshop) -> tuple[str, ...]:
     >>> unit_slips(Workshop(train))
     ()
     >>> soft = train.with_changes(mesh=train.mesh.with_changes(stiffness=2.5e5))
-    >>> unit_slips(Workshop(soft))[0][:62]
-    'probably a slip in units: mesh stiffness over E r is 2.73e-05,'
+    >>> unit_slips(Workshop(soft))[0][:59]
+    'probably a wrong unit: mesh stiffness over E r is 2.73e-05,'
     """
     out = mesh_unit_slips(workshop)
     for side in workshop.scenes:

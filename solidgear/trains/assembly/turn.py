@@ -159,8 +159,8 @@ def frequencies_over_a_turn(workshop: Workshop, models: Mapping[str, str], names
         count = len(stage.teeth.azimuths)
         if stage.table.planets is not None and count >= ALIKE:
             lines.append(
-                f"{count} equal planets at equal angles are the same all around to their shafts: "
-                f"frequencies do not hang on the position of the carrier ({stage.called})."
+                f"{count} equal planets at equal angles: frequencies do not depend on the "
+                f"position of the carrier ({stage.called})."
             )
             continue
         omegas = [

@@ -110,7 +110,7 @@ def _of_involute(value: float) -> float:
 
     if not 0 < value < tan(0.4 * pi) - 0.4 * pi:
         raise SceneError(
-            "is so large, with that of the other wheel, that no pressure angle meets it",
+            "is too large, with that of the other wheel, for any pressure angle",
             path=("pinion", "profile_shift"),
         )
     return float(brentq(lambda angle: tan(angle) - angle - value, 0.0, 0.4 * pi, xtol=1e-15))
@@ -124,7 +124,7 @@ def cylindrical_problems(pinion: Member, gear: Member, mesh: Mesh) -> Iterator[S
             for key in keys:
                 if getattr(tables[table], key):
                     yield SceneError(
-                        "is a word of parallel shafts; write shaft_angle = 0 under [mesh], or the "
+                        "is for parallel shafts; write shaft_angle = 0 under [mesh], or the "
                         "pitch_radius and spiral_angle of a bevel gear",
                         path=(table, key),
                     )
@@ -132,12 +132,15 @@ def cylindrical_problems(pinion: Member, gear: Member, mesh: Mesh) -> Iterator[S
     for side, member in (("pinion", pinion), ("gear", gear)):
         for key, bevel_key in (("helix_angle", "spiral_angle"), ("module", "pitch_radius")):
             if getattr(member, key) is not None and getattr(member, bevel_key) is not None:
-                reason = f"and {bevel_key} say the same; of a cylindrical gear write {key} alone"
+                reason = f"and {bevel_key} say the same; for a cylindrical gear write {key} alone"
                 yield SceneError(reason, path=(side, key))
     for key in ("module", "helix_angle"):
         first, second = getattr(pinion, key), getattr(gear, key)
         if None not in (first, second) and not isclose(first, second, rel_tol=TYPED, abs_tol=1e-9):
-            reason = f"is {second:.6g} and that of the pinion {first:.6g} (SI); wheels that mesh share it"
+            reason = (
+                f"is {second:.6g}, but the pinion's is {first:.6g} (SI); write one value for both "
+                "wheels"
+            )
             yield SceneError(reason, path=("gear", key))
     distance = mesh.centre_distance
     for side, member in (("pinion", pinion), ("gear", gear)):

@@ -43,8 +43,7 @@ class HeadInertia(Model):
     def _possible(self) -> Self:
         if self.bending < (1 - ROUNDED) * self.torsional / 2:
             raise SceneError(
-                f"is less than half of torsional, {self.torsional:g} kg m^2, which about a diameter "
-                "no body has",
+                f"is less than half of torsional, {self.torsional:g} kg m^2, which is impossible",
                 path=("bending",),
             )
         return self
@@ -191,7 +190,7 @@ def pair_problems(pair: Pair) -> Iterator[SceneError]:
     if curved and None not in hands and hands[0] == hands[1]:
         kind = "spiral bevel pair" if mesh.shaft_angle else "helical pair on parallel shafts"
         yield SceneError(
-            f"both wheels are {hands[0]}-handed and cannot mesh; a {kind} has one of each",
+            f"both wheels are {hands[0]}-handed; a {kind} needs one of each hand",
             path=("gear", "hand"),
         )
     yield from _flanks(pair)
@@ -217,15 +216,15 @@ def _cycles(pair: Pair) -> Iterator[SceneError]:
     for key, table in tables_given.items():
         if not isclose(table.pitch, pitch, rel_tol=TYPED):
             yield SceneError(
-                f"covers {table.pitch:.5g} rad of the pinion, and one of its {teeth} teeth takes "
+                f"covers {table.pitch:.5g} rad of the pinion, but one of its {teeth} teeth takes "
                 f"{pitch:.5g} rad; correct the angles, or the number of teeth",
                 path=("mesh", key, "angle"),
             )
     first = [table.angle[0] for table in tables_given.values()]
     if len(first) > 1 and not isclose(first[0], first[1], abs_tol=TYPED * pitch):
         yield SceneError(
-            f"begins at {first[1]:.5g} rad, and stiffness_cycle at {first[0]:.5g} rad; both tell "
-            "one cycle and begin at one angle",
+            f"begins at {first[1]:.5g} rad, but stiffness_cycle at {first[0]:.5g} rad; let both "
+            "begin at one angle",
             path=("mesh", "line_cycle", "angle"),
         )
 
@@ -236,23 +235,24 @@ def _flanks(pair: Pair) -> Iterator[SceneError]:
     sides = [side for side in pair.members if pair.members[side].loaded_side in FLANKS]
     if sides and mesh.shaft_angle:
         yield SceneError(
-            "left and right flanks are words of parallel shafts (ISO 21771); of a bevel gear "
-            "write concave or convex",
+            "left and right flanks are for parallel shafts (ISO 21771); for a bevel gear write "
+            "concave or convex",
             path=(sides[0], "loaded_side"),
         )
     elif sides and None not in (pinion.flank, gear.flank):
         if pinion.flank != gear.flank and pair.idle:
             file_flank = next(flank for flank in FLANKS if flank != gear.flank)
             yield SceneError(
-                f"is the flank that the {pair.shafts[1]} drives with, so that it is driven on its "
-                f"{gear.flank} one; the {pair.shafts[0]} drives it with its {pinion.flank} one, and left "
-                f'flanks touch left ones: write "{gear.flank}" in place of "{file_flank}", or leave it out',
+                f"is the flank that the {pair.shafts[1]} drives with, so it would be driven on "
+                f"its {gear.flank} flank, but the {pair.shafts[0]} drives it on the "
+                f'{pinion.flank} one: write "{gear.flank}" in place of "{file_flank}", or leave it '
+                "out",
                 path=("gear", "loaded_side"),
             )
         elif pinion.flank != gear.flank:
             yield SceneError(
-                f"is the {gear.flank} flank, and the {pinion.flank} one is loaded on "
-                f"the {pair.shafts[0]}: seen from one side, left flanks touch left ones; correct "
-                "one of the two, or leave that of the gear out",
+                f"is the {gear.flank} flank, but the {pinion.flank} one is loaded on the "
+                f"{pair.shafts[0]}, and left flanks touch left ones; correct one of them, or "
+                "leave the gear's out",
                 path=("gear", "loaded_side"),
             )

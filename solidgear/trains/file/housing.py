@@ -48,8 +48,8 @@ def _inertia(value: Any) -> tuple[tuple[float, ...], ...]:
         )
     if most > (1 + TYPED) * (least + middle):
         raise SceneError(
-            f"has principal moments of {least:.4g}, {middle:.4g} and {most:.4g} kg m^2, and no body "
-            "has one that is larger than the other two together"
+            f"has principal moments of {least:.4g}, {middle:.4g} and {most:.4g} kg m^2; the "
+            "largest must not be more than the sum of the others"
         )
     return tuple(tuple(row) for row in tensor.tolist())
 
@@ -67,7 +67,7 @@ class Mount(Model):
     @model_validator(mode="after")
     def _holds(self):
         if (self.at is None) == (self.position is None):
-            reason = "say where it stands: position, or at = a point of the housing, one of the two"
+            reason = "give its place: position, or at = a point of the housing"
             raise SceneError(reason, path=("position",))
         if not np.any(self.stiffness):
             reason = "holds nothing; write entries such as {kxx = ..., kyy = ..., kzz = ...}"
@@ -109,7 +109,9 @@ class TrainHousing(Model):
     @model_validator(mode="after")
     def _named_once(self):
         if self.loss is not None and self.matrices is None:
-            raise SceneError("is of an elastic housing; a rigid one loses nothing", path=("loss",))
+            raise SceneError(
+                "belongs to an elastic housing; a rigid one has no losses", path=("loss",)
+            )
         places, names = [*self.point_places], [CENTRE]
         for k, mount in enumerate(self.mounts):
             if mount.at is not None and mount.at not in places:

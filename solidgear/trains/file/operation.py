@@ -139,7 +139,7 @@ def _on_the_shaft(train: Train, rotor: str, side: str) -> Iterator[SceneError]:
     try:
         train.shaft(side)
     except SceneError as error:
-        reason = f"is no place on the {side}'s shaft: {error.problems[0].reason}"
+        reason = f"is not a place on the {side}'s shaft: {error.problems[0].reason}"
         yield SceneError(reason, path=(*train.rotor_path(rotor), "spring", "position"))
 
 
@@ -173,8 +173,8 @@ def running_problems(train: Train) -> Iterator[SceneError]:
         holding = [b.name for b in scene.bearings if b.matrix is not None and b.matrix[4][4] > 0]
         if holding:
             yield SceneError(
-                f"a torque has to turn the {side}'s shaft, and {listed(holding)} of its scene "
-                "holds its rotation: leave kthy out, or hold it in another way than clamped",
+                f"a torque must turn the {side}'s shaft, but {listed(holding)} of its scene holds "
+                "its rotation: leave kthy out, or use another hold than clamped",
                 path=("operation",),
             )
         yield from _speeds(train, side, scene)
@@ -184,7 +184,7 @@ def _point(train: Train, point: OperatingPoint) -> Iterator[SceneError]:
     """Yield problems of an operating point against the teeth, and of forces at unknown ports."""
     if point.of not in train.torque_turns:
         sides = train.torque_turns
-        reason = f"is no shaft that the torque passes; write one of {listed(sides)}"
+        reason = f"is not a shaft that the torque passes; write one of {listed(sides)}"
         yield SceneError(reason + nearest(point.of, sides), path=("of",))
         return
     yield from _against_teeth(train, point)
@@ -212,9 +212,7 @@ def _against_teeth(train: Train, point: OperatingPoint) -> Iterator[SceneError]:
     if point.output_speed is None:
         return
     if speed is None:
-        yield SceneError(
-            "needs a speed to be held against; write speed as well", path=("output_speed",)
-        )
+        yield SceneError("checks a speed; write speed as well", path=("output_speed",))
     elif not isclose(point.output_speed, speed, rel_tol=TYPED):
         yield SceneError(
             f"the teeth turn the {side} at {speed * 30 / pi:.6g} rpm; correct one, or leave it out",

@@ -64,7 +64,7 @@ class PlanetTable(HeadInertia):
     @model_validator(mode="after")
     def _on_a_pin(self) -> PlanetTable:
         if self.pin is None:
-            reason = "planets are on no pins: give radial, axial and tilting stiffness of pin and"
+            reason = "planets have no pins: give radial, axial and tilting stiffness of pin and"
             raise SceneError(f"{reason} planet bearing", path=("pin",))
         return self
 
@@ -264,7 +264,7 @@ def _ends(train: Train, table: Planetary) -> Iterator[SceneError]:
             choices = " or ".join(f'"{side}.{port}"' for port in places)
             yield SceneError(f"the {side} carries several gears; write {choices}", path=(key,))
     if table.sun.partition(".")[0] == table.carrier.partition(".")[0]:
-        reason = "sun and carrier are one shaft, and could not turn against each other"
+        reason = "sun and carrier are one shaft; name two"
         yield SceneError(reason, path=("carrier",))
 
 
@@ -278,7 +278,7 @@ def _teeth(train: Train, name: str) -> Iterator[SceneError]:
     elif gear.helix_angle and gear.hand is None:
         yield SceneError(f"{gear_label} has helical teeth; give their hand", path=("sun",))
     elif gear.profile_shift:
-        reason = f"{gear_label} has a profile_shift, and stages are told without any; leave it out"
+        reason = f"{gear_label} has a profile_shift, which stages cannot have; leave it out"
         yield SceneError(reason, path=("sun",))
     else:
         try:
@@ -306,8 +306,7 @@ def named_pair(train: Train, word: str | None) -> Pair:
     if isinstance(mesh, PlanetMesh):
         names = listed(pair.label.strip() for pair in train.pairs) or "none"
         raise SolidgearError(
-            f"teeth of planets have no backlash and do not drive motions with it; of {train.name} "
-            f"these may: {names}"
+            f"teeth of planets have no backlash; in {train.name} use one of {names}"
         )
     return mesh
 

@@ -320,7 +320,10 @@ def _cell(row: Mapping[str, Any], line: int, file_path: str) -> dict[str, Any]:
         reason = f"line {line}: the normal has length {length:.6g}; it must be a unit vector"
         raise SceneError(reason, where=file_path)
     if force < 0:
-        reason = f"line {line}, force = {force:g}: teeth push and do not pull; must not be negative"
+        reason = (
+            f"line {line}, force = {force:g}: must not be negative, since teeth push and do not "
+            "pull"
+        )
         raise SceneError(reason, where=file_path)
     unit = tuple(v / length for v in normal)
     return {"point": tuple(value[:3]), "normal": unit, "force": force}

@@ -204,9 +204,9 @@ def fit_problems(pair: Pair) -> Iterator[SceneError]:
         bore = min(s.radius_at(y)[0] for s in wheel.scene.segments if s.y0 <= y <= s.y1)
         if root <= bore:
             yield SceneError(
-                f"puts the roots of its teeth at {_mm(root)} from the axis, within the bore of its "
-                f"shaft, {_mm(bore)}: nothing holds the teeth; correct the teeth, the module, the "
-                "profile shift or the bore",
+                f"puts the roots of its teeth at {_mm(root)} from the axis, inside the bore of "
+                f"its shaft, {_mm(bore)}; correct the teeth, the module, the profile shift or the "
+                "bore",
                 path=(side, "teeth"),
             )
 
@@ -271,8 +271,8 @@ def backlash_cautions(fit: ToothFit, file_backlash: float | None) -> Iterator[st
     if gap < -ROUNDED * fit.module:
         yield (
             f"teeth without allowances overlap by {_um(-gap)} along the line of action at "
-            f"{_mm(fit.centre_distance)}: they turn only if allowances thin them by more; they have "
-            f"no backlash at {_mm(fit.tight)}"
+            f"{_mm(fit.centre_distance)}: they need allowances larger than that; they have no "
+            f"backlash at {_mm(fit.tight)}"
         )
     if gap > loose:
         yield (
@@ -283,13 +283,13 @@ def backlash_cautions(fit: ToothFit, file_backlash: float | None) -> Iterator[st
         return
     if file_backlash < gap - ROUNDED * fit.module:
         yield (
-            f"backlash = {_um(file_backlash)} is less than the numbers of the teeth leave: {place}, and "
-            "allowances only add to it; correct one of them"
+            f"backlash = {_um(file_backlash)} is less than the teeth have: {place}, and allowances only "
+            "add to it; correct one of them"
         )
     elif file_backlash > max(gap, 0.0) + loose:
         yield (
-            f"backlash = {_um(file_backlash)} is far more than the numbers of the teeth leave: {place}; "
-            "teeth would have to be thinner by the rest; correct one of them"
+            f"backlash = {_um(file_backlash)} is far more than the teeth have: {place}; correct one "
+            "of them"
         )
 
 

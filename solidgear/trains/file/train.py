@@ -56,14 +56,14 @@ class Train(Model):
     rotors : dict of str to Rotor
         ``engine`` and ``load``, between which torque passes, and others; none for modes alone.
     engines, loads : tuple of str
-        Rotors that bring torque and that take it, where they are others than these two.
+        Rotors that bring torque, and that take it, where they have other names.
     planetary : dict of str to Planetary
         Stages by name.
     losses : Losses
     housing : TrainHousing or None
-        Under the bearings of the shafts, which without one stand on ground.
+        Housing under the bearings of its shafts; without one they stand on ground.
     operation : tuple of OperatingPoint
-        Torques and speeds at which it runs; bearings of catalogue data settle at the first.
+        Torques and speeds at which it runs; catalogue bearings have their stiffness at the first.
     ask : TrainAsk
 
     Raises
@@ -300,8 +300,8 @@ class Train(Model):
         """Return the only pair of gears; refuse a train of several meshes."""
         if len(self.teeth) > 1:
             raise SolidgearError(
-                f"{self.name} has {len(self.teeth)} meshes, and what is asked is there for a "
-                "train of one mesh only"
+                f"{self.name} has {len(self.teeth)} meshes, but this is for a train of one mesh "
+                "only"
             )
         return self.pairs[0]
 

@@ -38,8 +38,8 @@ from solidgear.trains.modes.modes import (
 #: a loss factor below this gives peaks whose height is a matter of the loss alone
 LITTLE_LOSS = 1e-3
 ALONE = (
-    "guards judge each shaft alone; which of them needs the solid for modes and mesh force, and from "
-    "which frequency on, is what solidgear compare says of a train"
+    "guards judge each shaft alone; run solidgear compare to see which shaft needs the solid in "
+    "mesh, and from which frequency on"
 )
 #: verdicts in the order in which the worst of two is chosen
 WORST = ("will not hold", "uncertain", "holds with caution", "holds")
@@ -105,7 +105,7 @@ def _facts(workshop: Workshop, limit: float) -> Iterator[str]:
             yield prefix + fit_line(fit)
         teeth = train.per_turn(pair)
         yield (
-            f"{prefix}{limit:g} Hz are asked for: teeth mesh at them at {60 * limit / teeth:.0f} "
+            f"{prefix}the {limit:g} Hz asked for is the mesh frequency at {60 * limit / teeth:.0f} "
             f"rpm of the {teeth.of}"
         )
     for stage in train.stages:
@@ -119,9 +119,8 @@ def _facts(workshop: Workshop, limit: float) -> Iterator[str]:
     yield senses_sentence(senses(train, workshop.contacts))
     loss = train.losses
     yield (
-        "losses are read as loss factors, twice a damping ratio: "
-        f"shafts {loss.shafts:g}, bearings {loss.bearings:g}, mesh {loss.mesh:g}, "
-        f"springs {loss.springs:g}"
+        f"losses are loss factors, twice a damping ratio: shafts {loss.shafts:g}, bearings "
+        f"{loss.bearings:g}, mesh {loss.mesh:g}, springs {loss.springs:g}"
     )
 
 
@@ -134,8 +133,8 @@ def _loss_cautions(train: Train) -> Iterator[str]:
     ]
     if small:
         yield (
-            f"a loss factor is below {LITTLE_LOSS:g} ({', '.join(small)}): where such a part takes "
-            "all the energy, the height of a peak is that number and nothing else"
+            f"a loss factor is below {LITTLE_LOSS:g} ({', '.join(small)}): peaks of a mode in "
+            "that part depend on this number alone"
         )
 
 
@@ -145,11 +144,11 @@ def _error_cautions(pair: Pair | PlanetMesh, limit: float) -> Iterator[str]:
         return
     if table.frequency and table.frequency[-1] < limit:
         yield (
-            f"the transmission error is given up to {table.frequency[-1]:g} Hz and is taken as "
+            f"the transmission error is given up to {table.frequency[-1]:g} Hz, and taken as "
             f"constant from there to the {limit:g} Hz asked for"
         )
     if not any((*table.orders, *table.amplitude)):
-        yield "the transmission error is zero: there will be no response to it; drive by --force"
+        yield "the transmission error is zero, so that there is no response; drive by --force"
 
 
 def _system_facts(shop: Workshop, limit: float) -> Iterator[str]:
@@ -163,8 +162,8 @@ def _system_facts(shop: Workshop, limit: float) -> Iterator[str]:
     worst = float(modes.error_bound.max())
     word = "within" if worst < RESOLVED else "NOT within"
     yield (
-        f"{count} elastic modes up to {limit:g} Hz on light solids; {shop.kept} modes a shaft "
-        f"({shop.reduction}, the first left out at {cut:.0f} Hz) leave at most {worst:.0e} of a "
+        f"{count} elastic modes up to {limit:g} Hz on light solids; {shop.reduction}, {shop.kept} "
+        f"modes per shaft and the first left out at {cut:.0f} Hz: errors up to {worst:.0e} in "
         f"frequency, {word} {RESOLVED:g}"
     )
     yield from free_motions(shop, system) or ("the whole train turns freely, at exactly 0 Hz",)
@@ -178,8 +177,8 @@ def _undriven_caution(shop: Workshop, side: str, limit: float) -> Iterator[str]:
     if frequencies:
         families = ", ".join(f"n = {n} at {hz[0]:.0f} Hz" for n, hz in frequencies.items())
         yield (
-            f"the {side} has modes with nodal diameters below {limit:g} Hz ({families}) that are not "
-            "driven by this mesh model; --local-harmonics shows what they add"
+            f"the {side} has modes with nodal diameters below {limit:g} Hz ({families}), which this "
+            "mesh model does not drive; add them by --local-harmonics"
         )
 
 

@@ -27,11 +27,13 @@ def judge_system(
     train: TrainFile,
     *,
     out: Annotated[
-        Path | None, typer.Option("--out", "-o", help="Folder for the report, as of compare.")
+        Path | None, typer.Option("--out", "-o", help="Folder for the report, as for compare.")
     ] = None,
     against: Annotated[
         list[str] | None,
-        typer.Option("--against", help="Further mix to judge, as PINION+GEAR; repeatable."),
+        typer.Option(
+            "--against", help="Further mix of models to judge, as PINION+GEAR; repeatable."
+        ),
     ] = None,
     reduced: Reduced,
     run: Shown,
@@ -41,19 +43,19 @@ def judge_system(
 
 
 def compare_train(
-    train: Path, out: Path, renders: bool, run: Shown, given: dict[str, bool]
+    train: Path, out: Path, renders: bool, run: Shown, options: dict[str, bool]
 ) -> None:
-    """The command compare on a train.
+    """Compare models of a train.
 
     Parameters
     ----------
-    given : dict of str to bool
+    options : dict of str to bool
         Options of compare that speak of one shaft, and whether they were given.
     """
     instead = (
         "every mix of its models is judged; add further ones by solidgear judge-system --against"
     )
-    refuse(given, f"one shaft, and {train} is a train: {instead}")
+    refuse(options, f"one shaft, and {train} is a train: {instead}")
     _judged(train, out, Reduced(), run, renders=renders)
 
 
@@ -68,29 +70,37 @@ def _judged(
 ) -> None:
     shop = reduced.workshop(train)
     with held(out) if out else nullcontext(), run.progress() as progress:
-        found = compared(shop, reduced.max_frequency, more, progress)
-        results = found.results()
+        comparison = compared(shop, reduced.max_frequency, more, progress)
+        results = comparison.results()
         if out:
             progress("report")
-            draw = found.pictures if renders else None
-            viewer = viewer_fragment(found.turned(), first=next(iter(found.loud), ""))
-            shown = found.drawn, found.marks, found.orders
-            write_train(results, *shown, out, draw, run.units, viewer)
+            draw = comparison.pictures if renders else None
+            viewer = viewer_fragment(comparison.turned(), first=next(iter(comparison.loud), ""))
+            write_train(
+                results,
+                comparison.drawn,
+                comparison.marks,
+                comparison.orders,
+                out,
+                draw,
+                run.units,
+                viewer,
+            )
     if run.as_json:
         print(json.dumps(results, allow_nan=False))
         return
-    verdict = found.verdict
+    verdict = comparison.verdict
     heading = f"{verdict.train}, up to {verdict.highest_hz:g} Hz"
-    say(heading, *found.top.sentences(), _verdict_table(verdict), soft_wrap=False)
+    say(heading, *comparison.top.sentences(), _verdict_table(verdict), soft_wrap=False)
     say(*verdict.sentences(), *unpublished_lines(verdict.unpublished))
     say(*map(caution, verdict.cautions))
     if out:
         say(f"Report: {out / 'report.html'}")
 
 
-def _verdict_table(found):
+def _verdict_table(verdict):
     def end(hz: float | None) -> str:
-        return f"{found.highest_hz:.0f}+" if hz is None else f"{hz:.0f}"
+        return f"{verdict.highest_hz:.0f}+" if hz is None else f"{hz:.0f}"
 
     def off(mix) -> str:
         if mix.error is None:
@@ -99,12 +109,12 @@ def _verdict_table(found):
         return f"{mix.mode} {100 * mix.error:+.{digits}f} %"
 
     columns = [
-        text(" + ".join(found.mixes[0].models), lambda m: mix_words(m.mix)),
-        Column(f"modes\n{100 * found.tolerance:g} %", lambda m: end(m.modes_to_hz)),
-        Column(f"force\n{found.decibels:g} dB", lambda m: end(m.force_to_hz)),
-        Column(f"force\n{100 * found.tolerance:g} %", lambda m: end(m.close_to_hz)),
+        text(" + ".join(verdict.mixes[0].models), lambda m: mix_words(m.mix)),
+        Column(f"modes\n{100 * verdict.tolerance:g} %", lambda m: end(m.modes_to_hz)),
+        Column(f"force\n{verdict.decibels:g} dB", lambda m: end(m.force_to_hz)),
+        Column(f"force\n{100 * verdict.tolerance:g} %", lambda m: end(m.close_to_hz)),
         text("first mode off", off),
         text("by", lambda m: m.cause),
         Column("s", lambda m: f"{m.seconds:.1f}"),
     ]
-    return Table("Within the band up to, in Hz", columns, found.mixes, style="bare")
+    return Table("Within the tolerance up to, in Hz", columns, verdict.mixes, style="bare")

@@ -167,9 +167,9 @@ class Verdict:
     def sentences(self) -> list[str]:
         """Return conclusions from the table."""
         bar_text = (
-            "how sure their meshes are is not told with local harmonics"
+            "with local harmonics their meshes have no error bars"
             if self.judge_bar is None
-            else f"their meshes leave {100 * self.judge_bar:.2g} % of a frequency at most"
+            else f"their meshes leave errors up to {100 * self.judge_bar:.2g} % in frequency"
         )
         out = [f"Judge: {self.every} shafts as {LADDER[JUDGE].title}s; {bar_text}."]
         judge = self.mixes[-1]
@@ -230,7 +230,7 @@ def judge_train(
     add(tuple(_cheapest(departures, all_solid, k, highest) for k in range(len(sides))))
     judged = [_with_cause(departures, mix) for mix in departures]
     reference = judge.departure(*all_solid)
-    progress("how sure the judge's meshes are")
+    progress("error bars of the judge's meshes")
     # wall seconds would order by noise where bodies are the same
     ordered = sorted(judged, key=lambda m: (m.unknowns, [*map(ladder_place, m.mix)]))
     return Verdict(

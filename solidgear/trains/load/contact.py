@@ -82,7 +82,7 @@ def contact(pair: Pair, coast: bool | None = None) -> Contact:
     >>> import solidgear as sg
     >>> found = contact(sg.load_train("geometry/axle_overhung.toml").pairs[0])
     >>> round(abs(found.gear.lever / found.pinion.lever), 4), found.cautions[0][:43]
-    (3.2143, 'the pitch angle of 0.391 rad is not that of')
+    (3.2143, 'the pitch angle of 0.391 rad does not match')
     """
     try:
         return _contact(pair.rolling, coast)
@@ -168,8 +168,9 @@ def _gear_against_pinion(pair: Pair) -> Iterator[tuple[str, str, bool]]:
         radius_ratio = gear.pitch_radius / pinion.pitch_radius
         difference = abs(radius_ratio / pair.ratio - 1)
         words = (
-            f"is {radius_ratio:.4g} times the {1e3 * pinion.pitch_radius:.5g} mm of the {pair.shafts[0]}, and "
-            f"{gear.teeth} over {pinion.teeth} teeth ask for {pair.ratio:.4g} times"
+            f"is {radius_ratio:.4g} times the {1e3 * pinion.pitch_radius:.5g} mm of the "
+            f"{pair.shafts[0]}, but {gear.teeth} over {pinion.teeth} teeth need {pair.ratio:.4g} "
+            "times"
         )
         if difference > RADII[0]:
             yield (
@@ -181,7 +182,7 @@ def _gear_against_pinion(pair: Pair) -> Iterator[tuple[str, str, bool]]:
         angle_sum = pinion.pitch_angle + gear.pitch_angle
         difference = abs(angle_sum - mesh.shaft_angle)
         words = (
-            f"and that of the {pair.shafts[0]} add up to {angle_sum:.4g} rad, and the shafts are at "
+            f"and the {pair.shafts[0]}'s add up to {angle_sum:.4g} rad, but the shafts are at "
             f"{mesh.shaft_angle:.4g} rad; correct one of the three"
         )
         if difference > ANGLES[0]:
@@ -189,8 +190,8 @@ def _gear_against_pinion(pair: Pair) -> Iterator[tuple[str, str, bool]]:
     if pinion.spiral_angle is not None and gear.spiral_angle is not None:
         difference = abs(pinion.spiral_angle - gear.spiral_angle)
         words = (
-            f"is {gear.spiral_angle:.4g} rad, and that of the pinion {pinion.spiral_angle:.4g} rad; "
-            "teeth that mesh lean alike, to opposite hands"
+            f"is {gear.spiral_angle:.4g} rad, but the pinion's is {pinion.spiral_angle:.4g} rad; "
+            "teeth that mesh have one angle and opposite hands"
         )
         if difference > ANGLES[0]:
             yield (
@@ -201,9 +202,9 @@ def _gear_against_pinion(pair: Pair) -> Iterator[tuple[str, str, bool]]:
     if pinion.face_width and gear.face_width:
         if abs(gear.face_width / pinion.face_width - 1) > FACES:
             words = (
-                f"is {1e3 * gear.face_width:.4g} mm, and that of the pinion "
-                f"{1e3 * pinion.face_width:.4g} mm; only the face that both share carries, and the "
-                "mesh point is taken at the middle of the pinion's"
+                f"is {1e3 * gear.face_width:.4g} mm, but the pinion's is "
+                f"{1e3 * pinion.face_width:.4g} mm; only the shared face carries, and the mesh "
+                "point is taken at the middle of the pinion's"
             )
             yield "face_width", words, False
     if pinion.loaded_side and pinion.loaded_side == gear.loaded_side and pinion.spiral_angle:
@@ -213,14 +214,14 @@ def _gear_against_pinion(pair: Pair) -> Iterator[tuple[str, str, bool]]:
                 "concave" if gear.loaded_side == "convex" else "convex",
             )
             words = (
-                f"{flank} like that of the pinion, where a concave flank touches a convex one; that of "
-                "the pinion is taken"
+                f"{flank} like the pinion's, but a concave flank touches a convex one; the "
+                "pinion's is taken"
             )
             if pair.idle:
                 words = (
-                    f"is {driving_flank}, the flank that it drives with, so that it is driven on its {flank} one "
-                    f"by a {flank} one, where a concave flank touches a convex one; that of the pinion "
-                    f"is taken: write {flank}, or leave it out"
+                    f"is {driving_flank}, the flank it drives with, so that its {flank} flank is "
+                    f"driven by a {flank} one, but a concave flank touches a convex one; the "
+                    f"pinion's is taken: write {flank}, or leave it out"
                 )
             yield "loaded_side", words, False
 
@@ -231,8 +232,8 @@ def _other_flank(pair: Pair, normal: np.ndarray, point: np.ndarray) -> np.ndarra
     """
     if pair.mesh.contact_cells:
         raise SceneError(
-            "are those of one flank; a torque on the other one (coast, below zero) needs a file "
-            "with its own cells",
+            "belong to one flank; a torque on the other flank (coast, below zero) needs a file "
+            "with its cells",
             path=("mesh", "contact_cells"),
         )
     angle = pair.pinion.pitch_angle
@@ -324,8 +325,8 @@ def _given_line(pair: Pair) -> np.ndarray:
         in_pinion_frame = to_gear_frame(normal, -pair.mesh.shaft_angle)
         if in_pinion_frame @ teeth > normal @ teeth + TURNED:
             raise SceneError(
-                "is given in the gear's frame: it fits the teeth only when turned back by the "
-                f"shaft angle; in the pinion's frame it is {np.round(in_pinion_frame, 7).tolist()}",
+                "is given in the gear's frame; in the pinion's frame it is "
+                f"{np.round(in_pinion_frame, 7).tolist()}",
                 path=path,
             )
     return normal
@@ -341,7 +342,7 @@ def _cones(pair: Pair) -> list[str]:
     if abs(angle - of_teeth) < CONE_TOLD * max(of_teeth, LEAST_CONE):
         return []
     return [
-        f"the pitch angle of {angle:.4g} rad is not that of {pair.pinion.teeth} and "
+        f"the pitch angle of {angle:.4g} rad does not match {pair.pinion.teeth} and "
         f"{pair.gear.teeth} teeth ({of_teeth:.4g} rad); radii are taken in the ratio of the teeth"
     ]
 
@@ -359,10 +360,9 @@ def _apexes(pair: Pair) -> list[str]:
         lies = "start" if taper > 0 else "end"
         if abs(taper) > CONE_SEEN and lies != apex:
             out.append(
-                f'apex = "{apex}" of the {side} contradicts its scene: {head.name!r} narrows '
-                f"towards the {lies} of the shaft, and so does a pitch cone towards its apex; the "
-                f'axial mesh force points the wrong way unless apex = "{lies}", or the shaft is '
-                "turned round"
+                f'apex = "{apex}" of the {side} contradicts its scene, where {head.name!r} '
+                f"narrows towards the {lies} of the shaft; the axial mesh force is right only "
+                f'with apex = "{lies}", or with the shaft turned round'
             )
     return out
 
@@ -380,9 +380,9 @@ def _refuse_point_off_head(pair: Pair, side: str, point: np.ndarray) -> None:
     member = pair.members[side]
     if radius > most * (1 + OUTSIDE_RADIUS) and member.head and not member.pitch_radius:
         raise SceneError(
-            f"is missing; the mesh point lies {1e3 * radius:.1f} mm from the axis, beyond the "
-            f"segments of the shaft, whose largest radius is {1e3 * most:.1f} mm: a wheel that is a "
-            "rigid head needs it to say how far its teeth reach",
+            "is missing; a wheel as a rigid head needs it, since the mesh point lies "
+            f"{1e3 * radius:.1f} mm from the axis, beyond the shaft's largest radius of "
+            f"{1e3 * most:.1f} mm",
             path=(side, "pitch_radius"),
         )
     if radius > most * (1 + OUTSIDE_RADIUS):
@@ -415,8 +415,8 @@ def _scene_load(pair: Pair, side: str, vector: MeshVector) -> list[str]:
     teeth = normal if side == "pinion" else -normal
     along = float(force @ teeth / np.linalg.norm(force))
     start = (
-        f"the [load] of the {side}'s scene, ({', '.join(f'{v:.0f}' for v in force)}) N, under which "
-        f"its bearings settle"
+        f"the [load] in the {side}'s scene, ({', '.join(f'{v:.0f}' for v in force)}) N, under "
+        "which its bearings settle"
     )
     advice = (
         f'give the train an [operation] with its torque and write scene_load = "replaced" under '
@@ -442,7 +442,7 @@ def _levers(pair: Pair, pinion: MeshVector, gear: MeshVector) -> list[str]:
         if abs(vector.lever) < 1e-6 * np.linalg.norm(vector.point):
             raise SceneError(
                 f"the line of action meets the axis of the {side}, so that the mesh transmits no "
-                "rotation; turn it, or move the mesh point",
+                "torque; turn it, or move the mesh point",
                 path=path,
             )
     levers = abs(gear.lever / pinion.lever)
@@ -451,7 +451,7 @@ def _levers(pair: Pair, pinion: MeshVector, gear: MeshVector) -> list[str]:
         raise SceneError(
             f"the lever arms are {1e3 * abs(pinion.lever):.2f} mm on the {pair.shafts[0]} and "
             f"{1e3 * abs(gear.lever):.2f} mm on the {pair.shafts[1]}, a ratio of {levers:.4f}; "
-            f"the teeth ask for {pair.ratio:.4f}",
+            f"the teeth need {pair.ratio:.4f}",
             path=path,
         )
     if abs(error) > LEVER_TOLD:

@@ -18,7 +18,7 @@ from solidgear.trains.loading import load_train
 
 
 def show_train(
-    path: Path, name: str | None, other: Mapping[str, Any], as_json: bool = False
+    path: Path, name: str | None, options: Mapping[str, Any], as_json: bool = False
 ) -> None:
     """Print lives at all operating points of a train, and over its duty table.
 
@@ -26,34 +26,34 @@ def show_train(
     ----------
     name : str or None
         Of the one bearing that is asked for, such as ``pinion.A``.
-    other : mapping of str to object
+    options : mapping of str to object
         Options that belong to a scene; none of them may be set.
     """
-    for option, value in other.items():
+    for option, value in options.items():
         if value:
             raise SolidgearError(
-                f"{option} belongs to a scene; of a train the [operation] says torque and speed"
+                f"{option} belongs to a scene; for a train give torque and speed in [operation]"
             )
-    found = [one for one in train_lives(load_train(path)) if name in (None, one.end)]
-    if not found:
+    lives = [bearing for bearing in train_lives(load_train(path)) if name in (None, bearing.end)]
+    if not lives:
         raise SolidgearError(
             f"--bearing {name}: no bearing of catalogue data has this name; write shaft and name, "
             "such as pinion.A"
         )
     if as_json:
-        print(json.dumps({"train": path.stem, "bearings": [_plain(one) for one in found]}))
+        print(json.dumps({"train": path.stem, "bearings": [_plain(bearing) for bearing in lives]}))
         return
-    _print_points(found)
-    _print_duty(found)
+    _print_points(lives)
+    _print_duty(lives)
 
 
 def _number(value: float | None) -> str:
     return "endless" if value == math.inf else engineering(value, 3)
 
 
-def _print_points(found: list[TrainBearingLife]) -> None:
-    """Print what each bearing lives at each operating point."""
-    rows = [(one, k) for one in found for k in range(len(one.points))]
+def _print_points(lives: list[TrainBearingLife]) -> None:
+    """Print the life of each bearing at each operating point."""
+    rows = [(bearing, k) for bearing in lives for k in range(len(bearing.points))]
     columns = [
         Column("bearing", lambda row: row[0].end),
         Column("at", lambda row: row[0].points[row[1]].label, kind="text"),
@@ -69,24 +69,24 @@ def _print_points(found: list[TrainBearingLife]) -> None:
         "Lives in revolutions: basic L10 (ISO 281), reference L10r (ISO/TS 16281) with its range, "
         "modified Lnmr (ISO 281, 9.3); static safety C0/P0 (ISO 76)."
     )
-    if told := found[0].lives[0].told:
-        say(f"From and to: {told} at their ends.")
-    for one in found:
-        notes = [note for life in one.lives for note in life.life.notes]
+    if ranges := lives[0].lives[0].told:
+        say(f"From and to: range over {ranges}.")
+    for bearing in lives:
+        notes = [note for life in bearing.lives for note in life.life.notes]
         for note in dict.fromkeys(notes):
-            say(f"caution: bearing {one.end!r}: {note}")
+            say(f"caution: bearing {bearing.end!r}: {note}")
 
 
-def _modified(one: TrainBearingLife, k: int) -> float | None:
-    own = one.lives[k].life.modified
-    return None if own is None else own.life
+def _modified(bearing: TrainBearingLife, k: int) -> float | None:
+    modified = bearing.lives[k].life.modified
+    return None if modified is None else modified.life
 
 
-def _print_duty(found: list[TrainBearingLife]) -> None:
+def _print_duty(lives: list[TrainBearingLife]) -> None:
     """Print lives over the duty table, where there is one."""
-    rows = [(one, one.duty) for one in found if one.duty is not None]
+    rows = [(bearing, bearing.duty) for bearing in lives if bearing.duty is not None]
     if not rows:
-        say("No life over all points: give each its speed, and its share or hours.")
+        say("No life over all points: give each point its speed, and its share or hours.")
         return
     columns = [
         Column("bearing", lambda row: row[0].end),
@@ -97,24 +97,26 @@ def _print_duty(found: list[TrainBearingLife]) -> None:
         Column("of all", lambda row: percent(row[1].damage[row[1].worst], signed=False)),
     ]
     say(Table("", columns, rows))
-    say("Over all points damage adds up (Palmgren, Miner).")
+    say("Damage of all points is added (Palmgren, Miner).")
 
 
-def _plain(one: TrainBearingLife) -> dict[str, Any]:
-    """Lives of a bearing as plain data, SI; what has no end is None."""
+def _plain(bearing: TrainBearingLife) -> dict[str, Any]:
+    """Return lives of a bearing as plain data in SI; infinite ones are None."""
 
     def known(value: float) -> float | None:
         return value if math.isfinite(value) else None
 
-    duty = one.duty
-    points = [{"at": point.label} | plain_life(life) for point, life in zip(one.points, one.lives)]
-    over = None
+    duty = bearing.duty
+    points = [
+        {"at": point.label} | plain_life(life) for point, life in zip(bearing.points, bearing.lives)
+    ]
+    all_points = None
     if duty is not None:
-        over = {
+        all_points = {
             "hours": known(duty.hours),
             "revolutions": known(duty.revolutions),
-            "of": one.kind,
+            "of": bearing.kind,
             "damage": list(duty.damage),
             "worst": duty.worst,
         }
-    return {"bearing": one.end, "points": points, "duty": over}
+    return {"bearing": bearing.end, "points": points, "duty": all_points}

@@ -45,8 +45,8 @@ SHAFT = "timoshenko"
 #: a [load] of a scene that is off the mesh force by less, of it, is that force written down
 SAME_LOAD = 0.05
 LOOP = (
-    "meshes of a loop divide the torque by their stiffness, as if all of their teeth touched without "
-    "load: errors of teeth and places shift it"
+    "meshes of a loop divide the torque by their stiffness; errors of teeth and positions, which "
+    "shift it, are left out"
 )
 
 
@@ -186,8 +186,8 @@ class Operating:
             forces = {name: {**forces, **loop_shares}[name] for name in shop.contacts}
             notes.append(LOOP)
         notes += [
-            f"at {point.label} bearing {end} carries nothing: its clearance is not taken up, and it "
-            "has no stiffness"
+            f"at {point.label} bearing {end} carries no load within its clearance, so it has no "
+            "stiffness"
             for end in solved.lost
         ]
         return OperatingState(
@@ -213,8 +213,8 @@ class Operating:
         for end, torque in carrier_torques(shop, point).items():
             loads[end] = loads.get(end, np.zeros(6)) + torque * np.eye(6)[4]
             notes.append(
-                f"at {point.label} the weight of planets turns {end} by {abs(torque):.4g} N m: it is "
-                "balanced there, and no shaft carries it"
+                f"at {point.label} the weight of planets turns {end} by {abs(torque):.4g} N m, "
+                "which is balanced there and carried by no shaft"
             )
         for side, scene in shop.scenes.items():
             added, sentences = scene_load(shop, side, forces)
@@ -234,8 +234,8 @@ def refuse_own_loads(train: Train, side: str) -> None:
         for key in ("load", "displacement"):
             if getattr(data, key) is not None:
                 reason = (
-                    f"bearing {bearing.name} has a {key} of its own, and in a train with an "
-                    "[operation] the torque brings its load: leave it out"
+                    f"bearing {bearing.name} has a {key}, but in a train with an [operation] its "
+                    "load comes from the torque; leave it out"
                 )
                 raise SceneError(reason, path=(*train.shaft_path(side), "scene"))
 
@@ -256,15 +256,15 @@ def scene_load(
         return None, []
     if any(train.flows[pair.name] is None for pair in train.pairs if side in pair.shafts):
         raise SceneError(
-            f"the [load] of the {side}'s scene stands beside teeth of a loop of meshes, whose force the "
-            'bearings have a say in: write "replaced", or "added" where it acts beside the teeth',
+            f"the [load] of the {side}'s scene may be the mesh force in a loop of meshes; write "
+            '"replaced", or "added" where it acts besides the teeth',
             path=(*train.shaft_path(side), "scene_load"),
         )
     flanks = [(workshop.on_flank(p.coast), p) for p in train.operation]
     mesh_loads = [_force_on(s, side, mesh_forces(train, s.contacts, p)) for s, p in flanks]
     mesh_loads.append(_force_on(workshop, side, forces))
     if any(np.linalg.norm(load[:3] - f) <= SAME_LOAD * np.linalg.norm(f) for f in mesh_loads):
-        return None, [f"the [load] of the {side}'s scene is its mesh force, and is not added"]
+        return None, [f"the [load] of the {side}'s scene equals its mesh force, and is not added"]
     raise SceneError(
         f"the [load] of the {side}'s scene is ({_newtons(load[:3])}) N at its lumped point, and the "
         f"mesh force is ({_newtons(mesh_loads[0])}) N: leave [load] out of the scene, or write "
@@ -319,9 +319,9 @@ def loop_forces(
         out[name] = -stiffness * float(row @ coordinates)
         if not out[name] > 0:
             raise SolidgearError(
-                f"at {place}: the teeth of the {name} would have to pull with {-out[name]:.4g} N, so "
-                "that the loop of meshes carries its torque: name the other flank of its gears, or "
-                "another torque"
+                f"at {place} the teeth of the {name} would have to pull with {-out[name]:.4g} N "
+                "to carry the torque of their loop; name the other flank of its gears, or another "
+                "torque"
             )
     return out
 

@@ -91,11 +91,11 @@ class TrainModes:
             lines.append("The whole train turns freely: one motion at exactly 0 Hz.")
         lines += list(self.free)
         lines += [*self._still(), *self.local, *filter(None, [self.turn, self.hidden])]
-        bound = "Bound: largest relative error that the reduction leaves, proven"
+        bound = "Bound: largest relative error by the reduction, proven"
         if meshed:
-            bound += "; mesh: that the meshes of harmonic shafts leave, by local problems."
+            bound += "; mesh: error bar of the harmonic shafts' meshes, by local problems."
         else:
-            bound += "; it says nothing of the meshes of the shafts."
+            bound += "; it does not include the shafts' meshes."
         lines.append(bound)
         return lines + list(self.contact) + unpublished_lines(self.unpublished)
 
@@ -121,11 +121,11 @@ class TrainModes:
         ]
         text = f"Ovalising, not driven by this mesh model: {'; '.join(places)} (n nodal diameters)."
         if self.local:
-            pair_note = "of a pair that is driven, one stands still along the line of action"
+            pair_note = "one of a driven pair does not move along the line of action"
             return [text.removesuffix(").") + f"; {pair_note})."]
         return [
-            f"{text} Seats and teeth act on mean motions, which these modes have none of; "
-            "--local-harmonics n lets the teeth of a harmonic solid push where they touch."
+            f"{text} Seats and teeth act on mean motions, which are zero in these modes; add them "
+            "by --local-harmonics."
         ]
 
 
@@ -153,16 +153,16 @@ def wrench_lines(contact: Contact) -> tuple[str, ...]:
     lines = [
         f"Contact cells: {np.linalg.norm(wrench.force):.1f} N along ({normal}); point on the "
         f"central axis ({millimetres(wrench.point)}) mm.",
-        f"No mesh point balances {least:.3g} N m about the line of action "
-        f"(pitch {1e3 * wrench.pitch:.3f} mm).",
+        f"{least:.3g} N m about the line of action remain at any mesh point (pitch "
+        f"{1e3 * wrench.pitch:.3f} mm).",
     ]
     try:
         point = wrench.thesis_point
     except SolidgearError:
         return tuple(lines)
     lines.append(
-        f"By the thesis's formulas the point is ({millimetres(point)}) mm and leaves "
-        f"{wrench.left_over(point):.3g} N m."
+        f"By the thesis's formulas the point is ({millimetres(point)}) mm, and "
+        f"{wrench.left_over(point):.3g} N m remain."
     )
     return tuple(lines)
 
@@ -261,8 +261,8 @@ def _mode_below_limit(omega: np.ndarray, bars: np.ndarray, limit: float) -> str:
     for hz, error_bar in zip(omega / (2 * np.pi), bars):
         if hz * (1 - error_bar) < limit:
             return (
-                f"One more mode may lie below {limit:g} Hz: the meshes have it at {hz:.2f} Hz with an "
-                f"error bar of {error_bar:.0e}."
+                f"One more mode may lie below {limit:g} Hz: it is at {hz:.2f} Hz with an error "
+                f"bar of {error_bar:.0e}."
             )
     return ""
 
@@ -272,16 +272,15 @@ def refuse_unresolved(workshop: Workshop, system: System, limit: float) -> None:
     cut = float(np.sqrt(system.truncation.cut) / (2 * np.pi))
     if limit >= 0.9 * cut:
         raise SolidgearError(
-            f"{limit:g} Hz is beyond what the reduction resolves: the first mode that it leaves "
-            f"out lies at {cut:.0f} Hz; keep more modes (--kept), or ask for less than "
-            f"{0.9 * cut:.0f} Hz"
+            f"{limit:g} Hz is beyond the reduction, which leaves out modes from {cut:.0f} Hz on; "
+            f"keep more modes (--kept), or ask for less than {0.9 * cut:.0f} Hz"
         )
     for side in workshop.scenes:
         highest = mesh_limit(workshop, side, system.parts[side])
         if limit > highest:
             raise SolidgearError(
-                f"{limit:g} Hz is beyond what the mesh of the {side} resolves, about {highest:.0f} Hz: "
-                "shear waves are then shorter than its cells can follow; ask for less"
+                f"{limit:g} Hz is beyond the mesh of the {side}, which resolves about "
+                f"{highest:.0f} Hz; ask for less"
             )
 
 
@@ -289,7 +288,7 @@ def free_motions(workshop: Workshop, system: System) -> tuple[str, ...]:
     """Return free motions in words, unless there is but the rotation of the whole train."""
     count = system.free.shape[1]
     if count == 0:
-        return ("Nothing turns freely: a bearing resists the rotation of a shaft.",)
+        return ("The train does not turn freely: a bearing resists the rotation of a shaft.",)
     turning = [part for part in system.parts if np.abs(system.free[system.place(part)]).max() > 0]
     moving = {*turning, HOUSING, *(stage.ring for stage in workshop.stages.values())}
     still = [part for part in system.parts if part not in moving]
@@ -302,9 +301,9 @@ def free_motions(workshop: Workshop, system: System) -> tuple[str, ...]:
     ]
     if HOUSING in turning:
         ways = " ".join(free_directions(system))
-        loose.insert(0, f"no mount holds the housing in {ways}, and what stands in it moves along")
+        loose.insert(0, f"no mount holds the housing in {ways}")
     places = "; ".join(loose) or f"free to turn by themselves: {', '.join(turning)}"
-    return (f"{count} motions are free, where a train has one: {places}.",)
+    return (f"{count} motions are free, where a train should have one: {places}.",)
 
 
 def _unheld_directions(workshop: Workshop, system: System, side: str) -> list[str]:

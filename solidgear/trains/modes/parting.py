@@ -85,19 +85,19 @@ def parting_lines(
         suffix = "" if name == "mesh" else f" of the {name}"
         if not mean[name]:
             yield (
-                f"No torque passes the {name} at {point.label}: its teeth part at any speed, and its "
-                "linear forces do not hold."
+                f"No torque passes the {name} at {point.label}: its teeth part at any speed, and "
+                "its linear forces are wrong."
             )
             continue
         rpm = ""
         if not drive.forces:
             teeth = train.per_turn(drive.pair)
             rpm = f" ({60 * hz / teeth:.0f} rpm of the {teeth.of})"
-        ask = "no model here follows planets then" if is_stage else "ask solidgear nonlinear"
+        ask = "no model here follows planets that part" if is_stage else "run solidgear nonlinear"
         yield (
-            f"The teeth{suffix} part at the latest from {hz:.0f} Hz{rpm}, where the dynamic force passes "
-            f"the mean one, {figures(mean[name])} N at {point.label}: linear forces do not hold from "
-            f"there on; {ask}."
+            f"The teeth{suffix} part from {hz:.0f} Hz{rpm} or before, where the dynamic force passes "
+            f"the mean force of {figures(mean[name])} N at {point.label}: linear forces are wrong "
+            f"from there on; {ask}."
         )
 
 

@@ -49,7 +49,8 @@ def response_chart(
     units: Units = ENGINEERING,
     width: float = WIDE,
 ) -> Chart:
-    """Mesh force and dynamic transmission error over frequency, the first response the reference.
+    """Chart mesh force and dynamic transmission error over frequency, the first response the
+    reference.
 
     Parameters
     ----------
@@ -68,18 +69,18 @@ def response_chart(
     if band is not None:
         models |= {f"{band:g} dB around it": Series(BAND)}
     words = f"mesh frequency in Hz{_cut(responses[0], first)}"
-    for k, (column, what, si) in enumerate(PANELS):
+    for k, (column, name, si) in enumerate(PANELS):
         unit, top = units.unit(si), k == 0
         sizes = [units.values(np.abs(r.columns[column]), si) for r in responses]
         curves = [
-            _Curve(r.label, r.frequency_hz, size, ((what, unit, size),))
+            _Curve(r.label, r.frequency_hz, size, ((name, unit, size),))
             for r, size in zip(responses, sizes)
         ]
         height = 340.0 if top else 200.0
         ends = _ends([s[r.frequency_hz >= first] for r, s in zip(responses, sizes)])
         panel = Panel(
             Axis("" if top else words, (first, last), log=True),
-            Axis(f"{what} in {unit}", _with_room(ends, height) if top else ends, log=True),
+            Axis(f"{name} in {unit}", _with_room(ends, height) if top else ends, log=True),
             height,
             series=models,
             legend=_legend(width) if top else None,
@@ -96,7 +97,7 @@ def response_chart(
                 _tops([(p.frequency_hz, p.force, p.mode) for p in r.peaks], "N", units)
                 for r in responses
             ]
-            _peaks(panel, responses, tops, teeth, (what, unit), width)
+            _peaks(panel, responses, tops, teeth, (name, unit), width)
         panels.append(panel)
     return Chart(in_columns(panels, 1), width, title)
 
@@ -108,23 +109,20 @@ def columns_chart(
     units: Units = ENGINEERING,
     width: float = WIDE,
 ) -> Chart | None:
-    """Amplitudes of several columns over frequency, a panel each, the responses over one another,
-    where they have them; None without any. Columns are names in the responses, with their units,
-    and what panels are called; those that never move are left out.
-    """
+    """Chart amplitudes of columns over frequency, a panel each; None where none moves."""
     ends = responses[0].frequency_hz[0], responses[0].frequency_hz[-1]
     models, panels = _models(responses, PAIR), []
     moving = [c for c in columns if any(np.any(r.columns.get(c[0])) for r in responses)]
-    beside = 2 if width > NARROW and len(moving) > 1 else 1
+    in_row = 2 if width > NARROW and len(moving) > 1 else 1
     for k, (column, title) in enumerate(moving):
         si = column.partition(" [")[2].rstrip("]")
         si = f"{si} moved" if si in ("m", "rad") else si
-        own = [r for r in responses if column in r.columns]
-        sizes = [units.values(np.abs(r.columns[column]), si) for r in own]
+        drawn = [r for r in responses if column in r.columns]
+        sizes = [units.values(np.abs(r.columns[column]), si) for r in drawn]
         low, high = _ends(sizes)
         unit = units.unit(si)
         panel = Panel(
-            Axis("mesh frequency in Hz" if k >= len(moving) - beside else "", ends, log=True),
+            Axis("mesh frequency in Hz" if k >= len(moving) - in_row else "", ends, log=True),
             Axis(unit, (max(low, high / DEEPEST), high), log=True),
             140.0,
             title,
@@ -133,38 +131,38 @@ def columns_chart(
         )
         curves = [
             _Curve(r.label, r.frequency_hz, size, ((title, unit, size),))
-            for r, size in zip(own, sizes)
+            for r, size in zip(drawn, sizes)
         ]
-        _curves(panel, curves, teeth, width / beside / 2)
+        _curves(panel, curves, teeth, width / in_row / 2)
         panels.append(panel)
-    if len(panels) % beside:  # as wide as those above it
-        panels[-1].right += (width + BETWEEN) / beside
-    return Chart(in_columns(panels, beside), width) if panels else None
+    if len(panels) % in_row:  # as wide as those above it
+        panels[-1].right += (width + BETWEEN) / in_row
+    return Chart(in_columns(panels, in_row), width) if panels else None
 
 
 def _cut(response: Any, first: float) -> str:
-    """Remark on the part that an axis leaves out below; nothing where it begins with the response."""
+    """Return a remark on the part below the axis; empty if there is none."""
     if first <= response.frequency_hz[0]:
         return ""
     below = sum(peak.frequency_hz < first for peak in response.peaks)
     peaks = {0: "", 1: "; 1 peak lies below"}.get(below, f"; {below} peaks lie below")
-    return f", from half of where the first model leaves the band{peaks}"
+    return f", from half the frequency where the first model leaves the tolerance{peaks}"
 
 
 def receptance_chart(
-    found: Sequence[Any],
+    receptances: Sequence[Any],
     title: str,
     teeth: float,
     units: Units = ENGINEERING,
     width: float = WIDE,
 ) -> Chart:
-    """Amplitude and phase of receptances between the same two ends over frequency, the peaks of the
-    first model named; `teeth` as of a response.
+    """Chart amplitude and phase of receptances between two ends, with the first model's peaks
+    named.
     """
-    unit, models = units.unit(found[0].unit), _models(found)
-    sizes = [units.values(np.abs(one.value), one.unit) for one in found]
-    phases = [np.degrees(np.angle(one.value)) for one in found]
-    ends = found[0].frequency_hz[0], found[0].frequency_hz[-1]
+    unit, models = units.unit(receptances[0].unit), _models(receptances)
+    sizes = [units.values(np.abs(receptance.value), receptance.unit) for receptance in receptances]
+    phases = [np.degrees(np.angle(receptance.value)) for receptance in receptances]
+    ends = receptances[0].frequency_hz[0], receptances[0].frequency_hz[-1]
     amplitude = Panel(
         Axis("", ends, log=True),
         Axis(f"receptance in {unit}", _with_room(_ends(sizes), 360.0), log=True),
@@ -183,16 +181,16 @@ def receptance_chart(
     for panel, values in ((amplitude, sizes), (phase, phases)):
         curves = [
             _Curve(
-                one.label,
-                one.frequency_hz,
+                receptance.label,
+                receptance.frequency_hz,
                 value,
                 (("receptance", unit, size), ("phase", "degrees", angle)),
             )
-            for one, value, size, angle in zip(found, values, sizes, phases)
+            for receptance, value, size, angle in zip(receptances, values, sizes, phases)
         ]
         _curves(panel, curves, teeth, width, 180.0 if panel is phase else np.inf)
-    tops = [_tops(one.peaks, one.unit, units) for one in found]
-    _peaks(amplitude, found, tops, teeth, ("receptance", unit), width)
+    tops = [_tops(receptance.peaks, receptance.unit, units) for receptance in receptances]
+    _peaks(amplitude, receptances, tops, teeth, ("receptance", unit), width)
     return Chart(in_columns([amplitude, phase], 1), width, title)
 
 
@@ -205,10 +203,10 @@ class _Curve(NamedTuple):
     read: tuple[tuple[str, str, np.ndarray], ...]
 
 
-def _models(found: Sequence[Any], colours: Sequence[str] = COLOURS) -> dict[str, Series]:
-    """Models by their labels, the colours in turn."""
-    colours = colours if len(found) == len(PAIR) else COLOURS
-    return {one.label: Series(colours[k % len(colours)]) for k, one in enumerate(found)}
+def _models(curves: Sequence[Any], colours: Sequence[str] = COLOURS) -> dict[str, Series]:
+    """Return models by their labels, the colours in turn."""
+    colours = colours if len(curves) == len(PAIR) else COLOURS
+    return {item.label: Series(colours[k % len(colours)]) for k, item in enumerate(curves)}
 
 
 def _legend(width: float) -> dict[str, Any]:
@@ -216,7 +214,7 @@ def _legend(width: float) -> dict[str, Any]:
 
 
 def _speed(teeth: float, ends: tuple[float, float]) -> Axis:
-    """The upper axis: round speeds of that shaft, at the frequencies where its teeth mesh."""
+    """Return the upper axis: round speeds of the shaft, at its mesh frequencies."""
     rounds = log_ticks(60 * ends[0] / teeth, 60 * ends[1] / teeth)
     ticks = {rpm * teeth / 60: f"{rpm:g}" for rpm in rounds}
     words = f"{turned(teeth)} speed in rpm at which the teeth mesh at it"
@@ -224,20 +222,20 @@ def _speed(teeth: float, ends: tuple[float, float]) -> Axis:
 
 
 def _ends(sizes: Sequence[np.ndarray]) -> tuple[float, float]:
-    """Least and largest amplitude, with room."""
-    seen = np.concatenate(sizes)
-    seen = seen[seen > 0] if np.any(seen > 0) else np.ones(1)
-    return 0.6 * seen.min(), 1.8 * seen.max()
+    """Return the least and largest amplitude, with room."""
+    values = np.concatenate(sizes)
+    values = values[values > 0] if np.any(values > 0) else np.ones(1)
+    return 0.6 * values.min(), 1.8 * values.max()
 
 
 def _with_room(ends: tuple[float, float], height: float) -> tuple[float, float]:
-    """Ends of an axis with room for names over the curves."""
+    """Return ends of an axis with room for names over the curves."""
     low, high = ends
     return low, high * (high / low) ** (ROOM / (height - ROOM))
 
 
 def _words(name: str, hz: float, teeth: float | None, *facts: tuple[str, str, str]) -> str:
-    """The words on a place of a model over frequency."""
+    """Return the words on a place of a model over frequency."""
     speed = (f"{turned(teeth)} speed", f"{60 * hz / teeth:.0f}" if teeth else "", "rpm")
     return readout(name, ("frequency", hertz(hz), "Hz"), speed, *facts)
 
@@ -245,41 +243,41 @@ def _words(name: str, hz: float, teeth: float | None, *facts: tuple[str, str, st
 def _curves(
     panel: Panel, curves: Sequence[_Curve], teeth: float | None, width: float, jump: float = np.inf
 ) -> None:
-    """Curves, the first in front, and what is to be read along them; broken where one jumps."""
+    """Draw curves, the first in front, with places to be read; broken where one jumps."""
     first, last = panel.x.ends
-    for k, one in reversed(list(enumerate(curves))):
-        seen = np.flatnonzero((one.hz >= first) & (one.hz <= last))
-        x, y = one.hz[seen], one.y[seen]
+    for k, line in reversed(list(enumerate(curves))):
+        inside = np.flatnonzero((line.hz >= first) & (line.hz <= last))
+        x, y = line.hz[inside], line.y[inside]
         turns = np.cumsum(np.abs(np.diff(y, prepend=y[0])) > jump)
-        rows = curve(x, y, name=one.name)
+        rows = curve(x, y, name=line.name)
         for row, part in zip(rows, turns.tolist()):
             row["detail"] = part
         panel.draw({"type": "line", "strokeWidth": 1.8 if k == 0 else 1.1}, rows)
         read = []
         for i in read_places(x, y, int(width / APART), log=True):
-            facts = [(what, _figure(what, v[seen[i]]), unit) for what, unit, v in one.read]
-            words = _words(one.name, float(x[i]), teeth, *facts)
+            facts = [(name, _figure(name, v[inside[i]]), unit) for name, unit, v in line.read]
+            words = _words(line.name, float(x[i]), teeth, *facts)
             read.append({"x": x[i], "y": y[i], "readout": words})
-        panel.read(read, panel.series[one.name].colour)
+        panel.read(read, panel.series[line.name].colour)
 
 
-def _figure(what: str, value: float) -> str:
-    return f"{value:.1f}" if what == "phase" else plain(float(value), 4)
+def _figure(name: str, value: float) -> str:
+    return f"{value:.1f}" if name == "phase" else plain(float(value), 4)
 
 
 def _shade(panel: Panel, hz: np.ndarray, size: np.ndarray, band: float) -> None:
-    """The band in decibels around a curve."""
-    factor, seen = 10 ** (band / 20), hz >= panel.x.ends[0]
-    ends = ((size[seen] / factor).tolist(), (size[seen] * factor).tolist())
+    """Draw the tolerance in decibels around a curve."""
+    factor, inside = 10 ** (band / 20), hz >= panel.x.ends[0]
+    ends = ((size[inside] / factor).tolist(), (size[inside] * factor).tolist())
     rows = [
         {"x": x, "y": low, "y2": high, "name": f"{band:g} dB around it"}
-        for x, low, high in zip(hz[seen].tolist(), *ends)
+        for x, low, high in zip(hz[inside].tolist(), *ends)
     ]
     panel.draw({"type": "area", "opacity": 0.7}, rows)
 
 
 def _tops(peaks: Sequence[tuple[float, float, str]], si: str, units: Units) -> list:
-    """Peaks (Hz, size, mode), their sizes in the units chosen."""
+    """Return peaks (Hz, size, mode), their sizes in the units chosen."""
     return [(hz, units.value(size, si), mode) for hz, size, mode in peaks]
 
 
@@ -288,25 +286,23 @@ def _peaks(
     models: Sequence[Any],
     tops: Sequence[list],
     teeth: float | None,
-    what: tuple[str, str],
+    names: tuple[str, str],
     width: float,
 ) -> None:
-    """The peaks of every model, to be read with the modes that make them, and over those of the
-    first their names; one that would lie on its neighbour is left to the table.
-    """
-    for one, peaks in zip(models, tops):
+    """Draw the peaks of every model, and names of the first model's that do not overlap."""
+    for model, peaks in zip(models, tops):
         rows = []
         for hz, size, mode in peaks:
-            facts = ("peak of", mode, ""), (what[0], plain(float(size), 4), what[1])
-            words = _words(one.label, float(hz), teeth, *facts)
+            facts = ("peak of", mode, ""), (names[0], plain(float(size), 4), names[1])
+            words = _words(model.label, float(hz), teeth, *facts)
             rows.append({"x": hz, "y": size, "readout": words})
-        panel.read(rows, panel.series[one.label].colour)
+        panel.read(rows, panel.series[model.label].colour)
     first, last = panel.x.ends
     pixel = np.log(last / first) / (width - panel.beside - panel.right)
-    named, before = [], -np.inf
+    labelled, before = [], -np.inf
     for hz, size, mode in tops[0]:
         if hz >= first and np.log(hz) - before >= APART * pixel:
             before = np.log(hz)
-            named.append({"x": hz, "y": size, "text": f"{mode}  {hz:.0f} Hz"})
+            labelled.append({"x": hz, "y": size, "text": f"{mode}  {hz:.0f} Hz"})
     look = {"type": "text", "angle": -90, "align": "left", "baseline": "middle", "dx": 7}
-    panel.draw(look | {"fontSize": 10}, named)
+    panel.draw(look | {"fontSize": 10}, labelled)

@@ -34,47 +34,46 @@ def write_response(
     units: str | Units = ENGINEERING,
     speed: Any = None,
 ) -> list[Path]:
-    """``response.csv`` of the first response, ``response.png``, ``response.svg`` of all,
-    ``response.json`` with peaks and what else is told, and the page ``response.html``, for which
-    `train` is what is known of it as plain data; with `orders` these as table and charts; with
-    `speed`, an :class:`solidgear.trains.response.at_speed.AtSpeed`, ``lines.csv`` and ``near.csv``, and
-    of a measured spectrum ``peaks.csv`` and the chart ``measured``.
+    """Write responses as CSV, JSON, charts and ``response.html``, with orders and measured spectra
+    where given.
 
     Charts and page are in `units`, all else in SI.
     """
-    first, shown, of = responses[0], units_named(units), train_tables.turned(teeth)
+    first, chosen_units, shaft = responses[0], units_named(units), train_tables.turned(teeth)
     tables = {"response": over_frequency(first, teeth)}
     charts: dict[str, Make] = {
-        "response": partial(response_chart, responses, title, teeth, band, {}, shown)
+        "response": partial(response_chart, responses, title, teeth, band, {}, chosen_units)
     }
     tops = [(p.frequency_hz, p.force, p.mode) for p in first.peaks]
-    told = [train_tables.peaks(tops, "mesh force", "N", teeth, shown, first.label)]
-    if beside := train_tables.housing_columns(first):
-        charts["housing"] = partial(columns_chart, responses, beside, teeth, shown)
-        told.append(train_tables.housing(first, shown))
+    shown_tables = [train_tables.peaks(tops, "mesh force", "N", teeth, chosen_units, first.label)]
+    if housing := train_tables.housing_columns(first):
+        charts["housing"] = partial(columns_chart, responses, housing, teeth, chosen_units)
+        shown_tables.append(train_tables.housing(first, chosen_units))
     if orders is not None:
-        tables["orders"] = crossings(orders, of)
-        charts["orders"] = partial(order_chart, orders, title, teeth, shown)
-        told.append(train_tables.crossings([vars(c) for c in orders.crossings], shown, of))
+        tables["orders"] = crossings(orders, shaft)
+        charts["orders"] = partial(order_chart, orders, title, teeth, chosen_units)
+        shown_tables.append(
+            train_tables.crossings([vars(c) for c in orders.crossings], chosen_units, shaft)
+        )
     remarks: list[str] = []
     if speed is not None:
         tables["lines"] = speed_tables.all_lines(speed.lines)
         tables["near"] = speed_tables.all_coincidences(speed)
-        found = [speed_tables.coincidences(speed), speed_tables.first_lines(speed.lines)]
+        speed_rows = [speed_tables.coincidences(speed), speed_tables.first_lines(speed.lines)]
         remarks, notes = speed.notes(), {**notes, "at_speed": speed.as_dict()}
         if speed.spectrum is not None:
             tables["peaks"] = speed_tables.measured_file(speed)
-            make = partial(measured_chart, speed, first, title, shown)
+            make = partial(measured_chart, speed, first, title, chosen_units)
             charts = {"measured": make, **charts}
-            found = [speed_tables.measured(speed), *found]
-        told = [*found, *told]
+            speed_rows = [speed_tables.measured(speed), *speed_rows]
+        shown_tables = [*speed_rows, *shown_tables]
     peaks = [{**r.models, "peaks": [vars(p) for p in r.peaks]} for r in responses]
     return write_files(
         folder,
         "response",
         title,
         f"Steady response, {first.damping} losses; tables of {first.label}.",
-        [*told, train_tables.facts(train, shown)],
+        [*shown_tables, train_tables.facts(train, chosen_units)],
         {"title": title, "responses": peaks, **notes},
         lines=tables,
         charts=charts,
@@ -86,18 +85,15 @@ def write_response(
 
 def write_receptance(
     folder: Path,
-    found: Sequence[Any],
+    receptances: Sequence[Any],
     title: str,
     teeth: float,
     notes: Mapping[str, Any],
     train: Mapping[str, Any],
     units: str | Units = ENGINEERING,
 ) -> list[Path]:
-    """``receptance.csv`` of the first model and ``receptance.json`` with the peaks and what else is
-    told in SI, ``receptance.png``, ``receptance.svg`` and the page ``receptance.html`` of all in
-    `units`. `train` is what is known of the train as plain data.
-    """
-    first, shown = found[0], units_named(units)
+    """Write receptances as CSV, JSON, charts and ``receptance.html``."""
+    first, chosen_units = receptances[0], units_named(units)
     unit, value = first.unit, first.value
     table = numbers(
         {
@@ -108,16 +104,23 @@ def write_receptance(
             f"imaginary part [{unit}]": value.imag,
         }
     )
-    charts: dict[str, Make] = {"receptance": partial(receptance_chart, found, title, teeth, shown)}
-    data = {"title": title, "unit": unit, "models": [_plain(one) for one in found], **notes}
+    charts: dict[str, Make] = {
+        "receptance": partial(receptance_chart, receptances, title, teeth, chosen_units)
+    }
+    data = {
+        "title": title,
+        "unit": unit,
+        "models": [_plain(receptance) for receptance in receptances],
+        **notes,
+    }
     return write_files(
         folder,
         "receptance",
         title,
         f"Steady motion for a unit force, {first.damping} losses; table of {first.label}.",
         [
-            train_tables.peaks(first.peaks, "receptance", unit, teeth, shown),
-            train_tables.facts(train, shown),
+            train_tables.peaks(first.peaks, "receptance", unit, teeth, chosen_units),
+            train_tables.facts(train, chosen_units),
         ],
         data,
         lines={"receptance": table},
@@ -126,24 +129,24 @@ def write_receptance(
     )
 
 
-def _plain(one: Any) -> dict[str, Any]:
+def _plain(receptance: Any) -> dict[str, Any]:
     keys = ("frequency_hz", "amplitude", "mode")
-    peaks = [dict(zip(keys, peak)) for peak in one.peaks]
-    return {**one.models, "damping": one.damping, "peaks": peaks}
+    peaks = [dict(zip(keys, peak)) for peak in receptance.peaks]
+    return {**receptance.models, "damping": receptance.damping, "peaks": peaks}
 
 
 def over_frequency(response: Any, teeth: float) -> Table:
-    """Amplitude and phase of every column over frequency; the unit stands in brackets."""
+    """Return amplitude and phase of every column over frequency, units in brackets."""
     columns = places(response.frequency_hz, teeth)
     for name, value in response.columns.items():
-        what, _, unit = name.partition(" [")
-        columns[f"{what} [{unit}"] = np.abs(value)
-        columns[f"{what} phase [deg]"] = np.degrees(np.angle(value))
+        quantity, _, unit = name.partition(" [")
+        columns[f"{quantity} [{unit}"] = np.abs(value)
+        columns[f"{quantity} phase [deg]"] = np.degrees(np.angle(value))
     return numbers(columns)
 
 
 def crossings(orders: Any, of: str = "pinion") -> Table:
-    """Table of crossings of order lines and natural frequencies, in SI."""
+    """Return the table of crossings of order lines and natural frequencies, in SI."""
     columns = [
         Column("order", lambda c: c.line),
         Column("mode", lambda c: c.mode),
@@ -155,5 +158,5 @@ def crossings(orders: Any, of: str = "pinion") -> Table:
 
 
 def places(hz: np.ndarray, teeth: float) -> dict[str, np.ndarray]:
-    """Columns of frequency and speed."""
+    """Return columns of frequency and speed."""
     return {"frequency [Hz]": hz, f"{train_tables.turned(teeth)} speed [rpm]": 60 * hz / teeth}

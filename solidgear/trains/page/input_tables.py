@@ -20,7 +20,7 @@ SIZES = ("y", "length", "width", "depth", "diameter", "radius", "size", "height"
 
 
 def scene_facts(record: Record, units: Units = ENGINEERING) -> Table:
-    """The scene in a few lines."""
+    """Return the scene in a few lines."""
     scene = record.scene
     free = record.port.free if record.port else []
     rows = [
@@ -39,7 +39,9 @@ def scene_facts(record: Record, units: Units = ENGINEERING) -> Table:
 
 
 def _lumped_point(record: Record, units: Units) -> str:
-    """Place of the lumped point and the seat that carries it, by the scene, else by the solution."""
+    """Return the place of the lumped point and the seat that carries it, by the scene, else by the
+    solution.
+    """
     port = record.scene.get("port")
     if not port:
         port = record.port.model_dump(exclude_defaults=True) if record.port else {}
@@ -47,9 +49,9 @@ def _lumped_point(record: Record, units: Units) -> str:
 
 
 def _further_points(scene: Mapping, units: Units) -> list[list[str]]:
-    """Other lumped points, a row each."""
-    found = scene.get("further_ports") or []
-    return [["further point", f"{_placed(p, units)}, {_carried(p, units)}"] for p in found]
+    """Yield other lumped points, a row each."""
+    ports = scene.get("further_ports") or []
+    return [["further point", f"{_placed(p, units)}, {_carried(p, units)}"] for p in ports]
 
 
 def _placed(port: Mapping, units: Units) -> str:
@@ -66,15 +68,15 @@ def _carried(port: Mapping, units: Units) -> str:
 
 
 def _housing(scene: Mapping, units: Units) -> list[str]:
-    """Row on the housing that all bearings share."""
+    """Return the row on the housing that all bearings share."""
     around, spring = scene.get("housing"), scene.get("housing_axial")
     if not around:
         return [
             "housing spring along y",
             units.text(spring, "N/m") if is_number(spring) else "none",
         ]
-    found = around["entries"].items()
-    entries = ", ".join(f"{name} {engineering(value, 4)}" for name, value in found)
+    stiffnesses = around["entries"].items()
+    entries = ", ".join(f"{name} {engineering(value, 4)}" for name, value in stiffnesses)
     y = units.given(around["y"], "m")
     return [
         "housing of all bearings",
@@ -83,7 +85,7 @@ def _housing(scene: Mapping, units: Units) -> list[str]:
 
 
 def _asked(ask: Mapping) -> str:
-    """The questions of a scene in a line."""
+    """Return the questions of a scene in a line."""
     words = f"{ask.get('modes', DASH)} modes"
     if is_number(ask.get("max_frequency")):
         words += f" up to {ask['max_frequency']:g} Hz"
@@ -93,7 +95,7 @@ def _asked(ask: Mapping) -> str:
 
 
 def segments(scene: Mapping, units: Units = ENGINEERING) -> Table:
-    """The shaft, a segment a row."""
+    """Return the shaft, a segment a row."""
     default = scene.get("material") or {}
     length = units.unit("m")
 
@@ -115,7 +117,7 @@ def segments(scene: Mapping, units: Units = ENGINEERING) -> Table:
 
 
 def _diameters(segment: Mapping, side: str, units: Units) -> str:
-    """Diameters at both ends of the outer or inner surface; one where they are the same."""
+    """Return diameters at both ends of the outer or inner surface, or one if they are equal."""
     ends = [units.given(2 * segment[side + end], "m") for end in "01"]
     return " → ".join(dict.fromkeys(ends))
 
@@ -131,8 +133,8 @@ def _own_material(material: Mapping, default: Mapping, units: Units) -> str:
 
 
 def bearings(scene: Mapping, units: Units = ENGINEERING) -> Table:
-    """The bearings with the stiffness they are solved with."""
-    found = scene.get("bearings") or []
+    """Return the bearings with the stiffness they are solved with."""
+    rows = scene.get("bearings") or []
     columns = [
         Column("bearing", lambda b: str(b.get("name", ""))),
         given("y", "m", units, lambda b: b.get("y")),
@@ -143,15 +145,15 @@ def bearings(scene: Mapping, units: Units = ENGINEERING) -> Table:
         text("note", lambda b: _note(b, units)),
     ]
     note = (
-        "Status says where the stiffness comes from: published, measured, identified (fitted), "
-        "assumed, or from catalogue data: calculated, or estimated where the inner geometry is. "
-        + without_column(found, [name.place for name in BEARING_ENTRIES])
+        "Status is the source of the stiffness: published, measured, identified (fitted), "
+        "assumed, or from catalogue data: calculated, or estimated like the inner geometry. "
+        + without_column(rows, [name.place for name in BEARING_ENTRIES])
     )
-    return Table("Bearings, series springs included", columns, found, note.strip())
+    return Table("Bearings, series springs included", columns, rows, note.strip())
 
 
 def _stiffness(name: Quantity, units: Units) -> Column:
-    """A column of one entry; what is held has the stiffness of nothing real."""
+    """Return a column of one stiffness entry; held motions have none."""
 
     def told(bearing: Mapping) -> str | None:
         value = entry(bearing.get("stiffness"), *name.place)
@@ -163,31 +165,33 @@ def _stiffness(name: Quantity, units: Units) -> Column:
 
 
 def _note(bearing: Mapping, units: Units) -> str:
-    """Remark on a bearing in words, catalogue data and the housing at its seat included."""
+    """Return the remark on a bearing in words, catalogue data and the housing at its seat
+    included.
+    """
     support = str(bearing.get("support") or "")
     words = [f"{support.capitalize()}." if support else ""]
     words += [catalogue(bearing.get("catalogue"), units), str(bearing.get("note") or "")]
-    own = bearing.get("housing")
-    if own:
-        entries = ", ".join(f"{name} {engineering(value, 4)}" for name, value in own.items())
-        words.append(f"Stands in a housing of its own, SI: {entries}.")
+    housing = bearing.get("housing")
+    if housing:
+        entries = ", ".join(f"{name} {engineering(value, 4)}" for name, value in housing.items())
+        words.append(f"Stands in its own housing, SI: {entries}.")
     return " ".join(filter(None, words))
 
 
 def features(scene: Mapping, units: Units = ENGINEERING) -> Table:
-    """Table of features: cut out of the shaft, standing on it or rounding its edges."""
+    """Return the table of features: cut out of the shaft, standing on it or rounding its edges."""
 
-    def kind(found: Mapping) -> str:
-        return str(found.get("kind", "")).replace("_", " ")
+    def kind(feature: Mapping) -> str:
+        return str(feature.get("kind", "")).replace("_", " ")
 
-    def sizes(found: Mapping) -> str:
-        number = [f"{found['count']} of them"] if found.get("count") else []
-        told = (
-            f"{name.replace('_', ' ')} {units.given(found[name], 'm')} {units.unit('m')}"
+    def sizes(feature: Mapping) -> str:
+        number = [f"{feature['count']} of them"] if feature.get("count") else []
+        sizes_of = (
+            f"{name.replace('_', ' ')} {units.given(feature[name], 'm')} {units.unit('m')}"
             for name in SIZES
-            if is_number(found.get(name))
+            if is_number(feature.get(name))
         )
-        return ", ".join([*number, *told])
+        return ", ".join([*number, *sizes_of])
 
     columns = [
         Column("feature", lambda f: str(f.get("name") or kind(f))),
@@ -201,14 +205,14 @@ def features(scene: Mapping, units: Units = ENGINEERING) -> Table:
 
 
 def masses(scene: Mapping, units: Units = ENGINEERING) -> Table:
-    """The rigid masses on ports."""
+    """Return the rigid masses on ports."""
 
     def several(name: str, si: str) -> Callable[[Mapping], str]:
         return lambda mass: ", ".join(units.given(v, si) for v in mass.get(name, ()))
 
     columns = [
         Column("mass", lambda mass: str(mass.get("name", ""))),
-        Column("moves with", lambda mass: str(mass.get("on") or "a seat of its own")),
+        Column("moves with", lambda mass: str(mass.get("on") or "own seat")),
         given("y", "m", units, lambda mass: mass.get("y")),
         Column("mass, kg", lambda mass: units.given(mass.get("mass"), "kg")),
         Column("inertia x, y, z, kg m²", several("inertia", "kg m²")),

@@ -68,8 +68,8 @@ def write_train(
         ),
         "orders": partial(order_chart, orders, driven, teeth, chosen),
     }
-    if beside := train_tables.housing_columns(responses[0]):
-        charts["housing"] = partial(columns_chart, responses[:1], beside, teeth, chosen)
+    if housing := train_tables.housing_columns(responses[0]):
+        charts["housing"] = partial(columns_chart, responses[:1], housing, teeth, chosen)
     with begun(out) as folder:
         files = ["report.html", "response.csv", "orders.csv"]
         files += [f"{name}.{kind}" for name in charts for kind in ("png", "svg")]
@@ -103,7 +103,7 @@ def _page(
     train, verdict = results["train"], results["verdict"]
     svg = {name: page_svg(name, make) for name, make in charts.items()}
     svg |= {side: sketch_svg(side, train[side]["scene"]) for side in train["shafts"]}
-    pictures, every = results["pictures"], train_tables.every(train["shafts"])
+    pictures, all_shafts = results["pictures"], train_tables.every(train["shafts"])
     two = len(train["shafts"]) == 2
     chain = "Engine, {}'s shaft, teeth, {}'s shaft and load".format(*train["shafts"])
     return template("train.html").render(
@@ -113,7 +113,7 @@ def _page(
         count="two shafts" if two else f"{len(train['shafts'])} shafts",
         mixed="every mix of models" if two else "mixes of models",
         chain=chain if two else "Engine, shafts, teeth and load",
-        every=every,
+        every=all_shafts,
         turned=train_tables.turned(teeth),
         verdict=verdict,
         loudest=results["loudest"]["sentences"],
@@ -128,15 +128,20 @@ def _page(
             "N",
             teeth,
             units,
-            f"{every} shafts solid",
+            f"{all_shafts} shafts solid",
         ),
         housing=housing,
-        modes=train_tables.modes(results["modes"], f"Natural frequencies, {every} shafts solid"),
+        modes=train_tables.modes(
+            results["modes"], f"Natural frequencies, {all_shafts} shafts solid"
+        ),
         crossings=train_tables.crossings(results["crossings"], units, train_tables.turned(teeth)),
         bearings={
             side: input_tables.bearings(train[side]["scene"], units) for side in train["shafts"]
         },
-        renders=[(capital(told), data_uri(told, folder / name)) for told, name in pictures.items()],
+        renders=[
+            (capital(caption), data_uri(caption, folder / name))
+            for caption, name in pictures.items()
+        ],
         viewer=Markup(viewer),
         environment=pairs_of(results["environment"], "Environment of the run"),
         total=seconds(results["seconds_total"]),

@@ -15,20 +15,22 @@ ROUNDING = 1e-12
 
 
 def facts(train: Mapping[str, Any], units: Units = ENGINEERING, title: str = "Train") -> Table:
-    """The train in a few lines, each value with where it comes from."""
+    """Return the train in a few lines, each value with its source."""
     status = train["statuses"]
     rows = [row for mesh in train["meshes"] for row in _mesh(mesh, status, units)]
     rows += [row for stage in train["stages"] for row in _stage(stage, units)]
     senses = ", ".join(f"{side} {sense}" for side, sense in train["senses"].items())
     rows.append(["turning, right-handed about each shaft's own y", senses, ""])
     for name in train["rotors"]:
-        own = train[name]
-        rows.append([f"{name} inertia", units.text(own["inertia"], "kg m²", 4), f"{name}.inertia"])
-        spring = f"{units.text(own['spring'], 'N m/rad', 4)} at {own['at']}"
+        rotor = train[name]
+        rows.append(
+            [f"{name} inertia", units.text(rotor["inertia"], "kg m²", 4), f"{name}.inertia"]
+        )
+        spring = f"{units.text(rotor['spring'], 'N m/rad', 4)} at {rotor['at']}"
         rows.append([f"{name} spring", spring, f"{name}.spring.stiffness"])
-        if own["share"] is not None:
+        if rotor["share"] is not None:
             rows.append(
-                [f"{name} share", f"{percent(own['share'], signed=False)} of the power", ""]
+                [f"{name} share", f"{percent(rotor['share'], signed=False)} of the power", ""]
             )
     losses = ", ".join(f"{name} {value:g}" for name, value in train["losses"].items())
     rows.append(["loss factors", losses, "losses"])
@@ -42,12 +44,12 @@ def facts(train: Mapping[str, Any], units: Units = ENGINEERING, title: str = "Tr
         text("value", lambda row: row[1]),
         word("status", lambda row: mark(status.get(row[2], ""))),
     ]
-    note = "Status says where a value comes from: published, measured, identified or assumed."
+    note = "Status is the source of a value: published, measured, identified or assumed."
     return Table(title, columns, rows, note, style="facts")
 
 
 def _housing(box: Mapping[str, Any], units: Units) -> list[list[str]]:
-    """Rows of the housing and its mounts."""
+    """Return rows of the housing and its mounts."""
 
     def place(point: Sequence[float]) -> str:
         return f"at ({', '.join(units.given(v, 'm') for v in point)}) {units.unit('m')}"
@@ -62,13 +64,13 @@ def _housing(box: Mapping[str, Any], units: Units) -> list[list[str]]:
         springs = ", ".join(
             f"{key} {engineering(value, 4)}" for key, value in mount["stiffness"].items()
         )
-        told = f"{place(mount['position'])}, SI: {springs}, loss factor {mount['loss']:g}"
-        rows.append([f"mount {name}", told, f"mount {name}"])
+        text_ = f"{place(mount['position'])}, SI: {springs}, loss factor {mount['loss']:g}"
+        rows.append([f"mount {name}", text_, f"mount {name}"])
     return rows
 
 
 def housing_columns(response: Any) -> list[tuple[str, str]]:
-    """Columns of a response that tell what its housing does, and what each is called."""
+    """Return columns of a response for its housing, with their titles."""
     return [
         (column, column.partition(" [")[0])
         for column in response.columns
@@ -80,7 +82,7 @@ def housing_columns(response: Any) -> list[tuple[str, str]]:
 
 
 def housing(response: Any, units: Units = ENGINEERING) -> Table:
-    """Largest loads of mounts and accelerations of the housing over a response."""
+    """Return the largest loads of mounts and accelerations of the housing over a response."""
     rows = []
     for column, name in housing_columns(response):
         size = abs(response.columns[column])
@@ -91,69 +93,69 @@ def housing(response: Any, units: Units = ENGINEERING) -> Table:
         text("largest", lambda row: row[1]),
         Column("Hz", lambda row: row[2], hertz),
     ]
-    note = "All three directions together: the root of the sum of squares of their amplitudes."
+    note = "Root of the sum of squares of the amplitudes in all three directions."
     return Table("Loads of mounts and accelerations", columns, rows, note)
 
 
 def material_words(material: Mapping[str, Any], units: Units) -> str:
-    """A material by its name, where it has one, and its constants."""
+    """Return a material by its name, where it has one, and its constants."""
     modulus = f"{units.given(material.get('E'), 'Pa')} {units.unit('Pa')}"
     density = units.given(material.get("density"), "kg/m³")
-    told = f"E = {modulus}, nu = {material.get('nu', DASH)}, density = {density} kg/m³"
-    return f"{material['name']}: {told}" if material.get("name") else told
+    words = f"E = {modulus}, nu = {material.get('nu', DASH)}, density = {density} kg/m³"
+    return f"{material['name']}: {words}" if material.get("name") else words
 
 
 def _materials(scene: Mapping[str, Any], units: Units) -> str:
-    """Materials of a shaft, each with the segments that are not of the first one."""
-    own: dict[str, list[str]] = {material_words(scene["material"], units): []}
+    """Return materials of a shaft, each with the segments that are not of the first one."""
+    parts: dict[str, list[str]] = {material_words(scene["material"], units): []}
     for segment in scene["segments"]:
         words = material_words(segment.get("material") or scene["material"], units)
-        own.setdefault(words, []).append(str(segment.get("name", "")))
-    first, *others = own
-    return "; ".join([first, *(f"{', '.join(own[words])}: {words}" for words in others)])
+        parts.setdefault(words, []).append(str(segment.get("name", "")))
+    first, *further = parts
+    return "; ".join([first, *(f"{', '.join(parts[words])}: {words}" for words in further)])
 
 
 def _mesh(mesh: Mapping[str, Any], status: Mapping[str, str], units: Units) -> list[list[str]]:
-    """Rows of one mesh, below its name where there are several."""
+    """Return rows of one mesh, below its name where there are several."""
     name, (pinion, gear) = mesh["name"], mesh["teeth"]
     first = mesh["between"][0].partition(".")[0]
-    known = f"{name}.stiffness", f"{name}.transmission_error"
-    line = next((k for k in status if k.startswith(f"{name}.") and k not in known), "")
+    keys = f"{name}.stiffness", f"{name}.transmission_error"
+    line = next((k for k in status if k.startswith(f"{name}.") and k not in keys), "")
     rows = [
         ["teeth", f"{pinion} and {gear}, ratio {gear / pinion:.4f}", ""],
         ["shaft angle", f"{degrees(mesh['shaft_angle']):g}°", ""],
-        ["mesh stiffness", units.text(mesh["stiffness"], "N/m", 4), known[0]],
+        ["mesh stiffness", units.text(mesh["stiffness"], "N/m", 4), keys[0]],
         [f"line of action on the {first}", _vector(mesh["line_of_action"][0], 4), line],
         ["mesh point from the lumped points", _points(mesh, units), ""],
         ["lever arms", _levers(mesh, units), ""],
-        ["transmission error", _error(mesh["transmission_error"], units), known[1]],
+        ["transmission error", _error(mesh["transmission_error"], units), keys[1]],
     ]
     return rows if name == "mesh" else [[name, " and ".join(mesh["between"]), ""], *rows]
 
 
 def _stage(stage: Mapping[str, Any], units: Units) -> list[list[str]]:
-    """Rows of one planetary stage."""
+    """Return rows of one planetary stage."""
     name, planet, mesh = stage["name"], stage["planet"], stage["mesh"]
     sun, turning, ring = stage["teeth"]
-    at = ", ".join(f"{degrees(angle + stage['position']):.4g}°" for angle in stage["angles"])
+    angles = ", ".join(f"{degrees(angle + stage['position']):.4g}°" for angle in stage["angles"])
     stiff = (units.text(mesh[f"{mate}_stiffness"], "N/m", 4) for mate in ("sun", "ring"))
     pin = f"on pins of {units.text(planet['pin']['radial'], 'N/m', 4)} radially"
     rows = [
         [name, f"sun {stage['sun']}, carrier {stage['carrier']}", ""],
         ["teeth", f"sun {sun}, planets {turning}, ring {ring}, ratio {stage['ratio']:.4f}", ""],
-        ["planets", f"at {at}, pins at {units.text(stage['pin_radius'], 'm', 4)}", ""],
+        ["planets", f"at {angles}, pins at {units.text(stage['pin_radius'], 'm', 4)}", ""],
         ["each planet", f"{units.text(planet['mass'], 'kg', 4)} {pin}", f"{name}.planet"],
         ["meshes with sun and ring", " and ".join(stiff), f"{name}.mesh"],
         ["transmission error of each", _error(mesh["transmission_error"], units), f"{name}.mesh"],
     ]
-    held = "fixed"
+    support = "fixed"
     if stage["ring"] is not None:
-        held = f"{units.text(stage['ring']['mass'], 'kg', 4)} on springs"
-    return [*rows, ["ring", held, f"{name}.ring"]]
+        support = f"{units.text(stage['ring']['mass'], 'kg', 4)} on springs"
+    return [*rows, ["ring", support, f"{name}.ring"]]
 
 
 def mark(status: str) -> Cell:
-    """The status of an input, in its colour."""
+    """Return the status of an input, in its colour."""
     return Cell(status, f"mark {status}".rstrip())
 
 
@@ -164,7 +166,7 @@ def _vector(values, digits: int) -> str:
 def _points(mesh: Mapping[str, Any], units: Units) -> str:
     unit = units.unit("m")
     digits = 2 if unit == "mm" else 4
-    points = (_vector([units.value(v, "m") for v in one], digits) for one in mesh["point"])
+    points = (_vector([units.value(v, "m") for v in point], digits) for point in mesh["point"])
     return " and ".join(f"{text} {unit}" for text in points)
 
 
@@ -185,18 +187,18 @@ def _error(table: Mapping[str, Any] | None, units: Units) -> str:
     return f"a table from {low:g} to {high:g} Hz, up to {most} {unit}"
 
 
-def verdict(found: Mapping[str, Any]) -> Table:
-    """Every mix of models: up to where it holds, why no further, and its cost."""
+def verdict(judged: Mapping[str, Any]) -> Table:
+    """Return every mix of models: the frequency up to which it agrees, why, and its cost."""
 
     def end(key: str) -> Callable[[Mapping], str]:
-        beyond = f"{found['highest_hz']:.0f}+"
+        beyond = f"{judged['highest_hz']:.0f}+"
         return lambda mix: beyond if mix[key] is None else whole(mix[key])
 
-    tolerance = f"{100 * found['tolerance']:g} %"
+    tolerance = f"{100 * judged['tolerance']:g} %"
     columns = [
-        Column(" + ".join(found["cheapest"]), lambda mix: _mix(mix, found["cheapest"])),
+        Column(" + ".join(judged["cheapest"]), lambda mix: _mix(mix, judged["cheapest"])),
         Column(f"modes within {tolerance}, Hz", end("modes_to_hz")),
-        Column(f"mesh force within {found['decibels']:g} dB, Hz", end("force_to_hz")),
+        Column(f"mesh force within {judged['decibels']:g} dB, Hz", end("force_to_hz")),
         Column(f"mesh force within {tolerance}, Hz", end("close_to_hz")),
         text("first mode off", _off),
         text("because of", lambda mix: mix["cause"] or None),
@@ -204,45 +206,47 @@ def verdict(found: Mapping[str, Any]) -> Table:
         Column("build and reduce, s", lambda mix: mix["seconds"], seconds),
     ]
     return Table(
-        f"Up to where every mix of models holds against {every(found['cheapest'])} shafts solid, cheapest first",
+        f"Frequency up to which every mix of models agrees with {every(judged['cheapest'])} shafts "
+        "solid, cheapest first",
         columns,
-        found["mixes"],
-        "The cause is the shaft whose model, put back to the solid alone, carries the mix "
-        "furthest; of a lumped model, the assumption. The force within the tolerance is left "
-        "by any peak or dip that moves a little.",
+        judged["mixes"],
+        "Cause: the shaft whose replacement by the solid helps most; for a lumped model, the "
+        "assumption. Any peak or dip that moves a little leaves the tolerance in force.",
     )
 
 
 def every(shafts: Collection[str]) -> str:
-    """All shafts, in a word before the noun."""
+    """Return "both" or "all", for shafts."""
     return "both" if len(shafts) == 2 else f"all {len(shafts)}"
 
 
 def mix_words(mix: Sequence[str]) -> str:
-    """Models of the shafts in turn, in short."""
+    """Return models of the shafts in turn, in short."""
     return f"{'both' if len(mix) == 2 else 'all'} {mix[0]}" if len({*mix}) == 1 else " + ".join(mix)
 
 
 def _mix(mix: Mapping[str, Any], cheapest: Mapping[str, str]) -> str:
-    own = {side: mix[side] for side in cheapest}
-    name = mix_words([*own.values()])
-    return f"{name}, cheapest" if own == cheapest else name
+    models = {side: mix[side] for side in cheapest}
+    name = mix_words([*models.values()])
+    return f"{name}, cheapest" if models == cheapest else name
 
 
 def _off(mix: Mapping[str, Any]) -> str | None:
     if not mix["mode"]:
         return None
-    by = "no counterpart" if mix["error"] is None else percent(mix["error"]).replace(" ", GROUP)
-    return f"{mix['mode']}: {by}"
+    difference = (
+        "no counterpart" if mix["error"] is None else percent(mix["error"]).replace(" ", GROUP)
+    )
+    return f"{mix['mode']}: {difference}"
 
 
 def modes(
-    found: Mapping[str, Any],
+    system: Mapping[str, Any],
     title: str = "Natural frequencies, both shafts solid",
     numbered: bool = False,
 ) -> Table:
-    """Natural frequencies of a train, for a page or, numbered, for a terminal."""
-    rows, of = found["modes"], found["speeds"]
+    """Return the natural frequencies of a train, for a page or, numbered, for a terminal."""
+    rows, speeds = system["modes"], system["speeds"]
     missing = "" if numbered else None
 
     def bound(mode: Mapping[str, Any]) -> str:
@@ -254,15 +258,15 @@ def modes(
     columns = [
         word("mode", lambda m: m["name"]),
         Column("Hz", lambda m: m["frequency_hz"], lambda hz: f"{hz:.2f}"),
-        Column(f"{of} rpm", lambda m: m["rpm"], whole),
+        Column(f"{speeds} rpm", lambda m: m["rpm"], whole),
         text("most strain energy", lambda m: m["strained"] or missing),
         Column("bound", bound),
         Column("mesh", mesh, lambda share: f"{share:.0e}"),
     ]
     if not numbered:
         note = (
-            f"{of.capitalize()} rpm: the speed at which its teeth mesh at this frequency. Bound: what the "
-            "reduction leaves at most. Mesh: what meshes of harmonic solids leave at most."
+            f"{speeds.capitalize()} rpm: the speed at which its teeth mesh at this frequency. Bound: "
+            "largest error by the reduction. Mesh: largest error by the meshes of harmonic solids."
         )
         return Table(title, columns, rows, note)
     meshed = any(mode["mesh"] is not None for mode in rows)
@@ -272,41 +276,41 @@ def modes(
 
 
 def peaks(
-    found: Sequence[tuple[float, float, str]],
-    what: str,
+    tops: Sequence[tuple[float, float, str]],
+    name: str,
     si: str,
     teeth: float,
     units: Units = ENGINEERING,
-    of: str = "",
+    model: str = "",
 ) -> Table:
-    """Peaks (Hz, size, mode) of what a train does over frequency, such as ``mesh force`` in its SI
-    unit, for pages and for terminals.
-    """
-    units = units.fitting([size for _, size, _ in found], si)
+    """Return peaks (Hz, size, mode) of a quantity such as ``mesh force`` in its SI unit."""
+    units = units.fitting([size for _, size, _ in tops], si)
     columns = [
-        text("mode that makes it", lambda peak: peak[2]),
+        text("its mode", lambda peak: peak[2]),
         Column("Hz", lambda peak: peak[0], hertz),
         Column(f"{turned(teeth)} rpm", lambda peak: 60 * peak[0] / teeth, whole),
-        quantity(what, si, units, lambda peak: peak[1], 4),
+        quantity(name, si, units, lambda peak: peak[1], 4),
     ]
-    return Table(f"Peaks of the {what}{', ' + of if of else ''}", columns, found, style="ruled")
+    return Table(
+        f"Peaks of the {name}{', ' + model if model else ''}", columns, tops, style="ruled"
+    )
 
 
 def turned(teeth: Any) -> str:
-    """Shaft that speeds are told of: the pinion unless the number of teeth knows another."""
+    """Return the shaft of speeds: the pinion unless the teeth name another."""
     return str(getattr(teeth, "of", "pinion"))
 
 
 def crossings(
-    found: list[Mapping[str, Any]], units: Units = ENGINEERING, of: str = "pinion"
+    rows: list[Mapping[str, Any]], units: Units = ENGINEERING, shaft: str = "pinion"
 ) -> Table:
-    """Table of crossings of order lines and natural frequencies."""
+    """Return the table of crossings of order lines and natural frequencies."""
     columns = [
         text("order", lambda c: c["line"]),
         text("mode", lambda c: c["mode"]),
         Column("Hz", lambda c: c["frequency_hz"], hertz),
-        Column(f"{of} rpm", lambda c: c["rpm"], whole),
+        Column(f"{shaft} rpm", lambda c: c["rpm"], whole),
         quantity("mesh force", "N", units, lambda c: c["force"], 4),
     ]
     note = "A dash: the transmission error has no such order."
-    return Table("Where orders meet natural frequencies", columns, found, note)
+    return Table("Where orders meet natural frequencies", columns, rows, note)

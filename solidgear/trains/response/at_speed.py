@@ -24,8 +24,9 @@ NEAR = 0.05
 #: kinds of orders in the sequence of the tables: those that excite most come first
 TOLD = ("mesh", "shaft", "sideband")
 ROLLING = (
-    "Orders without a bar come from the teeth alone. Those of bearings are of pure rolling; their bars "
-    f"hold {100 * SLIP:g} % of slip either way, and of an inside that is estimated both of its ends."
+    "Orders of teeth are exact and have no error bar. Orders of bearings assume pure rolling; "
+    f"their error bars cover {100 * SLIP:g} % of slip either way, and both ends of an estimated "
+    "inside."
 )
 
 
@@ -124,12 +125,13 @@ class AtSpeed:
             foreign = sum(peak.line is None for peak in self.peaks)
             out.append(
                 f"{self.spectrum.name}: {len(self.peaks)} peaks stand out, {foreign} of them not "
-                f"ours; lines with their bars and the resolution cover {100 * self.covered:.2g} % "
-                "of its range, and of peaks from elsewhere that share falls on one by chance."
+                f"ours; error bars and resolution cover {100 * self.covered:.2g} % of the range, "
+                "so that share of unrelated peaks matches an order by chance."
             )
             if not any(peak.line is not None and peak.line.kind == "mesh" for peak in self.peaks):
                 out.append(
-                    "No peak is an order of the mesh: check the speed and whose it is, or fit it."
+                    "No peak is an order of the mesh: check the speed and its shaft, or fit the "
+                    "speed."
                 )
         return out
 
@@ -142,8 +144,7 @@ def turns_of_pinion(train: Train, speed: float, shaft: str) -> float:
         raise SolidgearError(f"speed of {shaft!r}: a train has a {' and a '.join(train.turns)}")
     if not speed > 0:
         raise SolidgearError(
-            "the speed must be greater than zero: at rest there are no orders, and which way a shaft "
-            "turns does not change them"
+            "the speed must be greater than zero; the direction does not change orders"
         )
     return speed / (2 * np.pi) / train.turns[shaft]
 
@@ -256,14 +257,14 @@ def _fitted(
     if not near_peaks:
         raise SolidgearError(
             f"no peak of the spectrum lies within {100 * share:g} % of the first mesh order at "
-            f"{wanted:.6g} Hz; check the speed and whose it is, or fit within a larger share"
+            f"{wanted:.6g} Hz; check the speed and its shaft, or fit within a larger share"
         )
     hz, _, resolution = max(near_peaks, key=lambda top: top[1])
     difference = 100 * (hz / wanted - 1)
     return hz / teeth, (
         f"{60 * hz / teeth:.6g} rpm of the {teeth.of}, fitted: the largest peak within "
         f"{100 * share:g} % of the mesh order, {hz:.6g} Hz, is taken for it; {difference:+.2f} % from "
-        f"{speed}, and good to {100 * resolution / hz:.2g} %"
+        f"{speed}, known to {100 * resolution / hz:.2g} %"
     )
 
 

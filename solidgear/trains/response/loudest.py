@@ -17,7 +17,7 @@ from solidgear.trains.response.speeds import highest_speed
 
 #: relative, of frequencies that are the same
 SAME = 1e-9
-HEIGHT = "the height hangs on the losses and has no bar"
+HEIGHT = "height depends on losses, without error bar"
 
 
 @dataclass(frozen=True)
@@ -72,31 +72,31 @@ class Loudest:
             upto = f" up to {self.rpm:.0f} rpm of the {self.teeth.of} ({self.said_by})"
         sureness = HEIGHT
         if self.top.mode:
-            bar = "its model has no bar"
+            bar = "no error bar"
             if self.bar is not None:
                 bar = f"within {f'{100 * self.bar:.1g}' if self.bar >= 1e-4 else '0.01'} %"
             sureness = f"{bar} in frequency; {HEIGHT}"
         lines = [f"Largest dynamic {self.what}{upto}: {self._top_text(self.top)} ({sureness})."]
         if self.peak is not None:
-            lines.append(f"The largest peak up to there: {self._top_text(self.peak)}.")
+            lines.append(f"Largest peak up to there: {self._top_text(self.peak)}.")
         lines += self.parting
         if self.rpm == 0:
             lines.append(
-                f"At 0 rpm ({self.said_by}) no teeth pass, and nothing drives the train: this is of "
-                "the whole range."
+                f"At 0 rpm ({self.said_by}) nothing drives the train, so this is over the whole "
+                "range."
             )
         if not limit:
             return lines
         if self.beyond is not None:
             lines.append(
-                f"A larger one cannot be reached, for at {self.rpm:.0f} rpm teeth pass at "
-                f"{limit:.0f} Hz: {self._top_text(self.beyond)}."
+                f"A larger one lies beyond the highest speed, {self.rpm:.0f} rpm and {limit:.0f} "
+                f"Hz of the teeth: {self._top_text(self.beyond)}."
             )
         if self.asked_hz < 0.999 * self.orders * limit:
             further = f", their order {self.orders} at {self.orders * limit:.0f} Hz"
             lines.append(
-                f"The range asked for, up to {self.asked_hz:g} Hz, does not cover the speeds: teeth "
-                f"pass at {limit:.0f} Hz at {self.rpm:.0f} rpm{further * (self.orders > 1)}; raise "
+                f"The range asked for, up to {self.asked_hz:g} Hz, ends below the teeth's "
+                f"{limit:.0f} Hz at {self.rpm:.0f} rpm{further * (self.orders > 1)}; raise "
                 "max_frequency."
             )
         return lines
@@ -116,11 +116,11 @@ class Loudest:
             "the end of the range": self.asked_hz,
             "the start of the range": self.begin_hz,
         }
-        rising = f", where it still rises towards {top.towards}" if top.towards else ""
+        rising = f", still rising towards {top.towards}" if top.towards else ""
         for end, hz in ends.items():
             if abs(top.frequency_hz - hz) <= SAME * hz:
                 return f"{end}{rising}"
-        return "a rise that is no peak"
+        return "not a peak"
 
 
 def loudest(

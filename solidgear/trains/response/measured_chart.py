@@ -29,41 +29,47 @@ NAMES = 0.32
 
 
 def measured_chart(
-    found: Any, response: Any, title: str, units: Units = ENGINEERING, width: float = WIDE
+    at_speed: Any, response: Any, title: str, units: Units = ENGINEERING, width: float = WIDE
 ) -> Chart:
-    """The measured spectrum with the orders of its peaks, above the computed mesh force."""
-    last = float(found.spectrum.frequency_hz[-1])
-    ends = (0.0, min(last, max(float(response.frequency_hz[-1]), _last_peak(found))))
+    """Chart the measured spectrum with the orders of its peaks, above the computed mesh force."""
+    last = float(at_speed.spectrum.frequency_hz[-1])
+    ends = (0.0, min(last, max(float(response.frequency_hz[-1]), _last_peak(at_speed))))
     return Chart(
-        [[_measured(found, ends, width)], [_computed(found, response, ends, units)]], width, title
+        [[_measured(at_speed, ends, width)], [_computed(at_speed, response, ends, units)]],
+        width,
+        title,
     )
 
 
-def _last_peak(found: Any) -> float:
-    return max((peak.frequency_hz for peak in found.peaks), default=0.0) * 1.02
+def _last_peak(at_speed: Any) -> float:
+    return max((peak.frequency_hz for peak in at_speed.peaks), default=0.0) * 1.02
 
 
-def _measured(found: Any, ends: tuple[float, float], width: float) -> Panel:
-    spectrum, narrow = found.spectrum, width <= NARROW
-    seen = spectrum.frequency_hz <= ends[1]
-    hz, size = spectrum.frequency_hz[seen], spectrum.amplitude[seen]
+def _measured(at_speed: Any, ends: tuple[float, float], width: float) -> Panel:
+    spectrum, narrow = at_speed.spectrum, width <= NARROW
+    inside = spectrum.frequency_hz <= ends[1]
+    hz, size = spectrum.frequency_hz[inside], spectrum.amplitude[inside]
     low, high = _room(size, spectrum.in_decibels)
-    what = spectrum.what or "amplitude"
+    quantity = spectrum.what or "amplitude"
     panel = Panel(
         Axis("", ends),
         Axis(
-            f"{what}, {spectrum.unit or 'unit not told'}", (low, high), log=not spectrum.in_decibels
+            f"{quantity}, {spectrum.unit or 'unit not given'}",
+            (low, high),
+            log=not spectrum.in_decibels,
         ),
         300.0,
-        title=f"Measured: {spectrum.name}, at {found.rpm:.6g} rpm of the pinion",
+        title=f"Measured: {spectrum.name}, at {at_speed.rpm:.6g} rpm of the pinion",
         series=MARKS,
         legend={"orient": "top", "columns": 2 if narrow else 5},
     )
-    _modes(panel, found, ends, name=False)
-    kept = outline(hz, size)
-    panel.draw({"type": "line", "color": INK, "strokeWidth": 1}, curve(hz[kept], size[kept]))
+    _modes(panel, at_speed, ends, name=False)
+    outlined = outline(hz, size)
+    panel.draw(
+        {"type": "line", "color": INK, "strokeWidth": 1}, curve(hz[outlined], size[outlined])
+    )
     rows = []
-    for peak in (p for p in found.peaks if p.frequency_hz <= ends[1]):
+    for peak in (p for p in at_speed.peaks if p.frequency_hz <= ends[1]):
         facts = (
             ("frequency", hertz(peak.frequency_hz), "Hz"),
             ("amplitude", plain(peak.amplitude, 4), spectrum.unit),
@@ -75,19 +81,19 @@ def _measured(found: Any, ends: tuple[float, float], width: float) -> Panel:
             {"x": peak.frequency_hz, "y": peak.amplitude, "name": _kind(peak), "readout": words}
         )
     panel.draw({"type": "point", "filled": True, "size": 34}, rows)
-    _names(panel, found.peaks, ends, width)
+    _names(panel, at_speed.peaks, ends, width)
     return panel
 
 
 def _kind(peak: Any) -> str:
-    """Name of the looks of a peak."""
+    """Return the series of a peak."""
     if peak.line is None:
         return "not ours"
     return peak.line.kind if peak.line.exact else "bearing"
 
 
 def _room(size: np.ndarray, decibels: bool) -> tuple[float, float]:
-    """Ends of the axis of amplitudes, with room for names above."""
+    """Return ends of the axis of amplitudes, with room for names above."""
     if decibels:
         low, high = float(size.min()), float(size.max())
         return low, high + NAMES / (1 - NAMES) * max(high - low, 1.0)
@@ -98,7 +104,8 @@ def _room(size: np.ndarray, decibels: bool) -> tuple[float, float]:
 
 
 def outline(x: np.ndarray, y: np.ndarray, columns: int = COLUMNS) -> np.ndarray:
-    """Places of a curve that draw it as all do: ends, and highest and lowest in every column.
+    """Return places of a curve that draw it the same as all do: ends, and extremes of every
+    column.
 
     Examples
     --------
@@ -113,21 +120,21 @@ def outline(x: np.ndarray, y: np.ndarray, columns: int = COLUMNS) -> np.ndarray:
 
 
 def _names(panel: Panel, peaks: Sequence[Any], ends: tuple[float, float], width: float) -> None:
-    """Names over the largest peaks; one that would lie on a larger one's is left to the table."""
+    """Draw names over the largest peaks; those that would overlap are left to the table."""
     pixel = (ends[1] - ends[0]) / (width - panel.beside - panel.right)
-    named: list[dict[str, Any]] = []
+    labels: list[dict[str, Any]] = []
     for peak in sorted(peaks, key=lambda peak: -peak.amplitude):
-        free = all(abs(peak.frequency_hz - one["x"]) >= APART * pixel for one in named)
+        free = all(abs(peak.frequency_hz - label["x"]) >= APART * pixel for label in labels)
         if free and peak.frequency_hz <= ends[1]:
-            named.append({"x": peak.frequency_hz, "y": peak.amplitude, "text": peak.name})
+            labels.append({"x": peak.frequency_hz, "y": peak.amplitude, "text": peak.name})
     look = {"type": "text", "angle": -90, "align": "left", "baseline": "middle", "dx": 7}
-    panel.draw(look | {"fontSize": 10}, named)
+    panel.draw(look | {"fontSize": 10}, labels)
 
 
-def _computed(found: Any, response: Any, ends: tuple[float, float], units: Units) -> Panel:
+def _computed(at_speed: Any, response: Any, ends: tuple[float, float], units: Units) -> Panel:
     hz, force = response.frequency_hz, units.values(np.abs(response.force), "N")
-    seen = (hz <= ends[1]) & (force > 0)
-    hz, force = hz[seen], force[seen]
+    inside = (hz <= ends[1]) & (force > 0)
+    hz, force = hz[inside], force[inside]
     unit = units.unit("N")
     low, high = (0.6 * force.min(), 4.0 * force.max()) if len(force) else (0.5, 2.0)
     panel = Panel(
@@ -137,13 +144,15 @@ def _computed(found: Any, response: Any, ends: tuple[float, float], units: Units
         title=f"Computed: mesh force, {', '.join(f'{side} {rung}' for side, rung in response.models.items())}; "
         "dashed orders of the mesh, grey natural frequencies",
     )
-    _modes(panel, found, ends, name=True)
-    orders = [line for line in found.lines if line.kind == "mesh" and line.frequency_hz <= ends[1]]
+    _modes(panel, at_speed, ends, name=True)
+    orders = [
+        line for line in at_speed.lines if line.kind == "mesh" and line.frequency_hz <= ends[1]
+    ]
     dashed = {"type": "rule", "color": LINE, "strokeDash": [6, 4]}
     panel.draw(dashed, [{"x": line.frequency_hz} for line in orders])
     for align, aside in (("left", 3), ("right", -3)):  # the last name stays on the paper
-        own = [line for line in orders if (line.frequency_hz > 0.9 * ends[1]) == (aside < 0)]
-        names = [{"x": line.frequency_hz, "y": high, "text": line.name} for line in own]
+        lines = [line for line in orders if (line.frequency_hz > 0.9 * ends[1]) == (aside < 0)]
+        names = [{"x": line.frequency_hz, "y": high, "text": line.name} for line in lines]
         panel.draw({"type": "text", "color": LINE, "align": align, "dx": aside, "dy": 7}, names)
     panel.draw({"type": "line", "color": INK, "strokeWidth": 1.6}, curve(hz, force))
     rows = []
@@ -157,14 +166,14 @@ def _computed(found: Any, response: Any, ends: tuple[float, float], units: Units
     return panel
 
 
-def _modes(panel: Panel, found: Any, ends: tuple[float, float], name: bool) -> None:
-    """Natural frequencies as upright lines; where they are named, to be read at their feet."""
-    there = [(mode, hz) for mode, hz in found.modes if hz <= ends[1]]
-    panel.draw({"type": "rule", "color": MODE}, [{"x": hz} for _, hz in there])
+def _modes(panel: Panel, at_speed: Any, ends: tuple[float, float], name: bool) -> None:
+    """Draw natural frequencies as upright lines; where named, they can be read at their feet."""
+    inside = [(mode, hz) for mode, hz in at_speed.modes if hz <= ends[1]]
+    panel.draw({"type": "rule", "color": MODE}, [{"x": hz} for _, hz in inside])
     if name:
         low = panel.y.ends[0]
         words = [
             {"x": hz, "y": low, "readout": readout(mode, ("natural frequency", hertz(hz), "Hz"))}
-            for mode, hz in there
+            for mode, hz in inside
         ]
         panel.read(words, MODE)

@@ -23,15 +23,15 @@ PLAIN, SHAFTS = "#666666", ("#b3305c", "#5a3e8c", "#2b7a5d", "#8a5a00")
 
 
 def order_chart(
-    found: Any, title: str, teeth: float, units: Units = ENGINEERING, width: float = WIDE
+    orders: Any, title: str, teeth: float, units: Units = ENGINEERING, width: float = WIDE
 ) -> Chart:
-    """Order lines and natural frequencies; the upper axis needs the teeth in one turn of the shaft
-    that speeds are told of.
+    """Chart order lines and natural frequencies; the upper axis needs the teeth per turn of the
+    speed's shaft.
     """
-    high, narrow = found.highest_rpm, width <= NARROW
+    high, narrow = orders.highest_rpm, width <= NARROW
     panel = Panel(
-        Axis(f"{found.teeth.of} speed in rpm", (0.0, high)),
-        Axis("frequency in Hz", (0.0, found.highest_hz)),
+        Axis(f"{orders.teeth.of} speed in rpm", (0.0, high)),
+        Axis("frequency in Hz", (0.0, orders.highest_hz)),
         400 if narrow else 520,
         right=NARROW_NAMES if narrow else NAMES,
         upper=Axis(
@@ -41,30 +41,30 @@ def order_chart(
             grid=False,
         ),
     )
-    places = [{"y": mode.frequency_hz} for mode in found.modes]
+    places = [{"y": mode.frequency_hz} for mode in orders.modes]
     panel.draw({"type": "rule", "color": MODE}, places)
-    _mode_names(panel, found, 9 if narrow else 10)
-    forces = [line.force.max() for line in found.lines if line.force is not None]
+    _mode_names(panel, orders, 9 if narrow else 10)
+    forces = [line.force.max() for line in orders.lines if line.force is not None]
     largest = max(forces, default=1.0)
-    for line in found.lines:
-        _line(panel, line, found, largest, units)
-    _crossings(panel, found, units)
+    for line in orders.lines:
+        _line(panel, line, orders, largest, units)
+    _crossings(panel, orders, units)
     return Chart([[panel]], width, title)
 
 
 def _rounds(high: float) -> np.ndarray:
-    """Some round numbers from zero to an end."""
+    """Return some round numbers from zero to an end."""
     decade = 10.0 ** np.floor(np.log10(high))
     step = next(decade * part for part in (0.1, 0.2, 0.5, 1.0, 2.0) if high <= 8 * decade * part)
     return np.arange(0.0, high, step)
 
 
-def _mode_names(panel: Panel, found: Any, letter: int) -> None:
-    """Names right of their lines, moved apart where frequencies are close."""
-    order = sorted(found.modes, key=lambda mode: mode.frequency_hz)
-    shares = np.array([mode.frequency_hz / found.highest_hz for mode in order])
-    heights = found.highest_hz * spread(shares, letter * 1.25 / panel.height)
-    end = found.highest_rpm
+def _mode_names(panel: Panel, orders: Any, letter: int) -> None:
+    """Draw names right of their lines, separated where frequencies are close."""
+    order = sorted(orders.modes, key=lambda mode: mode.frequency_hz)
+    shares = np.array([mode.frequency_hz / orders.highest_hz for mode in order])
+    heights = orders.highest_hz * spread(shares, letter * 1.25 / panel.height)
+    end = orders.highest_rpm
     rows = [
         {"x": end, "x2": 1.02 * end, "y": mode.frequency_hz, "y2": height}
         for mode, height in zip(order, heights.tolist())
@@ -78,9 +78,9 @@ def _mode_names(panel: Panel, found: Any, letter: int) -> None:
     panel.draw(look, names)
 
 
-def spread(places: np.ndarray, apart: float) -> np.ndarray:
-    """Ascending places moved as little as may be until neighbours are a distance apart, and kept
-    below 1.
+def spread(places: np.ndarray, distance: float) -> np.ndarray:
+    """Return ascending places moved as little as possible so that neighbours are `distance` apart
+    and below 1.
 
     Parameters
     ----------
@@ -100,17 +100,17 @@ def spread(places: np.ndarray, apart: float) -> np.ndarray:
         groups.append((float(place), 1))
         while len(groups) > 1:
             (low, n), (high, m) = groups[-2:]
-            if high - low >= (n + m) / 2 * apart - 1e-12:
+            if high - low >= (n + m) / 2 * distance - 1e-12:
                 break
             groups[-2:] = [((n * low + m * high) / (n + m), n + m)]
-    out = [middle + (k - (n - 1) / 2) * apart for middle, n in groups for k in range(n)]
-    below = 1.0 - apart * np.arange(len(out))[::-1]
+    out = [middle + (k - (n - 1) / 2) * distance for middle, n in groups for k in range(n)]
+    below = 1.0 - distance * np.arange(len(out))[::-1]
     return np.minimum(out, below)
 
 
-def _crossings(panel: Panel, found: Any, units: Units) -> None:
-    """Every crossing, to be read with the mode that is met; a ring where there is a force."""
-    for seen in (True, False):
+def _crossings(panel: Panel, orders: Any, units: Units) -> None:
+    """Draw every crossing with its mode; a ring where there is a force."""
+    for excited in (True, False):
         rows = [
             {
                 "x": c.rpm,
@@ -118,35 +118,35 @@ def _crossings(panel: Panel, found: Any, units: Units) -> None:
                 "readout": readout(
                     c.line,
                     ("meets", c.mode, ""),
-                    *_facts(found, c.rpm, c.frequency_hz, c.force, units),
+                    *_facts(orders, c.rpm, c.frequency_hz, c.force, units),
                 ),
             }
-            for c in found.crossings
-            if (c.force is not None) == seen
+            for c in orders.crossings
+            if (c.force is not None) == excited
         ]
         ring = {"type": "point", "fill": "#ffffff", "stroke": INK, "strokeWidth": 1}
-        panel.draw(ring | {"size": 18 if seen else 0}, rows)
+        panel.draw(ring | {"size": 18 if excited else 0}, rows)
 
 
 def _facts(
-    found: Any, rpm: float, hz: float, force: float | None, units: Units
+    orders: Any, rpm: float, hz: float, force: float | None, units: Units
 ) -> list[tuple[str, str, str]]:
-    """The words on a place of an order; no force where there is none."""
+    """Return the words on a place of an order; no force where there is none."""
     size = "" if force is None else plain(units.value(float(force), "N"), 4)
     return [
-        (f"{found.teeth.of} speed", f"{rpm:.0f}", "rpm"),
+        (f"{orders.teeth.of} speed", f"{rpm:.0f}", "rpm"),
         ("frequency", hertz(float(hz)), "Hz"),
         ("mesh force", size, units.unit("N")),
     ]
 
 
-def _line(panel: Panel, line: Any, found: Any, largest: float, units: Units) -> None:
-    """An order, where it has a force as wide and as dark as that is, and its name."""
+def _line(panel: Panel, line: Any, orders: Any, largest: float, units: Units) -> None:
+    """Draw an order, as wide and dark as its force, and its name."""
     kind, number = line.name.split()[0], int(line.name.split()[-1])
-    shafts = [*dict.fromkeys(own.name.split()[0] for own in found.lines)]
+    shafts = [*dict.fromkeys(order_line.name.split()[0] for order_line in orders.lines)]
     shafts = [name for name in shafts if name != "mesh"]
     own_colour = PLAIN if kind == "mesh" else SHAFTS[shafts.index(kind) % len(SHAFTS)]
-    end = min(found.highest_rpm, 60 * found.highest_hz / line.per_turn)
+    end = min(orders.highest_rpm, 60 * orders.highest_hz / line.per_turn)
     if line.force is None:
         dash = [6, 4] if kind == "mesh" else [2, 3]
         ends = [{"x": rpm, "y": rpm * line.per_turn / 60} for rpm in (0.0, end)]
@@ -158,11 +158,11 @@ def _line(panel: Panel, line: Any, found: Any, largest: float, units: Units) -> 
         speeds, forces = line.rpm, line.force
         _pieces(panel, line, largest, units)
     rows = []
-    kept = range(PLACES) if line.force is None else read_places(speeds, forces, PLACES)
-    for k in kept:
+    places = range(PLACES) if line.force is None else read_places(speeds, forces, PLACES)
+    for k in places:
         rpm = float(speeds[k])
-        told = _facts(found, rpm, rpm * line.per_turn / 60, forces[k], units)
-        words = readout(line.name, *told)
+        facts = _facts(orders, rpm, rpm * line.per_turn / 60, forces[k], units)
+        words = readout(line.name, *facts)
         rows.append({"x": rpm, "y": rpm * line.per_turn / 60, "readout": words})
     panel.read(rows, own_colour)
     # names are staggered: lines of one kind run close together
@@ -175,11 +175,11 @@ def _line(panel: Panel, line: Any, found: Any, largest: float, units: Units) -> 
 
 
 def _pieces(panel: Panel, line: Any, largest: float, units: Units) -> None:
-    """A line in pieces, each in the colour and width of its force."""
-    kept = np.unique(
+    """Draw a line in pieces, each in the colour and width of its force."""
+    ends = np.unique(
         [*read_places(line.rpm, line.force, PIECES), *np.flatnonzero(line.force == largest)]
     )
-    rpm, force = line.rpm[kept], line.force[kept]
+    rpm, force = line.rpm[ends], line.force[ends]
     middle = np.sqrt(force[:-1] * force[1:])
     share = 1 + np.log10(np.maximum(middle / largest, 10**-DECADES)) / DECADES
     rows = [

@@ -118,6 +118,5 @@ def _refuse_unrelated(drive: Drive, row: np.ndarray) -> None:
     moved, loaded = np.abs(row @ shapes), np.abs(drive.load @ shapes)
     if not (moved * loaded).max() > NOTHING * moved.max() * loaded.max():
         raise SolidgearError(
-            "a force there does not move the other end: no mode has a part in both; "
-            "choose other ports or directions"
+            "a force there does not move the other end; choose other ports or directions"
         )

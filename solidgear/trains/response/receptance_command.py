@@ -26,7 +26,7 @@ def receptance(
     train: TrainFile,
     *,
     from_: Annotated[str, typer.Option("--from", help=f"Where a unit force acts, {END}")],
-    to: Annotated[str, typer.Option("--to", help=f"Whose motion is told, {END}")],
+    to: Annotated[str, typer.Option("--to", help=f"Where the motion is read, {END}")],
     out: Annotated[
         Path, typer.Option("--out", "-o", help="Folder for receptance.csv and its chart.")
     ] = Path("out"),
@@ -36,23 +36,23 @@ def receptance(
 ) -> None:
     shop = driven.workshop(reduced, train)
     ends = end_of("--from", from_), end_of("--to", to)
-    unpublished, said = shop.train.unpublished(), unit_slips(shop)
-    cautions = [*said, *shop.cautions]
+    unpublished, warnings = shop.train.unpublished(), unit_slips(shop)
+    cautions = [*warnings, *shop.cautions]
     title = f"{shop.train.called}: {to} for a unit force on {from_}"
     with held(out):
         how: dict[str, Any] = {"highest_hz": reduced.max_frequency, **driven.losses}
         mixes = driven.mixes(shop.train)
-        found = [between(shop, *mix, from_=ends[0], to=ends[1], **how) for mix in mixes]
+        receptances = [between(shop, *mix, from_=ends[0], to=ends[1], **how) for mix in mixes]
         notes = {"from": from_, "to": to, "unpublished": unpublished, "cautions": cautions}
         teeth = shop.train.per_turn(shop.train.named_mesh(driven.mesh))
-        files = write_receptance(out, found, title, teeth, notes, train_data(shop), run.units)
+        files = write_receptance(out, receptances, title, teeth, notes, train_data(shop), run.units)
     if run.as_json:
         print((out / "receptance.json").read_text(encoding="utf-8"))
         return
     say(
-        f"{title}; {found[0].label}, {driven.damping} losses",
-        *map(caution, said),
+        f"{title}; {receptances[0].label}, {driven.damping} losses",
+        *map(caution, warnings),
     )
-    print_peaks(found[0].peaks, "receptance", found[0].unit, teeth, run.units)
+    print_peaks(receptances[0].peaks, "receptance", receptances[0].unit, teeth, run.units)
     say(*unpublished_lines(unpublished), *map(caution, shop.cautions))
     say(f"Written: {', '.join(map(str, files))}")

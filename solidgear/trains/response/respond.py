@@ -47,9 +47,8 @@ MOST_PEAKS = 400
 TOP = 17
 
 LITERAL = (
-    "damping: C = zeta K is read to the letter, so that the ratios count as seconds; "
-    "at {0:.0f} Hz the mesh then has a loss factor of {1:.0f}. Read them as loss factors 2 zeta "
-    "(--damping hysteretic) unless this very reading is what is asked"
+    "damping: C = zeta K takes the ratios as seconds, so that at {0:.0f} Hz the mesh has a loss "
+    "factor of {1:.0f}; use --damping hysteretic (loss factors 2 zeta) unless this is wanted"
 )
 
 
@@ -211,8 +210,8 @@ class Drive:
         tops = peaks(np.abs(motions_of(points)[:, -1]))
         if len(tops) > MOST_PEAKS:
             raise SolidgearError(
-                f"the response has {len(tops)} peaks, which is rounding: a spring or an inertia "
-                "is so large or small beside the others that no digit is left; check their units"
+                f"the response has {len(tops)} peaks, all rounding, since a spring or an inertia "
+                "is far larger or smaller than the others; check their units"
             )
         fine = [np.linspace(points[k - 1], points[k + 1], TOP) for k in tops]
         ends = [hz for hz in self._highest_orders() if lowest < hz < highest_hz]

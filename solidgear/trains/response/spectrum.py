@@ -105,8 +105,8 @@ def read_spectrum(path: str | os.PathLike) -> Spectrum:
         quantity, unit = _header(rows.pop(0)[1], file)
     if len(rows) < FEWEST_LINES:
         raise SolidgearError(
-            f"{file}: {len(rows)} lines of numbers are no spectrum; give {FEWEST_LINES} or more, "
-            "frequency in Hz and amplitude"
+            f"{file}: {len(rows)} lines of numbers are too few for a spectrum; give "
+            f"{FEWEST_LINES} or more, frequency in Hz and amplitude"
         )
     values = np.array([_pair(cells, line, file) for line, cells in rows[:MOST_LINES]])
     spectrum = Spectrum(Path(file).name, quantity, unit, values[:, 0], values[:, 1])

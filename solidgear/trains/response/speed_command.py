@@ -37,20 +37,22 @@ class Speed(Group):
         str | None,
         typer.Option(
             "--speed",
-            help='Speed such as "3000 rpm": orders of shafts, mesh and catalogue bearings in Hz, and '
-            "those near natural frequencies. By default that of the operating point.",
+            help='Speed such as "3000 rpm": orders of shafts, mesh and catalogue bearings in Hz, '
+            "and those near natural frequencies. By default the operating point's speed.",
         ),
     ] = None
     of: Annotated[
         str | None,
-        typer.Option("--of", help="Whose speed it is: pinion or gear; the engine's shaft."),
+        typer.Option(
+            "--of", help="Shaft of --speed: pinion or gear; by default the engine's shaft."
+        ),
     ] = None
     measured: Annotated[
         Path | None,
         typer.Option(
             "--measured",
-            help="Spectrum at this speed (CSV: frequency in Hz, amplitude), laid over the computed "
-            "mesh force; every peak is told with its order.",
+            help="Spectrum at this speed (CSV: frequency in Hz, amplitude), drawn over the "
+            "computed mesh force; every peak is listed with its order.",
         ),
     ] = None
     fit_speed: Annotated[
@@ -63,12 +65,12 @@ class Speed(Group):
     within: Annotated[
         float | None,
         typer.Option(
-            "--within", help="Share of a natural frequency within which an order is told; 0.05."
+            "--within", help="Share of a natural frequency within which an order is listed; 0.05."
         ),
     ] = None
 
     def asked(self, train: Train) -> Asked:
-        """The same of a train, checked."""
+        """Return these options checked for a train."""
         return Asked(train, self)
 
 
@@ -81,41 +83,44 @@ class Asked:
         For a speed that is none, a spectrum that cannot be used, or options that need others.
     """
 
-    def __init__(self, train: Train, given: Speed):
-        self.train, self.fit = train, given.fit_speed
-        self.within = NEAR if given.within is None else given.within
+    def __init__(self, train: Train, speed: Speed):
+        self.train, self.fit = train, speed.fit_speed
+        self.within = NEAR if speed.within is None else speed.within
         self.turns, self.told = 0.0, ""
-        if given.speed is not None:
-            of = given.of or train.reference
-            self.turns, self.told = _turns(train, given.speed, of), f"{given.speed} of the {of}"
-            if of != train.reference:
+        if speed.speed is not None:
+            shaft = speed.of or train.reference
+            self.turns, self.told = (
+                _turns(train, speed.speed, shaft),
+                f"{speed.speed} of the {shaft}",
+            )
+            if shaft != train.reference:
                 self.told += f", {60 * self.turns:.6g} rpm of the {train.reference}"
         elif train.point is not None and train.point.speed:
-            own = train.point.speed_of(train.reference, train.turns) or 0.0
-            self.turns, self.told = own / (2 * pi), train.point.label
+            turns = train.point.speed_of(train.reference, train.turns) or 0.0
+            self.turns, self.told = turns / (2 * pi), train.point.label
         else:
             for option, value in (
-                ("--measured", given.measured),
-                ("--within", given.within),
-                ("--of", given.of),
+                ("--measured", speed.measured),
+                ("--within", speed.within),
+                ("--of", speed.of),
             ):
                 if value is not None:
                     raise SolidgearError(f'{option} needs a speed; add --speed "3000 rpm"')
-        refuse_share("--within", given.within)
-        refuse_share("--fit-speed", given.fit_speed)
-        if given.fit_speed is not None and given.measured is None:
+        refuse_share("--within", speed.within)
+        refuse_share("--fit-speed", speed.fit_speed)
+        if speed.fit_speed is not None and speed.measured is None:
             raise SolidgearError("--fit-speed needs a spectrum; add --measured spectrum.csv")
-        self.spectrum = None if given.measured is None else read_spectrum(given.measured)
+        self.spectrum = None if speed.measured is None else read_spectrum(speed.measured)
 
     def found(self, modes: Iterable[TrainMode]) -> AtSpeed | None:
-        """Orders at the speed; nothing without one."""
+        """Return orders at the speed; nothing without one."""
         if not self.turns:
             return None
         how = self.within, self.spectrum, self.fit
         return at_speed(self.train, modes, self.turns, self.told, *how)
 
 
-def _turns(train: Train, text: str, of: str) -> float:
+def _turns(train: Train, text: str, shaft: str) -> float:
     try:
         speed = quantity(text, "speed")
     except SceneError:
@@ -124,17 +129,17 @@ def _turns(train: Train, text: str, of: str) -> float:
             '"314 rad/s"'
         ) from None
     try:
-        return turns_of_pinion(train, speed, of)
+        return turns_of_pinion(train, speed, shaft)
     except SolidgearError as error:
-        raise SolidgearError(f"--speed {show(text, 40)} --of {show(of, 40)}: {error}") from None
+        raise SolidgearError(f"--speed {show(text, 40)} --of {show(shaft, 40)}: {error}") from None
 
 
-def say_at_speed(found: AtSpeed) -> None:
+def say_at_speed(orders: AtSpeed) -> None:
     """Print orders at a speed, those near natural frequencies, and measured peaks."""
-    say(speed_tables.first_lines(found.lines))
-    near = speed_tables.coincidences(found, MOST_NEAR)
+    say(speed_tables.first_lines(orders.lines))
+    near = speed_tables.coincidences(orders, MOST_NEAR)
     say(near if near else f"{near.title}: none.")
-    if found.spectrum is not None:
-        peaks = speed_tables.measured(found, MOST)
+    if orders.spectrum is not None:
+        peaks = speed_tables.measured(orders, MOST)
         say(peaks if peaks else f"{peaks.title}: none stands out of the noise.")
-    say(*found.notes())
+    say(*orders.notes())

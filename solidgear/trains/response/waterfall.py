@@ -23,8 +23,8 @@ def waterfall(
     highest: float,
     title: str = "",
 ) -> Panel:
-    """Spectra, a row each, over frequency and ascending speeds that are evenly apart, with lines of
-    orders of the shaft by their names, up to the highest frequency that is shown.
+    """Return spectra over frequency at ascending, evenly spaced speeds, with named lines of
+    orders.
     """
     step = float(rpm[1] - rpm[0]) if len(rpm) > 1 else float(rpm[0])
     tall = TALL * step
@@ -38,13 +38,13 @@ def waterfall(
     for name, order in orders.items():
         rows = [{"x": order * speed / 60, "y": speed} for speed in ends]
         panel.draw({"type": "line", "color": LINE}, rows)
-        at = min(ends[1], highest * 60 / order * 0.99)
+        place = min(ends[1], highest * 60 / order * 0.99)
         look = {"type": "text", "color": NAME, "dx": -4, "dy": -6, "align": "right"}
-        if at > ends[0]:
-            panel.draw(look, [{"x": order * at / 60, "y": at, "text": name}])
+        if place > ends[0]:
+            panel.draw(look, [{"x": order * place / 60, "y": place, "text": name}])
     level = 20 * np.log10(np.maximum(size / size.max(), 1e-12))
     heights = rpm[:, None] + tall * np.maximum(1 + level / DEEP, 0.0)
     for x, y in zip(hertz, heights):
-        here = (x > 0) & (x < highest)
-        panel.draw({"type": "line", "color": LOOK, "strokeWidth": 1}, curve(x[here], y[here]))
+        inside = (x > 0) & (x < highest)
+        panel.draw({"type": "line", "color": LOOK, "strokeWidth": 1}, curve(x[inside], y[inside]))
     return panel

@@ -150,8 +150,8 @@ class CarrierTurn:
         """
         if not 0 < order < len(self.angle) / 2:
             raise SolidgearError(
-                f"order {order} is not among those of {len(self.angle)} positions: "
-                "from 1 to below half of them"
+                f"order {order} is not among those of {len(self.angle)} positions; give 1 to less "
+                "than half of them"
             )
         return 2 * np.abs(np.fft.rfft(self.sun_mesh, axis=0)[order]) / len(self.angle)
 
@@ -170,12 +170,12 @@ def carrier_turn(
     Parameters
     ----------
     torque : float
-        On the sun, N m; carrier or ring, if free, takes the other torque, and that of the
-        other loads.
+        On the sun, N m; carrier or ring, whichever turns freely, takes the other torque, and that
+        of the other loads.
     supports : mapping of str to FixedSupport
         Of ``sun``, ``ring`` or ``carrier``, beside bearings of the stage, which turn with it.
     errors : sequence of PlanetError
-        One a planet; none without.
+        One for each planet; by default none.
     positions : int
         At equal angles over one turn.
     weights : mapping of str to (6,) array_like
@@ -220,7 +220,7 @@ def carrier_turn(
             f"{min(unknown)!r} has no support; {listed(list(CENTRAL))} may have one"
         )
     if positions < 1:
-        raise SolidgearError(f"{positions} positions are none; ask for 1 or more")
+        raise SolidgearError(f"{positions} positions; give 1 or more")
     errors = errors or [PlanetError()] * len(stage.planets)
     if len(errors) != len(stage.planets):
         raise SolidgearError(

@@ -186,12 +186,12 @@ class OnBearings:
         if bases and np.abs(moved[: len(bases)]).max() > 1e-6 * np.abs(moved).max():
             part = bases[0].partition(".")[0]
             way = DOF_NAMES[int(np.argmax(np.abs(moved[0])))]
-            return f"nothing holds the {part} in {way} under these loads: no mount does"
+            return f"no mount holds the {part} in {way} under these loads"
         moved = moved[len(bases) :]
         k, component = np.unravel_index(int(np.argmax(np.abs(moved))), moved.shape)
         return (
-            f"nothing holds {ends[k].partition('.')[0]} in {DOF_NAMES[component]} under these "
-            "loads: no bearing does, and they do not balance each other"
+            f"no bearing holds {ends[k].partition('.')[0]} in {DOF_NAMES[component]} under these "
+            "loads, which do not balance"
         )
 
     @pinned

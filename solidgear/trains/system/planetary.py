@@ -64,7 +64,7 @@ GIVES = 1e-9
 class PlanetaryStage:
     """Sun, ring, carrier and any number of planets, each of its own and at any angle.
 
-    Base circles, pressure angle and pins are independent of each other, as Lin and Parker do; where
+    Base circles, pressure angle and pins are given separately, as Lin and Parker do; where
     they do not fit, :attr:`apart` says by how much.
 
     Attributes
@@ -136,7 +136,9 @@ class PlanetaryStage:
             check_member(name, planet)
         for mesh in ("sun_mesh", "ring_mesh"):
             if not any(getattr(planet, mesh) for planet in self.planets):
-                raise SolidgearError(f"{mesh} is 0 N/m of every planet; nothing is in mesh there")
+                raise SolidgearError(
+                    f"{mesh} is 0 N/m for every planet, so that nothing is in mesh there"
+                )
         turns = np.array([planet.azimuth for planet in self.planets])
         between = (turns - turns[:, None]) % (2 * pi)
         between = np.minimum(between, 2 * pi - between) + pi * np.eye(len(turns))

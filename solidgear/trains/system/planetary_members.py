@@ -38,7 +38,7 @@ class CentralMember:
     radius : float
         Of the base circle, of a carrier that of its pins, m.
     bearing : float or (6, 6) array_like
-        Radial stiffness to ground, N/m, or that of all six motions of its centre; one without
+        Radial stiffness to ground, N/m, or stiffness of all six motions of its centre; without it the member
         floats.
     turning : float
         Torsional stiffness to ground, N m/rad, beside the bearing.
@@ -108,7 +108,7 @@ class Planet:
     radius : float
         Of the base circle, m.
     pin : float or (6, 6) array_like
-        Stiffness of pin and bearing, the same radially and tangentially, N/m; or that of all six
+        Stiffness of pin and bearing, the same radially and tangentially, N/m; or of all six
         motions, x away from the sun, of which the spin is free.
     sun_mesh, ring_mesh : float
         Stiffness of the teeth along the line of action, N/m.

@@ -60,7 +60,7 @@ def _if_few(scene: Scene, solve: Callable[[], OpenNumbers]) -> OpenNumbers:
     """Return the ranges of a scene, or the reason why they are left out."""
     inputs = open_inputs(scene)
     if len(inputs) > MOST_BESIDE_BARS:
-        why = f"{len(inputs)} open inputs take a while; solidgear budget tells what they leave open"
+        why = f"{len(inputs)} open inputs take a while; run solidgear budget"
         return OpenNumbers(inputs=_recorded(inputs), left_out=why)
     if not inputs:
         return OpenNumbers()
@@ -79,7 +79,7 @@ def budget(
     ----------
     scene : Scene
     samples : int
-        Seeded samples of all inputs together (Latin hypercube), to be compared with the sums; 0 for
+        Number of random samples of all inputs together (Latin hypercube), beside the sums; 0 for
         none.
     seed : int
     progress : callable
@@ -107,8 +107,8 @@ def budget(
     inputs = open_inputs(scene)
     if not inputs:
         raise SolidgearError(
-            f"{scene.name}: no input is open: no bearing has an estimated inside or a class of "
-            "clearance, and the file states no [uncertain]"
+            f"{scene.name}: no input is open, since no bearing has an estimated inside or a class "
+            "of clearance and the file has no [uncertain]"
         )
     if samples and not FEWEST_SAMPLES <= samples <= MOST_SAMPLES:
         raise SolidgearError(f"samples = {samples}: give {FEWEST_SAMPLES} to {MOST_SAMPLES}, or 0")

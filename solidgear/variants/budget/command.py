@@ -25,16 +25,18 @@ def budget(
     *,
     ask: Annotated[
         str,
-        typer.Option("--ask", help="Comma-separated, as of answer; by default what is judged."),
+        typer.Option(
+            "--ask", help="Numbers, comma-separated, as for answer; by default what is judged."
+        ),
     ] = "",
     samples: Annotated[
         int,
-        typer.Option("--samples", help="Seeded samples of all inputs together, beside the sums."),
+        typer.Option("--samples", help="Number of random samples of all inputs together."),
     ] = 0,
-    seed: Annotated[int, typer.Option("--seed", min=0, help="Of the samples.")] = 0,
+    seed: Annotated[int, typer.Option("--seed", min=0, help="Seed of the samples.")] = 0,
     out: Annotated[
         Path | None,
-        typer.Option("--out", "-o", help="The same as a chart: a file that ends in .png or .svg."),
+        typer.Option("--out", "-o", help="Chart of it: a file that ends in .png or .svg."),
     ] = None,
     run: Run,
 ) -> None:
@@ -46,7 +48,7 @@ def budget(
         ranges = solve_budget(loaded, samples=samples, seed=seed, progress=progress)
     absent = [name for name in names if ranges.of(name) is None]
     if absent:
-        raise SolidgearError(f"--ask: no range is known of {listed(absent)}")
+        raise SolidgearError(f"--ask: no range is known for {listed(absent)}")
     if out is not None:
         chart = budget_chart(ranges, asked=names)
         if chart is not None:

@@ -43,7 +43,7 @@ def optimise(
     tol: float | None = None,
     progress: Callable[[str], None] = lambda _: None,
 ) -> Optimum:
-    """Search entries of a scene file for the largest or smallest of a number.
+    """Vary entries of a scene file to make a number as large or as small as possible.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ def optimise(
         Solve every design by it, such as ``timoshenko``, without error bars; by default by the
         cheapest mesh whose error bars are within `tol`.
     tol : float, optional
-        Relative, to which error bars of designs are brought; a tenth of the tolerance of the scene by
+        Relative error bar of designs; a tenth of the tolerance of the scene by
         default.
 
     Returns

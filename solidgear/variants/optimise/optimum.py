@@ -97,7 +97,7 @@ def _sentences(optimum: Optimum) -> Iterator[str]:
     if optimum.how:
         yield f"Searched: {optimum.how}; {solved} designs solved."
     if best.number == 0:
-        yield "No design is better than the file as it is, as far as the error bars tell."
+        yield "No design is better than the file as it is by more than the error bars."
     elif gain is not None:
         file = f"the file as it is, {_with_bar(gain.a, gain.bar_a)}"
         if not optimum.path[0].kept:
@@ -109,15 +109,15 @@ def _sentences(optimum: Optimum) -> Iterator[str]:
             yield f"{percent}."
         else:
             yield (
-                f"No gain is claimed over {file}: the difference is within the error bars of both; a "
-                "smaller --tol tells them apart."
+                f"No gain is claimed over {file}: the difference is within the error bars; a "
+                "smaller --tol narrows them."
             )
     count = sum(design is not best and _as_good(optimum, design) for design in optimum.path)
     if count:
         designs = "designs are" if count > 1 else "design is"
         yield f"{count} more {designs} as good within the error bars."
     for label in optimum.at_end:
-        yield f"{label} is at the end of its range: a wider one may hold a better design."
+        yield f"{label} is at the end of its range; a wider range may hold a better design."
 
 
 def _with_bar(value: float | None, bar: float | None) -> str:

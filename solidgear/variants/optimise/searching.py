@@ -55,7 +55,7 @@ def search_box(dimension: int, goal: Number, misses: Sequence[Number], begin: np
 
 
 def _best(count: int) -> str:
-    return "the best of them" if count == 1 else f"the {count} best that lie apart"
+    return "the best of them" if count == 1 else f"the {count} best separate ones"
 
 
 def _merit(goal: Number, misses: Sequence[Number]) -> Number:

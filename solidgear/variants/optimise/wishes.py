@@ -96,9 +96,9 @@ def _static_in_si(value: str, si_unit: str) -> float:
     """Return a compliance or stiffness in SI, from any unit of its dimension."""
     match = amount(value)
     if match is None:
-        raise SceneError(f"{show(value)} is no number with a unit")
+        raise SceneError(f"{show(value)} is not a number with a unit")
     number, unit = match.groups()
     factor, si = si_factor(unit), si_factor(si_unit)
     if factor is None or si is None or factor[2] != si[2]:
-        raise SceneError(f"{unit!r} is no unit of what is told in {si_unit}")
+        raise SceneError(f"{unit!r} is not a unit of a number in {si_unit}")
     return float(number) * factor[0]

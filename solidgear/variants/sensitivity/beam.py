@@ -214,7 +214,7 @@ class BeamAdjoint:
         if self.body.mesh["shoulder"]:
             bends = rate(lambda scene: hinges(scene.segments), HINGE).reshape(-1, len(HINGE))
             if len(bends) != len(self.hinges):
-                raise SolidgearError("a step opens there, and is another one to either side")
+                raise SolidgearError("a step opens there, with another derivative to either side")
             out += np.einsum("hk,hkf->f", bends, self.steps)
         self.velocity = self._along(segments, seats)
         return out + self.velocity @ self.nodes
@@ -230,9 +230,7 @@ class BeamAdjoint:
                 if near is None:
                     marks[place] = rate
                 elif abs(marks[near] - rate) > 1e-6 * max(1.0, abs(rate)):
-                    raise SolidgearError(
-                        f"{station.name} moves away from where something else stays"
-                    )
+                    raise SolidgearError(f"{station.name} moves away from a place that stays")
         places = np.array(sorted(marks))
         return np.interp(self.places, places, [marks[m] for m in places])
 

@@ -53,9 +53,7 @@ class Derivatives:
             motion = Motion(self._harmonic, low, high, step)
             return np.array([motion.derivative(push) for push in self._harmonic.pushes])
         if moves and self.model != "harmonic":
-            raise SolidgearError(
-                f"the {self.model} model meshes every shape anew, and no mesh follows it"
-            )
+            raise SolidgearError(f"the {self.model} model makes a new mesh for every shape")
         a, b = (build(scene, self.model, **self.options) for scene in (low, high))
         if moves:
             _check_middle(a, self.body, b)

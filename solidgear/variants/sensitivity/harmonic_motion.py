@@ -49,7 +49,7 @@ class Motion:
                     marks[place] = rate
                 elif abs(mark_rate - rate) > 1e-6 * max(1.0, abs(rate)) and attachment != "average":
                     raise SolidgearError(
-                        f"{s.name} is tied ({attachment}) at a line of the mesh that stays"
+                        f"{s.name} is tied ({attachment}) at a line of the mesh that does not move"
                     )
         self.marks = np.array(sorted(marks))
         self.rates = np.array([marks[m] for m in self.marks])
@@ -127,7 +127,7 @@ class Motion:
         for s, attachment in adjoint.stations:
             tol = 1e-9 * adjoint.scene.length
             if attachment != "section" and any(s.lo - tol <= y <= s.hi + tol for y in bulging):
-                raise SolidgearError(f"the surface under {s.name} parts in two")
+                raise SolidgearError(f"the surface under {s.name} splits in two")
 
     def _matter(self, push: Push) -> float:
         out = 0.0

@@ -35,7 +35,9 @@ MODELS = ("harmonic", "timoshenko", "euler", "solid")
 #: of the strongest elasticity: smaller ones are symmetry and rounding, and given as zero
 NOTHING = 1e-9
 #: words on error bars of values and derivatives
-BARS = "from_coarser_mesh is the distance from a coarser mesh where there is one: no proven bound"
+BARS = (
+    "from_coarser_mesh is the distance from a coarser mesh where there is one, and no proven bound"
+)
 
 
 @dataclass(frozen=True)
@@ -135,8 +137,8 @@ def sensitivities(
 
     Exact derivatives of the discrete numbers on a mesh that moves with the shaft, by adjoints: the
     problem is self-adjoint, so nothing is solved again (Haug, Choi and Komkov, Design Sensitivity
-    Analysis of Structural Systems, 1986). Of a pair of equal frequencies that of their mean.
-    The stiffness of catalogue bearings is held as it is.
+    Analysis of Structural Systems, 1986). A pair of equal frequencies has the derivative of its mean.
+    The stiffness of catalogue bearings is held constant.
 
     Parameters
     ----------
@@ -151,7 +153,7 @@ def sensitivities(
         Paths of entries, or their beginnings, such as ``"bearing.A"``; by default all numbers of
         materials, segments, bearings, masses, housing and ports.
     coarser : bool
-        Whether to derive on a coarser mesh as well, which shows how far a mesh moves a derivative.
+        Whether to derive on a coarser mesh as well, which shows the effect of the mesh.
     progress : callable
         Called with a sentence at every step.
     **options
@@ -248,13 +250,13 @@ def _ranked(rows: list[Derivative]) -> tuple[Derivative, ...]:
 def _supported(scene: Scene, model: str) -> None:
     if model not in MODELS:
         raise SolidgearError(
-            f"the {model} model has no derivatives; ask {', '.join(MODELS[:-1])} or {MODELS[-1]}"
+            f"the {model} model has no derivatives; use {', '.join(MODELS[:-1])} or {MODELS[-1]}"
         )
     if model != "solid" and (scene.body is not None or scene.features):
         part = "a part from a file" if scene.body is not None else scene.features[0].name
         raise SolidgearError(
-            f"{part}: derivatives by the {model} model are for shafts of segments; the solid model "
-            "has those by springs, masses and materials"
+            f"{part}: the {model} model has derivatives for shafts of segments only; the solid "
+            "model has those by springs, masses and materials"
         )
 
 
@@ -299,7 +301,7 @@ class SolvedMesh:
                 continue
             points = number.points_among([port.name for port in scene.ports])
             if len(points) > 1:
-                raise SolidgearError(f"{number}: terms between points have no derivatives here")
+                raise SolidgearError(f"{number}: entries between points have no derivatives")
             value, form = entry_form(
                 self.body, self.supports, number, (*points, scene.port.name)[0]
             )
@@ -312,14 +314,14 @@ class SolvedMesh:
 def _notes(scene: Scene, levels: list[dict], of: Sequence[OfNumber]) -> Iterator[str]:
     fixed = [b.name for b in scene.bearings if b.catalogue is not None]
     if fixed:
-        yield f"The stiffness of catalogue bearings ({listed(fixed)}) is held fixed."
+        yield f"The stiffness of catalogue bearings ({listed(fixed)}) is held constant."
     pairs = [number.name for number in of if number.pair]
     if pairs:
         yield f"{listed(pairs)}: derivative of the mean of the pair."
     for side in ("larger", "smaller"):
         paths = sorted(d.path for d in of[0].derivatives if d.side == side)
         if paths:
-            yield f"One-sided, for {side} entries, as the file allows no others: {listed(paths)}."
+            yield f"One-sided, for {side} entries, since the file allows no others: {listed(paths)}."
     if len(levels) > 1:
         mesh = _mesh_words(levels[1])
         yield f"Mesh: distance from the derivative on a coarser mesh ({mesh}); no proven bound."

@@ -160,8 +160,8 @@ class BearingVariants(SceneVariants):
             moved = [self.scene.bearings[int(place.keys[1])] for place in varying.places]
             if len(varying.values) > 1 and any(b.attachment == "rigid" for b in moved):
                 raise SolidgearError(
-                    f"{varying.label}: a rigid seat stiffens the shaft wherever it is meshed, so it "
-                    "cannot move in one body; use attachment 'average' or 'section'"
+                    f"{varying.label}: a rigid seat stiffens the shaft, so it cannot move in one "
+                    "body; use attachment 'average' or 'section'"
                 )
         seats = {
             seat_name(b): b.with_changes(name=seat_name(b))

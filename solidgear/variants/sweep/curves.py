@@ -86,8 +86,8 @@ def chartable(variants: FileVariants) -> Entry:
     if len(several) != 1:
         labels = listed(entry.label for entry in several) or "none"
         raise SolidgearError(
-            f"a chart has curves over one number that varies, and here vary: {labels}; leave --chart "
-            "out, or give one of them several values and the others one"
+            f"a chart needs one number that varies, but here vary {labels}; leave --chart out, or "
+            "give several values to one of them only"
         )
     entry = several[0]
     if entry.label != POINT and not entry.numeric:

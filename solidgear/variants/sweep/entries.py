@@ -276,7 +276,7 @@ def kept_sums(
 def _number_at(place: Place, tables: Tables) -> float:
     value = in_si(entry(keys_of(place.path, tables), tables))
     if value is None:
-        raise SceneError("is no number in the file, or has no unit that is known", field=place.path)
+        raise SceneError("is not a number in the file, or has an unknown unit", field=place.path)
     return value
 
 
@@ -320,14 +320,14 @@ def _range(spec: str) -> dict[str, Any]:
     def read(text: str) -> float:
         match = amount(text)
         if match is None:
-            raise SceneError(f"{text!r} is no number, with or without a unit")
+            raise SceneError(f"{text!r} is not a number, with or without a unit")
         number, unit = match.groups()
         ends.append(number)
         units.append(unit)
         value, first = in_si(text if unit else float(number)), units[0]
         of_first = in_si(f"1 {first}") if first else 1.0
         if value is None or of_first is None:
-            raise SceneError(f"{unit!r} is no known unit")
+            raise SceneError(f"{unit!r} is not a known unit")
         if bool(unit) != bool(first):
             raise SceneError("give both ends with a unit, or none")
         return float(number) if unit == first else value / of_first

@@ -32,7 +32,7 @@ Progress = Callable[[int, int, str], None]
 
 def without_bars(model: str) -> str:
     """Return the words on numbers of a model that was given, which have no error bars."""
-    return f"none: the {model} mesh was given; -f auto judges its own"
+    return f"none: the {model} mesh was given; -f auto has error bars"
 
 
 #: result of a task

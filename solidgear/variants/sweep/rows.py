@@ -70,7 +70,7 @@ class RowFile:
             for place in (self.path, self._database):
                 if place.exists() and not place.is_file():
                     raise SolidgearError(
-                        f"--out {self.path}: {place} is there and is no file; choose another name"
+                        f"--out {self.path}: {place} is not a file; choose another name"
                     )
             self._db = self._locked(overwrite)
             try:
@@ -137,8 +137,8 @@ class RowFile:
             return
         if self.path.exists():
             raise SolidgearError(
-                f"{self.path}: is there already, and nothing beside it says that it came from this "
-                f"sweep (no rows in {self._database.name}); choose another --out, or add --overwrite"
+                f"{self.path}: is there already and not from this sweep (no rows in "
+                f"{self._database.name}); choose another --out, or add --overwrite"
             )
         self._db.execute("DELETE FROM facts")
         self._db.execute("INSERT INTO facts VALUES ('plan', ?)", (plan,))

@@ -38,7 +38,7 @@ ASKED = (MODES, RESPONSE, DEFLECTION)
 MOST_MODES = 20
 MOST_SHAPES = 200
 #: words on error bars of a row
-UNBARRED = "none: system-modes and response and deflect have those of one variant"
+UNBARRED = "none: run system-modes, response or deflect on one variant"
 #: peaks of the mesh force
 PEAKS = 3
 #: column of the lowest frequency at which the dynamic mesh force is larger than the mean one, Hz
@@ -306,8 +306,8 @@ def _kinds(ask: Iterable[str]) -> tuple[str, ...]:
     for word in kinds:
         if word not in ASKED:
             raise SolidgearError(
-                f"--ask {show(word, 40)}: a row tells what {', '.join(ASKED)} tell"
-                f"{nearest(word, ASKED)}"
+                f"--ask {show(word, 40)}: give one or more of "
+                f"{', '.join(ASKED)}{nearest(word, ASKED)}"
             )
     if not kinds:
         raise SolidgearError(f"--ask: name one or more of {', '.join(ASKED)}")

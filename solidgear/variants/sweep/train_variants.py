@@ -170,7 +170,7 @@ def _owner(shafts: Sequence[str], many: bool, housed: bool, path: str) -> tuple[
     of_train = {*Train.model_fields, *shafts, *SHORT, "mesh"} - ({HOUSING} if not housed else set())
     if first in KEYS and first not in of_train:
         raise SolidgearError(
-            f"--vary {path}: is of the scene of a shaft; say of which: "
+            f"--vary {path}: belongs to the scene of a shaft; say which: "
             + " or ".join(f"{side}.{path}" for side in shafts)
         )
     return MAIN, path
@@ -184,7 +184,9 @@ def _points(tables: Tables) -> list[Any]:
 def _every_point(tables: Tables, varied: Sequence[Entry], point: str | None) -> Entry:
     """Return the operating points of a file as an entry that varies."""
     if point is not None or any(map(_of_operation, varied)):
-        raise SolidgearError("every operating point is looked at: give no --point and vary none")
+        raise SolidgearError(
+            "--every-point takes every operating point: give no --point and vary none"
+        )
     points = _points(tables)
     if not points:
         raise SolidgearError("the file has no operating point; write [operation] with a torque")
@@ -209,9 +211,7 @@ def _varied_point(tables: Tables, varied: Sequence[Entry]) -> str | None:
     numbers = {entry.keys[1] for entry in torques}
     if len(numbers) > 1:
         labels = listed(entry.label for entry in torques)
-        raise SolidgearError(
-            f"{labels} are of several operating points; say by --point which is told"
-        )
+        raise SolidgearError(f"{labels} are in several operating points; choose one by --point")
     return str(int(numbers.pop()) + 1) if numbers else None
 
 

@@ -229,9 +229,8 @@ def _long_enough(nodes):
     if gap[shortest] < SHORTEST * length:
         raise SolidgearError(
             f"euler: the element at y = {nodes[shortest]:.9g} m is {gap[shortest]:.3g} m long, below "
-            f"{SHORTEST:g} of the shaft, and loses its digits; let marks (segment ends, bearings, "
-            "the port) that close coincide, ask for fewer elements, or use the timoshenko or "
-            "harmonic model"
+            f"{SHORTEST:g} of the shaft, and loses its digits; let segment ends, bearings and the "
+            "port there coincide, give fewer elements, or use the timoshenko or harmonic model"
         )
 
 

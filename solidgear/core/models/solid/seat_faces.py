@@ -85,7 +85,7 @@ class Seats:
                 "with more digits, or its middle nodes on the surface or on the straight edges"
             )
         return (
-            f"{ON_SURFACE:g} of the radius, so this cylinder or cone has an axis beside that of the "
+            f"{ON_SURFACE:g} of the radius, so this cylinder or cone has another axis than the "
             "part; draw both about one axis"
         )
 

@@ -66,9 +66,9 @@ class SuperLU:
         # vanishing diagonal.
         if self.checked and self.negative != 0:
             raise FactorError(
-                "SuperLU could not factor the system matrix: it is not positive definite. Stiffnesses "
-                "lie so far apart that rounding decides: look for segments that are very short or thin "
-                "beside their diameter, where a beam is none, and use another model"
+                "SuperLU could not factor the system matrix, which is not positive definite: "
+                "stiffnesses differ too much for sixteen digits; look for segments that are very "
+                "short or thin against their diameter, or use another model"
             )
 
     @property
