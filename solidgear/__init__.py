@@ -81,7 +81,7 @@ _WHERE = {
     "modes": "solidgear.core.solve.modes",
     "answer": "solidgear.core.judge.answer",
     "budget": "solidgear.variants.budget.budget",
-    "compare": "solidgear.compare.comparison",
+    "compare": "solidgear.comparison.models",
     "optimise": "solidgear.variants.optimise.optimise",
     "sweep": "solidgear.variants.sweep.file_sweep",
     "sensitivities": "solidgear.variants.sensitivity.run",
@@ -146,7 +146,7 @@ __all__ = [
 
 if TYPE_CHECKING:
     from solidgear.bearings.elastic_ring import elastic_ring
-    from solidgear.compare.comparison import compare
+    from solidgear.comparison.models import compare
     from solidgear.core.body import Body, Supports
     from solidgear.core.errors import SceneError, SolidgearError
     from solidgear.core.judge.answer import answer

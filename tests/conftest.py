@@ -205,7 +205,7 @@ def drawn_once():
 @pytest.fixture
 def no_charts(monkeypatch):
     """Reports without their charts: drawing is what takes the time, and few tests look at them."""
-    from solidgear.compare.page import charts
+    from solidgear.comparison.page import charts
 
     monkeypatch.setattr(charts, "CHARTS", dict.fromkeys(charts.CHARTS, lambda results: None))
 
@@ -248,7 +248,7 @@ def run(monkeypatch, capsys, tmp_path, no_sudden_end):
 def raced():
     """A small race on a light reference."""
     import solidgear as sg
-    from solidgear.compare.race.timing import race
+    from solidgear.comparison.race.timing import race
     from tests.charted import SETUP, few
 
     scene = sg.load(Path(__file__).parent.parent / "geometry" / "shaft_stepped.toml")

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from solidgear.compare.page import html
+from solidgear.comparison.page import html
 from solidgear.core.judge.record import Record
 from solidgear.show import terminal
 from solidgear.show.border import as_record

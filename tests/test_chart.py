@@ -11,15 +11,15 @@ from pathlib import Path
 import pytest
 
 import solidgear as sg
-from solidgear.compare.race import command
-from solidgear.compare.race import rows as race_rows
-from solidgear.compare.race import style as race_style
-from solidgear.compare.race import timing as racing
-from solidgear.compare.race.answers import answer
-from solidgear.compare.race.cases import AUTO, plan
-from solidgear.compare.race.figure import draw, race_chart
-from solidgear.compare.race.pareto import Race, Row
-from solidgear.compare.race.rows import (
+from solidgear.comparison.race import command
+from solidgear.comparison.race import rows as race_rows
+from solidgear.comparison.race import style as race_style
+from solidgear.comparison.race import timing as racing
+from solidgear.comparison.race.answers import answer
+from solidgear.comparison.race.cases import AUTO, plan
+from solidgear.comparison.race.figure import draw, race_chart
+from solidgear.comparison.race.pareto import Race, Row
+from solidgear.comparison.race.rows import (
     MACHINE,
     PICTURE,
     ROWS,
@@ -29,8 +29,8 @@ from solidgear.compare.race.rows import (
     records,
     write_rows,
 )
-from solidgear.compare.race.tables import front_rows, section
-from solidgear.compare.race.timing import race
+from solidgear.comparison.race.tables import front_rows, section
+from solidgear.comparison.race.timing import race
 from solidgear.core.quantity import QUANTITIES
 from solidgear.show.panel import SHAPES
 from tests.charted import SETUP, few, texts_of, words_of

@@ -197,12 +197,12 @@ def test_compare_in_which_all_fails_says_so(run, monkeypatch):
 
 
 def test_interrupted_compare_ends_with_130(run, monkeypatch):
-    import solidgear.compare.comparison
+    import solidgear.comparison.models
 
     def stop(*_, **__):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(solidgear.compare.comparison, "study", stop)
+    monkeypatch.setattr(solidgear.comparison.models, "study", stop)
     done = run("compare", SCENE, "--models", "euler", "-o", "out", "--json")
     assert done.code == 130 and strict(done.out)["complete"] is False
 

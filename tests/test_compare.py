@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.compare.comparison import compare
+from solidgear.comparison.models import compare
 from solidgear.core.errors import SolidgearError
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.meshing.quality import MeshError

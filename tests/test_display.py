@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.compare.comparison import Comparison
+from solidgear.comparison.models import Comparison
 from solidgear.show.table import MOST_ROWS, Table
 
 ROOT = Path(__file__).parent.parent

@@ -8,11 +8,11 @@ from pathlib import Path
 import pytest
 
 import solidgear as sg
-from solidgear.compare.page.html import render_page
-from solidgear.compare.page.write import Drawn, render_mode
-from solidgear.compare.race.cases import plan
-from solidgear.compare.race.figure import race_chart
-from solidgear.compare.race.timing import race
+from solidgear.comparison.page.html import render_page
+from solidgear.comparison.page.write import Drawn, render_mode
+from solidgear.comparison.race.cases import plan
+from solidgear.comparison.race.figure import race_chart
+from solidgear.comparison.race.timing import race
 from solidgear.core.ladder.beams import Timoshenko
 from solidgear.core.ladder.harmonic import Harmonic
 from solidgear.core.ladder.model import Model

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 import solidgear as sg
-from solidgear.compare.comparison import compare
+from solidgear.comparison.models import compare
 from solidgear.show.folder import LOCK, held
 
 pytestmark = pytest.mark.usefixtures("no_charts")
@@ -140,8 +140,8 @@ KILLED = """
 import os, shutil, signal, sys
 from pathlib import Path
 import solidgear as sg
-from solidgear.compare.page import charts
-from solidgear.compare.comparison import compare
+from solidgear.comparison.page import charts
+from solidgear.comparison.models import compare
 charts.CHARTS = dict.fromkeys(charts.CHARTS, lambda results: None)
 root, scene, other, files = Path(sys.argv[1]), *sys.argv[2:4], int(sys.argv[4])
 before = compare(sg.load(other), ("euler", "timoshenko"))
@@ -209,8 +209,8 @@ def test_killed_while_files_are_written(at, killed):
 
 
 def test_a_chart_that_is_killed_leaves_no_picture_of_another(tmp_path):
-    from solidgear.compare.race.pareto import Race, Row
-    from solidgear.compare.race.rows import MACHINE, PICTURE, ROWS, write_rows
+    from solidgear.comparison.race.pareto import Race, Row
+    from solidgear.comparison.race.rows import MACHINE, PICTURE, ROWS, write_rows
 
     (tmp_path / PICTURE).write_bytes(b"of an earlier chart")
     row = Row(
@@ -282,7 +282,7 @@ def test_results_that_are_not_ours_are_no_hindrance(text, tmp_path):
 # --------------------------------------------------------------------------- two runs in one folder
 HOLD = """
 import sys, time
-from solidgear.compare.page import charts
+from solidgear.comparison.page import charts
 from solidgear.show.folder import held
 with held(sys.argv[1]):
     print("held", flush=True)

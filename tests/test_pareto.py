@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.compare.race import answers
-from solidgear.compare.race import timing as racing
-from solidgear.compare.race.answers import answer
-from solidgear.compare.race.cases import plan, setup_seconds
-from solidgear.compare.race.pareto import Race, Row, front
-from solidgear.compare.race.timing import race, scaled_error
+from solidgear.comparison.race import answers
+from solidgear.comparison.race import timing as racing
+from solidgear.comparison.race.answers import answer
+from solidgear.comparison.race.cases import plan, setup_seconds
+from solidgear.comparison.race.pareto import Race, Row, front
+from solidgear.comparison.race.timing import race, scaled_error
 from solidgear.core.errors import SolidgearError
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"

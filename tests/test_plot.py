@@ -8,7 +8,7 @@ import pytest
 from test_train_models import COARSE, OVERHUNG
 
 import solidgear as sg
-from solidgear.compare.page.charts import CHARTS
+from solidgear.comparison.page.charts import CHARTS
 from solidgear.show.panel import Axis, Panel, read_places, readout
 from solidgear.show.plot import NARROW, WIDE, Chart, page_svg
 from solidgear.show.units import SYSTEMS

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.compare.page.front import numbers
-from solidgear.compare.page.point_tables import points
-from solidgear.compare.recording import recorded
+from solidgear.comparison.page.front import numbers
+from solidgear.comparison.page.point_tables import points
+from solidgear.comparison.recording import recorded
 from solidgear.core.judge.quantities import between, canonical_name, measure, size
 from solidgear.core.judge.settle import settle
 from solidgear.core.judge.study import study

@@ -12,7 +12,7 @@ from rich.console import Console
 
 import solidgear as sg
 from solidgear.app.application import app
-from solidgear.compare.recording import recorded
+from solidgear.comparison.recording import recorded
 from solidgear.core.judge.quantities import change
 from solidgear.core.judge.record import Record
 from solidgear.core.judge.study import study

@@ -17,7 +17,7 @@ from skfem.quadrature import get_quadrature
 from skfem.refdom import RefHex, RefTet
 
 import solidgear as sg
-from solidgear.compare.page import write
+from solidgear.comparison.page import write
 from solidgear.core.errors import SolidgearError
 from solidgear.core.scene.closed_form import volume_of
 from solidgear.core.scene.outline import Outline

@@ -14,8 +14,8 @@ import pytest
 from rich.console import Console
 
 import solidgear as sg
-from solidgear.compare.page import charts
-from solidgear.compare.recording import recorded
+from solidgear.comparison.page import charts
+from solidgear.comparison.recording import recorded
 from solidgear.core.errors import SolidgearError
 from solidgear.core.judge.record import SCHEMA, Record
 from solidgear.show.border import as_record
@@ -336,7 +336,7 @@ def test_pictures_named_by_the_results_come_from_the_folder_only(tmp_path, no_ch
 def test_failed_report_leaves_the_old_one(tmp_path, monkeypatch, no_charts):
     path = write_report(fixture_results(), tmp_path)
     before = path.read_bytes()
-    monkeypatch.setattr("solidgear.compare.page.html.render_page", lambda *a: 1 / 0)
+    monkeypatch.setattr("solidgear.comparison.page.html.render_page", lambda *a: 1 / 0)
     with pytest.raises(ZeroDivisionError):
         write_report(fixture_results(), tmp_path)
     assert path.read_bytes() == before and len(list(tmp_path.iterdir())) == 1

@@ -9,7 +9,7 @@ import re
 import pytest
 
 import solidgear as sg
-from solidgear.compare.page import front
+from solidgear.comparison.page import front
 from solidgear.core.errors import SolidgearError
 from solidgear.core.judge.record import Record
 from solidgear.show.terminal import matrix_table

@@ -3,7 +3,7 @@
 from dataclasses import fields
 
 import solidgear as sg
-from solidgear.compare.page import evidence_tables
+from solidgear.comparison.page import evidence_tables
 from solidgear.core.judge.bars import ErrorBar
 from solidgear.core.judge.record import BarRecord, Record
 from solidgear.show.units import US

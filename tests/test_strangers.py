@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.compare.comparison import compare
+from solidgear.comparison.models import compare
 from solidgear.core.judge.completeness import completeness
 from solidgear.core.judge.study import study
 from solidgear.core.judge.ties import SCENE

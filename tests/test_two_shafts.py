@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.compare.two.differences import differences, scene_differences
-from solidgear.compare.two.two_shafts import two_shafts
+from solidgear.comparison.two.differences import differences, scene_differences
+from solidgear.comparison.two.two_shafts import two_shafts
 from solidgear.core.scene.uncertain import with_ranges
 from solidgear.show.sketch import draw, extent
 from tests.command import command, page_of

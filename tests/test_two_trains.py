@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.compare.two.differences import differences
-from solidgear.compare.two.two_trains import two_trains
-from solidgear.compare.two.two_trains_page import others, reactions
+from solidgear.comparison.two.differences import differences
+from solidgear.comparison.two.two_trains import two_trains
+from solidgear.comparison.two.two_trains_page import others, reactions
 from solidgear.core.body import as_supports
 from solidgear.core.errors import SolidgearError
 from solidgear.trains.assembly import models

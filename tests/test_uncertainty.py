@@ -4,7 +4,7 @@ import pytest
 from pytest import approx
 
 import solidgear as sg
-from solidgear.compare.page.front import numbers
+from solidgear.comparison.page.front import numbers
 from solidgear.core.judge.open_record import IntervalRecord
 from solidgear.core.judge.record import Record
 from solidgear.core.scene.uncertain import with_ranges

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from solidgear.compare.comparison import compare
+from solidgear.comparison.models import compare
 from solidgear.core.body.mode_names import ModeName
 from solidgear.core.judge.bars import ErrorBar
 from solidgear.core.judge.deviations import BEYOND, OPEN, WITHIN, deviations, gap_verdict

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.compare.page.where_chart import draw_where
+from solidgear.comparison.page.where_chart import draw_where
 from solidgear.core.bounds.refining import Meshed
 from solidgear.core.errors import SolidgearError
 from solidgear.core.judge.quantities import usual

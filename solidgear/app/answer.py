@@ -9,7 +9,7 @@ from typing import Annotated, Any
 
 import typer
 
-from solidgear.compare.page.where_chart import draw_where, worth_naming
+from solidgear.comparison.page.where_chart import draw_where, worth_naming
 from solidgear.core.errors import SolidgearError
 from solidgear.core.judge.answer import Answered, Step
 from solidgear.core.judge.answer import answer as solve

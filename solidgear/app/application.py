@@ -115,7 +115,7 @@ MODULES = {
     "stiffness": "app.stiffness",
     "modes": "app.modes",
     "compare": "app.compare",
-    "chart": "compare.race.command",
+    "chart": "comparison.race.command",
     "render": "app.render",
     "bearing": "app.bearing",
     "stress": "strength.stress.command",

@@ -11,13 +11,13 @@ from typing import Annotated
 
 import typer
 
-from solidgear.compare.comparison import check_models
-from solidgear.compare.comparison import compare as compared
-from solidgear.compare.race.command import run_chart
-from solidgear.compare.two import two_shafts_page, two_trains_page
-from solidgear.compare.two.differences import differences
-from solidgear.compare.two.two_shafts import TwoShafts, two_shafts
-from solidgear.compare.two.two_trains import TwoTrains, two_trains
+from solidgear.comparison.models import check_models
+from solidgear.comparison.models import compare as compared
+from solidgear.comparison.race.command import run_chart
+from solidgear.comparison.two import two_shafts_page, two_trains_page
+from solidgear.comparison.two.differences import differences
+from solidgear.comparison.two.two_shafts import TwoShafts, two_shafts
+from solidgear.comparison.two.two_trains import TwoTrains, two_trains
 from solidgear.core.elements import ELEMENTS
 from solidgear.core.errors import SolidgearError, listed
 from solidgear.core.ladder.registry import LADDER

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from solidgear.compare.page.write import Drawn, render_mode, turn_modes
+from solidgear.comparison.page.write import Drawn, render_mode, turn_modes
 from solidgear.core.errors import SolidgearError
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.solve.modes import modes as solve

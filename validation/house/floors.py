@@ -53,7 +53,7 @@ FEATURES = (
     "variants",
     "measured",
     "backlash",
-    "compare",
+    "comparison",
     "app",
 )
 

@@ -9,8 +9,8 @@ from functools import cache
 
 import numpy as np
 
-from solidgear.compare.two.two_trains import TwoTrains, two_trains
-from solidgear.compare.two.two_trains_page import Bar, motions, shares_chart
+from solidgear.comparison.two.two_trains import TwoTrains, two_trains
+from solidgear.comparison.two.two_trains_page import Bar, motions, shares_chart
 from solidgear.show.plot import Chart
 from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.page.chart import columns_chart, response_chart

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from solidgear.compare.two.two_shafts import two_shafts
+from solidgear.comparison.two.two_shafts import two_shafts
 from solidgear.core.quantity import COMPLIANCE, Quantity
 from solidgear.core.scene import Scene
 from validation.campaign.case import Case, Run

@@ -6,7 +6,7 @@ import argparse
 from functools import partial
 from typing import Any
 
-from solidgear.compare.comparison import compare
+from solidgear.comparison.models import compare
 from solidgear.core.judge.quantities import JUDGED, size
 from solidgear.core.ladder import build
 from solidgear.core.quantity import QUANTITIES

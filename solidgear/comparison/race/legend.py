@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from solidgear.compare.race.pareto import AUTOMATIC, Race
-from solidgear.compare.race.rows import left_out
-from solidgear.compare.race.style import FAMILIES, REFERENCE, family_name, looks
+from solidgear.comparison.race.pareto import AUTOMATIC, Race
+from solidgear.comparison.race.rows import left_out
+from solidgear.comparison.race.style import FAMILIES, REFERENCE, family_name, looks
 from solidgear.show.panel import INK, SHAPES, Axis, Panel
 from solidgear.show.words import seconds
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from solidgear.compare.race.pareto import AUTOMATIC, Race
+from solidgear.comparison.race.pareto import AUTOMATIC, Race
 from solidgear.show.panel import SHAPES
 
 #: of a family that is not listed

@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from solidgear.compare.race.legend import FRONT, footer, legend
-from solidgear.compare.race.pareto import AUTOMATIC, Race, Row
-from solidgear.compare.race.rows import COSTS, error_text, options_text
-from solidgear.compare.race.style import REFERENCE, Look
+from solidgear.comparison.race.legend import FRONT, footer, legend
+from solidgear.comparison.race.pareto import AUTOMATIC, Race, Row
+from solidgear.comparison.race.rows import COSTS, error_text, options_text
+from solidgear.comparison.race.style import REFERENCE, Look
 from solidgear.show.panel import (
     COUNT,
     GREY,

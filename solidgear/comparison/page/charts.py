@@ -9,10 +9,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
-from solidgear.compare.page.change_charts import attachment_chart, cause_chart
-from solidgear.compare.page.convergence_chart import convergence_chart
-from solidgear.compare.page.cost_chart import cost_chart
-from solidgear.compare.page.where_chart import where_chart
+from solidgear.comparison.page.change_charts import attachment_chart, cause_chart
+from solidgear.comparison.page.convergence_chart import convergence_chart
+from solidgear.comparison.page.cost_chart import cost_chart
+from solidgear.comparison.page.where_chart import where_chart
 from solidgear.core.judge.record import Record
 from solidgear.show.mode_charts import mac_chart, mode_chart
 from solidgear.show.plot import Chart, page_svg

@@ -12,9 +12,9 @@ import logging
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from solidgear.compare.page import charts, evidence_tables, front, point_tables, result_tables
-from solidgear.compare.page.lumped import lumped_tables
-from solidgear.compare.race import tables as race_tables
+from solidgear.comparison.page import charts, evidence_tables, front, point_tables, result_tables
+from solidgear.comparison.page.lumped import lumped_tables
+from solidgear.comparison.race import tables as race_tables
 from solidgear.core.judge.record import Record, VerdictRecord
 from solidgear.core.machine.whole_file import whole
 from solidgear.show import open_words, run_tables

@@ -10,7 +10,7 @@ from itertools import cycle
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from solidgear.compare.two import two_trains_tables as tables
+from solidgear.comparison.two import two_trains_tables as tables
 from solidgear.show import beside
 from solidgear.show.panel import INK, PERCENT, Axis, Panel, Series, readout, wrapped
 from solidgear.show.plot import NARROW, WIDE, Chart, Make

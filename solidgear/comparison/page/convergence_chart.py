@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from solidgear.compare.race.pareto import CHARTED
+from solidgear.comparison.race.pareto import CHARTED
 from solidgear.core.judge.record import BarRecord, LevelRecord, ModelRecord, Record
 from solidgear.show.panel import PERCENT, SHAPES, Axis, Panel, readout
 from solidgear.show.plot import WIDE, Chart, in_columns

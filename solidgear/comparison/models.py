@@ -10,9 +10,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, overload
 
-from solidgear.compare.page.write import write_all
-from solidgear.compare.recording import recorded
-from solidgear.compare.two.two_shafts import two_shafts
+from solidgear.comparison.page.write import write_all
+from solidgear.comparison.recording import recorded
+from solidgear.comparison.two.two_shafts import two_shafts
 from solidgear.core.display import Displayed
 from solidgear.core.errors import SolidgearError
 from solidgear.core.judge.causes import SHOWN, attachment_causes, beam_causes, shoulder_cause
@@ -39,7 +39,7 @@ from solidgear.trains.file.train import Train
 from solidgear.variants.budget.budget import opened
 
 if TYPE_CHECKING:
-    from solidgear.compare.two.two_shafts import TwoShafts
+    from solidgear.comparison.two.two_shafts import TwoShafts
 
 log = logging.getLogger(__name__)
 Progress = Callable[[str], None]

@@ -16,8 +16,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from solidgear.compare.race.answers import answer
-from solidgear.compare.race.pareto import CHARTED, Race, Row
+from solidgear.comparison.race.answers import answer
+from solidgear.comparison.race.pareto import CHARTED, Race, Row
 from solidgear.core.errors import SolidgearError
 from solidgear.core.judge.settle import settle
 from solidgear.core.ladder.model import BEAM, LUMPED
@@ -52,7 +52,7 @@ def race(
     keep: Callable[[Race], None] = lambda _: None,
 ) -> Race:
     """Solve a scene in many ways, in turns, so that a noisy spell of the machine hits all equally;
-    rows (:func:`solidgear.compare.race.cases.plan`) are filled in. After Ctrl-C the finished runs are
+    rows (:func:`solidgear.comparison.race.cases.plan`) are filled in. After Ctrl-C the finished runs are
     returned, with ``complete`` False.
 
     Parameters

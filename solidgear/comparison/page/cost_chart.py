@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from solidgear.compare.race.pareto import CHARTED
+from solidgear.comparison.race.pareto import CHARTED
 from solidgear.core.judge.record import ModelRecord, Record
 from solidgear.show.panel import PERCENT, SHAPES, Axis, Panel, readout, tolerance_line
 from solidgear.show.plot import WIDE, Chart

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from solidgear.compare.page.html import drawn_charts, write_report
+from solidgear.comparison.page.html import drawn_charts, write_report
 from solidgear.core.errors import SolidgearError
 from solidgear.show.folder import begun, prepare
 from solidgear.show.outputs import OUTPUTS
@@ -21,7 +21,7 @@ from solidgear.show.turning import Turned, turned
 from solidgear.show.viewer import TURNED, Turning
 
 if TYPE_CHECKING:
-    from solidgear.compare.comparison import Comparison
+    from solidgear.comparison.models import Comparison
     from solidgear.core.body import Body
     from solidgear.core.judge.record import Record
     from solidgear.core.judge.solution import Solution
@@ -39,7 +39,7 @@ def write_all(
     progress: Callable[[str], None],
 ) -> Path:
     """Write results.json, renders, files for other programs and the report; see
-    :meth:`solidgear.compare.comparison.Comparison.write_report`.
+    :meth:`solidgear.comparison.models.Comparison.write_report`.
 
     The record gains ``files``, what was written beside it, and ``left_out``, a sentence for what
     could not be drawn or written. After an interrupt there are numbers and a report, and no shapes:

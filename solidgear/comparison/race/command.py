@@ -9,13 +9,13 @@ from typing import Annotated
 
 import typer
 
-from solidgear.compare.page.html import write_report
-from solidgear.compare.race.cases import plan, setup_seconds
-from solidgear.compare.race.figure import draw
-from solidgear.compare.race.pareto import Race
-from solidgear.compare.race.rows import PICTURE, left_out, records, write_rows
-from solidgear.compare.race.tables import front_table
-from solidgear.compare.race.timing import BUDGET, FULL_BUDGET, FULL_SURE, race
+from solidgear.comparison.page.html import write_report
+from solidgear.comparison.race.cases import plan, setup_seconds
+from solidgear.comparison.race.figure import draw
+from solidgear.comparison.race.pareto import Race
+from solidgear.comparison.race.rows import PICTURE, left_out, records, write_rows
+from solidgear.comparison.race.tables import front_table
+from solidgear.comparison.race.timing import BUDGET, FULL_BUDGET, FULL_SURE, race
 from solidgear.core.errors import SolidgearError
 from solidgear.core.judge.record import Record
 from solidgear.core.scene import Scene

@@ -18,10 +18,10 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from solidgear.compare.two import beside
-from solidgear.compare.two.beside import Beside
-from solidgear.compare.two.differences import Difference, scene_differences
-from solidgear.compare.two.two_shafts_page import write_two_shafts
+from solidgear.comparison.two import beside
+from solidgear.comparison.two.beside import Beside
+from solidgear.comparison.two.differences import Difference, scene_differences
+from solidgear.comparison.two.two_shafts_page import write_two_shafts
 from solidgear.core.display import Displayed
 from solidgear.core.judge.answer import LEAST_TOLERANCE
 from solidgear.core.judge.change import BarredMode, Change, ModePair, all_pairs

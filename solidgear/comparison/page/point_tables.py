@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from solidgear.compare.page.result_tables import across, apart
+from solidgear.comparison.page.result_tables import across, apart
 from solidgear.core.judge.record import Record
 from solidgear.core.quantity import C_ZZ, COMPLIANCE, STIFFNESS, Quantity
 from solidgear.show.matrices import block as matrix

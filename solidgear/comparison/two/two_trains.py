@@ -15,10 +15,10 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.compare.two import beside
-from solidgear.compare.two.beside import Beside, decibels
-from solidgear.compare.two.differences import Difference
-from solidgear.compare.two.two_trains_page import write_two_trains
+from solidgear.comparison.two import beside
+from solidgear.comparison.two.beside import Beside, decibels
+from solidgear.comparison.two.differences import Difference
+from solidgear.comparison.two.two_trains_page import write_two_trains
 from solidgear.core.errors import SolidgearError, listed
 from solidgear.core.judge.change import Change, Side
 from solidgear.core.ladder.registry import LADDER

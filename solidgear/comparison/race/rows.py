@@ -10,7 +10,7 @@ from dataclasses import asdict, fields
 from operator import itemgetter
 from pathlib import Path
 
-from solidgear.compare.race.pareto import CHARTED, Race, Row
+from solidgear.comparison.race.pareto import CHARTED, Race, Row
 from solidgear.core.machine.whole_file import whole
 from solidgear.show.table import Column, Table
 from solidgear.show.words import percent

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from solidgear.compare.race.figure import race_chart
-from solidgear.compare.race.pareto import Race, Row
-from solidgear.compare.race.rows import error_text, options_text, read_race
+from solidgear.comparison.race.figure import race_chart
+from solidgear.comparison.race.pareto import Race, Row
+from solidgear.comparison.race.rows import error_text, options_text, read_race
 from solidgear.show.plot import page_svg
 from solidgear.show.table import Column, Table, text, word
 from solidgear.show.words import count, grouped, seconds

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from solidgear.compare.race.cases import AUTO
+from solidgear.comparison.race.cases import AUTO
 from solidgear.core.errors import SolidgearError
 from solidgear.core.judge.answer import solve_cheapest
 from solidgear.core.judge.lumped import preferred, sources

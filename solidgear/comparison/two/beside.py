@@ -8,7 +8,7 @@ from typing import Any, Generic, TypeVar
 
 import numpy as np
 
-from solidgear.compare.two.differences import Difference
+from solidgear.comparison.two.differences import Difference
 from solidgear.core.judge.change import BarredMode, Change, ModePair, Side
 from solidgear.show.words import hertz, percent
 

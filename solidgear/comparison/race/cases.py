@@ -8,7 +8,7 @@ import subprocess
 import sys
 from typing import TYPE_CHECKING
 
-from solidgear.compare.race.pareto import AUTOMATIC, Row
+from solidgear.comparison.race.pareto import AUTOMATIC, Row
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.machine.patience import Patience
 
