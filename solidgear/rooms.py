@@ -57,6 +57,13 @@ ADDITIONS = {
         "solved": "bearings.solved:solved",
         "wants equilibrium": "bearings.solved:wants_equilibrium",
     },
+    # remarks beside the numbers of one shaft
+    "remark": {
+        "cautions": "guards.check:cautions",
+        "open ranges": "variants.budget.budget:beside",
+        "seats": "guards.bearings:misfits",
+        "directions": "guards.data:facing_one_way",
+    },
     # solvers
     "back end": {"mumps": "petsc.mumps:Mumps"},
     "engine": {"ranks": "petsc.solver:plan_on_ranks"},

@@ -18,7 +18,7 @@ DEAR = {
     PACKAGE / name
     for name in (
         "parts/body_file.py",
-        "compare/comparison.py",
+        "comparison/models.py",
         "strength/stress/shaft.py",
         "variants/sweep/choice.py",
         "variants/sweep/file_task.py",

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.comparison.page.where_chart import draw_where
 from solidgear.core.bounds.refining import Meshed
 from solidgear.core.errors import SolidgearError
 from solidgear.core.judge.quantities import usual
@@ -18,6 +17,7 @@ from solidgear.core.judge.ties import SCENE
 from solidgear.core.judge.where import ELSEWHERE, recorded_places
 from solidgear.core.judge.where import error_places as places_of
 from solidgear.core.quantity import Quantity
+from solidgear.show.where_chart import draw_where
 from tests.command import command
 
 ROOT = Path(__file__).parent.parent

@@ -25,7 +25,8 @@ if _hears:
 
 
 from solidgear.app.application import app
-from solidgear.core.errors import SolidgearError, for_terminal
+from solidgear.core import SolidgearError
+from solidgear.core.errors import for_terminal
 from solidgear.core.machine.interruptible import leave
 
 if _hears:

@@ -9,30 +9,24 @@ from typing import Annotated, Any
 
 import typer
 
-from solidgear.comparison.page.where_chart import draw_where, worth_naming
-from solidgear.core.errors import SolidgearError
+from solidgear.core import LADDER, OpenNumbers, Scene, SolidgearError, WhereRecord
 from solidgear.core.judge.answer import Answered, Step
 from solidgear.core.judge.answer import answer as solve
-from solidgear.core.judge.open_record import OpenNumbers
-from solidgear.core.judge.record import WhereRecord
 from solidgear.core.judge.steps import ABOVE, BELOW
 from solidgear.core.judge.where import error_places
-from solidgear.core.ladder.registry import LADDER
 from solidgear.core.models.kinds import PARTS
-from solidgear.core.scene import Scene
-from solidgear.guards.bearings import misfits
-from solidgear.guards.data import facing_one_way
 from solidgear.show.arguments import load
 from solidgear.show.command import NOT_REACHED, caution, command, say
 from solidgear.show.open_words import columns as ranges
 from solidgear.show.open_words import remark
 from solidgear.show.options import SceneFile, Shown, relative
 from solidgear.show.plot import check_ending
+from solidgear.show.remarks import bearing_cautions, open_ranges
 from solidgear.show.settled import sentences
 from solidgear.show.table import Column, Table, text
 from solidgear.show.units import units_named
+from solidgear.show.where_chart import draw_where, worth_naming
 from solidgear.show.words import bar_of, count, percent, seconds
-from solidgear.variants.budget.budget import beside
 
 
 @command
@@ -70,14 +64,14 @@ def answer(
     if picture is not None:
         check_ending(picture)  # before anything is solved
     loaded = load(scene)
-    for sentence in (*facing_one_way(loaded), *misfits(loaded)):
+    for sentence in bearing_cautions(loaded):
         print(caution(sentence), file=sys.stderr)
     places: WhereRecord | None = None
     unplaced = ""
     with run.progress() as progress:
         answered = solve(loaded, tol, ask, progress=progress)
         progress("what the data leave open")
-        open_ = beside(loaded)
+        open_ = open_ranges(loaded)
         if where or picture is not None:
             progress("where the error comes from")
             try:

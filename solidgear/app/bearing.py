@@ -13,16 +13,13 @@ import typer
 from solidgear.bearings.bearing_life import bearing_lives
 from solidgear.bearings.chart import BearingPanel, draw_bearings
 from solidgear.bearings.designation import boundary
-from solidgear.bearings.life_command import plain_life, print_life, speed_of
+from solidgear.bearings.life_command import plain_life, print_life
 from solidgear.bearings.rolling import UNITS
 from solidgear.bearings.study import BearingFacts, bearing_facts, loaded_by, over_load
-from solidgear.core.errors import SolidgearError
-from solidgear.core.frames import DOF_NAMES
-from solidgear.core.loading import as_written, explained, shaft
-from solidgear.core.scene import Scene
-from solidgear.core.scene.toml_file import describes_train, parse
+from solidgear.core import DOF_NAMES, Scene, SolidgearError, as_written, explained, parse, shaft
+from solidgear.core.scene.toml_file import describes_train
 from solidgear.show.command import command, say
-from solidgear.show.options import Run, SceneFile
+from solidgear.show.options import Run, SceneFile, speed_of
 from solidgear.show.plot import check_ending
 from solidgear.show.terminal import matrix_table
 from solidgear.show.words import engineering

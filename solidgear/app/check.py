@@ -7,11 +7,7 @@ from pathlib import Path
 
 import typer
 
-from solidgear.core.ladder import build
-from solidgear.core.ladder.meshes import HARMONIC
-from solidgear.core.ladder.registry import LADDER
-from solidgear.core.loading import load
-from solidgear.core.scene.toml_file import is_train
+from solidgear.core import HARMONIC, LADDER, build, is_train, load
 from solidgear.guards.check import VERDICTS, check_scene
 from solidgear.show.command import caution, command, filled
 from solidgear.show.options import MODEL, Fixed, Run, SceneFile, refuse

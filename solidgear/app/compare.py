@@ -18,11 +18,8 @@ from solidgear.comparison.two import two_shafts_page, two_trains_page
 from solidgear.comparison.two.differences import differences
 from solidgear.comparison.two.two_shafts import TwoShafts, two_shafts
 from solidgear.comparison.two.two_trains import TwoTrains, two_trains
-from solidgear.core.elements import ELEMENTS
-from solidgear.core.errors import SolidgearError, listed
-from solidgear.core.ladder.registry import LADDER
-from solidgear.core.loading import load as read
-from solidgear.core.scene.toml_file import is_train
+from solidgear.core import ELEMENTS, LADDER, SolidgearError, is_train, listed
+from solidgear.core import load as read
 from solidgear.show.arguments import load
 from solidgear.show.command import caution, command, say
 from solidgear.show.folder import held

@@ -11,10 +11,8 @@ from typing import Annotated, Any
 import typer
 
 from solidgear.app.starts import STARTS, start
-from solidgear.core.errors import SolidgearError, nearest, show
+from solidgear.core import LADDER, SolidgearError, nearest, show, whole
 from solidgear.core.ladder.model import Model
-from solidgear.core.ladder.registry import LADDER
-from solidgear.core.machine.whole_file import whole
 from solidgear.core.models.options import Option, limits
 from solidgear.show.command import command, say
 from solidgear.show.table import Table, text, word

@@ -7,23 +7,26 @@ from typing import Annotated
 
 import typer
 
-from solidgear.bearings.life_command import speed_of
-from solidgear.core.body import as_supports
-from solidgear.core.errors import SolidgearError, listed, show
+from solidgear.core import (
+    LADDER,
+    MOST_MODES,
+    Quantity,
+    SolidgearError,
+    as_supports,
+    bars_of_modes,
+    listed,
+    show,
+)
+from solidgear.core import modes as solve
 from solidgear.core.judge.at_rest import spin_caution
 from solidgear.core.judge.coarser_mesh import coarser_bars
 from solidgear.core.judge.completeness import completeness, cut_short, split_apart
 from solidgear.core.judge.hidden import complete_list, less_widest
-from solidgear.core.judge.settle import bars_of_modes
-from solidgear.core.ladder.registry import LADDER
-from solidgear.core.quantity import Quantity
-from solidgear.core.scene.rules import MOST_MODES
 from solidgear.core.solve.mixtures import mixtures
-from solidgear.core.solve.modes import modes as solve
-from solidgear.guards.check import cautions
 from solidgear.show.arguments import load
 from solidgear.show.command import caution, command, say
-from solidgear.show.options import Run, SceneFile, Solved, options
+from solidgear.show.options import Run, SceneFile, Solved, options, speed_of
+from solidgear.show.remarks import cautions, open_ranges
 from solidgear.show.settled import (
     SECOND_MESH,
     bar_lines,
@@ -35,7 +38,6 @@ from solidgear.show.settled import (
 )
 from solidgear.show.terminal import modes_table
 from solidgear.show.words import by_plane
-from solidgear.variants.budget.budget import beside
 
 #: rows of a list whose beginning has left the terminal
 MANY = 30
@@ -92,7 +94,7 @@ def modes(
     reason = model.without_bars(bars, settled, loaded, body)
     reason = reason or unjudged(bare, body.fidelity, second=settled is None)
     warnings = cautions(loaded, body)
-    open_ = beside(loaded)
+    open_ = open_ranges(loaded)
     highest_hz = max_frequency or loaded.ask.max_frequency
     warnings += cut_short(mode_set.modes, n or loaded.ask.modes, highest_hz, option="-n")
     warnings += spin_caution(loaded, body, mode_set.modes, bars, turns)

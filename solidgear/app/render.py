@@ -9,9 +9,8 @@ from typing import Annotated
 import typer
 
 from solidgear.comparison.page.write import Drawn, render_mode, turn_modes
-from solidgear.core.errors import SolidgearError
-from solidgear.core.ladder.registry import LADDER
-from solidgear.core.solve.modes import modes as solve
+from solidgear.core import LADDER, SolidgearError
+from solidgear.core import modes as solve
 from solidgear.show.arguments import load
 from solidgear.show.command import command
 from solidgear.show.options import Choice, Fixed, SceneFile

@@ -9,25 +9,21 @@ from typing import Annotated, Any
 import numpy as np
 import typer
 
-from solidgear.core.errors import SolidgearError
-from solidgear.core.frames import DOF_NAMES
+from solidgear.core import COMPLIANCE, DOF_NAMES, STIFFNESS, Port, Quantity, Scene, SolidgearError
 from solidgear.core.judge.coarser_mesh import static_bars
-from solidgear.core.quantity import COMPLIANCE, STIFFNESS, Quantity
-from solidgear.core.scene import Port, Scene
 from solidgear.core.scene.rules import no_such_point
 from solidgear.core.solve.condensed import Condensed, Coupled
 from solidgear.core.solve.statics import condense
-from solidgear.guards.check import cautions
 from solidgear.show.arguments import load
 from solidgear.show.command import caution, command, say
 from solidgear.show.open_words import table as open_table
 from solidgear.show.options import SceneFile, Shown, Solved, options
+from solidgear.show.remarks import cautions, open_ranges
 from solidgear.show.settled import SECOND_MESH, bar_lines, ended, heading, largest_bar
 from solidgear.show.table import Column, Table
 from solidgear.show.terminal import matrix_table
 from solidgear.show.units import units_named
 from solidgear.show.words import plus_minus
-from solidgear.variants.budget.budget import beside
 
 
 @command
@@ -63,7 +59,7 @@ def stiffness(
         bars = static_bars(loaded, body, names, options(model.pairs))
     reason = model.without_bars(bars, settled, loaded, body)
     warnings = cautions(loaded, body)
-    open_ = beside(loaded, body)
+    open_ = open_ranges(loaded, body)
 
     if run.as_json:
         record: dict[str, Any] = {"scene": loaded.name, "fidelity": body.fidelity}

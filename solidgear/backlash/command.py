@@ -13,7 +13,7 @@ from solidgear.backlash import train as study
 from solidgear.backlash.files import lead, mixes, over_force, write_nonlinear
 from solidgear.backlash.results import BacklashStudy
 from solidgear.backlash.speed_run import ramp_of, speed_run
-from solidgear.core.errors import SceneError, SolidgearError, show
+from solidgear.core import SceneError, SolidgearError, show
 from solidgear.core.scene.units import quantity
 from solidgear.show.command import caution, command, say
 from solidgear.show.folder import held

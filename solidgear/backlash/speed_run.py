@@ -10,7 +10,7 @@ import numpy as np
 
 from solidgear.backlash.solver.run_up import FEWEST_CYCLES, MOST_CYCLES, RunUp, run_up
 from solidgear.backlash.torque import Backlash, Range
-from solidgear.core.errors import SolidgearError
+from solidgear.core import SolidgearError
 
 
 @dataclass(frozen=True, eq=False)

@@ -28,11 +28,10 @@ from solidgear.backlash.solver.continuation import follow
 from solidgear.backlash.solver.model import Remainder, remainder
 from solidgear.backlash.solver.motion import Steady, sweep
 from solidgear.backlash.torque import AtForce, Backlash, Teeth
-from solidgear.core.errors import SceneError, SolidgearError
+from solidgear.core import SceneError, SolidgearError, System
 from solidgear.core.system.gear_mesh import MeshVector, to_gear_frame
 from solidgear.core.system.law import Gap
 from solidgear.core.system.links import RowSpring
-from solidgear.core.system.system import System
 from solidgear.trains.assembly.layout import mesh_forces
 from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.file.gears import Pair

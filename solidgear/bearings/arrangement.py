@@ -12,7 +12,7 @@ from typing import Annotated, Any, NamedTuple
 from pydantic import BeforeValidator
 
 from solidgear.bearings.catalogue import WAYS, Catalogue, arrangement_word
-from solidgear.core.errors import SceneError, listed, nearest, show
+from solidgear.core import SceneError, listed, nearest, show
 
 #: word and, where there is more than one pair, names of the two bearings
 Words = tuple[tuple[str, tuple[str, ...] | None], ...]

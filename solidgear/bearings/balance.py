@@ -21,8 +21,7 @@ import scipy.linalg as sla
 
 from solidgear.bearings.newton import NothingHolds, Settled, settle
 from solidgear.bearings.rolling import UNITS
-from solidgear.core.errors import SolidgearError
-from solidgear.core.frames import DOF_NAMES
+from solidgear.core import DOF_NAMES, SolidgearError
 from solidgear.core.scene.housing import Elastic, Housing
 
 E = TypeVar("E", bound=Elastic)

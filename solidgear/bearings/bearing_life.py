@@ -11,8 +11,8 @@ from solidgear.bearings.catalogue import catalogue_of
 from solidgear.bearings.catalogued import Catalogued, End
 from solidgear.bearings.life import Life, life
 from solidgear.bearings.solved import AS_STATED, Choice, Solved, solved
-from solidgear.core.body import Body
-from solidgear.core.scene import Bearing, Lubrication, Scene
+from solidgear.core import Bearing, Body, Scene
+from solidgear.core.scene import Lubrication
 
 #: a bearing and the motion (6,) of its inner ring
 Place = tuple[Catalogued, np.ndarray]

@@ -13,24 +13,20 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, model_validator
 
 from solidgear.bearings.designation import boundary
-from solidgear.core.errors import SceneError, show
+from solidgear.core import Length, Model, PositiveLength, SceneError, SignedAngle, show
 from solidgear.core.scene.load import BearingLoad
-from solidgear.core.scene.typed import Model
 from solidgear.core.scene.units import (
     Angle,
     AxialSpring,
-    Length,
-    PositiveLength,
     PositiveLoad,
     RatingFactor,
-    SignedAngle,
     Speed,
     TemperatureRise,
     quantity,
 )
 
 if TYPE_CHECKING:
-    from solidgear.core.scene import Bearing
+    from solidgear.core import Bearing
 
 Kind = Literal[
     "deep_groove",

@@ -18,7 +18,7 @@ from solidgear.bearings.roller import RollerRow
 from solidgear.bearings.rolling import RollingBearing, Row
 from solidgear.bearings.spherical import SphericalRow
 from solidgear.bearings.spinning import SpinningBalls
-from solidgear.core.errors import SceneError, SolidgearError
+from solidgear.core import SceneError, SolidgearError
 
 End = Literal["middle", "softer", "stiffer"]
 

@@ -17,7 +17,7 @@ import math
 
 from solidgear.bearings.catalogue import ONE_SIDED, Catalogue
 from solidgear.bearings.geometry import Inside
-from solidgear.core.errors import SceneError
+from solidgear.core import SceneError
 
 #: 1/K, bearing steel
 EXPANSION = 11.5e-6

@@ -10,7 +10,8 @@ import math
 import re
 from typing import NamedTuple
 
-from solidgear.core.errors import SceneError, did_you_mean, near, show
+from solidgear.core import SceneError, near, show
+from solidgear.core.errors import did_you_mean
 
 _BORES = (10, 12, 15, 17, *range(20, 105, 5), 110, 120)
 

@@ -10,7 +10,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from solidgear.core.errors import SceneError
+from solidgear.core import SceneError
 from solidgear.core.scene.units import TYPED
 
 

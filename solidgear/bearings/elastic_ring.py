@@ -8,13 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.core.errors import SolidgearError
-from solidgear.core.frames import rotation
-from solidgear.core.ladder import build
+from solidgear.core import Scene, SolidgearError, build, rotation, rubin
 from solidgear.core.models.harmonic.patch import Patch, PatchMotion
-from solidgear.core.reduction.rubin import rubin
 from solidgear.core.reduction.waves import with_waves
-from solidgear.core.scene import Scene
 from solidgear.core.scene.planetary_teeth import PlanetaryTeeth
 from solidgear.core.system.parts import Part, Placed
 

@@ -22,12 +22,11 @@ from solidgear.bearings.balance import (
     not_held,
 )
 from solidgear.bearings.newton import NothingHolds
-from solidgear.core.errors import SolidgearError
+from solidgear.core import SolidgearError, flexibility
 from solidgear.core.scene.housing import Housing
-from solidgear.core.solve.statics import flexibility
 
 if TYPE_CHECKING:
-    from solidgear.core.body import Body
+    from solidgear.core import Body
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ from solidgear.bearings.catalogue import Catalogue
 from solidgear.bearings.designation import usual_angle
 from solidgear.bearings.kinds import SHARES, Share
 from solidgear.bearings.rating import rated, static_ball_rating, static_roller_rating
-from solidgear.core.errors import SceneError
+from solidgear.core import SceneError
 
 #: of a filling slot-free deep groove the balls span this much of the circle, rad
 CONRAD = math.radians(186)

@@ -9,24 +9,9 @@ from typing import Any
 
 from solidgear.bearings.bearing_life import BearingLife
 from solidgear.bearings.life import Life
-from solidgear.core.errors import SceneError, SolidgearError
-from solidgear.core.scene.units import quantity
 from solidgear.show.command import say
 from solidgear.show.table import Column, Table
 from solidgear.show.words import engineering
-
-
-def speed_of(text: str | None) -> float | None:
-    """Return the speed of an option, rad/s."""
-    if text is None:
-        return None
-    try:
-        speed = quantity(text, "speed")
-    except SceneError as error:
-        raise SolidgearError(f"--speed {error}") from None
-    if speed <= 0:
-        raise SolidgearError(f"--speed {text}: must be greater than zero")
-    return speed
 
 
 @dataclass(frozen=True)

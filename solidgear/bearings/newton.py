@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solidgear.core.errors import SolidgearError
+from solidgear.core import SolidgearError
 
 #: iterations; a dozen is common, contacts that come and go take some more
 MOST = 200

@@ -10,7 +10,7 @@ from solidgear.bearings.ball import BallRow
 from solidgear.bearings.roller import RollerRow
 from solidgear.bearings.row import Contacts
 from solidgear.bearings.sliding import FURTHEST, condense_y, slide_to_balance
-from solidgear.core.errors import SolidgearError
+from solidgear.core import SolidgearError
 
 
 def pushed(row: BallRow | RollerRow, force: float) -> BallRow | RollerRow:

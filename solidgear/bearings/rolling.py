@@ -12,8 +12,7 @@ import numpy as np
 from solidgear.bearings.newton import NothingHolds, settle
 from solidgear.bearings.row import Contacts
 from solidgear.bearings.sliding import FURTHEST, condense_y, slide_to_balance
-from solidgear.core.errors import SolidgearError
-from solidgear.core.frames import DOF_NAMES
+from solidgear.core import DOF_NAMES, SolidgearError
 
 #: units of the components of a load
 UNITS = ("N", "N", "N", "N m", "N m", "N m")

@@ -17,11 +17,10 @@ from solidgear.bearings.balance import Linear, Mounted
 from solidgear.bearings.catalogue import Preload, catalogue_of
 from solidgear.bearings.catalogued import Catalogued, End, catalogued, state
 from solidgear.bearings.equilibrium import Equilibrium, equilibrium
-from solidgear.core.errors import SceneError
-from solidgear.core.scene import Bearing, Scene
+from solidgear.core import Bearing, Scene, SceneError
 
 if TYPE_CHECKING:
-    from solidgear.core.body import Body
+    from solidgear.core import Body
 
 
 @dataclass(frozen=True)

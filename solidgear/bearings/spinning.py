@@ -30,7 +30,7 @@ import numpy as np
 from solidgear.bearings.ball import BallRow
 from solidgear.bearings.hertz import POINT_POWER, Point
 from solidgear.bearings.row import FELT, Contacts, six
-from solidgear.core.errors import SolidgearError
+from solidgear.core import SolidgearError
 
 #: kg/m^3, bearing steel
 DENSITY = 7800.0

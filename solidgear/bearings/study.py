@@ -11,9 +11,8 @@ from solidgear.bearings.catalogue import Catalogue, catalogue_of
 from solidgear.bearings.catalogued import Catalogued
 from solidgear.bearings.row import Contacts
 from solidgear.bearings.solved import Choice, Solved, solved
-from solidgear.core.body import Body
-from solidgear.core.errors import SceneError, SolidgearError, show
-from solidgear.core.scene import Bearing, BearingLoad, Scene
+from solidgear.core import Bearing, Body, Scene, SceneError, SolidgearError, show
+from solidgear.core.scene import BearingLoad
 
 #: why one row of a pair carries nothing
 LOST = "any more: the pair has lost its preload"

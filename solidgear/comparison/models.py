@@ -13,25 +13,30 @@ from typing import TYPE_CHECKING, ClassVar, overload
 from solidgear.comparison.page.write import write_all
 from solidgear.comparison.recording import recorded
 from solidgear.comparison.two.two_shafts import two_shafts
-from solidgear.core.display import Displayed
-from solidgear.core.errors import SolidgearError
+from solidgear.core import (
+    HARMONIC,
+    LADDER,
+    Displayed,
+    OpenNumbers,
+    Record,
+    Scene,
+    SolidgearError,
+    Solution,
+    WhereRecord,
+    change,
+    pinned,
+    without_axis,
+)
 from solidgear.core.judge.causes import SHOWN, attachment_causes, beam_causes, shoulder_cause
 from solidgear.core.judge.lumped import synthesise_all
-from solidgear.core.judge.open_record import OpenNumbers
-from solidgear.core.judge.quantities import change
-from solidgear.core.judge.record import CauseRecord, GuardRecord, LumpedRecord, Record, WhereRecord
-from solidgear.core.judge.solution import Solution
+from solidgear.core.judge.record import CauseRecord, GuardRecord, LumpedRecord
 from solidgear.core.judge.study import study
 from solidgear.core.judge.ties import SECTION
 from solidgear.core.judge.where import recorded_places
-from solidgear.core.ladder.meshes import FREE, HARMONIC
+from solidgear.core.ladder.meshes import FREE
 from solidgear.core.ladder.model import LUMPED, SOLID
-from solidgear.core.ladder.registry import LADDER
 from solidgear.core.machine.memory import one_run
 from solidgear.core.machine.meter import Meter
-from solidgear.core.machine.threads import pinned
-from solidgear.core.scene import Scene
-from solidgear.core.scene.shaft import without_axis
 from solidgear.guards.check import notices
 from solidgear.guards.models import cells_around
 from solidgear.show.units import units_named

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import TYPE_CHECKING
 
-from solidgear.core.frames import DOF_NAMES
+from solidgear.core import COMPLIANCE, DOF_NAMES, FIRST_BENDING, LADDER, SCENE, Record, Solution
 from solidgear.core.judge.at_rest import spin_caution
 from solidgear.core.judge.bars import ErrorBar
 from solidgear.core.judge.completeness import completeness, cut_short, split_apart
@@ -29,21 +29,16 @@ from solidgear.core.judge.record import (
     ModeRecord,
     PointRecord,
     PortRecord,
-    Record,
     VariantRecord,
 )
-from solidgear.core.judge.solution import Solution
 from solidgear.core.judge.solving import ENOUGH, Answer, Statics
-from solidgear.core.judge.ties import SCENE
 from solidgear.core.judge.verdict import Judgement, judge, percent, trusted
 from solidgear.core.ladder.model import LUMPED, SOLID
-from solidgear.core.ladder.registry import LADDER
 from solidgear.core.machine.environment import environment
-from solidgear.core.quantity import COMPLIANCE, FIRST_BENDING
 from solidgear.core.solve.mixtures import mixtures
 
 if TYPE_CHECKING:
-    from solidgear.core.scene import Scene
+    from solidgear.core import Scene
 
 
 def recorded(

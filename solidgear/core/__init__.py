@@ -1,1 +1,199 @@
-"""Core: one shaft, its models, solvers and error bars."""
+"""The core: one shaft from its file to numbers with error bars, and systems of parts and links.
+
+Rooms of features import these names from here; all that a single feature needs of the core it
+imports from the module that has it.  Names are imported when they are first used.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from solidgear.core.body import Block, Body, Supports, as_supports
+    from solidgear.core.body.mode_names import ModeName
+    from solidgear.core.body.surface import Surface
+    from solidgear.core.display import Displayed
+    from solidgear.core.elements import ELEMENTS
+    from solidgear.core.errors import SceneError, SolidgearError, listed, near, nearest, show
+    from solidgear.core.frames import DOF_NAMES, rotation
+    from solidgear.core.judge.change import BarredMode
+    from solidgear.core.judge.open_record import OpenNumbers
+    from solidgear.core.judge.quantities import change, size
+    from solidgear.core.judge.record import Record, WhereRecord
+    from solidgear.core.judge.settle import Settled, bars_of_modes, settle
+    from solidgear.core.judge.solution import Solution
+    from solidgear.core.judge.ties import SCENE
+    from solidgear.core.ladder import build
+    from solidgear.core.ladder.meshes import HARMONIC
+    from solidgear.core.ladder.model import BEAM
+    from solidgear.core.ladder.registry import LADDER
+    from solidgear.core.loading import as_written, explained, load, shaft
+    from solidgear.core.machine.threads import pinned
+    from solidgear.core.machine.whole_file import whole
+    from solidgear.core.quantity import (
+        C_ZZ,
+        COMPLIANCE,
+        FIRST_BENDING,
+        QUANTITIES,
+        STIFFNESS,
+        Quantity,
+    )
+    from solidgear.core.reduction.effective_mass import synthesise
+    from solidgear.core.reduction.rubin import rubin
+    from solidgear.core.scene import Bearing, Port, Scene
+    from solidgear.core.scene.coned import coned
+    from solidgear.core.scene.outline import TOUCH, Outline
+    from solidgear.core.scene.rules import MOST_MODES
+    from solidgear.core.scene.shaft import without_axis
+    from solidgear.core.scene.toml_file import is_train, parse
+    from solidgear.core.scene.typed import Model
+    from solidgear.core.scene.units import DIMENSIONS, Length, PositiveLength, SignedAngle
+    from solidgear.core.solve.modes import Mode, ModeSet, modes
+    from solidgear.core.solve.statics import flexibility
+    from solidgear.core.system.system import System
+
+__all__ = [
+    "BEAM",
+    "BarredMode",
+    "Bearing",
+    "Block",
+    "Body",
+    "COMPLIANCE",
+    "C_ZZ",
+    "DIMENSIONS",
+    "DOF_NAMES",
+    "Displayed",
+    "ELEMENTS",
+    "FIRST_BENDING",
+    "HARMONIC",
+    "LADDER",
+    "Length",
+    "MOST_MODES",
+    "Mode",
+    "ModeName",
+    "ModeSet",
+    "Model",
+    "OpenNumbers",
+    "Outline",
+    "Port",
+    "PositiveLength",
+    "QUANTITIES",
+    "Quantity",
+    "Record",
+    "SCENE",
+    "STIFFNESS",
+    "Scene",
+    "SceneError",
+    "Settled",
+    "SignedAngle",
+    "SolidgearError",
+    "Solution",
+    "Supports",
+    "Surface",
+    "System",
+    "TOUCH",
+    "WhereRecord",
+    "as_supports",
+    "as_written",
+    "bars_of_modes",
+    "build",
+    "change",
+    "coned",
+    "explained",
+    "flexibility",
+    "is_train",
+    "listed",
+    "load",
+    "modes",
+    "near",
+    "nearest",
+    "parse",
+    "pinned",
+    "rotation",
+    "rubin",
+    "settle",
+    "shaft",
+    "show",
+    "size",
+    "synthesise",
+    "whole",
+    "without_axis",
+]
+
+#: module of each name
+_WHERE = {
+    "Block": "solidgear.core.body",
+    "Body": "solidgear.core.body",
+    "Supports": "solidgear.core.body",
+    "as_supports": "solidgear.core.body",
+    "ModeName": "solidgear.core.body.mode_names",
+    "Surface": "solidgear.core.body.surface",
+    "Displayed": "solidgear.core.display",
+    "ELEMENTS": "solidgear.core.elements",
+    "SceneError": "solidgear.core.errors",
+    "SolidgearError": "solidgear.core.errors",
+    "listed": "solidgear.core.errors",
+    "near": "solidgear.core.errors",
+    "nearest": "solidgear.core.errors",
+    "show": "solidgear.core.errors",
+    "DOF_NAMES": "solidgear.core.frames",
+    "rotation": "solidgear.core.frames",
+    "BarredMode": "solidgear.core.judge.change",
+    "OpenNumbers": "solidgear.core.judge.open_record",
+    "change": "solidgear.core.judge.quantities",
+    "size": "solidgear.core.judge.quantities",
+    "Record": "solidgear.core.judge.record",
+    "WhereRecord": "solidgear.core.judge.record",
+    "Settled": "solidgear.core.judge.settle",
+    "bars_of_modes": "solidgear.core.judge.settle",
+    "settle": "solidgear.core.judge.settle",
+    "Solution": "solidgear.core.judge.solution",
+    "SCENE": "solidgear.core.judge.ties",
+    "build": "solidgear.core.ladder",
+    "HARMONIC": "solidgear.core.ladder.meshes",
+    "BEAM": "solidgear.core.ladder.model",
+    "LADDER": "solidgear.core.ladder.registry",
+    "as_written": "solidgear.core.loading",
+    "explained": "solidgear.core.loading",
+    "load": "solidgear.core.loading",
+    "shaft": "solidgear.core.loading",
+    "pinned": "solidgear.core.machine.threads",
+    "whole": "solidgear.core.machine.whole_file",
+    "COMPLIANCE": "solidgear.core.quantity",
+    "C_ZZ": "solidgear.core.quantity",
+    "FIRST_BENDING": "solidgear.core.quantity",
+    "QUANTITIES": "solidgear.core.quantity",
+    "Quantity": "solidgear.core.quantity",
+    "STIFFNESS": "solidgear.core.quantity",
+    "synthesise": "solidgear.core.reduction.effective_mass",
+    "rubin": "solidgear.core.reduction.rubin",
+    "Bearing": "solidgear.core.scene",
+    "Port": "solidgear.core.scene",
+    "Scene": "solidgear.core.scene",
+    "coned": "solidgear.core.scene.coned",
+    "Outline": "solidgear.core.scene.outline",
+    "TOUCH": "solidgear.core.scene.outline",
+    "MOST_MODES": "solidgear.core.scene.rules",
+    "without_axis": "solidgear.core.scene.shaft",
+    "is_train": "solidgear.core.scene.toml_file",
+    "parse": "solidgear.core.scene.toml_file",
+    "Model": "solidgear.core.scene.typed",
+    "DIMENSIONS": "solidgear.core.scene.units",
+    "Length": "solidgear.core.scene.units",
+    "PositiveLength": "solidgear.core.scene.units",
+    "SignedAngle": "solidgear.core.scene.units",
+    "Mode": "solidgear.core.solve.modes",
+    "ModeSet": "solidgear.core.solve.modes",
+    "modes": "solidgear.core.solve.modes",
+    "flexibility": "solidgear.core.solve.statics",
+    "System": "solidgear.core.system.system",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _WHERE:
+        raise AttributeError(f"module 'solidgear.core' has no attribute {name!r}")
+    value = getattr(importlib.import_module(_WHERE[name]), name)
+    globals()[name] = value
+    return value

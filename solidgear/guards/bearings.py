@@ -6,8 +6,7 @@ from collections.abc import Iterator
 from itertools import combinations
 
 from solidgear.bearings.catalogue import Catalogue, catalogue_of
-from solidgear.core.scene import Bearing, Scene
-from solidgear.core.scene.outline import TOUCH
+from solidgear.core import TOUCH, Bearing, Scene
 from solidgear.guards.notice import Notice, Notices
 from solidgear.guards.probe import Probe
 

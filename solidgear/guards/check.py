@@ -8,24 +8,29 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from solidgear.core.body import Body
-from solidgear.core.errors import SolidgearError, listed
+from solidgear.core import (
+    BEAM,
+    LADDER,
+    Body,
+    Outline,
+    SolidgearError,
+    Solution,
+    listed,
+    pinned,
+    without_axis,
+)
 from solidgear.core.judge.effort import heavy_meshes
 from solidgear.core.judge.record import GuardRecord
-from solidgear.core.judge.solution import Solution
-from solidgear.core.ladder.model import BEAM, LUMPED, SOLID
-from solidgear.core.ladder.registry import LADDER
-from solidgear.core.machine.threads import pinned
+from solidgear.core.ladder.model import LUMPED, SOLID
 from solidgear.core.scene.closed_form import mass_properties, whole_mass
-from solidgear.core.scene.outline import Outline
-from solidgear.core.scene.shaft import feature_labels, resolved, without_axis
+from solidgear.core.scene.shaft import feature_labels, resolved
 from solidgear.guards import GUARDS, LEVELS, Notice, Probe
 from solidgear.guards.notice import Notices, beams, everything
 from solidgear.guards.round_part import against_the_part, described, of_files
 from solidgear.guards.smearing import smearing
 
 if TYPE_CHECKING:
-    from solidgear.core.scene import Scene
+    from solidgear.core import Scene
 
 #: verdict on a model by the worst level of its notices
 VERDICTS = {

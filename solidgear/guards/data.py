@@ -6,9 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from solidgear.core.errors import listed
-from solidgear.core.frames import DOF_NAMES
-from solidgear.core.scene import Scene
+from solidgear.core import DOF_NAMES, Scene, listed
 from solidgear.guards.notice import Notice, Notices, slip_in_units
 from solidgear.guards.probe import Probe
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.core.errors import listed
+from solidgear.core import listed
 from solidgear.guards.notice import Notice, Notices, beams
 from solidgear.guards.probe import Probe
 

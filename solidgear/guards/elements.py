@@ -9,14 +9,20 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from solidgear.core import (
+    C_ZZ,
+    FIRST_BENDING,
+    LADDER,
+    Quantity,
+    SolidgearError,
+    change,
+    listed,
+    without_axis,
+)
 from solidgear.core.elements import SOLVED_AS
-from solidgear.core.errors import SolidgearError, listed
-from solidgear.core.judge.quantities import change, in_words
-from solidgear.core.ladder.registry import LADDER
+from solidgear.core.judge.quantities import in_words
 from solidgear.core.machine.memory import available_mb
 from solidgear.core.meshing.corners import sharpest_corner
-from solidgear.core.quantity import C_ZZ, FIRST_BENDING, Quantity
-from solidgear.core.scene.shaft import without_axis
 from solidgear.core.solve.backends import BACKENDS, INSTALL, missing
 from solidgear.core.solve.backends.memory_law import law
 from solidgear.core.solve.choice import FASTEST, SMALL

@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-from solidgear.core.errors import SolidgearError
+from solidgear.core import BEAM, FIRST_BENDING, LADDER, SCENE, SolidgearError
 from solidgear.core.judge import deviations
 from solidgear.core.judge.deviations import gap_verdict
 from solidgear.core.judge.lumped import preferred
-from solidgear.core.judge.ties import SCENE
-from solidgear.core.ladder.model import BEAM
-from solidgear.core.ladder.registry import LADDER
-from solidgear.core.quantity import FIRST_BENDING
 from solidgear.guards.notice import Notice, Notices, against, beams, beyond, sure
 from solidgear.guards.probe import Probe
 

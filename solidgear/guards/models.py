@@ -6,20 +6,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from solidgear.core.errors import SolidgearError, listed
+from solidgear.core import BEAM, COMPLIANCE, LADDER, SolidgearError, listed
 from solidgear.core.judge import deviations
 from solidgear.core.judge.deviations import TIES
 from solidgear.core.judge.quantities import in_words
-from solidgear.core.ladder.model import BEAM
-from solidgear.core.ladder.registry import LADDER
 from solidgear.core.meshing.corners import sharpest_corner
 from solidgear.core.models.beam.shoulder import MISSING, grown
-from solidgear.core.quantity import COMPLIANCE
 from solidgear.guards.notice import Notice, Notices, against, beams, of_theory, sure, with_lumped
 from solidgear.guards.probe import Probe
 
 if TYPE_CHECKING:
-    from solidgear.core.scene import Scene
+    from solidgear.core import Scene
 
 
 def beam_against_solid(probe: Probe) -> Notices:

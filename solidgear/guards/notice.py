@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
-from solidgear.core.ladder.model import BEAM, LUMPED, SOLID
-from solidgear.core.ladder.registry import LADDER
+from solidgear.core import BEAM, LADDER
+from solidgear.core.ladder.model import LUMPED, SOLID
 
 #: good to know; holds worse than one might think; cannot be decided here; out of the tolerance asked
 #: for; wrong

@@ -7,18 +7,27 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from solidgear.core.body import Body, as_supports
-from solidgear.core.judge.change import BarredMode, Side
-from solidgear.core.judge.quantities import Values, size
-from solidgear.core.judge.settle import Settled, bars_of_modes, settle
+from solidgear.core import (
+    QUANTITIES,
+    BarredMode,
+    Body,
+    Mode,
+    ModeSet,
+    Quantity,
+    Settled,
+    as_supports,
+    bars_of_modes,
+    settle,
+    size,
+)
+from solidgear.core.judge.change import Side
+from solidgear.core.judge.quantities import Values
 from solidgear.core.judge.solving import answer_of_body
-from solidgear.core.quantity import QUANTITIES, Quantity
 from solidgear.core.scene.closed_form import mass_properties
-from solidgear.core.solve.modes import Mode, ModeSet
 from solidgear.guards.check import cautions
 
 if TYPE_CHECKING:
-    from solidgear.core.scene import Scene
+    from solidgear.core import Scene
 
 Progress = Callable[[str], None]
 #: relative, of a mass in closed form

@@ -13,28 +13,34 @@ import numpy as np
 import scipy.linalg as sla
 import scipy.sparse.linalg as spla
 
-from solidgear.core.body import Body, Supports, as_supports
-from solidgear.core.errors import SolidgearError
+from solidgear.core import (
+    BEAM,
+    FIRST_BENDING,
+    HARMONIC,
+    LADDER,
+    TOUCH,
+    Body,
+    SolidgearError,
+    Solution,
+    Supports,
+    as_supports,
+    build,
+    modes,
+    synthesise,
+)
 from solidgear.core.judge.deviations import BEYOND, OPEN, Deviation, deviations
 from solidgear.core.judge.quantities import Values, judged
-from solidgear.core.judge.solution import Solution
 from solidgear.core.judge.solving import ENOUGH, solve
 from solidgear.core.judge.study import study
 from solidgear.core.judge.ties import attached
-from solidgear.core.ladder import build
-from solidgear.core.ladder.meshes import HARMONIC
-from solidgear.core.ladder.model import BEAM, SOLID
-from solidgear.core.ladder.registry import LADDER
+from solidgear.core.ladder.model import SOLID
 from solidgear.core.models.size import Size, size_of_body
-from solidgear.core.quantity import FIRST_BENDING
-from solidgear.core.reduction.effective_mass import Synthesis, synthesise
+from solidgear.core.reduction.effective_mass import Synthesis
 from solidgear.core.reduction.lumped_point import LumpedPoint
-from solidgear.core.scene.outline import TOUCH
-from solidgear.core.solve.modes import modes
 from solidgear.guards.notice import LUMPED_ON
 
 if TYPE_CHECKING:
-    from solidgear.core.scene import Scene
+    from solidgear.core import Scene
 
 #: modes enough for the first bending pair, the first axial one and the rigid ones between them
 FEW = 8

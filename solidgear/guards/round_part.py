@@ -5,19 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from solidgear.core.errors import listed
+from solidgear.core import LADDER, SCENE, Solution, change, listed
 from solidgear.core.judge.deviations import BEYOND, WITHIN, gap_verdict
-from solidgear.core.judge.quantities import change, judged
-from solidgear.core.judge.solution import Solution
-from solidgear.core.judge.ties import SCENE
+from solidgear.core.judge.quantities import judged
 from solidgear.core.judge.verdict import percent
 from solidgear.core.ladder.model import SOLID
-from solidgear.core.ladder.registry import LADDER
 from solidgear.core.models.kinds import PARTS
 from solidgear.guards import Notice, Probe
 
 if TYPE_CHECKING:
-    from solidgear.core.scene import Scene
+    from solidgear.core import Scene
 
 #: model of revolution that is held against the part
 ROUND_MODEL = "harmonic"

@@ -11,15 +11,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from solidgear.core.ladder.registry import LADDER
+from solidgear.core import LADDER, Outline
 from solidgear.core.scene.closed_form import mass_properties
-from solidgear.core.scene.outline import Outline
 from solidgear.core.scene.shaft import feature_labels
 from solidgear.cuts.sector.teeth import lacking
 from solidgear.guards.notice import Notice, Notices, everything
 
 if TYPE_CHECKING:
-    from solidgear.core.scene import Scene
+    from solidgear.core import Scene
 
 #: error of stiffness over the depth of a tooth, as a share of the pitch radius
 STIFFER = 0.05

@@ -9,18 +9,25 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.core.body import Body, as_supports
+from solidgear.core import (
+    LADDER,
+    MOST_MODES,
+    BarredMode,
+    Body,
+    Mode,
+    ModeSet,
+    Scene,
+    Settled,
+    as_supports,
+    bars_of_modes,
+    build,
+    modes,
+    pinned,
+    settle,
+    without_axis,
+)
 from solidgear.core.judge.bounded import mode_bars
-from solidgear.core.judge.change import BarredMode
 from solidgear.core.judge.coarser_mesh import coarser_bars
-from solidgear.core.judge.settle import Settled, bars_of_modes, settle
-from solidgear.core.ladder import build
-from solidgear.core.ladder.registry import LADDER
-from solidgear.core.machine.threads import pinned
-from solidgear.core.scene import Scene
-from solidgear.core.scene.rules import MOST_MODES
-from solidgear.core.scene.shaft import without_axis
-from solidgear.core.solve.modes import Mode, ModeSet, modes
 from solidgear.variants.sensitivity.adjoint import mode_form
 from solidgear.variants.sweep.bench import surface
 

@@ -11,12 +11,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from solidgear.core.body.mode_names import ModeName
-from solidgear.core.display import Displayed
-from solidgear.core.judge.change import BarredMode
-from solidgear.core.machine.threads import pinned
-from solidgear.core.scene import Scene
-from solidgear.core.scene.shaft import without_axis
+from solidgear.core import BarredMode, Displayed, ModeName, Scene, pinned, without_axis
 from solidgear.measured.alignment import Alignment, Peak
 from solidgear.measured.computed import Computed, computed_up_to
 from solidgear.measured.data import Measured, MeasuredMode

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.core.errors import SceneError, show
+from solidgear.core import SceneError, show
 from solidgear.core.scene.units import quantity
 from solidgear.measured.universal import Responses
 

@@ -28,11 +28,7 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import AfterValidator, BeforeValidator, Field, PrivateAttr, model_validator
 
-from solidgear.core.body.surface import Surface
-from solidgear.core.errors import SceneError, show
-from solidgear.core.loading import explained
-from solidgear.core.scene.toml_file import parse
-from solidgear.core.scene.typed import Model
+from solidgear.core import Model, SceneError, Surface, explained, parse, show
 from solidgear.core.scene.units import Frequency, quantity
 from solidgear.measured.alignment import BANDWIDTH
 from solidgear.measured.axis_labels import response

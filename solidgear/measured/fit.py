@@ -11,7 +11,7 @@ import numpy as np
 from scipy.optimize import lsq_linear
 from scipy.special import stdtrit
 
-from solidgear.core.errors import SolidgearError
+from solidgear.core import SolidgearError
 from solidgear.measured.computed import Computed
 from solidgear.measured.correlate import DEVIATIONS, on_points_of, peaks_of
 from solidgear.measured.data import Measured

@@ -12,14 +12,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from solidgear.core.body import as_supports
-from solidgear.core.display import Displayed
-from solidgear.core.errors import SolidgearError
+from solidgear.core import Displayed, Scene, SolidgearError, as_supports, parse, pinned
 from solidgear.core.loading import scene_of
-from solidgear.core.machine.threads import pinned
-from solidgear.core.scene import Scene
 from solidgear.core.scene.paths import Tables, replace_entry
-from solidgear.core.scene.toml_file import parse
 from solidgear.measured.computed import Computed, computed_like, computed_up_to
 from solidgear.measured.correlate import DEVIATIONS, SURE, placed_in
 from solidgear.measured.data import Measured

@@ -23,8 +23,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import uniform_filter1d
 
-from solidgear.core.errors import SolidgearError
-from solidgear.core.machine.threads import pinned
+from solidgear.core import SolidgearError, pinned
 
 #: lines of a band, and the overlap of neighbouring bands
 LINES, MARGIN = 512, 128

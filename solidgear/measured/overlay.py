@@ -13,10 +13,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solidgear.core.body import FURTHER, SINE, Body, as_supports
-from solidgear.core.scene import Scene
+from solidgear.core import Body, Mode, Scene, as_supports
+from solidgear.core.body import FURTHER, SINE
 from solidgear.core.solve.coupling import decoupled, groups
-from solidgear.core.solve.modes import Mode
 from solidgear.core.solve.supported import Supported
 from solidgear.measured.computed import motions_up_to
 from solidgear.measured.correlate import Correlation

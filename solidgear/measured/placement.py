@@ -17,10 +17,8 @@ from typing import Literal
 import numpy as np
 from scipy.spatial import cKDTree
 
-from solidgear.core.body.surface import Surface
-from solidgear.core.errors import SolidgearError
+from solidgear.core import Model, SolidgearError, Surface
 from solidgear.core.meshing.placing import TURNS, Placing
-from solidgear.core.scene.typed import Model
 from solidgear.parts.body_file import UNITS, Origin, Unit
 
 #: largest distance of a point from the surface, as a share of the largest radius

@@ -9,7 +9,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from solidgear.core.errors import SolidgearError
+from solidgear.core import SolidgearError
 from solidgear.core.meshing.placing import Placing
 from solidgear.measured.modal_fit import ModalFit, fit_modes
 from solidgear.measured.universal import Responses, Shapes

@@ -12,8 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solidgear.core.body import Body
-from solidgear.core.solve.modes import Mode
+from solidgear.core import Body, Mode
 from solidgear.measured.alignment import ShapeLikeness
 from solidgear.measured.computed import Computed
 from solidgear.measured.placement import nearest, refuse_off

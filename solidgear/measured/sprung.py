@@ -12,8 +12,7 @@ import numpy as np
 import scipy.linalg as sla
 from scipy.optimize import linear_sum_assignment
 
-from solidgear.core.body import Supports, as_supports
-from solidgear.core.solve.statics import flexibility
+from solidgear.core import Supports, as_supports, flexibility
 from solidgear.measured.computed import Computed
 
 #: of the largest, that a direction counts from on

@@ -14,8 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.core.errors import SceneError, SolidgearError
-from solidgear.core.loading import explained
+from solidgear.core import SceneError, SolidgearError, explained
 from solidgear.core.meshing.placing import Placing
 from solidgear.measured.axis_labels import force, frequency, motion
 from solidgear.parts.universal_units import units_of

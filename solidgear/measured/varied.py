@@ -6,10 +6,10 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from solidgear.core.errors import SceneError, SolidgearError, show
+from solidgear.core import DIMENSIONS, SceneError, SolidgearError, show
 from solidgear.core.scene.paths import Keys, Tables, entry, keys_of, label_of
 from solidgear.core.scene.uncertain import FACTOR, PLUS_MINUS, Uncertain, range_ends
-from solidgear.core.scene.units import DIMENSIONS, quantity
+from solidgear.core.scene.units import quantity
 from solidgear.variants.sweep.amounts import in_si
 
 

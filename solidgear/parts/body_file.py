@@ -14,14 +14,13 @@ from typing import Annotated, Any, Literal, get_args
 import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
-from solidgear.core.errors import SceneError, listed
+from solidgear.core import Model, PositiveLength, SceneError, listed
 from solidgear.core.scene.file_materials import FileMaterial
 from solidgear.core.scene.materials import by_name
 from solidgear.core.scene.outline import Torus
 from solidgear.core.scene.parts import Material
 from solidgear.core.scene.patches import Patch, Triple, refuse_elsewhere
-from solidgear.core.scene.typed import Model
-from solidgear.core.scene.units import Mass, PositiveLength, quantity
+from solidgear.core.scene.units import Mass, quantity
 
 #: units of length of a file, m
 UNITS = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "inch": 0.0254, "in": 0.0254}

@@ -13,7 +13,7 @@ import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
 from skfem import Mesh, MeshHex1, MeshHex2, MeshTet1
 
-from solidgear.core.errors import listed, nearest, show
+from solidgear.core import listed, nearest, show
 from solidgear.core.meshing.curving import ten_nodes, with_middles, with_nodes
 from solidgear.core.meshing.placing import Placing
 from solidgear.core.meshing.quality import MeshError, check_mesh, element_volumes, outward

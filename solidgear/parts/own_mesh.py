@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from solidgear.core.body import Body
+from solidgear.core import Body
 from solidgear.core.meshing.quality import check_mesh
 from solidgear.core.models.solid.block import body_of, free_block, mesh_facts
 from solidgear.core.models.solid.mesh import _isoparametric

@@ -14,11 +14,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from solidgear.core.errors import SceneError
+from solidgear.core import Outline, SceneError
 from solidgear.core.meshing.placing import TURNS, Placing, Triple, turn_of
 from solidgear.core.meshing.quality import MeshError
 from solidgear.core.scene.closed_form import volume_of
-from solidgear.core.scene.outline import Frustum, Outline
+from solidgear.core.scene.outline import Frustum
 from solidgear.core.scene.patches import Patch, block_patches
 from solidgear.parts.body_file import NONE, UNITS, BodyFile, BodyTable
 from solidgear.parts.decks import universal

@@ -9,9 +9,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from solidgear.core.body import Body
+from solidgear.core import Body, SolidgearError
 from solidgear.core.elements import SOLVED_AS
-from solidgear.core.errors import SolidgearError
 from solidgear.core.kernel.room import assemblable
 from solidgear.core.machine.isolated import IsolatedError, isolated
 from solidgear.core.meshing.element_size import size_formulas

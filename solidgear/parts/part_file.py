@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from solidgear.core.errors import SceneError
+from solidgear.core import SceneError
 from solidgear.core.machine.isolated import IsolatedError, isolated
 from solidgear.core.meshing.placing import Placing
 from solidgear.core.meshing.quality import MeshError

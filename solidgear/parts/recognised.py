@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from solidgear.core.errors import SceneError, listed
+from solidgear.core import SceneError, listed
 from solidgear.core.scene.parts import Material, Segment
 from solidgear.core.scene.seat import Seat
 from solidgear.parts.body_file import BodyFile, BodyTable, with_port

@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 from skfem import Mesh, MeshHex
 
-from solidgear.core.body import Body
-from solidgear.core.errors import SolidgearError
+from solidgear.core import Body, SolidgearError
 from solidgear.core.kernel.room import assemblable
 from solidgear.core.meshing.quality import cell_sizes
 from solidgear.core.scene.patches import FACES

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.core.errors import listed, show
+from solidgear.core import listed, show
 from solidgear.core.meshing.bisecting import bisected
 from solidgear.core.meshing.curving import Filling, relaxed
 from solidgear.core.meshing.element_size import set_size

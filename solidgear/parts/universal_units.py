@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from solidgear.core.errors import SceneError
+from solidgear.core import SceneError
 
 #: code -> m and N of its units; code 9 comes with factors
 UNITS = {

@@ -22,7 +22,7 @@ from pathlib import Path
 import numpy as np
 import scipy.sparse as sp
 
-from solidgear.core.body import Block
+from solidgear.core import Block
 from solidgear.core.body.mass import ScalarMass
 from solidgear.core.factoring import Factoring
 from solidgear.core.solve.backends.matrix import FactorError

@@ -5,8 +5,8 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from solidgear.core.loading import load as read
-from solidgear.core.scene import Scene
+from solidgear.core import Scene
+from solidgear.core import load as read
 
 
 def load(path: Path) -> Scene:

@@ -7,8 +7,8 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from solidgear.core.errors import SolidgearError
-from solidgear.core.judge.record import SCHEMA, Record
+from solidgear.core import Record, SolidgearError
+from solidgear.core.judge.record import SCHEMA
 
 
 def as_record(data: Mapping[str, Any], name: str = "the results") -> Record:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 
-from solidgear.core.frames import DOF_NAMES
+from solidgear.core import DOF_NAMES
 from solidgear.core.quantity import BLOCK_UNITS
 from solidgear.show.reading import entry, is_nothing
 from solidgear.show.table import Cell, Table

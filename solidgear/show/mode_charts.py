@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from solidgear.core.judge.record import MacTable, ModelRecord, ModeRecord, Record
+from solidgear.core import Record
+from solidgear.core.judge.record import MacTable, ModelRecord, ModeRecord
 from solidgear.show.panel import GREY, INK, PERCENT, SHAPES, Axis, Panel, Series, readout
 from solidgear.show.plot import NARROW, WIDE, Chart, in_columns
 from solidgear.show.reading import model_name, reference_of, relative_change

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from solidgear.core.judge.open_record import IntervalRecord, OpenNumbers, OpenRecord
+from solidgear.core import OpenNumbers, Quantity
+from solidgear.core.judge.open_record import IntervalRecord, OpenRecord
 from solidgear.core.judge.quantities import JUDGED
-from solidgear.core.quantity import K_ZZ, Quantity
+from solidgear.core.quantity import K_ZZ
 from solidgear.show.table import Column, Table, text
 from solidgear.show.units import Units
 from solidgear.show.words import percent, short_percent

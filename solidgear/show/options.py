@@ -15,16 +15,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from solidgear.core.errors import SolidgearError, show
-from solidgear.core.ladder import build
-from solidgear.core.ladder.registry import LADDER
+from solidgear.core import LADDER, SceneError, SolidgearError, build, show
+from solidgear.core.scene.units import quantity
 from solidgear.show.command import Group, Progress
 from solidgear.show.units import ENGINEERING, SYSTEMS
 
 if TYPE_CHECKING:
-    from solidgear.core.body import Body
-    from solidgear.core.judge.settle import Settled
-    from solidgear.core.scene import Scene
+    from solidgear.core import Body, Scene, Settled
 
 #: the model that commands solve with unless told otherwise
 MODEL = "harmonic"
@@ -229,7 +226,7 @@ class Solved(Chosen):
         """
         if not self.automatic(scene):
             return build_body(scene, self.name, self.pairs), None
-        from solidgear.core.judge.settle import settle  # start-up: for ``auto`` alone
+        from solidgear.core import settle  # start-up: for ``auto`` alone
 
         # A second or less for most scenes: lines are for those who watch.
         with Progress(quiet=not sys.stderr.isatty()) as progress:
@@ -293,3 +290,16 @@ def build_body(scene: Scene, name: str, pairs: list[str] | None) -> Body:
     # Checked here too: an option called scene or fidelity would be taken for an argument of
     # `build`.
     return build(scene, name, **LADDER[name].checked(options(pairs)))
+
+
+def speed_of(text: str | None) -> float | None:
+    """Return the speed of an option, rad/s."""
+    if text is None:
+        return None
+    try:
+        speed = quantity(text, "speed")
+    except SceneError as error:
+        raise SolidgearError(f"--speed {error}") from None
+    if speed <= 0:
+        raise SolidgearError(f"--speed {text}: must be greater than zero")
+    return speed

@@ -11,14 +11,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from solidgear.core import ELEMENTS, whole
 from solidgear.core.body.surface import Volume, mesh_unknowns
-from solidgear.core.elements import ELEMENTS
-from solidgear.core.machine.whole_file import whole
 
 if TYPE_CHECKING:
-    from solidgear.core.body import Body
-    from solidgear.core.judge.solution import Solution
-    from solidgear.core.solve.modes import Mode, ModeSet
+    from solidgear.core import Body, Mode, ModeSet, Solution
 
 
 def write_vtu(

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from solidgear.core.body.surface import Surface
+    from solidgear.core import Surface
 
 #: points nearer than this share of the length are one
 SAME = 1e-8

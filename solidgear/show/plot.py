@@ -14,8 +14,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from solidgear.core.errors import SolidgearError
-from solidgear.core.machine.whole_file import whole
+from solidgear.core import SolidgearError, whole
 from solidgear.show.panel import LETTER, Panel, wrapped
 
 #: px; across a page, and across a phone that is 390 px wide

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from solidgear.core import FIRST_BENDING, SCENE, Quantity, Record
 from solidgear.core.body.mode_names import meant
 from solidgear.core.judge.record import (
     CoupledRecord,
@@ -11,10 +12,8 @@ from solidgear.core.judge.record import (
     Matrix,
     ModelRecord,
     ModeRecord,
-    Record,
 )
-from solidgear.core.judge.ties import SCENE, SECTION
-from solidgear.core.quantity import FIRST_BENDING, Quantity
+from solidgear.core.judge.ties import SECTION
 from solidgear.show import open_words
 from solidgear.show.words import DASH, is_number
 

@@ -20,12 +20,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from solidgear.core import whole
 from solidgear.core.machine.patience import Patience
-from solidgear.core.machine.whole_file import whole
 from solidgear.show.drawing import ARRAYS
 
 if TYPE_CHECKING:
-    from solidgear.core.body.surface import Surface
+    from solidgear.core import Surface
 
 PACKAGES = (
     "apt-get install libgl1 libegl1 libegl-mesa0 libglu1-mesa "

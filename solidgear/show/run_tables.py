@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from solidgear.core.judge.record import Record
+from solidgear.core import Record
 from solidgear.show.reading import model_name, reference_of
 from solidgear.show.table import Cell, Column, Table, text
 from solidgear.show.words import DASH, capital, seconds, whole

@@ -6,16 +6,10 @@ from collections.abc import Mapping, Sequence
 
 import typer
 
-from solidgear.core.body import Body
-from solidgear.core.errors import listed
+from solidgear.core import BEAM, LADDER, Body, ModeSet, Quantity, Scene, Settled, listed
 from solidgear.core.judge.answer import Answered
 from solidgear.core.judge.quantities import in_words
-from solidgear.core.judge.settle import Settled, widest
-from solidgear.core.ladder.model import BEAM
-from solidgear.core.ladder.registry import LADDER
-from solidgear.core.quantity import Quantity
-from solidgear.core.scene import Scene
-from solidgear.core.solve.modes import ModeSet
+from solidgear.core.judge.settle import widest
 from solidgear.show.command import NOT_REACHED
 from solidgear.show.words import is_number, percent
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from solidgear.core.machine.whole_file import whole
+from solidgear.core import whole
 from solidgear.show.plot import WIDE, Make
 from solidgear.show.sheet import Section, write_sheet
 from solidgear.show.table import Table

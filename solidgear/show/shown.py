@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from solidgear.core.frames import DOF_NAMES
+from solidgear.core import DOF_NAMES
 from solidgear.core.quantity import BLOCK_UNITS
 from solidgear.show.reading import mode_of
 from solidgear.show.sketch import draw
@@ -15,7 +15,7 @@ from solidgear.show.table import Table
 from solidgear.show.words import bar_of, percent
 
 if TYPE_CHECKING:
-    from solidgear.core.body import Body
+    from solidgear.core import Body
 
 #: shapes that a picture shows unless told otherwise
 MOST_SHAPES = 6

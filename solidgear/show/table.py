@@ -16,7 +16,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
-from solidgear.core.machine.whole_file import whole
+from solidgear.core import whole
 from solidgear.show.page_parts import template
 from solidgear.show.units import Units, in_ascii
 from solidgear.show.words import DASH, as_text

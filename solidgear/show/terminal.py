@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from solidgear.core.judge.open_record import OpenNumbers
-from solidgear.core.judge.record import ModelRecord, ModeRecord, Record, VerdictRecord
-from solidgear.core.quantity import C_ZZ, FIRST_BENDING, K_ZZ, Quantity
+from solidgear.core import C_ZZ, FIRST_BENDING, OpenNumbers, Quantity, Record
+from solidgear.core.judge.record import ModelRecord, ModeRecord, VerdictRecord
+from solidgear.core.quantity import K_ZZ
 from solidgear.show import open_words, reading, words
 from solidgear.show.matrices import block
 from solidgear.show.table import MARK, Column, Table, text, word
@@ -22,7 +22,7 @@ from solidgear.show.units import SI, Units, in_ascii, units_named
 if TYPE_CHECKING:
     import numpy as np
 
-    from solidgear.core.solve.modes import Mode
+    from solidgear.core import Mode
 
 NOT_RESOLVED = "n.r."
 #: figures of a coupling that is next to nothing

@@ -12,13 +12,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from solidgear.core import SolidgearError
 from solidgear.core.body.mode_names import meant
-from solidgear.core.errors import SolidgearError
 from solidgear.show.packing import Mesh, mesh_of
 
 if TYPE_CHECKING:
-    from solidgear.core.body import Body
-    from solidgear.core.solve.modes import Mode, ModeSet
+    from solidgear.core import Body, Mode, ModeSet
 
 #: slices along the axis in which the motions of two models are compared
 SLICES = 12

@@ -13,7 +13,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from solidgear.core.errors import SolidgearError, nearest
+from solidgear.core import SolidgearError, nearest
 from solidgear.show.words import DASH, engineering, is_number
 
 if TYPE_CHECKING:

@@ -24,8 +24,7 @@ from solidgear.show.page_parts import template
 from solidgear.show.turning import Turned, picks, turned
 
 if TYPE_CHECKING:
-    from solidgear.core.body import Body
-    from solidgear.core.solve.modes import ModeSet
+    from solidgear.core import Body, ModeSet
 
 #: most that the surfaces and shapes of one page may take, bytes; the page itself stays below 6 MB
 BUDGET = 3_500_000

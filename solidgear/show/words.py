@@ -126,7 +126,7 @@ def capital(text: str) -> str:
 
 def by_plane(names: Iterable[str]) -> str:
     """Return a sentence on bending 1 where modes are named by planes, after a space."""
-    from solidgear.core.body.mode_names import ModeName  # which brings NumPy
+    from solidgear.core import ModeName  # which brings NumPy
 
     if not any(ModeName(name).plane for name in names):
         return ""

@@ -9,10 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from solidgear.bearings.study import loaded_by
-from solidgear.core.errors import SceneError, SolidgearError, show
-from solidgear.core.loading import as_written
-from solidgear.core.scene import Scene
-from solidgear.core.scene.toml_file import is_train
+from solidgear.core import Scene, SceneError, SolidgearError, as_written, is_train, show
 from solidgear.show.command import Group
 from solidgear.show.options import refuse
 from solidgear.show.units import Units

@@ -8,8 +8,7 @@ from typing import Annotated
 
 import typer
 
-from solidgear.core.errors import SolidgearError, show
-from solidgear.core.frames import DOF_NAMES
+from solidgear.core import DOF_NAMES, SolidgearError, show
 from solidgear.show.command import caution, command, say
 from solidgear.show.folder import held
 from solidgear.show.options import UNITS, Shown

@@ -5,8 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from solidgear.core.loading import as_written, explained, load
-from solidgear.core.scene import Scene
+from solidgear.core import Scene, as_written, explained, load
 from solidgear.trains.file import reading
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.train import Train

@@ -9,9 +9,7 @@ from typing import Annotated, Any
 
 import typer
 
-from solidgear.core.errors import SceneError, SolidgearError, listed, show
-from solidgear.core.ladder.registry import LADDER
-from solidgear.core.scene.toml_file import parse
+from solidgear.core import LADDER, SceneError, SolidgearError, listed, parse, show
 from solidgear.show.command import Group
 from solidgear.show.options import MODEL, options_by_name
 from solidgear.trains.assembly.models import Workshop

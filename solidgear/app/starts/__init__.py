@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from solidgear.core.errors import SolidgearError, nearest, show
+from solidgear.core import SolidgearError, nearest, show
 
 #: what one may begin with, and what it then is
 STARTS = {

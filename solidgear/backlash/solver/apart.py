@@ -21,8 +21,7 @@ from solidgear.backlash.solver.balance import Balance, as_complex, as_real
 from solidgear.backlash.solver.continuation import Branch, Follower, Point, cut, fitted, walked
 from solidgear.backlash.solver.motion import departure
 from solidgear.backlash.solver.stability import multipliers
-from solidgear.core.errors import SolidgearError
-from solidgear.core.machine.threads import pinned
+from solidgear.core import SolidgearError, pinned
 
 #: starts at a speed of one and of two periods, orders of the excitation that they balance, and steps
 #: of Newton's method that they may take

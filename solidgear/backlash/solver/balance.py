@@ -20,7 +20,7 @@ import numpy as np
 from solidgear.backlash.solver.kinks import kinks
 from solidgear.backlash.solver.model import Remainder
 from solidgear.backlash.solver.sway import Line
-from solidgear.core.errors import SolidgearError
+from solidgear.core import SolidgearError
 from solidgear.core.system.law import Force
 
 #: instants a harmonic, and of a period at least: with two, turning points of a law of pieces were 2 % off

@@ -16,8 +16,7 @@ import numpy as np
 
 from solidgear.backlash.solver.balance import ITERATIONS, Balance, as_complex
 from solidgear.backlash.solver.model import Remainder
-from solidgear.core.errors import SolidgearError
-from solidgear.core.machine.threads import pinned
+from solidgear.core import SolidgearError, pinned
 
 #: change of a trial motion, relative, that ends Newton's method across a step
 CLOSE = 1e-9

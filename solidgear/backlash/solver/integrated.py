@@ -16,7 +16,7 @@ from scipy.optimize import brentq
 from solidgear.backlash.solver.kinks import continued, kinks
 from solidgear.backlash.solver.model import Remainder
 from solidgear.backlash.solver.sway import Line
-from solidgear.core.errors import SolidgearError
+from solidgear.core import SolidgearError
 
 #: looks at a stretch in a period
 LOOKS = 128

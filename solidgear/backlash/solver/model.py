@@ -20,11 +20,10 @@ from functools import cached_property
 import numpy as np
 
 from solidgear.backlash.solver.sway import Line, Sway
-from solidgear.core.errors import SolidgearError
+from solidgear.core import SolidgearError, System
 from solidgear.core.system.law import Force, Law
 from solidgear.core.system.links import RowSpring
 from solidgear.core.system.steady import lost_stiffness
-from solidgear.core.system.system import System
 
 #: how losses count: the damping ratio eta / 2 of every mode, or dampers of parts and links
 KINDS = ("modal", "viscous")

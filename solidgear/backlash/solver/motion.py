@@ -17,8 +17,7 @@ from solidgear.backlash.solver.continuation import Point
 from solidgear.backlash.solver.integrated import LOOKS, TOLERANCE, Integrated
 from solidgear.backlash.solver.model import Remainder
 from solidgear.backlash.solver.pieces import SHORT, TERMS, Piece, Pieces
-from solidgear.core.errors import SolidgearError
-from solidgear.core.machine.threads import pinned
+from solidgear.core import SolidgearError, pinned
 
 #: rest of a transient, relative, when a motion is steady
 STEADY = 1e-5

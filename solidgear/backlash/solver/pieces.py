@@ -14,7 +14,7 @@ import numpy as np
 import scipy.linalg as sla
 
 from solidgear.backlash.solver.model import Remainder
-from solidgear.core.errors import SolidgearError
+from solidgear.core import SolidgearError
 
 #: norm of B times a step at most, and terms of the exponential's series within one
 SHORT, TERMS = 0.5, 14

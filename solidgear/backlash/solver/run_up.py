@@ -11,8 +11,7 @@ import numpy as np
 from solidgear.backlash.solver.integrated import LOOKS, TOLERANCE, Integrated
 from solidgear.backlash.solver.model import Remainder
 from solidgear.backlash.solver.motion import Run
-from solidgear.core.errors import SolidgearError
-from solidgear.core.machine.threads import pinned
+from solidgear.core import SolidgearError, pinned
 
 #: cycles of the excitation that a run may take: fewer show no envelope, more take hours
 FEWEST_CYCLES, MOST_CYCLES = 10, 20_000

@@ -18,7 +18,7 @@ import scipy.linalg as sla
 from solidgear.backlash.solver.continuation import Point
 from solidgear.backlash.solver.model import Remainder
 from solidgear.backlash.solver.pieces import Pieces
-from solidgear.core.machine.threads import pinned
+from solidgear.core import pinned
 
 #: a multiplier beyond the unit circle by less is on it: digits of a crossing
 ON = 1e-7

@@ -24,8 +24,7 @@ from solidgear.backlash.solver.balance import (
     over_parts,
 )
 from solidgear.backlash.solver.model import Remainder
-from solidgear.core.errors import SolidgearError
-from solidgear.core.machine.threads import pinned
+from solidgear.core import SolidgearError, pinned
 
 #: steps of Newton's method, and halvings of one that leads away
 ITERATIONS, HALVINGS = 40, 8

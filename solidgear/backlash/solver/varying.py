@@ -22,7 +22,7 @@ from scipy.optimize import brentq
 
 from solidgear.backlash.solver.model import Remainder
 from solidgear.backlash.solver.stability import over_cycle
-from solidgear.core.machine.threads import pinned
+from solidgear.core import pinned
 
 #: instants of a cycle, and harmonics of Hill's determinant on either side
 INSTANTS, HARMONICS = 512, 8

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from solidgear.core.judge.record import CauseRecord, Record
+from solidgear.core import Record
+from solidgear.core.judge.record import CauseRecord
 from solidgear.show.panel import GREY, PERCENT, Axis, Panel, Series, readout, wrapped
 from solidgear.show.plot import NARROW, WIDE, Chart
 from solidgear.show.reading import model_name, relative_change

@@ -12,11 +12,11 @@ from functools import partial
 from solidgear.comparison.page.change_charts import attachment_chart, cause_chart
 from solidgear.comparison.page.convergence_chart import convergence_chart
 from solidgear.comparison.page.cost_chart import cost_chart
-from solidgear.comparison.page.where_chart import where_chart
-from solidgear.core.judge.record import Record
+from solidgear.core import Record
 from solidgear.show.mode_charts import mac_chart, mode_chart
 from solidgear.show.plot import Chart, page_svg
 from solidgear.show.sketch_page import sketch_svg
+from solidgear.show.where_chart import where_chart
 from solidgear.variants.budget.chart import of_record as budget_chart
 
 #: those that are described in Vega-Lite, for a page of a width

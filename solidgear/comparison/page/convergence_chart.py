@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from solidgear.comparison.race.pareto import CHARTED
-from solidgear.core.judge.record import BarRecord, LevelRecord, ModelRecord, Record
+from solidgear.core import Record
+from solidgear.core.judge.record import BarRecord, LevelRecord, ModelRecord
 from solidgear.show.panel import PERCENT, SHAPES, Axis, Panel, readout
 from solidgear.show.plot import WIDE, Chart, in_columns
 from solidgear.show.reading import model_name

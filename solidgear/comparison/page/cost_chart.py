@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from solidgear.comparison.race.pareto import CHARTED
-from solidgear.core.judge.record import ModelRecord, Record
+from solidgear.core import Record
+from solidgear.core.judge.record import ModelRecord
 from solidgear.show.panel import PERCENT, SHAPES, Axis, Panel, readout, tolerance_line
 from solidgear.show.plot import WIDE, Chart
 from solidgear.show.reading import answer_seconds, headline, is_resolved, model_name, reference_of

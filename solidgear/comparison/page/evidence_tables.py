@@ -6,18 +6,10 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
+from solidgear.core import C_ZZ, COMPLIANCE, FIRST_BENDING, SCENE, STIFFNESS, Quantity, Record
 from solidgear.core.judge.correlation import FOREIGN
-from solidgear.core.judge.record import DeviationRecord, EvidenceRecord, PartnerRecord, Record
-from solidgear.core.judge.ties import SCENE
-from solidgear.core.quantity import (
-    C_ZZ,
-    COMPLIANCE,
-    FIRST_BENDING,
-    FREQUENCY,
-    K_ZZ,
-    STIFFNESS,
-    Quantity,
-)
+from solidgear.core.judge.record import DeviationRecord, EvidenceRecord, PartnerRecord
+from solidgear.core.quantity import FREQUENCY, K_ZZ
 from solidgear.show.reading import is_resolved, model_name, reference_of, relative_change
 from solidgear.show.table import Cell, Column, Table, quantity, text, word
 from solidgear.show.units import ENGINEERING, Units

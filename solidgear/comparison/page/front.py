@@ -9,10 +9,9 @@ import json
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from solidgear.core.body.mode_names import ModeName
-from solidgear.core.judge.record import ModelRecord, Record, VerdictRecord
-from solidgear.core.judge.ties import SCENE
-from solidgear.core.quantity import AT, COMPLIANCE, FIRST_BENDING, Quantity
+from solidgear.core import COMPLIANCE, FIRST_BENDING, SCENE, ModeName, Quantity, Record
+from solidgear.core.judge.record import ModelRecord, VerdictRecord
+from solidgear.core.quantity import AT
 from solidgear.show import open_words
 from solidgear.show.reading import (
     BEAM,

@@ -15,8 +15,8 @@ from typing import Any, NamedTuple
 from solidgear.comparison.page import charts, evidence_tables, front, point_tables, result_tables
 from solidgear.comparison.page.lumped import lumped_tables
 from solidgear.comparison.race import tables as race_tables
-from solidgear.core.judge.record import Record, VerdictRecord
-from solidgear.core.machine.whole_file import whole
+from solidgear.core import Record, whole
+from solidgear.core.judge.record import VerdictRecord
 from solidgear.show import open_words, run_tables
 from solidgear.show.page_parts import Contents, data_uri, template
 from solidgear.show.reading import model_name, reference_of

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from solidgear.core.judge.record import LumpedRecord, LumpedVariant, Record
+from solidgear.core import Record
+from solidgear.core.judge.record import LumpedRecord, LumpedVariant
 from solidgear.show.reading import entry, model_name
 from solidgear.show.table import Column, Table, text
 from solidgear.show.words import DASH, engineering, hertz, percent

@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from solidgear.comparison.page.result_tables import across, apart
-from solidgear.core.judge.record import Record
-from solidgear.core.quantity import C_ZZ, COMPLIANCE, STIFFNESS, Quantity
+from solidgear.core import C_ZZ, COMPLIANCE, STIFFNESS, Quantity, Record
 from solidgear.show.matrices import block as matrix
 from solidgear.show.reading import LUMPED, block, entry, model_name, value_of
 from solidgear.show.table import Table

@@ -7,8 +7,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from solidgear.core.judge.record import ModelRecord, ModeRecord, Record
-from solidgear.core.quantity import C_ZZ, FIRST_BENDING, K_ZZ, Quantity
+from solidgear.core import C_ZZ, FIRST_BENDING, Quantity, Record
+from solidgear.core.judge.record import ModelRecord, ModeRecord
+from solidgear.core.quantity import K_ZZ
 from solidgear.show.matrices import block
 from solidgear.show.reading import (
     LUMPED,

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from solidgear.comparison.page.html import drawn_charts, write_report
-from solidgear.core.errors import SolidgearError
+from solidgear.core import SolidgearError
 from solidgear.show.folder import begun, prepare
 from solidgear.show.outputs import OUTPUTS
 from solidgear.show.page_parts import data_uri
@@ -22,10 +22,7 @@ from solidgear.show.viewer import TURNED, Turning
 
 if TYPE_CHECKING:
     from solidgear.comparison.models import Comparison
-    from solidgear.core.body import Body
-    from solidgear.core.judge.record import Record
-    from solidgear.core.judge.solution import Solution
-    from solidgear.core.solve.modes import ModeSet
+    from solidgear.core import Body, ModeSet, Record, Solution
     from solidgear.show.render import RenderResult
 
 MODE = "bending 1"

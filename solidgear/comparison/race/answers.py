@@ -13,22 +13,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from solidgear.comparison.race.cases import AUTO
-from solidgear.core.errors import SolidgearError
+from solidgear.core import FIRST_BENDING, LADDER, QUANTITIES, SolidgearError, synthesise
 from solidgear.core.judge.answer import solve_cheapest
 from solidgear.core.judge.lumped import preferred, sources
 from solidgear.core.judge.question import FamilySolver, build_families
 from solidgear.core.judge.refinement import Refinement
 from solidgear.core.judge.solving import Answer, Statics, solve
 from solidgear.core.ladder.model import LUMPED
-from solidgear.core.ladder.registry import LADDER
-from solidgear.core.quantity import FIRST_BENDING, QUANTITIES
-from solidgear.core.reduction.effective_mass import synthesise
 from solidgear.core.solve.condensed import Condensed
 from solidgear.core.solve.families import FAMILIES
 
 if TYPE_CHECKING:
-    from solidgear.core.body import Body
-    from solidgear.core.scene import Scene
+    from solidgear.core import Body, Scene
 
 
 def answer(scene: Scene, model: str, options: dict, n: int) -> Answer:

@@ -9,11 +9,11 @@ import sys
 from typing import TYPE_CHECKING
 
 from solidgear.comparison.race.pareto import AUTOMATIC, Row
-from solidgear.core.ladder.registry import LADDER
+from solidgear.core import LADDER
 from solidgear.core.machine.patience import Patience
 
 if TYPE_CHECKING:
-    from solidgear.core.scene import Scene
+    from solidgear.core import Scene
 
 log = logging.getLogger(__name__)
 

@@ -16,9 +16,7 @@ from solidgear.comparison.race.pareto import Race
 from solidgear.comparison.race.rows import PICTURE, left_out, records, write_rows
 from solidgear.comparison.race.tables import front_table
 from solidgear.comparison.race.timing import BUDGET, FULL_BUDGET, FULL_SURE, race
-from solidgear.core.errors import SolidgearError
-from solidgear.core.judge.record import Record
-from solidgear.core.scene import Scene
+from solidgear.core import Record, Scene, SolidgearError
 from solidgear.show.arguments import load
 from solidgear.show.border import as_record
 from solidgear.show.command import Progress, command, say

@@ -12,8 +12,8 @@ from statistics import median
 
 import numpy as np
 
+from solidgear.core import C_ZZ, FIRST_BENDING
 from solidgear.core.machine.environment import environment
-from solidgear.core.quantity import C_ZZ, FIRST_BENDING
 
 #: charted quantities, as named in `quantities`
 CHARTED = (C_ZZ, FIRST_BENDING)

@@ -11,7 +11,7 @@ from operator import itemgetter
 from pathlib import Path
 
 from solidgear.comparison.race.pareto import CHARTED, Race, Row
-from solidgear.core.machine.whole_file import whole
+from solidgear.core import whole
 from solidgear.show.table import Column, Table
 from solidgear.show.words import percent
 

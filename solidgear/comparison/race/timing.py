@@ -18,12 +18,9 @@ import numpy as np
 
 from solidgear.comparison.race.answers import answer
 from solidgear.comparison.race.pareto import CHARTED, Race, Row
-from solidgear.core.errors import SolidgearError
-from solidgear.core.judge.settle import settle
-from solidgear.core.ladder.model import BEAM, LUMPED
-from solidgear.core.ladder.registry import LADDER
+from solidgear.core import BEAM, LADDER, Quantity, SolidgearError, settle
+from solidgear.core.ladder.model import LUMPED
 from solidgear.core.machine.meter import processor_seconds
-from solidgear.core.quantity import Quantity
 
 log = logging.getLogger(__name__)
 #: relative error bar of the reference, below the gaps between models; one of a millionth

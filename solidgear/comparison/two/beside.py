@@ -9,7 +9,8 @@ from typing import Any, Generic, TypeVar
 import numpy as np
 
 from solidgear.comparison.two.differences import Difference
-from solidgear.core.judge.change import BarredMode, Change, ModePair, Side
+from solidgear.core import BarredMode
+from solidgear.core.judge.change import Change, ModePair, Side
 from solidgear.show.words import hertz, percent
 
 #: entries of the input that are named in a sentence

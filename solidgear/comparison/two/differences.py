@@ -14,15 +14,15 @@ from math import isclose
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from solidgear.core.errors import SceneError, show
+from solidgear.core import DIMENSIONS, SceneError, parse, show
 from solidgear.core.scene import file
-from solidgear.core.scene.toml_file import describes_train, parse
-from solidgear.core.scene.units import DIMENSIONS, quantity
+from solidgear.core.scene.toml_file import describes_train
+from solidgear.core.scene.units import quantity
 from solidgear.trains.file import reading as train_file
 from solidgear.trains.file.train import SIDES
 
 if TYPE_CHECKING:
-    from solidgear.core.scene.model import Scene
+    from solidgear.core import Scene
 
 #: relative; an angle in degrees and the same in radians differ by rounding
 ROUNDING = 1e-12

@@ -22,17 +22,23 @@ from solidgear.comparison.two import beside
 from solidgear.comparison.two.beside import Beside
 from solidgear.comparison.two.differences import Difference, scene_differences
 from solidgear.comparison.two.two_shafts_page import write_two_shafts
-from solidgear.core.display import Displayed
+from solidgear.core import (
+    COMPLIANCE,
+    LADDER,
+    QUANTITIES,
+    BarredMode,
+    Displayed,
+    ModeSet,
+    OpenNumbers,
+    Quantity,
+    pinned,
+    size,
+)
 from solidgear.core.judge.answer import LEAST_TOLERANCE
-from solidgear.core.judge.change import BarredMode, Change, ModePair, all_pairs
+from solidgear.core.judge.change import Change, ModePair, all_pairs
 from solidgear.core.judge.correlation import pair_modes
-from solidgear.core.judge.open_record import OpenNumbers
-from solidgear.core.judge.quantities import in_order, judged, size
-from solidgear.core.ladder.registry import LADDER
+from solidgear.core.judge.quantities import in_order, judged
 from solidgear.core.machine.environment import environment
-from solidgear.core.machine.threads import pinned
-from solidgear.core.quantity import COMPLIANCE, QUANTITIES, Quantity
-from solidgear.core.solve.modes import ModeSet
 from solidgear.guards.one_shaft import OneShaft, Progress, one_shaft
 from solidgear.show.open_words import interval
 from solidgear.show.units import ENGINEERING, Units, units_named
@@ -40,7 +46,7 @@ from solidgear.show.words import is_number, percent
 from solidgear.variants.budget.budget import beside as open_numbers
 
 if TYPE_CHECKING:
-    from solidgear.core.scene import Scene
+    from solidgear.core import Scene
 
 #: share of the tolerance that the error bars of both are brought to
 SHARE = 0.1

@@ -19,11 +19,9 @@ from solidgear.comparison.two import beside
 from solidgear.comparison.two.beside import Beside, decibels
 from solidgear.comparison.two.differences import Difference
 from solidgear.comparison.two.two_trains_page import write_two_trains
-from solidgear.core.errors import SolidgearError, listed
+from solidgear.core import LADDER, SolidgearError, listed, pinned
 from solidgear.core.judge.change import Change, Side
-from solidgear.core.ladder.registry import LADDER
 from solidgear.core.machine.environment import environment
-from solidgear.core.machine.threads import pinned
 from solidgear.show.units import ENGINEERING, Units, units_named
 from solidgear.show.words import hertz, percent
 from solidgear.strength.deflection.train import TrainDeflection, deflection, with_ranges

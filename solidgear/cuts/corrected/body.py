@@ -29,10 +29,9 @@ import numpy as np
 import scipy.linalg as sla
 import scipy.sparse as sp
 
-from solidgear.core.body import Block, Body
+from solidgear.core import Block, Body, SolidgearError, Surface
 from solidgear.core.body.sections import Sections
-from solidgear.core.body.surface import Drawing, Surface, Volume
-from solidgear.core.errors import SolidgearError
+from solidgear.core.body.surface import Drawing, Volume
 from solidgear.core.models.harmonic.body import harmonic
 from solidgear.core.scene.attached import attached_stations
 from solidgear.cuts.corrected.mesh import meshed_cuts

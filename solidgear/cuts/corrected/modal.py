@@ -17,8 +17,7 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.csgraph import min_weight_full_bipartite_matching
 
-from solidgear.core.body import Body
-from solidgear.core.solve.modes import modes
+from solidgear.core import Body, modes
 from solidgear.core.solve.statics import port_fields, twin_matrix
 
 #: stations by whose motions modes of two meshes are recognised

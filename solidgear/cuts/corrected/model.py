@@ -13,7 +13,7 @@ from solidgear.core.models.kinds import CUTS
 from solidgear.core.models.options import CORRECTED_OPTIONS
 
 if TYPE_CHECKING:
-    from solidgear.core.body import Body
+    from solidgear.core import Body
     from solidgear.core.models.size import Size
 
 #: free modes kept on the coarsest mesh, whose supported modes err by more than those left out give

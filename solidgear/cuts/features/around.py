@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from itertools import combinations
 from typing import Any
 
-from solidgear.core.errors import SceneError
+from solidgear.core import SceneError
 from solidgear.core.scene.feature import FEWEST, SMALLEST
 from solidgear.core.scene.parts import Segment
 from solidgear.cuts.features.bolt_circle import BoltCircle

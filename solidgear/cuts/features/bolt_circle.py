@@ -6,11 +6,9 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import ClassVar, Literal
 
-from solidgear.core.errors import SceneError
+from solidgear.core import TOUCH, PositiveLength, SceneError
 from solidgear.core.scene.feature import SMALLEST, Count, OnSegment
-from solidgear.core.scene.outline import TOUCH
 from solidgear.core.scene.parts import Segment
-from solidgear.core.scene.units import PositiveLength
 
 
 class BoltCircle(OnSegment):

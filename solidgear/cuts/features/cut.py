@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
-from solidgear.core.errors import SceneError
+from solidgear.core import TOUCH, Model, PositiveLength, SceneError
 from solidgear.core.scene.feature import SMALLEST, OnSegment
-from solidgear.core.scene.outline import TOUCH
 from solidgear.core.scene.parts import Segment
 from solidgear.core.scene.places import Along, Places
-from solidgear.core.scene.typed import Model
-from solidgear.core.scene.units import Position, PositiveLength
+from solidgear.core.scene.units import Position
 
 
 class Frame(NamedTuple):

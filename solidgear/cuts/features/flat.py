@@ -6,9 +6,8 @@ import math
 from collections.abc import Iterator
 from typing import Any, Literal
 
-from solidgear.core.errors import SceneError
+from solidgear.core import PositiveLength, SceneError
 from solidgear.core.scene.parts import Segment
-from solidgear.core.scene.units import PositiveLength
 from solidgear.cuts.features.cut import Frame, Long
 
 

@@ -6,11 +6,9 @@ import math
 from collections.abc import Iterator
 from typing import Any, Literal
 
-from solidgear.core.errors import SceneError
+from solidgear.core import TOUCH, PositiveLength, SceneError
 from solidgear.core.scene.feature import SMALLEST
-from solidgear.core.scene.outline import TOUCH
 from solidgear.core.scene.parts import Segment
-from solidgear.core.scene.units import PositiveLength
 from solidgear.cuts.features.cut import Frame, Long
 
 

@@ -9,10 +9,10 @@ from typing import Annotated, Any, ClassVar, Literal
 import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
-from solidgear.core.errors import SceneError
+from solidgear.core import SceneError, SignedAngle
 from solidgear.core.scene.feature import SMALLEST, Count, OnSegment
 from solidgear.core.scene.parts import Segment
-from solidgear.core.scene.units import SignedAngle, quantity
+from solidgear.core.scene.units import quantity
 
 #: least land between two teeth, and least top of a tooth, in pitches; smaller ones would need
 #: endless meshes

@@ -12,8 +12,7 @@ from typing import Any
 import numpy as np
 from skfem import MeshTet2
 
-from solidgear.core.body import Block, Body
-from solidgear.core.errors import SolidgearError
+from solidgear.core import Block, Body, Outline, SolidgearError
 from solidgear.core.kernel.room import assemblable
 from solidgear.core.meshing.element_size import rough_cells
 from solidgear.core.models.kinds import CYCLIC
@@ -23,7 +22,6 @@ from solidgear.core.models.solid.mesh import SolidMesh, _isoparametric, basis_of
 from solidgear.core.models.solid.plan import tetrahedra_plan
 from solidgear.core.scene.attached import attached_stations
 from solidgear.core.scene.feature import SMALLEST
-from solidgear.core.scene.outline import Outline
 from solidgear.core.scene.parts import Segment
 from solidgear.core.scene.shaft import resolved
 from solidgear.cuts.features.around import SAME_ANGLE, middle, mirror_angle, no_common_sector

@@ -26,8 +26,7 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sp
 
-from solidgear.core.body import Block
-from solidgear.core.frames import rotation
+from solidgear.core import Block, rotation
 from solidgear.core.kernel.attachment import Attached, with_ports
 from solidgear.core.models.solid.block import rigid_motions
 from solidgear.core.models.solid.matrices import _matrices, weighed

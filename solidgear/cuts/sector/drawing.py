@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.core.frames import rotation
+from solidgear.core import Outline, rotation
 from solidgear.core.meshing.quality import MeshError
 from solidgear.core.meshing.revolved import draw_revolved
-from solidgear.core.scene.outline import Frustum, Outline
+from solidgear.core.scene.outline import Frustum
 from solidgear.cuts.features.around import middle
 from solidgear.cuts.sector.teeth import half_outline
 from solidgear.cuts.sector.teeth import outline as teeth_outline

@@ -26,9 +26,7 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sp
 
-from solidgear.core.body import Block
-from solidgear.core.body.surface import Surface
-from solidgear.core.frames import rotation
+from solidgear.core import Block, Surface, rotation
 from solidgear.core.kernel.attachment import Attached, with_ports
 from solidgear.core.models.solid.block import rigid_motions
 from solidgear.core.models.solid.drawing import copied, solid_surface

@@ -9,8 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.core.body.surface import Surface
-from solidgear.core.frames import rotation
+from solidgear.core import Surface, rotation
 from solidgear.core.models.solid.block import Facets
 from solidgear.core.models.solid.drawing import copied, solid_surface
 from solidgear.core.models.solid.mesh import SolidMesh, _isoparametric

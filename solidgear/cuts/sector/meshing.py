@@ -19,7 +19,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 from skfem import MeshTet2
 
-from solidgear.core.frames import rotation
+from solidgear.core import Outline, rotation
 from solidgear.core.meshing.curving import ten_nodes, with_nodes
 from solidgear.core.meshing.element_size import set_size, size_formulas
 from solidgear.core.meshing.gmsh_session import Session, import_gmsh
@@ -32,7 +32,6 @@ from solidgear.core.meshing.tetrahedra import (
     segment_of_elements,
 )
 from solidgear.core.scene.closed_form import integrals_along, volume_of
-from solidgear.core.scene.outline import Outline
 from solidgear.core.scene.parts import Segment
 from solidgear.cuts.features.around import middle, mirror_angle, no_common_sector
 from solidgear.cuts.sector.drawing import draw_sector, drill, pair_faces

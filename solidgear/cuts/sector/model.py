@@ -13,7 +13,7 @@ from solidgear.core.models.kinds import CYCLIC
 from solidgear.core.models.options import SECTOR_OPTIONS
 
 if TYPE_CHECKING:
-    from solidgear.core.body import Body
+    from solidgear.core import Body
     from solidgear.core.models.size import Size
 
 #: one sector holds meshes that are finer than those of a whole shaft

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.core.body import Block, Body
+from solidgear.core import Block, Body
 from solidgear.core.kernel.room import assemblable
 from solidgear.core.meshing.quality import check_mesh
 from solidgear.core.models.kinds import CYCLIC

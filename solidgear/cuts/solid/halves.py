@@ -13,9 +13,8 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sp
 
-from solidgear.core.body import Block
-from solidgear.core.body.surface import Surface, Volume
-from solidgear.core.errors import SolidgearError
+from solidgear.core import Block, SolidgearError, Surface
+from solidgear.core.body.surface import Volume
 from solidgear.core.kernel.attachment import Attached, with_ports
 from solidgear.core.models.solid.block import Facets, rigid_motions
 from solidgear.core.models.solid.drawing import copied

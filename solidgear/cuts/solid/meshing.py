@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 from skfem import MeshTet2
 
+from solidgear.core import Outline
 from solidgear.core.meshing.curving import Filling, ten_nodes
 from solidgear.core.meshing.element_size import set_size, size_formulas
 from solidgear.core.meshing.gmsh_session import Session, import_gmsh
@@ -28,7 +29,6 @@ from solidgear.core.meshing.tetrahedra import (
     segment_of_elements,
 )
 from solidgear.core.scene.closed_form import volume_of
-from solidgear.core.scene.outline import Outline
 from solidgear.core.scene.parts import Segment
 from solidgear.cuts.features.cut import Cut
 from solidgear.cuts.solid.cuts import edge_size, feature_size, mirror_plane, tool

@@ -9,8 +9,7 @@ from typing import Annotated, Any
 
 import typer
 
-from solidgear.core.loading import explained
-from solidgear.core.scene import Scene
+from solidgear.core import Scene, explained
 from solidgear.show.command import Progress, caution, command, say
 from solidgear.show.folder import held
 from solidgear.show.options import BY_MODEL, Shown

@@ -30,9 +30,9 @@ from math import sin
 
 import numpy as np
 
+from solidgear.core import System
 from solidgear.core.frames import cross_matrix
 from solidgear.core.reduction.superelement import PortMotion
-from solidgear.core.system.system import System
 from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.file.gears import Member, Pair
 from solidgear.trains.file.train import Train

@@ -12,15 +12,9 @@ from solidgear.bearings.catalogued import Catalogued
 from solidgear.bearings.life import Life, life
 from solidgear.bearings.row import Contacts
 from solidgear.bearings.solved import AS_STATED, Choice, catalogued_bearings
-from solidgear.core.body import Body
-from solidgear.core.errors import SolidgearError
+from solidgear.core import LADDER, Bearing, Body, Scene, SolidgearError, System, build, rubin
 from solidgear.core.frames import shift
-from solidgear.core.ladder import build
-from solidgear.core.ladder.registry import LADDER
-from solidgear.core.reduction.rubin import rubin
-from solidgear.core.scene import Bearing, Scene
 from solidgear.core.solve.naming import Projection
-from solidgear.core.system.system import System
 from solidgear.trains.system.equilibrium import OnBearings, SystemEquilibrium, seats_of
 
 #: stations of a deflection line

@@ -7,7 +7,7 @@ from functools import partial
 from math import degrees, isfinite
 from typing import Any
 
-from solidgear.core.errors import listed
+from solidgear.core import listed
 from solidgear.show.table import Cell, Column, Table, numbers, quantity, text, word
 from solidgear.show.units import ENGINEERING, Units
 

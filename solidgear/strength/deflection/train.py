@@ -21,15 +21,11 @@ from typing import Any
 import numpy as np
 
 from solidgear.bearings.bearing_life import left_open
+from solidgear.core import DOF_NAMES, SolidgearError, System, coned, listed, pinned
 from solidgear.core.bounds.harmonic import HarmonicBounds, harmonic_bounds, with_tail
 from solidgear.core.bounds.safety import LOCAL
-from solidgear.core.errors import SolidgearError, listed
-from solidgear.core.frames import DOF_NAMES
 from solidgear.core.judge.deviations import WITHIN, gap_verdict
-from solidgear.core.machine.threads import pinned
-from solidgear.core.scene.coned import coned
 from solidgear.core.system.port_forces import port_forces
-from solidgear.core.system.system import System
 from solidgear.strength.deflection.misalignment import misalignment
 from solidgear.strength.deflection.shaft import ShaftDeflection, shaft_deflection
 from solidgear.trains.assembly.components import FORCE_UNITS

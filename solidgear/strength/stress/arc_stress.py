@@ -16,8 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solidgear.core.body import Block, Body
-from solidgear.core.errors import SolidgearError
+from solidgear.core import Block, Body, SolidgearError
 from solidgear.core.kernel.cell_shapes import Kind
 from solidgear.core.meshing.cells import HIGH, LOW, OUT
 from solidgear.core.models.harmonic.blocks import Work

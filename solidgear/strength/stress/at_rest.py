@@ -16,10 +16,8 @@ import numpy as np
 
 from solidgear.bearings.bearing_life import left_open
 from solidgear.bearings.solved import AS_STATED, Choice
-from solidgear.core.errors import SolidgearError
-from solidgear.core.ladder.registry import LADDER
+from solidgear.core import LADDER, Scene, SolidgearError
 from solidgear.core.plain import plain
-from solidgear.core.scene import Scene
 from solidgear.core.scene.filleted import filleted
 from solidgear.parts.body_file import BodyFile
 from solidgear.strength.deflection.shaft import ShaftAtRest, load_of

@@ -10,8 +10,7 @@ from typing import Annotated
 
 import typer
 
-from solidgear.core.errors import SceneError, SolidgearError, show
-from solidgear.core.loading import explained
+from solidgear.core import SceneError, SolidgearError, explained, show
 from solidgear.core.scene.units import quantity
 from solidgear.show.command import NOT_REACHED, Group, caution, command, say
 from solidgear.show.folder import held

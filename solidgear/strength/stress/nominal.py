@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from solidgear.core.scene.outline import TOUCH
+from solidgear.core import TOUCH
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

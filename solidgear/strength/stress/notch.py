@@ -28,19 +28,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from solidgear.core.errors import SolidgearError
+from solidgear.core import TOUCH, Outline, Port, SolidgearError, coned, flexibility
 from solidgear.core.models.harmonic.body import harmonic
-from solidgear.core.scene import Port
-from solidgear.core.scene.coned import coned
-from solidgear.core.scene.outline import TOUCH, Outline
 from solidgear.core.solve.backends.matrix import FactorError
-from solidgear.core.solve.statics import flexibility
 from solidgear.strength.stress.arc_stress import Arc, ArcStress
 from solidgear.strength.stress.nominal import CrossSection
 
 if TYPE_CHECKING:
-    from solidgear.core.body import Body
-    from solidgear.core.scene import Corner, Scene, Segment
+    from solidgear.core import Body, Scene
+    from solidgear.core.scene import Corner, Segment
 
 #: how far a piece goes on beyond its fillet, in outer radii of the shaft on that side
 REACH = 4.0

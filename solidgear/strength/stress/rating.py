@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from pydantic import Field
 
-from solidgear.core.scene.typed import Model
-from solidgear.core.scene.units import PositiveLength
+from solidgear.core import Model, PositiveLength
 from solidgear.strength.stress import din743
 from solidgear.strength.stress.din743 import LOADS, Load
 

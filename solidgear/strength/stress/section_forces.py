@@ -34,15 +34,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from solidgear.core.errors import SolidgearError, listed, nearest
-from solidgear.core.frames import DOF_NAMES, shift
+from solidgear.core import DOF_NAMES, TOUCH, Outline, SolidgearError, listed, nearest
+from solidgear.core.frames import shift
 from solidgear.core.scene.closed_form import mass_properties
-from solidgear.core.scene.outline import TOUCH, Outline
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from solidgear.core.scene import Scene
+    from solidgear.core import Scene
 
 #: components of a section force, in the order of those of loads
 COMPONENTS = ("Q_x", "N", "Q_z", "M_x", "T", "M_z")

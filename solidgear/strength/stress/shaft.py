@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from solidgear.core.errors import SolidgearError
+from solidgear.core import SolidgearError
 from solidgear.core.scene.blends import Corner
 from solidgear.core.scene.outline import radii_of
 from solidgear.strength.stress.din743 import LOADS
@@ -37,7 +37,7 @@ from solidgear.strength.stress.section_forces import SectionForces, forces_of
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from solidgear.core.scene import Scene
+    from solidgear.core import Scene
 
 #: in diameters of the shaft: a load that enters nearer to a fillet disturbs its stress, or is at it
 NEAR, TOUCHING = 1.0, 0.01

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from solidgear.core.errors import listed
+from solidgear.core import listed
 from solidgear.show.table import Cell, Column, Table, quantity, text, word
 from solidgear.show.units import ENGINEERING, Units, plain
 from solidgear.show.words import percent

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from solidgear.core.frames import DOF_NAMES
+from solidgear.core import DOF_NAMES
 
 FORCE_UNITS = ("N",) * 3 + ("N m",) * 3
 MOTION_UNITS = ("m",) * 3 + ("rad",) * 3

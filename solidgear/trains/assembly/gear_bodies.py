@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from math import cos, pi, sin, sqrt
 
-from solidgear.core.scene import Scene
+from solidgear.core import Scene
 from solidgear.trains.assembly.layout import mesh_forces
 from solidgear.trains.file.gears import HeadInertia, Pair
 from solidgear.trains.file.layout import ends_of, flanks_from_file

@@ -10,12 +10,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from solidgear.core.frames import DOF_NAMES
+from solidgear.core import DOF_NAMES, System
 from solidgear.core.reduction.superelement import PortMotion
 from solidgear.core.scene.housing_matrices import HousingMatrices
 from solidgear.core.system.links import BearingSpring, Link, relative_motion
 from solidgear.core.system.parts import Part, Placed, RigidBody
-from solidgear.core.system.system import System
 from solidgear.trains.assembly.components import FORCE_UNITS, MOTION_UNITS, six_columns
 from solidgear.trains.file.housing import CENTRE, HOUSING, LOSS, TrainHousing
 from solidgear.trains.file.planetary import Stage

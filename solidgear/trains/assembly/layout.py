@@ -9,8 +9,7 @@ from itertools import combinations
 
 import numpy as np
 
-from solidgear.core.errors import SceneError
-from solidgear.core.scene import Scene
+from solidgear.core import Scene, SceneError
 from solidgear.trains.file.gears import Pair
 from solidgear.trains.file.layout import outward
 from solidgear.trains.file.operation import OperatingPoint

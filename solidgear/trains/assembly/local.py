@@ -21,18 +21,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from solidgear.core.body import Body
-from solidgear.core.errors import SolidgearError
+from solidgear.core import Body, Scene, SolidgearError, modes
 from solidgear.core.models.harmonic.patch import Patch, PatchMotion
 from solidgear.core.reduction.superelement import Superelement
 from solidgear.core.reduction.waves import local_compliance, own_waves, with_waves
-from solidgear.core.scene import Scene
-from solidgear.core.solve.modes import modes
 from solidgear.core.system.parts import Part, Placed
 from solidgear.trains.file.gears import Pair
 
 if TYPE_CHECKING:
-    from solidgear.core.system.system import System
+    from solidgear.core import System
     from solidgear.trains.assembly.models import Workshop
 
 #: port of a part at the point of the only mesh; no station can be called so, for names hold no dot

@@ -11,14 +11,11 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from solidgear.core import ELEMENTS, System, coned, pinned
 from solidgear.core.body import FURTHER
 from solidgear.core.bounds.harmonic import lower_ends, vibration_energies, with_tail
 from solidgear.core.bounds.safety import LOCAL
-from solidgear.core.elements import ELEMENTS
-from solidgear.core.machine.threads import pinned
-from solidgear.core.scene.coned import coned
 from solidgear.core.system.parts import Part, Placed
-from solidgear.core.system.system import System
 from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.assembly.shaft import JUDGE
 

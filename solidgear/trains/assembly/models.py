@@ -10,17 +10,22 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import ArrayLike
 
-from solidgear.core.body import Body
-from solidgear.core.errors import SolidgearError, listed, nearest, show
-from solidgear.core.ladder import build
-from solidgear.core.ladder.registry import LADDER
+from solidgear.core import (
+    LADDER,
+    Body,
+    Scene,
+    SolidgearError,
+    System,
+    build,
+    listed,
+    nearest,
+    rubin,
+    show,
+)
 from solidgear.core.reduction.craig_bampton import craig_bampton
-from solidgear.core.reduction.rubin import rubin
-from solidgear.core.scene import Scene
 from solidgear.core.system.gear_mesh import MeshVector
 from solidgear.core.system.links import Link, PortInertia, grounded, mesh_spring, torsion_spring
 from solidgear.core.system.parts import Inertia, Part, Placed, RigidBody
-from solidgear.core.system.system import System
 from solidgear.trains.assembly.gear_bodies import gear_cautions
 from solidgear.trains.assembly.housing import (
     housing_cautions,

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solidgear.core.errors import SolidgearError
+from solidgear.core import SolidgearError
 from solidgear.trains.assembly.kinematics import MESH_ORDERS, mesh_harmonics, shaft_harmonics
 from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.file.planetary import PlanetMesh

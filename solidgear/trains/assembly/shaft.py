@@ -18,14 +18,20 @@ from functools import cached_property
 
 import numpy as np
 
-from solidgear.core.body import Body, as_supports
-from solidgear.core.errors import SolidgearError, listed, nearest, show
+from solidgear.core import (
+    LADDER,
+    Body,
+    Scene,
+    SolidgearError,
+    as_supports,
+    listed,
+    nearest,
+    show,
+    synthesise,
+)
 from solidgear.core.frames import shift
-from solidgear.core.ladder.registry import LADDER
 from solidgear.core.reduction.condensed import condensed_shaft
-from solidgear.core.reduction.effective_mass import synthesise
 from solidgear.core.reduction.superelement import Superelement
-from solidgear.core.scene import Scene
 from solidgear.core.system.parts import Part
 
 RIGID = "rigid"

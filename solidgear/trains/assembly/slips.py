@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from solidgear.core.ladder import build
+from solidgear.core import build
 from solidgear.core.loading import SHAFT
 from solidgear.guards import Probe, data
 from solidgear.guards.notice import slip_in_units

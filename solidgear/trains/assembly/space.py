@@ -16,7 +16,7 @@ from math import ceil, cos, pi, sin
 import numpy as np
 
 from solidgear.bearings.catalogue import catalogue_of
-from solidgear.core.scene import Scene
+from solidgear.core import Scene
 from solidgear.guards.bearings import width_of
 from solidgear.trains.assembly.layout import Place
 from solidgear.trains.file.gears import Pair

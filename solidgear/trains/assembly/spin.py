@@ -10,11 +10,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from solidgear.core.body import as_supports
+from solidgear.core import LADDER, System, as_supports
 from solidgear.core.judge.at_rest import opened_words
-from solidgear.core.ladder.registry import LADDER
 from solidgear.core.solve.spin import couplings, opened
-from solidgear.core.system.system import System
 from solidgear.trains.assembly.meshes import mesh_bars
 from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.modes.naming import mode_names

@@ -13,12 +13,11 @@ from functools import cached_property
 
 import numpy as np
 
+from solidgear.core import Scene, System
 from solidgear.core.reduction.superelement import PortMotion
-from solidgear.core.scene import Scene
 from solidgear.core.solve.families import FAMILIES
 from solidgear.core.system.links import BearingSpring, Link, RowSpring
 from solidgear.core.system.parts import Part, Placed
-from solidgear.core.system.system import System
 from solidgear.trains.assembly.housing import ring_port
 from solidgear.trains.assembly.layout import Place, sun_ways
 from solidgear.trains.file.gears import Pair

@@ -14,9 +14,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solidgear.core.machine.threads import pinned
+from solidgear.core import System, pinned
 from solidgear.core.system.port_forces import port_forces
-from solidgear.core.system.system import System
 from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.assembly.stages import StageAtWork
 from solidgear.trains.file.planetary import Stage, with_carrier_turned

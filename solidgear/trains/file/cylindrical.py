@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from math import acos, atan, cos, isclose, pi, tan
 from typing import TYPE_CHECKING, Any
 
-from solidgear.core.errors import SceneError
+from solidgear.core import SceneError
 from solidgear.core.scene.units import TYPED
 
 if TYPE_CHECKING:

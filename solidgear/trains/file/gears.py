@@ -10,11 +10,9 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from solidgear.core.errors import SceneError, listed, nearest
-from solidgear.core.scene.model import Scene
+from solidgear.core import Model, PositiveLength, Scene, SceneError, listed, nearest
 from solidgear.core.scene.stations import Status
-from solidgear.core.scene.typed import Model
-from solidgear.core.scene.units import TYPED, Inertia, Mass, PitchAngle, PositiveLength, SpiralAngle
+from solidgear.core.scene.units import TYPED, Inertia, Mass, PitchAngle, SpiralAngle
 from solidgear.trains.file.cylindrical import cylindrical_problems, rolling_fields
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.tables import Mesh

@@ -11,11 +11,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 import numpy as np
 from pydantic import BeforeValidator, Field, InstanceOf, model_validator
 
-from solidgear.core.errors import SceneError, listed, nearest
+from solidgear.core import Model, SceneError, listed, nearest
 from solidgear.core.scene.bearing_stiffness import Matrix
 from solidgear.core.scene.housing_matrices import HousingMatrices
 from solidgear.core.scene.stations import Status
-from solidgear.core.scene.typed import Model
 from solidgear.core.scene.units import TYPED, Loss, Mass, quantity
 from solidgear.trains.file.mesh_cycle import Vector
 

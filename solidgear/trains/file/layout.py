@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from math import isclose
 from typing import TYPE_CHECKING
 
-from solidgear.core.errors import SceneError, listed, nearest
+from solidgear.core import SceneError, listed, nearest
 from solidgear.trains.file.planetary import stage_problems
 
 if TYPE_CHECKING:

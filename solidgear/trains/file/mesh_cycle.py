@@ -8,9 +8,8 @@ from typing import Annotated
 
 from pydantic import model_validator
 
-from solidgear.core.errors import SceneError
-from solidgear.core.scene.typed import Model
-from solidgear.core.scene.units import MeshSpring, SignedAngle, three
+from solidgear.core import Model, SceneError, SignedAngle
+from solidgear.core.scene.units import MeshSpring, three
 
 #: least number of places of a mesh cycle, and largest relative difference of its two ends
 LEAST_OF_CYCLE, CYCLE_CLOSES = 3, 1e-3

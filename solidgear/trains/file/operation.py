@@ -10,14 +10,12 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from solidgear.core.errors import SceneError, listed, nearest
-from solidgear.core.frames import DOF_NAMES
+from solidgear.core import DOF_NAMES, Model, SceneError, listed, nearest
 from solidgear.core.scene.load import BearingLoad
-from solidgear.core.scene.typed import Model
 from solidgear.core.scene.units import TYPED, Speed, Torque
 
 if TYPE_CHECKING:
-    from solidgear.core.scene.model import Scene
+    from solidgear.core import Scene
     from solidgear.trains.file.train import Train
 
 Direction = Literal["x", "-x", "y", "-y", "z", "-z"]

@@ -13,10 +13,9 @@ from typing import TYPE_CHECKING, Annotated
 
 from pydantic import Field, model_validator
 
-from solidgear.core.errors import SceneError, SolidgearError, listed, nearest
+from solidgear.core import Model, SceneError, SolidgearError, listed, nearest
 from solidgear.core.scene.planetary_teeth import PlanetaryTeeth
 from solidgear.core.scene.stations import Status
-from solidgear.core.scene.typed import Model
 from solidgear.core.scene.units import MeshSpring, PressureAngle, TorsionSpring
 from solidgear.trains.file.gears import Gear, HeadInertia, Pair, Teeth
 from solidgear.trains.file.tables import Azimuth, Error, ErrorTable

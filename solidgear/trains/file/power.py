@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from math import fsum
 from typing import TYPE_CHECKING
 
-from solidgear.core.errors import SceneError
+from solidgear.core import SceneError
 from solidgear.core.scene.units import TYPED
 from solidgear.trains.file.layout import outward
 

@@ -16,12 +16,11 @@ from typing import Any
 
 from pydantic import model_validator
 
-from solidgear.core.errors import SceneError, near, show
+from solidgear.core import Model, Scene, SceneError, near, parse, show
 from solidgear.core.scene.file import load
 from solidgear.core.scene.housing_matrices import ARRAYS, read_matrices
-from solidgear.core.scene.model import Scene
-from solidgear.core.scene.toml_file import name_of, parse, with_table_paths
-from solidgear.core.scene.typed import Model, Problems
+from solidgear.core.scene.toml_file import name_of, with_table_paths
+from solidgear.core.scene.typed import Problems
 from solidgear.core.scene.units import TYPED
 from solidgear.trains.file.gears import Member, Shaft
 from solidgear.trains.file.housing import HOUSING, TrainHousing

@@ -7,21 +7,16 @@ from typing import Annotated, Any
 
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
-from solidgear.core.errors import SceneError
-from solidgear.core.scene.rules import MOST_MODES
+from solidgear.core import MOST_MODES, Length, Model, PositiveLength, SceneError, SignedAngle
 from solidgear.core.scene.stations import Status
-from solidgear.core.scene.typed import Model
 from solidgear.core.scene.units import (
     TYPED,
     Frequency,
     Inertia,
-    Length,
     Loss,
     MeshSpring,
-    PositiveLength,
     PressureAngle,
     ShaftAngle,
-    SignedAngle,
     Thickness,
     Tolerance,
     TorsionSpring,

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from math import acos, atan, copysign, cos, pi, sin, sqrt, tan
 from typing import TYPE_CHECKING
 
-from solidgear.core.errors import SceneError
+from solidgear.core import SceneError
 from solidgear.trains.file.cylindrical import working_cylinders
 
 if TYPE_CHECKING:

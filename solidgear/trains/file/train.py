@@ -13,10 +13,7 @@ from typing import Any
 import numpy as np
 from pydantic import model_validator
 
-from solidgear.core.errors import SceneError, SolidgearError, listed
-from solidgear.core.scene.model import Scene
-from solidgear.core.scene.stations import Bearing
-from solidgear.core.scene.typed import Model
+from solidgear.core import Bearing, Model, Scene, SceneError, SolidgearError, listed
 from solidgear.trains.file.gears import HeadInertia, Member, Pair, Shaft, pair_problems
 from solidgear.trains.file.housing import TrainHousing, housing_problems
 from solidgear.trains.file.layout import (

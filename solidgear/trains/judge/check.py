@@ -11,10 +11,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from solidgear.core.errors import SolidgearError
-from solidgear.core.ladder import build
-from solidgear.core.ladder.meshes import HARMONIC
-from solidgear.core.machine.threads import pinned
+from solidgear.core import HARMONIC, SolidgearError, build, pinned
 from solidgear.guards import Probe
 from solidgear.guards.check import check_scene
 from solidgear.trains.assembly.housing import housing_facts

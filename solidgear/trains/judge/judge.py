@@ -19,9 +19,7 @@ from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 
-from solidgear.core.errors import SolidgearError
-from solidgear.core.ladder.model import BEAM
-from solidgear.core.ladder.registry import LADDER
+from solidgear.core import BEAM, LADDER, SolidgearError
 from solidgear.trains.assembly.meshes import mesh_bars
 from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.assembly.shaft import JUDGE, LUMPED, checked_model, ladder_place, mix_label

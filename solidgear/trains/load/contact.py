@@ -11,8 +11,7 @@ from math import cos, sin
 
 import numpy as np
 
-from solidgear.core.errors import SceneError, SolidgearError
-from solidgear.core.frames import rotation
+from solidgear.core import SceneError, SolidgearError, rotation
 from solidgear.core.system.contact_cells import ContactWrench, contact_wrench
 from solidgear.core.system.gear_mesh import (
     MeshVector,

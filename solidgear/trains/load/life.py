@@ -9,7 +9,7 @@ from functools import cached_property
 from solidgear.bearings.bearing_life import BearingLife, left_open, life_of
 from solidgear.bearings.duty import DutyLife, DutyPoint, duty_life
 from solidgear.bearings.solved import AS_STATED
-from solidgear.core.errors import SolidgearError
+from solidgear.core import SolidgearError
 from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.train import Train

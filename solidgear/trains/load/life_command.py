@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from solidgear.bearings.life_command import plain_life
-from solidgear.core.errors import SolidgearError
+from solidgear.core import SolidgearError
 from solidgear.show.command import say
 from solidgear.show.table import Column, Table
 from solidgear.show.words import engineering, percent

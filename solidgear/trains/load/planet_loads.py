@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from solidgear.core.system.system import System
+from solidgear.core import System
 from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.assembly.stages import StageAtWork
 from solidgear.trains.file.operation import OperatingPoint

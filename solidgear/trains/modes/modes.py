@@ -6,9 +6,7 @@ from dataclasses import asdict, dataclass, field, replace
 
 import numpy as np
 
-from solidgear.core.errors import SolidgearError
-from solidgear.core.frames import DOF_NAMES
-from solidgear.core.system.system import System
+from solidgear.core import DOF_NAMES, SolidgearError, System
 from solidgear.trains.assembly.housing import free_directions, seat_motion
 from solidgear.trains.assembly.local import local_lines, undriven, waves_of
 from solidgear.trains.assembly.meshes import mesh_bars, mesh_limit

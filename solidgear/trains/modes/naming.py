@@ -15,12 +15,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from solidgear.core.body import Body
+from solidgear.core import Body, System
 from solidgear.core.frames import shift
 from solidgear.core.solve.circumference import circumference_of
 from solidgear.core.solve.families import FAMILIES
 from solidgear.core.system.modes import SystemModes
-from solidgear.core.system.system import System
 from solidgear.trains.assembly.housing import housing_energy
 from solidgear.trains.assembly.local import waves_of
 from solidgear.trains.assembly.models import Workshop

@@ -15,10 +15,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solidgear.core.judge.change import BarredMode, ModePair, all_pairs
+from solidgear.core import BarredMode, System
+from solidgear.core.judge.change import ModePair, all_pairs
 from solidgear.core.solve.neighbours import best_assignment
 from solidgear.core.system.modes import SystemModes
-from solidgear.core.system.system import System
 from solidgear.trains.assembly.housing import BOX
 from solidgear.trains.assembly.meshes import mesh_bars
 from solidgear.trains.assembly.models import Workshop

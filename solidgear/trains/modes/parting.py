@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from solidgear.core.errors import SolidgearError
+from solidgear.core import SolidgearError
 from solidgear.trains.file.gears import Pair
 from solidgear.trains.file.planetary import PlanetMesh
 from solidgear.trains.load.operation import mean_forces

@@ -10,12 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
-from solidgear.core.body import Body
-from solidgear.core.body.surface import Surface
-from solidgear.core.errors import SolidgearError, listed
-from solidgear.core.ladder.registry import LADDER
+from solidgear.core import LADDER, Body, SolidgearError, Surface, System, listed
 from solidgear.core.system.modes import SystemModes
-from solidgear.core.system.system import System
 from solidgear.show.folder import prepare
 from solidgear.show.page_parts import data_uri
 from solidgear.show.render import RenderJob, RenderResult, render_modes

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from solidgear.bearings.words import catalogue, load_row, speed_row, without_column
-from solidgear.core.judge.record import Record
-from solidgear.core.quantity import Quantity
+from solidgear.core import Quantity, Record
 from solidgear.show.reading import entry
 from solidgear.show.table import Column, Table, given, text, word
 from solidgear.show.units import ENGINEERING, Units

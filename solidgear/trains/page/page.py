@@ -10,7 +10,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from solidgear.core.machine.whole_file import whole
+from solidgear.core import whole
 from solidgear.show.folder import begun
 from solidgear.show.page_parts import Contents, data_uri, template
 from solidgear.show.plot import Make, page_svg

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.core.errors import SolidgearError
+from solidgear.core import SolidgearError
 from solidgear.trains.assembly.kinematics import SLIP, angles_of, settled_angles, train_orders
 from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.file.train import PerTurn, Train

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.core.scene import Scene
+from solidgear.core import Scene
 from solidgear.trains.file.train import PerTurn, Train
 from solidgear.trains.modes.modes import TrainMode
 from solidgear.trains.response.response import OrderCurve, TrainResponse, figures

@@ -12,8 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solidgear.core.errors import SolidgearError, show
-from solidgear.core.frames import DOF_NAMES
+from solidgear.core import DOF_NAMES, SolidgearError, show
 from solidgear.trains.assembly.components import FORCE_UNITS, MOTION_UNITS
 from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.assembly.shaft import mix_label

@@ -13,12 +13,9 @@ from functools import cached_property
 
 import numpy as np
 
-from solidgear.core.body import as_supports
-from solidgear.core.errors import SolidgearError, show
-from solidgear.core.machine.threads import pinned
+from solidgear.core import SolidgearError, System, as_supports, pinned, show
 from solidgear.core.system.modes import SystemModes
 from solidgear.core.system.steady import SteadyState, peaks, stands_out
-from solidgear.core.system.system import System
 from solidgear.trains.assembly.components import FORCE_UNITS, MOTION_UNITS, six_columns
 from solidgear.trains.assembly.housing import housing_amplitudes, housing_columns, seat_motion
 from solidgear.trains.assembly.local import local_lines

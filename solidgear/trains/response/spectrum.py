@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from solidgear.core.errors import SolidgearError, show
+from solidgear.core import SolidgearError, show
 
 FEWEST_LINES, MOST_LINES = 8, 2_000_000
 MOST_BYTES = 200_000_000

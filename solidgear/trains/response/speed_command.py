@@ -10,7 +10,7 @@ from typing import Annotated
 
 import typer
 
-from solidgear.core.errors import SceneError, SolidgearError, show
+from solidgear.core import SceneError, SolidgearError, show
 from solidgear.core.scene.units import quantity
 from solidgear.show import speed_tables
 from solidgear.show.command import Group, say

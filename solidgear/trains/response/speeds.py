@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from math import pi
 
-from solidgear.core.scene import Scene
+from solidgear.core import Scene
 from solidgear.trains.file.train import Train
 
 RPM = 30 / pi

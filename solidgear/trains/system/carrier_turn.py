@@ -32,11 +32,9 @@ from math import cos
 import numpy as np
 from numpy.typing import ArrayLike
 
-from solidgear.core.errors import SolidgearError, listed
-from solidgear.core.frames import rotation
+from solidgear.core import SolidgearError, System, listed, rotation
 from solidgear.core.springs import root_of
 from solidgear.core.system.matrices import frozen, spd
-from solidgear.core.system.system import System
 from solidgear.trains.system.planetary import ONE_LINE, PlanetaryStage
 from solidgear.trains.system.planetary_members import ACROSS
 from solidgear.trains.system.planetary_modes import CENTRAL

@@ -34,13 +34,9 @@ from solidgear.bearings.balance import (
 from solidgear.bearings.catalogued import Catalogued
 from solidgear.bearings.newton import NothingHolds
 from solidgear.bearings.solved import mounted
-from solidgear.core.errors import SolidgearError
-from solidgear.core.frames import DOF_NAMES
-from solidgear.core.machine.threads import pinned
-from solidgear.core.scene import Bearing, Scene
+from solidgear.core import DOF_NAMES, Bearing, Scene, SolidgearError, System, pinned
 from solidgear.core.scene.housing import Housing
 from solidgear.core.system.links import relative_motion
-from solidgear.core.system.system import System
 
 #: work of loads on a free motion, relative to the most they could do, that is rounding
 UNBALANCED = 1e-9

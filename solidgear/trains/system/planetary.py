@@ -36,13 +36,12 @@ from math import cos, pi, sqrt
 
 import numpy as np
 
-from solidgear.core.errors import SolidgearError
+from solidgear.core import SolidgearError, System
 from solidgear.core.reduction.superelement import PortMotion
 from solidgear.core.system.gear_mesh import MeshVector, cylindrical_mesh
 from solidgear.core.system.links import BearingSpring, Link, RowSpring
 from solidgear.core.system.matrices import not_negative
 from solidgear.core.system.parts import Part, Placed
-from solidgear.core.system.system import System
 from solidgear.trains.system.planetary_members import CentralMember, Planet, body_of, check_member
 from solidgear.trains.system.planetary_modes import CENTRAL, SAME, PlanetaryMode, named_modes
 from solidgear.trains.system.planetary_turning import (

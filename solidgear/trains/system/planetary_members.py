@@ -15,8 +15,7 @@ import numpy as np
 import scipy.linalg as sla
 from numpy.typing import ArrayLike
 
-from solidgear.core.errors import SolidgearError
-from solidgear.core.frames import rotation
+from solidgear.core import SolidgearError, rotation
 from solidgear.core.system.matrices import not_negative, positive, spd
 from solidgear.core.system.parts import Part, PlanarBody, RigidBody
 

@@ -28,7 +28,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import scipy.linalg as sla
 
-from solidgear.core.errors import SolidgearError
+from solidgear.core import SolidgearError
 from solidgear.core.frames import cross_matrix
 from solidgear.trains.system.planetary_members import CentralMember, Planet
 from solidgear.trains.system.planetary_modes import CENTRAL, Phases

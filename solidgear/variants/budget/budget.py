@@ -19,19 +19,9 @@ from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 
-from solidgear.core.body import Body
-from solidgear.core.errors import SolidgearError
-from solidgear.core.judge.open_record import (
-    InputRecord,
-    IntervalRecord,
-    OpenNumbers,
-    OpenRecord,
-    SampledRecord,
-)
-from solidgear.core.judge.quantities import change, in_order
-from solidgear.core.ladder.registry import LADDER
-from solidgear.core.quantity import Quantity
-from solidgear.core.scene import Scene
+from solidgear.core import LADDER, Body, OpenNumbers, Quantity, Scene, SolidgearError, change
+from solidgear.core.judge.open_record import InputRecord, IntervalRecord, OpenRecord, SampledRecord
+from solidgear.core.judge.quantities import in_order
 from solidgear.variants.budget.open_inputs import OpenInput, Points, open_inputs
 
 Progress = Callable[[str], None]

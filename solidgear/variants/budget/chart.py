@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from solidgear.core.judge.open_record import OpenNumbers
-from solidgear.core.judge.record import Record
+from solidgear.core import OpenNumbers, Record
 from solidgear.show.open_words import ALL, SHOWN, interval
 from solidgear.show.panel import GREY, PERCENT, Axis, Panel, Series, readout
 from solidgear.show.plot import NARROW, WIDE, Chart

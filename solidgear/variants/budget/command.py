@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from solidgear.core.errors import SolidgearError, listed
+from solidgear.core import SolidgearError, listed
 from solidgear.core.judge.answer import asked_for
 from solidgear.show.arguments import load
 from solidgear.show.command import command, say

@@ -15,15 +15,11 @@ import numpy as np
 from solidgear.bearings.catalogue import catalogue_of
 from solidgear.bearings.clearance import clearance_range
 from solidgear.bearings.solved import Choice, solved, wants_equilibrium
-from solidgear.core.body import Body
+from solidgear.core import STIFFNESS, Body, ModeSet, Quantity, Scene, build, modes
 from solidgear.core.judge.correlation import pair_modes
 from solidgear.core.judge.quantities import measure
-from solidgear.core.ladder import build
 from solidgear.core.loading import SHAFT
-from solidgear.core.quantity import STIFFNESS, Quantity
-from solidgear.core.scene import Scene
 from solidgear.core.scene.uncertain import with_scaled_entry
-from solidgear.core.solve.modes import ModeSet, modes
 from solidgear.core.solve.statics import condense
 
 BEARINGS, LOAD, MATERIAL = "bearings", "load", "material"

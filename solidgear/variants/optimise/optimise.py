@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.core.errors import SolidgearError, nearest
+from solidgear.core import SolidgearError, nearest
 from solidgear.variants.optimise.optimum import Design, Optimum
 from solidgear.variants.optimise.searching import search_box
 from solidgear.variants.optimise.wishes import Wish, limit_of, wish_of

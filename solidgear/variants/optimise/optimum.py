@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from solidgear.core.display import Displayed
+from solidgear.core import Displayed
 from solidgear.core.judge.change import Change
 from solidgear.variants.optimise.wishes import Wish
 from solidgear.variants.sweep.file_task import without_bars

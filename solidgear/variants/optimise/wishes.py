@@ -7,7 +7,7 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
-from solidgear.core.errors import SceneError, SolidgearError, show
+from solidgear.core import SceneError, SolidgearError, show
 from solidgear.core.scene.units import quantity, si_factor
 from solidgear.variants.sweep.amounts import amount
 from solidgear.variants.sweep.scene_task import MOST_MODES, STATICS

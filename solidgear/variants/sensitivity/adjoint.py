@@ -18,11 +18,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solidgear.core.body import Body, Supports
-from solidgear.core.errors import SolidgearError
-from solidgear.core.quantity import COMPLIANCE, Quantity
-from solidgear.core.solve.modes import Mode
-from solidgear.core.solve.statics import condense, flexibility
+from solidgear.core import COMPLIANCE, Body, Mode, Quantity, SolidgearError, Supports, flexibility
+from solidgear.core.solve.statics import condense
 
 
 @dataclass(frozen=True, eq=False)

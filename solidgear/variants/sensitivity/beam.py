@@ -13,8 +13,7 @@ from dataclasses import fields
 
 import numpy as np
 
-from solidgear.core.body import Body
-from solidgear.core.errors import SolidgearError
+from solidgear.core import Body, SolidgearError
 from solidgear.core.models.beam.body import (
     matrices,
     pieces,

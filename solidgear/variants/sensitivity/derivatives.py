@@ -10,11 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.core.body import Body, as_supports
-from solidgear.core.errors import SolidgearError
-from solidgear.core.ladder import build
-from solidgear.core.scene import STEEL, Scene
-from solidgear.core.scene.coned import coned
+from solidgear.core import Body, Scene, SolidgearError, as_supports, build, coned
+from solidgear.core.scene import STEEL
 from solidgear.variants.sensitivity.adjoint import Form, change_by_bodies, change_by_supports
 from solidgear.variants.sensitivity.beam import BeamAdjoint
 from solidgear.variants.sensitivity.harmonic import HarmonicAdjoint

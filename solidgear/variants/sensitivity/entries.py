@@ -8,9 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.core.errors import SceneError, SolidgearError, nearest
+from solidgear.core import Scene, SceneError, SolidgearError, nearest
 from solidgear.core.loading import part_of
-from solidgear.core.scene import Scene
 from solidgear.core.scene.bearing_stiffness import STIFFNESS_NAMES
 from solidgear.core.scene.file import scene_of
 from solidgear.core.scene.paths import Keys, Tables, entries, entry, label_of, replace_entry

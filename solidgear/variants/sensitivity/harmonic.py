@@ -19,14 +19,12 @@ from typing import Any
 import numpy as np
 from skfem import ElementQuad1
 
-from solidgear.core.body import Body
-from solidgear.core.errors import SolidgearError
+from solidgear.core import Body, SolidgearError, coned
 from solidgear.core.kernel.assembly import reference
 from solidgear.core.meshing.bands import radial_bands
 from solidgear.core.models.harmonic.blocks import Work
 from solidgear.core.models.harmonic.families import TORSION, Family, family_of
 from solidgear.core.scene.attached import attached_stations
-from solidgear.core.scene.coned import coned
 from solidgear.variants.sensitivity.adjoint import Form
 
 

@@ -8,9 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from solidgear.core.errors import SolidgearError
-from solidgear.core.scene.coned import coned
-from solidgear.core.scene.outline import TOUCH
+from solidgear.core import TOUCH, SolidgearError, coned
 from solidgear.variants.sensitivity.harmonic import HarmonicAdjoint, Push
 
 

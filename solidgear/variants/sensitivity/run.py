@@ -12,17 +12,22 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from solidgear.core.body import Body, as_supports
-from solidgear.core.errors import SolidgearError, listed, nearest
-from solidgear.core.ladder import build
-from solidgear.core.loading import load
-from solidgear.core.machine.threads import pinned
+from solidgear.core import (
+    Body,
+    Quantity,
+    Scene,
+    SolidgearError,
+    as_supports,
+    build,
+    listed,
+    load,
+    modes,
+    nearest,
+    parse,
+    pinned,
+)
 from solidgear.core.plain import plain
-from solidgear.core.quantity import Quantity
-from solidgear.core.scene import Scene
 from solidgear.core.scene.paths import label_of
-from solidgear.core.scene.toml_file import parse
-from solidgear.core.solve.modes import modes
 from solidgear.variants.sensitivity.adjoint import Form, entry_form, mode_form
 from solidgear.variants.sensitivity.derivatives import Derivatives
 from solidgear.variants.sensitivity.entries import around, numbers

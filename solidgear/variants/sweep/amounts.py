@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 
-from solidgear.core.errors import SceneError
-from solidgear.core.scene.units import DIMENSIONS, quantity
+from solidgear.core import DIMENSIONS, SceneError
+from solidgear.core.scene.units import quantity
 
 _NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)", re.S)
 

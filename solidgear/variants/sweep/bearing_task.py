@@ -12,16 +12,19 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 from solidgear.bearings.solved import waiting
-from solidgear.core.body import Body
-from solidgear.core.errors import SolidgearError, listed
-from solidgear.core.frames import DOF_NAMES
-from solidgear.core.judge.quantities import size
-from solidgear.core.ladder import build
-from solidgear.core.ladder.registry import LADDER
+from solidgear.core import (
+    DOF_NAMES,
+    LADDER,
+    Body,
+    Quantity,
+    SolidgearError,
+    build,
+    listed,
+    modes,
+    size,
+)
 from solidgear.core.models.limits import number
-from solidgear.core.quantity import Quantity
 from solidgear.core.reduction.moments import LEVELS, Reduced, reduce
-from solidgear.core.solve.modes import modes
 from solidgear.core.solve.statics import condense
 from solidgear.variants.sweep.bearing_variants import BearingVariants, SeatedShaft
 from solidgear.variants.sweep.file_task import BARS, BOUND, Task, without_bars

@@ -13,12 +13,21 @@ from pathlib import Path
 from typing import Any
 
 from solidgear.bearings.solved import solved
-from solidgear.core.body import Supports, as_supports
-from solidgear.core.errors import SceneError, SolidgearError
-from solidgear.core.loading import load, scene_of, shaft
-from solidgear.core.scene import Bearing, PointMass, Port, Scene, Segment
+from solidgear.core import (
+    Bearing,
+    Outline,
+    Port,
+    Scene,
+    SceneError,
+    SolidgearError,
+    Supports,
+    as_supports,
+    load,
+    shaft,
+)
+from solidgear.core.loading import scene_of
+from solidgear.core.scene import PointMass, Segment
 from solidgear.core.scene.feature import OnSegment
-from solidgear.core.scene.outline import Outline
 from solidgear.core.scene.paths import Keys, Tables, entries, entry
 from solidgear.core.scene.sprung import resprung
 from solidgear.parts.body_file import BodyFile

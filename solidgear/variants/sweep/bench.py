@@ -6,7 +6,7 @@ from collections import OrderedDict
 from collections.abc import Hashable, Mapping
 from typing import Any
 
-from solidgear.core.scene import Scene
+from solidgear.core import Scene
 from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.assembly.shaft import ShaftModel, checked_model
 from solidgear.trains.file.train import Train

@@ -15,16 +15,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from solidgear.core.errors import SceneError
-from solidgear.core.judge.settle import Settled, bars_of_modes, settle
-from solidgear.core.ladder import build
-from solidgear.core.quantity import Quantity
-from solidgear.core.solve.modes import modes
+from solidgear.core import Quantity, SceneError, Settled, bars_of_modes, build, modes, settle
 from solidgear.variants.sweep.bench import surface
 
 if TYPE_CHECKING:
+    from solidgear.core import Scene
     from solidgear.core.judge.refinement import Progress
-    from solidgear.core.scene import Scene
     from solidgear.variants.sweep.bearing_variants import BearingVariants
 
 #: bearing sets, beside that of the scene, on which a mesh is judged

@@ -10,11 +10,8 @@ from typing import Annotated
 
 import typer
 
-from solidgear.core.errors import SolidgearError
-from solidgear.core.ladder import build
-from solidgear.core.ladder.registry import LADDER
+from solidgear.core import LADDER, SolidgearError, build, is_train, parse
 from solidgear.core.plain import plain
-from solidgear.core.scene.toml_file import is_train, parse
 from solidgear.guards.check import cautions
 from solidgear.show.arguments import load
 from solidgear.show.command import Progress as Steps

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.core.errors import SolidgearError, listed
+from solidgear.core import SolidgearError, listed
 from solidgear.variants.sweep.amounts import in_si
 from solidgear.variants.sweep.entries import Entry
 from solidgear.variants.sweep.file_variants import POINT, FileVariants

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from solidgear.core.errors import SolidgearError
+from solidgear.core import SolidgearError
 from solidgear.core.scene.paths import Tables
 from solidgear.variants.sweep.entries import (
     Entry,

@@ -16,7 +16,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from solidgear.core.errors import SceneError, SolidgearError, did_you_mean, near, nearest
+from solidgear.core import SceneError, SolidgearError, near, nearest
+from solidgear.core.errors import did_you_mean
 from solidgear.core.scene.paths import (
     Keys,
     Tables,

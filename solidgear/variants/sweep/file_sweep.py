@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
-from solidgear.core.scene.toml_file import is_train
+from solidgear.core import is_train
 from solidgear.variants.sweep.design import Design
 from solidgear.variants.sweep.file_task import FileTask, Swept, run
 from solidgear.variants.sweep.scene_task import scene_task

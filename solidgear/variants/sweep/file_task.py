@@ -13,9 +13,7 @@ from typing import Any, ClassVar, Generic, TypeVar
 import numpy as np
 
 from solidgear import __version__
-from solidgear.core.display import Displayed
-from solidgear.core.errors import SolidgearError, listed, nearest
-from solidgear.core.machine.threads import pinned
+from solidgear.core import Displayed, SolidgearError, listed, nearest, pinned
 from solidgear.core.models.limits import number
 from solidgear.variants.sweep.curves import Curves, curves_of
 from solidgear.variants.sweep.file_variants import FileVariants

@@ -9,12 +9,10 @@ from typing import Any, Generic, TypeVar
 
 import numpy as np
 
-from solidgear.core.errors import SceneError, SolidgearError, listed, show
+from solidgear.core import Scene, SceneError, SolidgearError, listed, parse, show
 from solidgear.core.loading import scene_of
-from solidgear.core.scene import Scene
 from solidgear.core.scene.paths import Tables, label_of
 from solidgear.core.scene.paths import entry as value_in_file
-from solidgear.core.scene.toml_file import parse
 from solidgear.variants.sweep.design import Design
 from solidgear.variants.sweep.entries import Entry, KeptSum, explained, put_in
 

@@ -37,7 +37,8 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.linalg as sla
 
-from solidgear.core.body import Supports, component_rows
+from solidgear.core import Supports
+from solidgear.core.body import component_rows
 from solidgear.core.body.mode_names import numbered
 from solidgear.core.reduction.moments import Reduced, ReducedBlock, residual_basis
 from solidgear.core.solve.coupling import decoupled, groups

@@ -17,8 +17,7 @@ from contextlib import contextmanager, nullcontext, suppress
 from pathlib import Path
 from typing import Any
 
-from solidgear.core.errors import SolidgearError
-from solidgear.core.machine.whole_file import whole
+from solidgear.core import SolidgearError, whole
 
 try:
     import sqlite3

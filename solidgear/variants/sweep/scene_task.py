@@ -8,14 +8,9 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from solidgear.core.body import Body, as_supports
-from solidgear.core.judge.settle import Settled
+from solidgear.core import LADDER, QUANTITIES, Body, Scene, Settled, as_supports, build
 from solidgear.core.judge.solving import answer_of_body
-from solidgear.core.ladder import build
-from solidgear.core.ladder.registry import LADDER
 from solidgear.core.models.limits import number
-from solidgear.core.quantity import QUANTITIES
-from solidgear.core.scene import Scene
 from solidgear.guards.one_shaft import mass_of, one_shaft
 from solidgear.variants.sweep.bench import surface
 from solidgear.variants.sweep.design import Design

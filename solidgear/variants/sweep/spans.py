@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solidgear.core.errors import SceneError, SolidgearError
+from solidgear.core import SceneError, SolidgearError
 
 #: More variants than this are a slip of the keyboard.
 MOST = 10_000_000

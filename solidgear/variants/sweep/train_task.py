@@ -10,9 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.core.errors import SolidgearError, nearest, show
+from solidgear.core import Scene, SolidgearError, nearest, show
 from solidgear.core.models.limits import number
-from solidgear.core.scene import Scene
 from solidgear.strength.deflection.misalignment import measured_names, misalignment
 from solidgear.trains.assembly.layout import contacts
 from solidgear.trains.assembly.models import KEPT

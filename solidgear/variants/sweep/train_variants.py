@@ -10,12 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.core.errors import SolidgearError, listed
+from solidgear.core import Scene, SolidgearError, listed, parse
 from solidgear.core.loading import scene_of
-from solidgear.core.scene import Scene
 from solidgear.core.scene.file import KEYS
 from solidgear.core.scene.paths import Tables, with_entry
-from solidgear.core.scene.toml_file import parse
 from solidgear.trains.assembly.layout import contacts
 from solidgear.trains.file.housing import HOUSING
 from solidgear.trains.file.operation import OperatingPoint

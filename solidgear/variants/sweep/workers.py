@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any, Protocol
 
-from solidgear.core.errors import SolidgearError
+from solidgear.core import SolidgearError
 from solidgear.core.machine.threads import usable_cores
 
 Rows = list[dict[str, Any]]

@@ -13,7 +13,7 @@ from solidgear.show.plot import BETWEEN, WIDE, Chart
 from solidgear.show.words import percent
 
 if TYPE_CHECKING:
-    from solidgear.core.judge.record import Record, WhereRecord
+    from solidgear.core import Record, WhereRecord
 
 #: shares below this are all of one colour
 LEAST = 1e-4
