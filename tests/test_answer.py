@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.app.answer import _absent, sentences
 from solidgear.core.body import as_supports
 from solidgear.core.judge import question
 from solidgear.core.judge.answer import answer
@@ -23,6 +22,7 @@ from solidgear.core.ladder.registry import LADDER
 from solidgear.core.quantity import C_ZZ, FIRST_BENDING, K_ZZ, Quantity
 from solidgear.core.scene import Bearing
 from solidgear.cuts.features import BoltCircle
+from solidgear.show.settled import _absent, sentences
 from tests.command import command
 
 ROOT = Path(__file__).parent.parent

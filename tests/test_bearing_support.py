@@ -6,6 +6,7 @@ import pytest
 import solidgear as sg
 from solidgear.bearings.balance import Mounted
 from solidgear.bearings.ball import BallRow
+from solidgear.bearings.catalogue import Catalogue
 from solidgear.bearings.equilibrium import equilibrium
 from solidgear.bearings.rolling import RollingBearing
 from solidgear.bearings.solved import solved
@@ -123,7 +124,7 @@ def test_one_word_stands_for_the_directions_of_both_bearings(tmp_path, a, b):
 
 def test_a_pair_within_one_bearing_takes_the_same_words():
     for word, known in (("O", "back_to_back"), ("X", "face_to_face"), ("back to back",) * 2):
-        data = sg.scene.Catalogue(designation="7208 B", arrangement=word)
+        data = Catalogue(designation="7208 B", arrangement=word)
         assert data.arrangement == known.replace(" ", "_")
 
 

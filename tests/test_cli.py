@@ -412,7 +412,7 @@ def test_the_command_line_and_the_help_of_a_command_import_nothing_heavy():
 @pytest.mark.parametrize("name", ["modes", "sweep", "response"])
 def test_help_without_the_work_is_that_of_the_command_itself(run, monkeypatch, name):
     alone = run(name, "--help").out
-    monkeypatch.setattr(sys.modules["solidgear.show.command"], "options_alone", nullcontext)
+    monkeypatch.setattr(sys.modules["solidgear.app.application"], "options_alone", nullcontext)
     assert run(name, "--help").out == alone and "--json" in alone
 
 

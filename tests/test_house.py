@@ -3,17 +3,19 @@
 import ast
 import functools
 import graphlib
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
+from solidgear import core
 from validation.house import structure
-from validation.house.floors import MAY_IMPORT, room_of
+from validation.house.floors import FEATURES, MAY_IMPORT, room_of
 from validation.house.source import Source, sources
 from validation.house.words import shapes
 
-ROOT = Path(__file__).parent.parent
-PACKAGE = ROOT / "solidgear"
+PACKAGE = Path(__file__).parent.parent / "solidgear"
 #: lines of a file
 LONGEST = 700
 
@@ -36,12 +38,11 @@ def tree_of(path):
 
 def test_a_room_imports_only_what_lies_below():
     """Read as it stands, `TYPE_CHECKING` too: a reader follows these arrows, whatever runs."""
-    known = set((ROOT / "validation" / "house" / "arrows.txt").read_text().splitlines())
-    assert set(structure.arrows_up(read_graph(), MAY_IMPORT)) == known
+    assert structure.arrows_up(read_graph(), MAY_IMPORT) == []
 
 
 def test_every_room_is_on_a_floor():
-    rooms = {room_of(module) for module in read_graph()} - {"", "core", "__main__"}
+    rooms = {room_of(module) for module in read_graph()} - {"", "core", "rooms", "__main__"}
     assert rooms == set(MAY_IMPORT)
     graphlib.TopologicalSorter(MAY_IMPORT).prepare()  # raises CycleError
 
@@ -122,3 +123,65 @@ def test_no_sentence_is_multiplied_by_a_truth_value_and_no_condition_holds_anoth
     """What a reader would have to parse twice; names are starred in calls still."""
     forms = shapes(sources(PACKAGE))
     assert set(forms) <= {"starred name in a call"}
+
+
+#: rooms of features: all but the core, the way to show and the command line
+OPTIONAL = set(FEATURES) - {"show", "app"}
+WITHOUT = """
+import sys
+from importlib.abc import MetaPathFinder
+
+class Missing(MetaPathFinder):
+    def find_spec(self, name, path=None, target=None):
+        if name.split(".")[0] == "solidgear" and name.split(".")[1:2] and name.split(".")[1] in ROOMS:
+            raise ModuleNotFoundError(f"No module named {name!r}", name=name)
+
+sys.meta_path.insert(0, Missing())
+from solidgear.app import main
+main()
+"""
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("modes", "-f", "timoshenko"),
+        ("modes", "-f", "harmonic"),
+        ("stiffness", "-f", "timoshenko"),
+        ("answer",),
+    ],
+    ids=" ".join,
+)
+def test_the_core_answers_without_any_room_of_features(words):
+    command, *options = words
+    shaft = PACKAGE.parent / "geometry" / "shaft_stepped.toml"
+    code = WITHOUT.replace("ROOMS", repr(OPTIONAL))
+    line = [sys.executable, "-c", code, command, str(shaft), *options]
+    run = subprocess.run(line, capture_output=True, text=True, timeout=300)
+    assert run.returncode == 0, run.stderr
+    assert "shaft_stepped" in run.stdout
+
+
+def test_names_that_features_share_come_through_the_door_of_the_core():
+    users = {}
+    for source in sources(PACKAGE):
+        if source.room in ("core", "__init__", "rooms", "__main__"):
+            continue
+        for node in ast.walk(source.tree):
+            if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("solidgear.core"):
+                for name in (alias.name for alias in node.names):
+                    users.setdefault((node.module, name), set()).add(source.room)
+    door = {name for module, name in users if module == "solidgear.core"}
+    assert door <= set(core.__all__)
+    beside_it = {
+        (module, name)
+        for (module, name), rooms in users.items()
+        if len(rooms) > 2 and module != "solidgear.core" and not _hidden_by_a_module(name)
+    }
+    assert beside_it == set()
+    assert len(core.__all__) <= 70 and all(hasattr(core, name) for name in core.__all__)
+
+
+def _hidden_by_a_module(name):
+    """A module of the core has this name: the package hands that out."""
+    return (PACKAGE / "core" / f"{name}.py").exists() or (PACKAGE / "core" / name).is_dir()

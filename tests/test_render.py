@@ -231,6 +231,9 @@ def test_the_child_starts_without_the_rest_of_the_package():
     )
     assert set(json.loads(out.stdout)) == {
         "solidgear",
+        "solidgear.core",
+        "solidgear.core.registry",
+        "solidgear.rooms",
         "solidgear.show",
         "solidgear.show.drawing",
     }

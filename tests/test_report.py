@@ -18,6 +18,7 @@ from solidgear.comparison.page import charts
 from solidgear.comparison.recording import recorded
 from solidgear.core.errors import SolidgearError
 from solidgear.core.judge.record import SCHEMA, Record
+from solidgear.show import viewer
 from solidgear.show.border import as_record
 from solidgear.show.page_parts import data_uri
 from solidgear.show.plot import WIDE
@@ -55,7 +56,7 @@ def shown(renderable, width=80):
 
 # ------------------------------------------------------------------------------------------------- the page
 #: the one script of the page
-READS = f"<script>\n{(Path(charts.__file__).parent / 'readout.js').read_text().rstrip()}</script>"
+READS = f"<script>\n{(Path(viewer.__file__).parent / 'readout.js').read_text().rstrip()}</script>"
 
 
 def test_page_needs_no_other_file_and_no_network(page):

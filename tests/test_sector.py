@@ -12,6 +12,7 @@ import pytest
 from scipy.integrate import quad
 
 import solidgear as sg
+from solidgear.core.frames import rotation
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.models.solid.plan import tetrahedra_plan
 from solidgear.core.scene import Fillet
@@ -269,7 +270,7 @@ def test_a_node_on_the_axis():
         assert basis(around, 1, h)[0].shape == (3, size)
     motion = basis(around, 1, 1)[0].toarray()[:, 0]
     angle = 2 * np.pi / 7
-    turned = sg.frames.rotation(1, angle)[:3, :3] @ motion
+    turned = rotation(1, angle)[:3, :3] @ motion
     assert np.abs(np.exp(1j * angle) * turned - motion).max() < 1e-15
     assert doubled(basis(around, 1, 1)[0]).shape == (6, 2)
 

@@ -81,7 +81,7 @@ def test_losses_in_real_modes_are_those_of_the_full_matrices(shop, changes, rows
     drive = Drive(shop, *MIX)
     loss = drive.steady.loss | changes
     found = common_loss(drive.system, loss)
-    assert (None if found is None else len(found.more)) == rows
+    assert (None if found is None else len(found.difference)) == rows
     steady = SteadyState(drive.system, loss)
     force = drive.system.load({"gear.gear": [0, 0, 1.0, 0, 0, 0]})
     for load in (drive.load, force, (1 + 2j) * force + drive.load):

@@ -12,6 +12,7 @@ import pytest
 import solidgear as sg
 from solidgear.comparison.two.differences import differences, scene_differences
 from solidgear.comparison.two.two_shafts import two_shafts
+from solidgear.core.quantity import QUANTITIES
 from solidgear.core.scene.uncertain import with_ranges
 from solidgear.show.sketch import draw, extent
 from tests.command import command, page_of
@@ -51,7 +52,7 @@ def test_a_thicker_shaft_is_heavier_stiffer_and_all_of_it_is_resolved(thicker):
     assert told["sentences"][0] == "Changed: segment.shaft.diameter from 90 mm to 94.5 mm."
     assert [told["shafts"][key]["file"] for key in "ab"] == ["pinion_overhung", "b"]
     numbers = told["numbers"]
-    assert set(numbers) == {"mass", *map(str, sg.quantity.QUANTITIES)}
+    assert set(numbers) == {"mass", *map(str, QUANTITIES)}
     up = ("mass", "K_zz", "K_thx", "K_yy", "bending 1", "torsion 1")
     for name in up:
         assert numbers[name]["difference"] > 0, name

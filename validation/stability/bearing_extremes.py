@@ -14,7 +14,7 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 
 import solidgear as sg
-from solidgear.core.body import Supports
+from solidgear.core.body import Supports, as_supports
 from solidgear.core.scene import STEEL, Port, Scene, Segment
 from validation.manual.models import bearing, frequencies
 from validation.stability.frame import Finding, crossing, curve
@@ -100,7 +100,7 @@ def measure(quick: bool = False) -> Finding:
     for elements in ELEMENTS:
         body = sg.build(shaft(1.0), "euler", rotary_inertia=False, elements=elements)
         for k in (1e-3, 1.0, 1e6, 1e12, 1e18, 1e24) if quick else 10.0 ** np.arange(-3, 25):
-            supports = sg.body.as_supports(shaft(k))
+            supports = as_supports(shaft(k))
             compliance, first = (
                 exact_compliance(k),
                 krylov(*from_scene(shaft(k)), n=1).frequency_hz[0],
@@ -124,7 +124,7 @@ def measure(quick: bool = False) -> Finding:
             rows.append(row | {"rounding / lambda_1": rounding_over_first(body, supports, first)})
         free = sg.condense(
             body,
-            sg.body.as_supports(
+            as_supports(
                 [b.with_changes(matrix=np.zeros((6, 6))) for b in shaft(1.0).bearings]
             ),
             port="end",

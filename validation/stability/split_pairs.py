@@ -12,6 +12,7 @@ import numpy as np
 
 import solidgear as sg
 from solidgear.core.body import Supports, as_supports
+from solidgear.core.frames import rotation
 from solidgear.core.judge.correlation import subspace_mac
 from validation.common import ROOT
 from validation.stability.frame import Finding, crossing, curve
@@ -41,7 +42,7 @@ def anisotropic(scene, by: float, turn: float = 0.0) -> Supports:
     keep = [(0, 0), (1, 1), (2, 2), (3, 3), (5, 5), (0, 5), (5, 0), (2, 3), (3, 2)]
     base = as_supports(scene)
     k = np.zeros_like(base.stiffness)
-    rotate = sg.frames.rotation(1, turn)
+    rotate = rotation(1, turn)
     for i in range(len(base.ports)):
         own = np.zeros((6, 6))
         for a, b in keep:

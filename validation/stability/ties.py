@@ -12,6 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 import solidgear as sg
+from solidgear.core.body import as_supports
 from solidgear.core.scene import STEEL, Port, Scene, Segment
 from solidgear.core.solve.factor import factorise
 from validation.manual.models import bearing
@@ -86,7 +87,7 @@ def measure(quick: bool = False) -> Finding:
         mesh = FLAT | {"refinement": refinement}
         body = sg.build(scene, "harmonic", attachments=("average", "section"), **mesh)
         held = sg.build(scene.with_port(attachment="rigid"), "harmonic", **mesh)
-        springs = sg.body.as_supports(scene).with_attachment("section")
+        springs = as_supports(scene).with_attachment("section")
         row = {"h / R": 0.5 / refinement, "ring line": on_a_ring_line(body)}
         row |= {
             words: sg.condense(body, springs, port="port", attachment=tie).compliance[2, 2]
