@@ -66,7 +66,7 @@ def test_fillets_of_a_step_part_are_those_that_were_drawn(part):
     assert [b.name.partition(".")[2] for b in round_part.blends] == ["end", "start"]
     assert volume_of(round_part.outline) == pytest.approx(volume_of(drawn.outline), rel=1e-6)
     (sentence,) = _file_cautions(scene.body, round_part)
-    assert "1 of 3 arcs of part.step are short cones" in sentence
+    assert "1 of 3 arcs of part.step are modelled as short cones" in sentence
 
 
 def test_a_scene_of_segments_is_as_it_was():

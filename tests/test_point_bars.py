@@ -221,7 +221,7 @@ def test_judged_and_reported(shaft):
     next(row for row in rows if row[0].startswith("C_zz, wheel for a load on pinion"))
     against, bars = next(rows), next(rows)
     assert against[2] == "reference" or against[2][0] == "reference"
-    assert bars[0] == "bar" and bars[2].startswith("± ")
+    assert bars[0] == "error bar" and bars[2].startswith("± ")
 
 
 @pytest.mark.long

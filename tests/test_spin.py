@@ -137,9 +137,7 @@ def test_what_spin_moves_more_than_a_bar_is_told(run):
     shares = {"bending 1": 0.06, "bending 2": 0.002, "torsion 1": 0.0}
     assert opened_words(shares, {"bending 1": 0.07, "bending 2": 0.01}, 0.05, "at 1 rpm") == []
     (said,) = opened_words(shares, {"bending 1": 0.01}, 0.05, "at 3000 rpm")
-    assert (
-        "at 3000 rpm spin moves bending 1 by 6 %, up and down" in said and "bending 2" not in said
-    )
+    assert "at 3000 rpm spin moves bending 1 by 6 % up and down" in said and "bending 2" not in said
     scene = sg.load(GEOMETRY / "gear_shaft.toml")
     body = sg.build(scene, "timoshenko")
     found = sg.modes(body, scene, 6)

@@ -226,7 +226,9 @@ def test_a_shaft_that_nothing_holds_along_its_axis_is_told():
 
 def test_a_frequency_beyond_the_reduction_is_refused():
     shop = Workshop(TRAIN_DATA, kept=4, settings=COARSE)
-    with pytest.raises(sg.SolidgearError, match="beyond what the reduction resolves"):
+    with pytest.raises(
+        sg.SolidgearError, match="is beyond the reduction, which leaves out modes from"
+    ):
         train_modes(shop, "timoshenko", "timoshenko", max_frequency=20_000.0)
 
 

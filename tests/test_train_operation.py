@@ -189,10 +189,10 @@ def test_without_torque_clearance_is_told_and_no_stiffness_is_made_up(gearbox):
     state = Operating(gearbox).at(OperatingPoint(torque=0.0))
     assert set(state.equilibrium.lost) == {"pinion.A", "gear.D"}
     assert not state.equilibrium.tangent["pinion.A"].any()
-    assert any("pinion.A carries nothing" in note for note in state.notes)
+    assert any("pinion.A carries no load" in note for note in state.notes)
     resting = at_point(gearbox.train.with_changes(operation=({"torque": 0.0},)))
     assert resting.unloaded == ("pinion.A", "gear.D")
-    assert any("pinion.A carries nothing" in c for c in Workshop(resting).cautions)
+    assert any("pinion.A carries no load" in c for c in Workshop(resting).cautions)
 
 
 def test_weight_is_carried_by_the_bearings(helical):

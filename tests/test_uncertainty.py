@@ -127,7 +127,7 @@ def test_ranges_stand_in_the_column_of_the_bar_on_page_one(gearbox):
         }
     )
     (row,) = numbers(record, ENGINEERING).rows
-    assert row[2] == "no bar\nbearings -10 / +12 %\nload -39 / +3.2 %\nin all -55 / +15 %"
+    assert row[2] == "no error bar\nbearings -10 / +12 %\nload -39 / +3.2 %\nin all -55 / +15 %"
     assert dict(parts(record.open, "bending 1"))["in all"] == "-55 / +15 %"
 
 

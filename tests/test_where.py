@@ -233,7 +233,7 @@ def test_the_picture_is_of_the_mesh_and_names_the_places(tmp_path):
     text = file.read_text()
     assert "1: shoulder, y = 100 mm, 90 %" in text and "radius drawn 2.1 times" in text
     assert "mm wide" not in text  # all of its cells can be seen
-    with pytest.raises(SolidgearError, match=r"use .png or .svg"):
+    with pytest.raises(SolidgearError, match=r"name that ends in .png or .svg"):
         draw_where(tmp_path / "a.gif", drawn)
     cut = where(shaft(*STEPPED), "C_zz", Meshed(cuts=CUT).options())
     first = next(row for row in cut.rows if row.what == "shoulder")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TypeAlias
 
+import solidgear.core.scene  # noqa: F401  # first, for a scene reads the features of this room
 from solidgear.cuts.features.bolt_circle import BoltCircle
 from solidgear.cuts.features.cross_hole import CrossHole
 from solidgear.cuts.features.flat import Flat
