@@ -17,7 +17,7 @@ import numpy as np
 import solidgear as sg
 from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.modes.modes import train_modes
-from solidgear.trains.response.respond import Drive
+from solidgear.trains.response.drive import Drive
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 

@@ -35,8 +35,9 @@ import importlib
 from typing import TYPE_CHECKING
 
 import solidgear.rooms  # noqa: F401  # what features add to the core
+from solidgear.core.machine.version import VERSION
 
-__version__ = "0.1.0"
+__version__ = VERSION
 
 _WHERE = {
     "load": "solidgear.core.loading",

@@ -22,7 +22,7 @@ ADDITIONS = {
     "table": {
         "catalogue": "bearings.catalogue:Catalogue",
         "arrangement": "bearings.arrangement:Pairs",
-        "body": "parts.recognised:Parts",
+        "body": "parts.table:Parts",
     },
     "file": {
         "long train": "trains.file.reading:LongFile",

@@ -16,7 +16,8 @@ from solidgear.bearings.catalogue import Catalogue
 from solidgear.bearings.catalogued import catalogued, state
 from solidgear.bearings.duty import DutyPoint, duty_life
 from solidgear.bearings.equivalent import equivalent_load, factors, static_load
-from solidgear.bearings.geometry import Inside, inner_geometry
+from solidgear.bearings.geometry import inner_geometry
+from solidgear.bearings.inside import Inside
 from solidgear.bearings.life import life, life_factor, reference_viscosity, reliability_factor
 from solidgear.bearings.rating import (
     fatigue_limit,

@@ -12,7 +12,8 @@ from solidgear.bearings.catalogue import Catalogue, Kind
 from solidgear.bearings.catalogued import catalogued, state
 from solidgear.bearings.clearance import clearance_range, mounting_change
 from solidgear.bearings.designation import boundary
-from solidgear.bearings.geometry import Inside, inner_geometry
+from solidgear.bearings.geometry import inner_geometry
+from solidgear.bearings.inside import Inside
 from solidgear.bearings.preload import SprungRow, pushed
 from solidgear.bearings.rating import ball_rating, ratings, roller_rating
 from solidgear.bearings.roller import RollerRow

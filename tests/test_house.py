@@ -41,6 +41,11 @@ def test_a_room_imports_only_what_lies_below():
     assert structure.arrows_up(read_graph(), MAY_IMPORT) == []
 
 
+def test_modules_import_each_other_in_no_circle():
+    """Read with `TYPE_CHECKING` and imports inside functions: whoever reads a module reads on below."""
+    assert structure.circles(read_graph()) == []
+
+
 def test_every_room_is_on_a_floor():
     rooms = {room_of(module) for module in read_graph()} - {"", "core", "rooms", "__main__"}
     assert rooms == set(MAY_IMPORT)

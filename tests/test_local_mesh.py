@@ -12,7 +12,7 @@ from solidgear.core.solve.factor import factorise
 from solidgear.trains.assembly.local import TEETH, patch_of, undriven
 from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.modes.modes import train_modes
-from solidgear.trains.response.respond import Drive
+from solidgear.trains.response.drive import Drive
 from tests.command import command
 
 AXLE = "geometry/axle_overhung.toml"

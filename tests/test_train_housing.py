@@ -16,8 +16,8 @@ from solidgear.trains.judge.judge import _Judge
 from solidgear.trains.load.operation import Operating
 from solidgear.trains.modes.modes import train_modes
 from solidgear.trains.modes.pairing import modes_and_motions
+from solidgear.trains.response.drive import Drive
 from solidgear.trains.response.receptance import receptance
-from solidgear.trains.response.respond import Drive
 from tests.command import command
 from tests.test_train_many import BEARING, DENSITY, MESHES, SHAFTS, by_hand, hertz, written
 

@@ -15,7 +15,7 @@ from solidgear.trains.file.train import SIDES
 from solidgear.trains.judge import judge as judging
 from solidgear.trains.judge.judge import JUDGE, judge_train
 from solidgear.trains.modes.modes import train_modes
-from solidgear.trains.response.respond import Drive
+from solidgear.trains.response.drive import Drive
 
 TRAIN = sg.load_train("geometry/axle_overhung.toml")
 COARSE = {"harmonic": {"order": 2, "layers": 1}}

@@ -8,8 +8,9 @@ import pytest
 import solidgear as sg
 from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.modes.modes import train_modes
+from solidgear.trains.response.drive import Drive
 from solidgear.trains.response.loudest import loudest
-from solidgear.trains.response.respond import Drive, respond
+from solidgear.trains.response.respond import respond
 from tests.command import command
 
 BEAMS = ("timoshenko", "timoshenko")

@@ -13,7 +13,7 @@ from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.judge.judge import JUDGE, MIXED, mixes_of
 from solidgear.trains.load.operation import Operating
 from solidgear.trains.modes.modes import train_modes
-from solidgear.trains.response.respond import Drive
+from solidgear.trains.response.drive import Drive
 from tests.command import command
 
 DENSITY = 7850.0

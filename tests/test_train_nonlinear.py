@@ -17,7 +17,7 @@ from solidgear.backlash.solver.motion import sweep
 from solidgear.backlash.train import backlash_model, over_force, parting, teeth_of, with_backlash
 from solidgear.core.errors import SceneError
 from solidgear.trains.assembly.models import Workshop
-from solidgear.trains.response.respond import Drive
+from solidgear.trains.response.drive import Drive
 
 OVERHUNG = Path(__file__).parent.parent / "geometry" / "axle_overhung.toml"
 BEAMS = "timoshenko", "timoshenko"

@@ -15,7 +15,7 @@ from solidgear.backlash.train import backlash_model, parting, teeth_of, with_bac
 from solidgear.core.errors import SolidgearError
 from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.load.contact import axes_of
-from solidgear.trains.response.respond import Drive
+from solidgear.trains.response.drive import Drive
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 BEAMS = ["timoshenko"]

@@ -8,8 +8,8 @@ import solidgear as sg
 from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.assembly.orders import order_map
 from solidgear.trains.modes.modes import train_modes
+from solidgear.trains.response.drive import Drive
 from solidgear.trains.response.order_chart import spread
-from solidgear.trains.response.respond import Drive
 
 TRAIN = sg.load_train(OVERHUNG)
 MIX = ("timoshenko", "timoshenko")

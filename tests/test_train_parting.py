@@ -8,7 +8,8 @@ from solidgear.backlash.train import teeth_of, with_backlash
 from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.load.operation import Operating, with_settled_bearings
 from solidgear.trains.modes.parting import largest_relief, parting_frequency, teeth_relief
-from solidgear.trains.response.respond import Drive, respond
+from solidgear.trains.response.drive import Drive
+from solidgear.trains.response.respond import respond
 from tests.command import command, numbers
 
 BEAMS = ("timoshenko", "timoshenko")

@@ -17,10 +17,12 @@ from solidgear.trains.assembly.layout import mesh_forces
 from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.assembly.stages import mesh_row
 from solidgear.trains.file.operation import OperatingPoint
-from solidgear.trains.file.planetary import MATES, with_carrier_turned
+from solidgear.trains.file.planetary import MATES
+from solidgear.trains.file.train import with_carrier_turned
 from solidgear.trains.load.operation import Operating
 from solidgear.trains.modes.modes import train_modes
-from solidgear.trains.response.respond import Drive, respond
+from solidgear.trains.response.drive import Drive
+from solidgear.trains.response.respond import respond
 from validation.reducer.design import FACE, Design
 
 REDUCER, RIGID = "geometry/reducer.toml", "rigid/timoshenko"

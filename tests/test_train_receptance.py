@@ -11,8 +11,8 @@ from solidgear.core.frames import DOF_NAMES
 from solidgear.core.system.steady import peaks
 from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.modes.naming import mode_names
+from solidgear.trains.response.drive import NO_MODE, Drive
 from solidgear.trains.response.receptance import receptance
-from solidgear.trains.response.respond import NO_MODE, Drive
 from tests.command import command, table
 
 TRAIN = sg.load_train(OVERHUNG)

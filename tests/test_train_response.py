@@ -8,7 +8,8 @@ import solidgear as sg
 from solidgear.core.system.steady import SteadyState, peaks
 from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.file.tables import ErrorTable
-from solidgear.trains.response.respond import Drive, respond
+from solidgear.trains.response.drive import Drive
+from solidgear.trains.response.respond import respond
 from tests.command import command, table
 
 TRAIN = sg.load_train(OVERHUNG)

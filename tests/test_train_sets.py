@@ -8,7 +8,7 @@ import solidgear as sg
 from solidgear.core.system.common_loss import common_loss
 from solidgear.core.system.steady import SteadyState
 from solidgear.trains.assembly.models import Workshop
-from solidgear.trains.response.respond import Drive
+from solidgear.trains.response.drive import Drive
 
 TRAIN = sg.load_train(OVERHUNG)
 MIX = ("timoshenko", "timoshenko")

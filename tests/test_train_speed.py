@@ -9,7 +9,8 @@ from test_train_models import OVERHUNG
 
 import solidgear as sg
 from solidgear.bearings.catalogue import Catalogue
-from solidgear.bearings.geometry import Inside, inner_geometry
+from solidgear.bearings.geometry import inner_geometry
+from solidgear.bearings.inside import Inside
 from solidgear.bearings.passing import passing
 from solidgear.core.errors import SolidgearError
 from solidgear.trains.assembly.kinematics import SLIP, bearing_orders, settled_angles, train_orders

@@ -17,7 +17,7 @@ from solidgear.core.machine.isolated import isolated
 from solidgear.core.meshing.gmsh_session import Session, import_gmsh
 from solidgear.core.meshing.revolved import draw_revolved
 from solidgear.core.scene import Segment
-from solidgear.core.scene.blends import Corner
+from solidgear.core.scene.corner import Corner
 from solidgear.core.scene.outline import Frustum, Outline
 from solidgear.cuts.features import Keyway
 from solidgear.cuts.solid.cuts import tool

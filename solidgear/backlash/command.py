@@ -21,8 +21,8 @@ from solidgear.show.options import Shown
 from solidgear.show.units import units_named
 from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.assembly.slips import unit_slips
-from solidgear.trains.file.gears import Pair
-from solidgear.trains.file.planetary import named_pair
+from solidgear.trains.file.pairs import Pair
+from solidgear.trains.file.train import named_pair
 from solidgear.trains.judge.comparison import train_data
 from solidgear.trains.modes.modes import unpublished_lines
 from solidgear.trains.options import Mix, Reduced, TrainFile, mix

@@ -34,9 +34,10 @@ from solidgear.core.system.law import Gap
 from solidgear.core.system.links import RowSpring
 from solidgear.trains.assembly.layout import mesh_forces
 from solidgear.trains.assembly.models import Workshop
-from solidgear.trains.file.gears import Pair
 from solidgear.trains.file.operation import OperatingPoint
-from solidgear.trains.file.planetary import error_of, named_pair
+from solidgear.trains.file.pairs import Pair
+from solidgear.trains.file.planetary import error_of
+from solidgear.trains.file.train import named_pair
 from solidgear.trains.load.contact import LEVER_REFUSED, axes_of
 from solidgear.trains.load.operation import SHAFT, loop_forces, rotor_loads
 from solidgear.trains.modes.modes import refuse_unresolved

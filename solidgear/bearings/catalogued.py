@@ -12,7 +12,8 @@ from solidgear.bearings.ball import BallRow, ThrustBallRow
 from solidgear.bearings.catalogue import WAYS, Catalogue
 from solidgear.bearings.clearance import clearance_at_work
 from solidgear.bearings.equivalent import static_factors
-from solidgear.bearings.geometry import Inside, inner_geometry
+from solidgear.bearings.geometry import inner_geometry
+from solidgear.bearings.inside import Inside
 from solidgear.bearings.preload import SprungRow, pushed
 from solidgear.bearings.roller import RollerRow
 from solidgear.bearings.rolling import RollingBearing, Row

@@ -16,7 +16,7 @@ from __future__ import annotations
 import math
 
 from solidgear.bearings.catalogue import ONE_SIDED, Catalogue
-from solidgear.bearings.geometry import Inside
+from solidgear.bearings.inside import Inside
 from solidgear.core import SceneError
 
 #: 1/K, bearing steel

@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from solidgear.bearings.catalogue import Catalogue
-from solidgear.bearings.geometry import Inside
+from solidgear.bearings.inside import Inside
 from solidgear.bearings.rating import Ratings, static_factor
 
 #: ISO 281:2007, Table 3, single row: axial load over balls in N/mm^2, and for contact angles in

@@ -13,12 +13,13 @@ with a softer and a stiffer inside at the ends of the spread.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
 from typing import NamedTuple
 
 from solidgear.bearings.catalogue import Catalogue
 from solidgear.bearings.designation import usual_angle
+from solidgear.bearings.inside import Inside
 from solidgear.bearings.kinds import SHARES, Share
 from solidgear.bearings.rating import rated, static_ball_rating, static_roller_rating
 from solidgear.core import SceneError
@@ -27,29 +28,6 @@ from solidgear.core import SceneError
 CONRAD = math.radians(186)
 #: relative; of ratings that makers give on their own experience
 RATING_SPREAD = 0.08
-
-
-@dataclass(frozen=True)
-class Inside:
-    """Inner geometry of a row, m and rad."""
-
-    elements: int
-    #: diameter, length, pitch: `length` is 0 for balls
-    diameter: float
-    length: float
-    pitch: float
-    angle: float
-    conformity: tuple[float, float]
-
-    @property
-    def thrust(self) -> bool:
-        """Return whether the elements run on washers, at 90 degrees."""
-        return self.angle > math.radians(89)
-
-    @property
-    def gamma(self) -> float:
-        """``Dw cos(a) / Dpw``."""
-        return self.diameter * math.cos(self.angle) / self.pitch
 
 
 class Geometry(NamedTuple):

@@ -21,7 +21,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solidgear.bearings.geometry import Inside
+from solidgear.bearings.inside import Inside
 from solidgear.bearings.row import Contacts
 
 

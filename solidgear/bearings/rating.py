@@ -15,14 +15,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from solidgear.bearings.ball import BallRow
 from solidgear.bearings.catalogue import Catalogue
+from solidgear.bearings.inside import Inside
 from solidgear.bearings.kinds import SHARES
-
-if TYPE_CHECKING:
-    from solidgear.bearings.geometry import Inside
 
 #: Pa, ISO 76: beyond it the dent is above 1e-4 of the element's diameter; of balls and of rollers
 STATIC_PRESSURE = {True: 4200e6, False: 4000e6}

@@ -39,7 +39,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from solidgear.bearings.geometry import Inside
+from solidgear.bearings.inside import Inside
 from solidgear.bearings.row import Contacts
 
 Ring = Literal["inner", "outer"]

@@ -97,7 +97,7 @@ class Comparison(Displayed):
             If the folder cannot be written, or units are unknown.
         """
         self.record.shown_in = units_named(units).name
-        return write_all(self, out, renders=renders, progress=progress)
+        return write_all(self.record, self.solutions, out, renders=renders, progress=progress)
 
 
 @overload

@@ -43,8 +43,8 @@ if TYPE_CHECKING:
     from solidgear.core.reduction.rubin import rubin
     from solidgear.core.scene import Bearing, Port, Scene
     from solidgear.core.scene.coned import coned
-    from solidgear.core.scene.outline import TOUCH, Outline
-    from solidgear.core.scene.rules import MOST_MODES
+    from solidgear.core.scene.limits import MOST_MODES, TOUCH
+    from solidgear.core.scene.outline import Outline
     from solidgear.core.scene.shaft import without_axis
     from solidgear.core.scene.toml_file import is_train, parse
     from solidgear.core.scene.typed import Model
@@ -173,8 +173,8 @@ _WHERE = {
     "Scene": "solidgear.core.scene",
     "coned": "solidgear.core.scene.coned",
     "Outline": "solidgear.core.scene.outline",
-    "TOUCH": "solidgear.core.scene.outline",
-    "MOST_MODES": "solidgear.core.scene.rules",
+    "TOUCH": "solidgear.core.scene.limits",
+    "MOST_MODES": "solidgear.core.scene.limits",
     "without_axis": "solidgear.core.scene.shaft",
     "is_train": "solidgear.core.scene.toml_file",
     "parse": "solidgear.core.scene.toml_file",

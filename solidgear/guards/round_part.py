@@ -11,7 +11,8 @@ from solidgear.core.judge.quantities import judged
 from solidgear.core.judge.verdict import percent
 from solidgear.core.ladder.model import SOLID
 from solidgear.core.models.kinds import PARTS
-from solidgear.guards import Notice, Probe
+from solidgear.guards.notice import Notice
+from solidgear.guards.probe import Probe
 
 if TYPE_CHECKING:
     from solidgear.core import Scene

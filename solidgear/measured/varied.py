@@ -7,8 +7,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from solidgear.core import DIMENSIONS, SceneError, SolidgearError, show
+from solidgear.core.scene.open_range import FACTOR, PLUS_MINUS, Uncertain, range_ends
 from solidgear.core.scene.paths import Keys, Tables, entry, keys_of, label_of
-from solidgear.core.scene.uncertain import FACTOR, PLUS_MINUS, Uncertain, range_ends
 from solidgear.core.scene.units import quantity
 from solidgear.variants.sweep.amounts import in_si
 

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from solidgear.core import SceneError, listed
 from solidgear.core.scene.parts import Material, Segment
 from solidgear.core.scene.seat import Seat
-from solidgear.parts.body_file import BodyFile, BodyTable, with_port
+from solidgear.parts.body_file import BodyFile
 
 if TYPE_CHECKING:
     from solidgear.core.scene.places import Places
@@ -149,29 +148,3 @@ def with_seats(part: Recognised, stations: Iterable, segments: Sequence[Segment]
                 "its motion is the mean over that part"
             )
     return part.body.model_copy(update={"remarks": (*part.body.remarks, *remarks)})
-
-
-def refuse_parts(table: BodyTable, folder: Path) -> Recognised:
-    """Refuse a part from a file, where no reader is given."""
-    raise SceneError(
-        "a part from a file is read by solidgear.load only; in trains and bearing studies write "
-        "segments",
-        path=("body", table.key),
-    )
-
-
-class Parts:
-    """The table ``body`` as the reader of scene files asks for it."""
-
-    Table = BodyTable
-    Body = BodyFile
-    with_port = staticmethod(with_port)
-    with_seats = staticmethod(with_seats)
-    refuse_parts = staticmethod(refuse_parts)
-
-    @staticmethod
-    def recognise(table: BodyTable, folder: Path) -> Recognised:
-        """Read the part that a table names."""
-        from solidgear.parts.part import recognise  # start-up: not every file needs it
-
-        return recognise(table, folder)

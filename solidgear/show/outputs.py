@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from solidgear.core import ELEMENTS, whole
-from solidgear.core.body.surface import Volume, mesh_unknowns
+from solidgear.core.body.surface import Volume
 
 if TYPE_CHECKING:
     from solidgear.core import Body, Mode, ModeSet, Solution
@@ -82,8 +82,7 @@ def _volume(body: Body, mesh: Volume, shapes):
     element = ELEMENTS[mesh.element]
     order = node_order(mesh.local, element.vtk)
     data = {
-        name: mesh_unknowns(body, vectors)["full"].reshape(-1, 3)
-        for name, vectors in shapes.items()
+        name: body.mesh_unknowns(vectors)["full"].reshape(-1, 3) for name, vectors in shapes.items()
     }
     return mesh.nodes.T, [(element.cell, mesh.cells[order].T)], data
 

@@ -9,7 +9,7 @@ import numpy as np
 import solidgear as sg
 from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.assembly.shaft import JUDGE
-from solidgear.trains.response.respond import Drive
+from solidgear.trains.response.drive import Drive
 from validation.common import ROOT
 from validation.race.heat import Check, Clock, Heat, Sample
 from validation.race.race import Race

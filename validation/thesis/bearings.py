@@ -26,8 +26,8 @@ import numpy as np
 import solidgear as sg
 from solidgear.bearings.catalogue import Catalogue
 from solidgear.bearings.catalogued import catalogued
-from solidgear.bearings.geometry import Inside
 from solidgear.bearings.hertz import LINE_POWER, line_constant, line_pressure
+from solidgear.bearings.inside import Inside
 from solidgear.bearings.kinds import SHARES
 from solidgear.bearings.rating import static_roller_rating
 from solidgear.bearings.solved import solved

@@ -30,7 +30,8 @@ from solidgear.show.words import capital
 from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.file.train import Train
 from solidgear.trains.modes.pairing import mac, modes_and_motions
-from solidgear.trains.response.respond import Drive, respond
+from solidgear.trains.response.drive import Drive
+from solidgear.trains.response.respond import respond
 from validation.common import ROOT, markdown, results_folder, show, write_rows
 from validation.thesis.lumped_pair import COMPONENTS, PairModes, diagonal_mass
 from validation.thesis.pair import CASES, DATA, gear_support, geared_pair

@@ -14,11 +14,11 @@ import numpy as np
 
 import solidgear as sg
 from solidgear.core.scene import Scene
-from solidgear.trains.assembly.local import local_give
+from solidgear.trains.assembly.local_give import local_give
 from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.assembly.shaft import JUDGE
 from solidgear.trains.file.train import SIDES, Train
-from solidgear.trains.response.respond import Drive
+from solidgear.trains.response.drive import Drive
 from validation.common import ROOT, results_folder, show, write_rows
 
 LOWEST, MIDDLE, HIGHEST = 100.0, 1000.0, 4000.0

@@ -21,7 +21,6 @@ from solidgear.show.turning import Turned, turned
 from solidgear.show.viewer import TURNED, Turning
 
 if TYPE_CHECKING:
-    from solidgear.comparison.models import Comparison
     from solidgear.core import Body, ModeSet, Record, Solution
     from solidgear.show.render import RenderResult
 
@@ -29,7 +28,8 @@ MODE = "bending 1"
 
 
 def write_all(
-    comparison: Comparison,
+    record: Record,
+    solutions: dict[str, Solution],
     out: str | os.PathLike,
     *,
     renders: bool,
@@ -42,9 +42,8 @@ def write_all(
     could not be drawn or written. After an interrupt there are numbers and a report, and no shapes:
     who has pressed Ctrl-C does not want to wait for them.
     """
-    record = comparison.record
     record.left_out = []
-    shapes = comparison.solutions if record.complete else {}
+    shapes = solutions if record.complete else {}
     with begun(out) as folder:
         # Numbers first: whatever happens to pictures, they are there.  What is about to be
         # written is listed before it is.

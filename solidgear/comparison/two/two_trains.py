@@ -28,7 +28,7 @@ from solidgear.strength.deflection.train import TrainDeflection, deflection, wit
 from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.assembly.shaft import JUDGE, LUMPED, mix_label
 from solidgear.trains.assembly.slips import unit_slips
-from solidgear.trains.file.gears import Pair
+from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.planetary import PlanetMesh
 from solidgear.trains.judge.comparison import train_data
 from solidgear.trains.modes.modes import unpublished_lines
@@ -95,7 +95,7 @@ class TwoTrains(Beside[OneTrain, SeenMode]):
     """Two trains compared."""
 
     models: dict[str, str]  #: by shaft, the same in both
-    #: by whose transmission error both are driven, as :class:`solidgear.trains.file.gears.Pair` has it
+    #: by whose transmission error both are driven, as :class:`solidgear.trains.file.pairs.Pair` has it
     mesh: str
     highest_hz: float  #: one mode of each pair at least lies below it
     peaks: tuple[PeakPair, ...]  #: of the mesh force, by frequency

@@ -18,7 +18,7 @@ import scipy.sparse as sp
 from solidgear.core.body.cache import Cache
 from solidgear.core.body.mass import ScalarMass
 from solidgear.core.body.sections import Sections, from_points, signed
-from solidgear.core.body.surface import Drawing, Surface, mesh_unknowns
+from solidgear.core.body.surface import Drawing, Surface
 from solidgear.core.display import Displayed
 from solidgear.core.errors import SolidgearError
 from solidgear.core.factoring import Factoring
@@ -267,7 +267,31 @@ class Body(Displayed):
         """
         if self.geometry is None:
             raise SolidgearError(f"the {self.fidelity} body carries no geometry to draw")
-        return self.geometry.surface(mesh_unknowns(self, vectors))
+        return self.geometry.surface(self.mesh_unknowns(vectors))
+
+    def mesh_unknowns(self, vectors: Mapping[int, np.ndarray]) -> dict[str, np.ndarray]:
+        """Unknowns of the mesh by name of the block, with rigidly tied seats expanded.
+
+        Parameters
+        ----------
+        vectors : mapping of block index to (n,) ndarray
+
+        Raises
+        ------
+        SolidgearError
+            If a vector does not fit its block.
+        """
+        out = {}
+        for index, vector in vectors.items():
+            block = self.block(index)
+            if np.shape(vector) != (block.size,):
+                raise SolidgearError(
+                    f"a shape of block {block.name} has {block.size} values, not {np.shape(vector)}"
+                )
+            out[block.name] = (
+                np.asarray(vector, float) if block.expand is None else block.expand @ vector
+            )
+        return out
 
     def port_index(self, name: str, attachment: str | None = None) -> int:
         """Index of a port.

@@ -4,14 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 import numpy as np
-
-from solidgear.core.errors import SolidgearError
-
-if TYPE_CHECKING:
-    from solidgear.core.body.model import Body
 
 #: pieces an edge is cut into, where its displacement is curved
 PIECES = 4
@@ -51,24 +46,3 @@ class Drawing(Protocol):
 
     def volume(self) -> Volume | None:
         """The mesh of the volume; None for bodies that have only a surface."""
-
-
-def mesh_unknowns(body: Body, vectors: Mapping[int, np.ndarray]) -> dict[str, np.ndarray]:
-    """Return block name -> unknowns of the mesh, with rigidly tied seats expanded.
-
-    Raises
-    ------
-    SolidgearError
-        If a vector does not fit its block.
-    """
-    out = {}
-    for index, vector in vectors.items():
-        block = body.block(index)
-        if np.shape(vector) != (block.size,):
-            raise SolidgearError(
-                f"a shape of block {block.name} has {block.size} values, not {np.shape(vector)}"
-            )
-        out[block.name] = (
-            np.asarray(vector, float) if block.expand is None else block.expand @ vector
-        )
-    return out

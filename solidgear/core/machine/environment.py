@@ -6,8 +6,8 @@ import platform
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 
-from solidgear import __version__
 from solidgear.core.machine.threads import usable_cores
+from solidgear.core.machine.version import VERSION
 
 
 def environment() -> dict:
@@ -21,7 +21,7 @@ def environment() -> dict:
         except PackageNotFoundError:
             out[name] = None
     if out["solidgear"] is None:  # run from a source tree
-        out["solidgear"] = __version__
+        out["solidgear"] = VERSION
     out["platform"] = f"{platform.system()} {platform.machine()}"
     out["cpu"] = _cpu()
     out["cores"] = usable_cores()

@@ -28,7 +28,7 @@ from solidgear.core.meshing.layout import Layout
 
 if TYPE_CHECKING:
     from solidgear.core.meshing.blocks import Joint
-    from solidgear.core.scene.blends import Corner
+    from solidgear.core.scene.corner import Corner
     from solidgear.core.scene.shaft import Shaft
 
 

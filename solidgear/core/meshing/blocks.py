@@ -18,8 +18,9 @@ from solidgear.core.errors import SolidgearError
 from solidgear.core.meshing.corners import corner_layers
 from solidgear.core.meshing.grading import Grading, joint_length
 from solidgear.core.meshing.marks import Mark, lines_between
-from solidgear.core.scene.blends import Corner
-from solidgear.core.scene.outline import SURFACES, TOUCH, Outline, Surface
+from solidgear.core.scene.corner import SURFACES, Corner, Surface
+from solidgear.core.scene.limits import TOUCH
+from solidgear.core.scene.outline import Outline
 
 if TYPE_CHECKING:
     from solidgear.core.scene.shaft import Shaft

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from solidgear.core.scene.outline import TOUCH
+from solidgear.core.scene.limits import TOUCH
 
 if TYPE_CHECKING:
     from solidgear.core.scene import Bearing, PointMass, Port, Segment

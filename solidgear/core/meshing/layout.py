@@ -20,8 +20,8 @@ from solidgear.core.meshing.blocks import DEPTH, Joint, joints_of, lines_along, 
 from solidgear.core.meshing.grading import Grading, joint_length
 from solidgear.core.meshing.marks import marks_of, owners_of
 from solidgear.core.meshing.rings import Radii, Run, needs_of, ring_lines, runs_of
-from solidgear.core.scene.blends import Corner
-from solidgear.core.scene.outline import SURFACES, Outline, Surface
+from solidgear.core.scene.corner import SURFACES, Corner, Surface
+from solidgear.core.scene.outline import Outline
 
 if TYPE_CHECKING:
     from solidgear.core.scene.shaft import Shaft

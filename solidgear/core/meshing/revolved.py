@@ -12,10 +12,11 @@ from dataclasses import dataclass, field
 from math import pi
 from typing import TYPE_CHECKING, Any
 
-from solidgear.core.scene.outline import SURFACES, Frustum, Outline, Shape, Surface, radii_of
+from solidgear.core.scene.corner import SURFACES, Surface
+from solidgear.core.scene.outline import Frustum, Outline, Shape, radii_of
 
 if TYPE_CHECKING:
-    from solidgear.core.scene.blends import Corner
+    from solidgear.core.scene.corner import Corner
 
 Point = tuple[float, float]
 #: tangents of two slabs that differ by less are one

@@ -20,7 +20,7 @@ from solidgear.core.meshing.grading import (
     joint_length,
     segments_under,
 )
-from solidgear.core.scene.outline import Surface
+from solidgear.core.scene.corner import Surface
 
 if TYPE_CHECKING:
     from solidgear.core.scene.parts import Segment

@@ -2,7 +2,8 @@
 
 from solidgear.core.quantity import Quantity
 from solidgear.core.scene.ask import Ask
-from solidgear.core.scene.blends import Blend, Chamfer, Corner, Fillet
+from solidgear.core.scene.blends import Blend, Chamfer, Fillet
+from solidgear.core.scene.corner import Corner
 from solidgear.core.scene.housing import Elastic, Housing
 from solidgear.core.scene.load import BearingLoad
 from solidgear.core.scene.lubrication import Lubrication

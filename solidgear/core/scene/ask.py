@@ -8,7 +8,7 @@ from pydantic import BeforeValidator, Field
 
 from solidgear.core.errors import SceneError
 from solidgear.core.quantity import AT, QUANTITIES, Quantity
-from solidgear.core.scene.rules import MOST_MODES
+from solidgear.core.scene.limits import MOST_MODES
 from solidgear.core.scene.typed import Model
 from solidgear.core.scene.units import Frequency, Tolerance
 

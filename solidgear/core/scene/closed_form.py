@@ -13,8 +13,10 @@ import numpy as np
 from solidgear.core.scene.outline import Outline
 
 if TYPE_CHECKING:
-    from solidgear.core.scene import Corner, Scene, Segment
+    from solidgear.core.scene.corner import Corner
+    from solidgear.core.scene.model import Scene
     from solidgear.core.scene.outline import Piece
+    from solidgear.core.scene.parts import Segment
 
 
 def volume_of(outline: Outline) -> float:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from solidgear.core.errors import SceneError
 
 if TYPE_CHECKING:
-    from solidgear.core.scene.blends import Corner
+    from solidgear.core.scene.corner import Corner
     from solidgear.core.scene.parts import Segment
 
 

@@ -8,16 +8,17 @@ piece, and the mass stays in place.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
-from solidgear.core.errors import SceneError
-from solidgear.core.scene.outline import TOUCH, Outline
+from solidgear.core.scene.limits import TOUCH
+from solidgear.core.scene.outline import Outline
 
 if TYPE_CHECKING:
-    from solidgear.core.scene import Bearing, PointMass, Port, Segment
-    from solidgear.core.scene.places import Along
+    from solidgear.core.scene.parts import Segment
+    from solidgear.core.scene.point_mass import PointMass
+    from solidgear.core.scene.stations import Bearing, Port
 
 #: largest gap that is closed, m, or over the length of the shaft if that is more: the CAD kernel
 #: has no lines of 1e-7 m, and the least seat is a millionth of the length
@@ -52,17 +53,6 @@ def _seated(mass: PointMass, steps: Sequence[float], number: int) -> PointMass:
     y, (x, along, z) = (lo + hi) / 2, mass.offset
     moved = {"y": y, "seat_width": hi - lo, "offset": (x, along + mass.y - y, z)}
     return mass.model_copy(update=moved)
-
-
-def check_face_words(words: Along, table: Mapping[str, Any]) -> None:
-    """Refuse a bearing on a face with a position as well, or without a width."""
-    words.refuse("give either face, or position with from, not both", "position", "from_")
-    if "seat_width" not in table:
-        raise SceneError(
-            'this key is missing; face stands for the position alone: write seat_width = "10 mm" or so '
-            "as well, the rim beside the face that no other seat may lie on",
-            path=("seat_width",),
-        )
 
 
 def _snapped(station: Station, marks: Sequence[float]) -> Station:

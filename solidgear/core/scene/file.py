@@ -21,6 +21,7 @@ from solidgear.core.scene.blends import BLENDS
 from solidgear.core.scene.ends import seat_masses
 from solidgear.core.scene.feature_rules import FEATURES
 from solidgear.core.scene.housing import Housing, read_housing
+from solidgear.core.scene.limits import MOST_BEARINGS, MOST_MASSES, MOST_SEGMENTS
 from solidgear.core.scene.load import BearingLoad
 from solidgear.core.scene.lubrication import Lubrication
 from solidgear.core.scene.materials import by_name
@@ -54,7 +55,7 @@ Reader = Callable[[Any, Path], Any]
 
 Table = dict[str, Any]
 #: entries of the lists of a file
-MOST = {"segment": rules.MOST_SEGMENTS, "bearing": rules.MOST_BEARINGS, "mass": rules.MOST_MASSES}
+MOST = {"segment": MOST_SEGMENTS, "bearing": MOST_BEARINGS, "mass": MOST_MASSES}
 
 
 class _Ask(Ask):

@@ -16,11 +16,13 @@ from solidgear.core.errors import SceneError
 from solidgear.core.frames import DOF_NAMES, shift
 from solidgear.core.scene.bearing_stiffness import STIFFNESS_NAMES, Matrix, stiffness_entries
 from solidgear.core.scene.places import Along, Placed, Places
-from solidgear.core.scene.rules import ONE_HOUSING
 from solidgear.core.scene.typed import Model
 from solidgear.core.scene.units import SOFTEST, AxialSpring, Factor, Position
 from solidgear.core.springs import in_series
 
+ONE_HOUSING = (
+    "is the entry kyy of a housing's stiffness, all other motions rigid; leave one of them out"
+)
 EMPTY = "is empty; write entries of its stiffness such as kxx, or matrix = rows"
 #: names of the entries on the diagonal of a 6x6, in its order
 OWN = tuple(name for name, (i, j, _) in STIFFNESS_NAMES.items() if i == j)

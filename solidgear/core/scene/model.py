@@ -18,12 +18,14 @@ from solidgear.core.errors import SceneError
 from solidgear.core.scene import rules
 from solidgear.core.scene.ask import Ask
 from solidgear.core.scene.bearing_stiffness import stiffness_entries
-from solidgear.core.scene.blends import Blend, Corner
+from solidgear.core.scene.blends import Blend
+from solidgear.core.scene.corner import Corner
 from solidgear.core.scene.ends import seat_masses, snap_seats
 from solidgear.core.scene.feature_rules import Feature
-from solidgear.core.scene.housing import Housing
+from solidgear.core.scene.housing import ONE_HOUSING, Housing
 from solidgear.core.scene.load import BearingLoad
 from solidgear.core.scene.lubrication import Lubrication
+from solidgear.core.scene.open_range import Uncertain
 from solidgear.core.scene.outline import Outline
 from solidgear.core.scene.parts import STEEL, Material, Segment
 from solidgear.core.scene.patches import off_patches
@@ -31,7 +33,6 @@ from solidgear.core.scene.point_mass import PointMass
 from solidgear.core.scene.stations import Bearing, Port
 from solidgear.core.scene.tables import parts
 from solidgear.core.scene.typed import Model
-from solidgear.core.scene.uncertain import Uncertain
 from solidgear.core.scene.units import AxialSpring
 
 if TYPE_CHECKING:
@@ -130,7 +131,7 @@ class Scene(Displayed, Model):
             )
         problems += rules.question_problems(self.ports, self.ask.quantities)
         if self.housing is not None and self.housing_axial is not None:
-            problems.append(SceneError(rules.ONE_HOUSING, path=("housing_axial",)))
+            problems.append(SceneError(ONE_HOUSING, path=("housing_axial",)))
         if problems:
             raise SceneError.of(problems)
         return self

@@ -10,17 +10,13 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from math import atan, atan2, pi
-from typing import TYPE_CHECKING, Generic, Literal, NamedTuple, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Generic, NamedTuple, TypeAlias, TypeVar
+
+from solidgear.core.scene.corner import SURFACES, Corner, Surface
+from solidgear.core.scene.limits import TOUCH
 
 if TYPE_CHECKING:
-    from solidgear.core.scene.blends import Corner
     from solidgear.core.scene.parts import Segment
-
-#: m; two edges nearer than this are one edge
-TOUCH = 1e-9
-
-Surface = Literal["outer", "bore"]
-SURFACES: tuple[Surface, Surface] = ("outer", "bore")
 
 
 class Frustum(NamedTuple):

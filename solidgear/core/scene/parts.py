@@ -7,7 +7,7 @@ from typing import Any, Literal
 from pydantic import model_serializer, model_validator
 
 from solidgear.core.errors import SceneError
-from solidgear.core.scene.outline import TOUCH
+from solidgear.core.scene.limits import TOUCH
 from solidgear.core.scene.typed import Model
 from solidgear.core.scene.units import (
     Density,

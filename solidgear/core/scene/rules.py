@@ -12,40 +12,32 @@ from typing import TYPE_CHECKING, Any
 from solidgear.core.errors import SceneError, listed, nearest, show
 from solidgear.core.quantity import AT, STIFFNESS, Quantity
 from solidgear.core.scene.feature_rules import feature_problems
-from solidgear.core.scene.outline import TOUCH, Outline, radii_of
+from solidgear.core.scene.limits import (
+    MOST_BEARINGS,
+    MOST_BLENDS,
+    MOST_MASSES,
+    MOST_OF_FACE,
+    MOST_OF_LENGTH,
+    MOST_PORTS,
+    MOST_SEGMENTS,
+    MOST_UNLIKE,
+    SHORTEST,
+    SLIMMEST,
+    SMALLEST_BLEND,
+    THINNEST,
+    TOUCH,
+)
+from solidgear.core.scene.outline import Outline, radii_of
 from solidgear.core.scene.units import TYPED
 
 if TYPE_CHECKING:
-    from solidgear.core.scene import Bearing, Blend, Corner, Material, PointMass, Port, Segment
+    from solidgear.core.scene.blends import Blend
+    from solidgear.core.scene.corner import Corner
     from solidgear.core.scene.feature import OnSegment
+    from solidgear.core.scene.parts import Material, Segment
+    from solidgear.core.scene.point_mass import PointMass
+    from solidgear.core.scene.stations import Bearing, Port
     from solidgear.core.scene.tables import BearingData
-
-#: least diameter and least length of a part over the length of the shaft, least wall over the
-#: radius; thinner ones would need endless meshes or drown in rounding, and come from wrong units
-SLIMMEST, SHORTEST, THINNEST = 1e-3, 1e-6, 1e-4
-
-#: moduli, densities or their quotients of two materials of one shaft; beyond, the residuals of
-#: frequencies rise above 1e-4 and searches do not end
-MOST_UNLIKE = 1e5
-
-#: elastic modes of one question; no mesh here has a digit of the last of them
-MOST_MODES = 500
-
-#: every segment takes at least a line of cells, and every bearing six ports
-MOST_SEGMENTS, MOST_BEARINGS, MOST_SPRINGS, MOST_MASSES = 100, 50, 20, 50
-#: lumped points; each is condensed to and judged
-MOST_PORTS = 12
-
-#: fillets and chamfers of one shaft
-MOST_BLENDS = 40
-#: least size over the radius of the edge; smaller ones would need endless meshes
-SMALLEST_BLEND = 2e-3
-#: share of a plane face, and of the cylinder between two edges, that fillets and chamfers may take
-MOST_OF_FACE, MOST_OF_LENGTH = 0.95, 0.95
-
-ONE_HOUSING = (
-    "is the entry kyy of a housing's stiffness, all other motions rigid; leave one of them out"
-)
 
 
 def shaft_problems(segments: Sequence[Segment]) -> list[SceneError]:

@@ -6,8 +6,10 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, Protocol
 
 if TYPE_CHECKING:
-    from solidgear.core.scene import Bearing, PointMass, Port, Segment
     from solidgear.core.scene.outline import Outline
+    from solidgear.core.scene.parts import Segment
+    from solidgear.core.scene.point_mass import PointMass
+    from solidgear.core.scene.stations import Bearing, Port
 
 
 class Shaft(Protocol):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import numpy as np
@@ -12,7 +12,6 @@ from solidgear.core.errors import SceneError, show
 from solidgear.core.frames import DOF_NAMES
 from solidgear.core.registry import addition
 from solidgear.core.scene.bearing_stiffness import Matrix, refuse_two_stiffnesses
-from solidgear.core.scene.ends import check_face_words
 from solidgear.core.scene.housing import Elastic, elastic
 from solidgear.core.scene.patches import Patch, Point, fields_on_patch, patch_problems
 from solidgear.core.scene.places import Along, Placed, Places
@@ -24,7 +23,6 @@ from solidgear.core.scene.support import (
     few_springs,
     held_matrix,
     sliding,
-    support_problems,
 )
 from solidgear.core.scene.tables import Absent
 from solidgear.core.scene.typed import Problems
@@ -158,7 +156,7 @@ class Bearing(Placed):
         if face is None:
             words.require("position", 'write position = "28 mm" with from, or face = "start"')
             return {"y": words.y(places)}
-        check_face_words(words, table)
+        _check_face_words(words, table)
         return {"y": places.datums.get(face) if face in ("start", "end") else None}
 
     @classmethod
@@ -204,7 +202,7 @@ class Bearing(Placed):
 
     @model_validator(mode="after")
     def _supports(self) -> Bearing:
-        if problems := [*support_problems(self), *patch_problems(self)]:
+        if problems := [*_support_problems(self), *patch_problems(self)]:
             raise SceneError.of(problems)
         return self
 
@@ -399,3 +397,54 @@ class Port(Placed):
         hint = 'name the segment whose surface carries the port, or write span = ["0 mm", "58 mm"]'
         words.require_one("attach_to", "span", hint)
         return words.span or places.span_of(words.attach_to, "attach_to")
+
+
+def _check_face_words(words: Along, table: Mapping[str, Any]) -> None:
+    """Refuse a bearing on a face with a position as well, or without a width."""
+    words.refuse("give either face, or position with from, not both", "position", "from_")
+    if "seat_width" not in table:
+        raise SceneError(
+            'this key is missing; face stands for the position alone: write seat_width = "10 mm" or so '
+            "as well, the rim beside the face that no other seat may lie on",
+            path=("seat_width",),
+        )
+
+
+def _support_problems(bearing: Bearing) -> Iterator[SceneError]:
+    """Yield contradictions in the support of a bearing."""
+    data = bearing.catalogue
+    if bearing.support is None:
+        return
+    if bearing.hold is not None:
+        yield SceneError(
+            f"a {bearing.hold} bearing holds y as well: leave support out", path=("support",)
+        )
+        return
+    kind = "" if data is None else data.kind.replace("_", " ")
+    if bearing.support == "locating":
+        if data is not None and data.floats:
+            yield SceneError(
+                f"a {kind} bearing carries nothing along y, ribs being left out: leave support out, "
+                'or write "floating"',
+                path=("support",),
+            )
+        elif data is None and bearing.matrix is not None and not bearing.matrix[1][1]:
+            yield SceneError(
+                'its stiffness holds nothing along y: write kyy, or support = "floating"',
+                path=("support",),
+            )
+        return
+    if data is not None and data.one_sided:
+        yield SceneError(
+            f"a {data.arrangement} {kind} bearing cannot float, since nothing presses it: write "
+            'two rows as one bearing with arrangement = "O" or "X" and row_distance',
+            path=("support",),
+        )
+    if bearing.axial_series:
+        yield SceneError("a floating bearing presses no spring along y", path=("axial_series",))
+    for key in ("load", "displacement"):
+        state = None if data is None else getattr(data, key)
+        if state is not None and state.y:
+            yield SceneError(
+                "a floating bearing carries nothing along y", path=("catalogue", key, "y")
+            )

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 
 from solidgear.core.errors import SceneError
-from solidgear.core.scene.rules import MOST_SPRINGS
+from solidgear.core.scene.limits import MOST_SPRINGS
 from solidgear.core.springs import in_series
-
-if TYPE_CHECKING:
-    from solidgear.core.scene.stations import Bearing
 
 Hold = Literal["clamped", "pinned"]
 Support = Literal["locating", "floating"]
@@ -46,46 +42,6 @@ def sliding(stiffness: np.ndarray) -> np.ndarray:
         matrix = in_series(matrix, np.eye(6)[:, [1]], np.zeros((1, 1)))
     matrix[1] = matrix[:, 1] = 0.0
     return matrix
-
-
-def support_problems(bearing: Bearing) -> Iterator[SceneError]:
-    """Yield contradictions in the support of a bearing."""
-    data = bearing.catalogue
-    if bearing.support is None:
-        return
-    if bearing.hold is not None:
-        yield SceneError(
-            f"a {bearing.hold} bearing holds y as well: leave support out", path=("support",)
-        )
-        return
-    kind = "" if data is None else data.kind.replace("_", " ")
-    if bearing.support == "locating":
-        if data is not None and data.floats:
-            yield SceneError(
-                f"a {kind} bearing carries nothing along y, ribs being left out: leave support out, "
-                'or write "floating"',
-                path=("support",),
-            )
-        elif data is None and bearing.matrix is not None and not bearing.matrix[1][1]:
-            yield SceneError(
-                'its stiffness holds nothing along y: write kyy, or support = "floating"',
-                path=("support",),
-            )
-        return
-    if data is not None and data.one_sided:
-        yield SceneError(
-            f"a {data.arrangement} {kind} bearing cannot float, since nothing presses it: write "
-            'two rows as one bearing with arrangement = "O" or "X" and row_distance',
-            path=("support",),
-        )
-    if bearing.axial_series:
-        yield SceneError("a floating bearing presses no spring along y", path=("axial_series",))
-    for key in ("load", "displacement"):
-        state = None if data is None else getattr(data, key)
-        if state is not None and state.y:
-            yield SceneError(
-                "a floating bearing carries nothing along y", path=("catalogue", key, "y")
-            )
 
 
 def few_springs(springs: Any) -> Any:

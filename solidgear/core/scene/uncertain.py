@@ -7,47 +7,26 @@ factors, so that they stay with a scene that is changed.
 
 from __future__ import annotations
 
-import math
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from solidgear.core.errors import SceneError, show
 from solidgear.core.scene.bearing_stiffness import STIFFNESS_NAMES
-from solidgear.core.scene.typed import Model, Problems
-from solidgear.core.scene.units import quantity
+from solidgear.core.scene.open_range import FACTOR, Uncertain, range_ends
+from solidgear.core.scene.typed import Problems
 
 if TYPE_CHECKING:
-    from solidgear.core.scene import Bearing, Scene, Segment
+    from solidgear.core.scene.model import Scene
+    from solidgear.core.scene.parts import Segment
+    from solidgear.core.scene.stations import Bearing
 
 #: range of a bearing with the status "assumed" where the file states none: a factor two each way
 ASSUMED = "0.5 : 2"
-#: dimension of entries that are multiplied as a whole, and are no numbers with a unit
-FACTOR = "dimensionless"
-PLUS_MINUS = re.compile(r"(.*?)(?:±|\+/-|\+-)(.*)", re.S)
 _KNOWN = (
     "a range may have material.E, material.density, segment.NAME.material.E, load, load.z, housing, bearing.NAME.stiffness, "
     "bearing.NAME.stiffness.kxx or bearing.NAME.catalogue.preload"
 )
-
-
-class Uncertain(Model):
-    """An entry and its range."""
-
-    path: str
-    said: str  #: the range as the file states it
-    #: low, high: factors on the value of the scene; 1 lies between
-    low: float
-    high: float
-
-    @property
-    def deviation(self) -> float:
-        """Standard deviation of the logarithm: ± is taken as one, between two ends all values are
-        equally likely.
-        """
-        spread = math.log(self.high / self.low)
-        return spread / (2.0 if PLUS_MINUS.fullmatch(self.said) else math.sqrt(12.0))
 
 
 def with_ranges(
@@ -199,25 +178,3 @@ def _entry(scene: Scene, path: str) -> tuple[float, str]:
     if not isinstance(value, float) or value == 0:
         raise SceneError(f"this entry cannot have a range here; {_KNOWN}")
     return value, dimension
-
-
-def range_ends(text: str, value: float, dimension: str) -> tuple[float, float]:
-    """Return the ends of a range about a value, SI."""
-
-    def number(word: str) -> float:
-        word = word.strip()
-        try:
-            return float(word)
-        except ValueError:
-            return quantity(word, dimension)
-
-    if match := PLUS_MINUS.fullmatch(text):
-        middle = number(match[1]) if match[1].strip() else value
-        part = match[2].strip()
-        share = part.endswith("%")
-        deviation = abs(middle) * number(part[:-1]) / 100 if share else number(part)
-        return middle - deviation, middle + deviation
-    low, colon, high = text.partition(":")
-    if not colon:
-        raise SceneError('must be two ends such as "3e8 N/m : 6e8 N/m", or "206 GPa ± 3 %"')
-    return number(low), number(high)

@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 
 from solidgear.core.body import Body
-from solidgear.core.body.surface import mesh_unknowns
 
 MOST = 16  # waves around that are separated, where the mesh has the nodes for them
 BINS = 512
@@ -140,7 +139,7 @@ def circumference_of(body: Body) -> tuple[Circumference, Displacements] | None:
     if motion is None:
         return None
     fit = body.cache.get(Circumference, lambda: Circumference(geometry.nodes, _volumes(geometry)))
-    return fit, lambda vectors: motion(mesh_unknowns(body, vectors))
+    return fit, lambda vectors: motion(body.mesh_unknowns(vectors))
 
 
 def _volumes(geometry) -> np.ndarray:

@@ -17,14 +17,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from solidgear.core.errors import SolidgearError
-
-if TYPE_CHECKING:
-    from solidgear.core.system.system import System
+from solidgear.core.system.coupled import Coupled
 
 #: rows that may differ; with more, complex modes are cheaper
 MOST_ROWS = 4
@@ -48,7 +45,7 @@ class CommonLoss:
     difference: np.ndarray  #: (r,) their loss factors less the common one
 
 
-def common_loss(system: System, loss: Mapping[str, float]) -> CommonLoss | None:
+def common_loss(system: Coupled, loss: Mapping[str, float]) -> CommonLoss | None:
     """Return the loss factor that most strain rows have, or None where too many differ; parts and
     links without a loss factor have none, and an unknown name is refused.
 
@@ -79,7 +76,7 @@ def common_loss(system: System, loss: Mapping[str, float]) -> CommonLoss | None:
 
 
 def in_real_modes(
-    system: System, common: CommonLoss, w2: np.ndarray, load: np.ndarray, rows: np.ndarray
+    system: Coupled, common: CommonLoss, w2: np.ndarray, load: np.ndarray, rows: np.ndarray
 ) -> np.ndarray:
     """Return complex amplitudes (f, q) of the motions `rows` (q, N) in elastic modes, without free
     motions, under a load (N,), at squares of angular frequencies (f,), rad^2/s^2.

@@ -14,12 +14,10 @@ difference; and a motion that they span is read from q or from s, whichever roun
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from solidgear.core.system.system import System
+from solidgear.core.system.coupled import Coupled
 
 #: stiffness of a link, over its effective mass, above the highest eigenvalue of the parts by so much
 #: that it is no term of a sum; both forms are exact, and round alike near it
@@ -35,7 +33,7 @@ class Elimination:
     the rows of the links.
     """
 
-    def __init__(self, system: System, loss: Mapping[str, float]):
+    def __init__(self, system: Coupled, loss: Mapping[str, float]):
         g, rows_of = system.strains
         eta = np.zeros(len(g))
         for name, place in rows_of.items():

@@ -32,17 +32,14 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from solidgear.core.errors import SolidgearError
 from solidgear.core.machine.threads import pinned
 from solidgear.core.system.common_loss import CommonLoss, common_loss, in_real_modes
+from solidgear.core.system.coupled import Coupled
 from solidgear.core.system.elimination import Elimination
-
-if TYPE_CHECKING:
-    from solidgear.core.system.system import System
 
 KINDS = ("hysteretic", "viscous", "modal")
 #: grid points around a pole, in half-widths
@@ -82,7 +79,7 @@ class SteadyState:
     1.0
     """
 
-    system: System
+    system: Coupled
     loss: Mapping[str, float] = field(default_factory=dict)  #: loss factor eta of parts and links
     kind: str = "hysteretic"
     matched_hz: float = 0.0  #: where viscous losses have their loss factor, Hz
@@ -258,7 +255,7 @@ class SteadyState:
 
 
 def free_motion(
-    system: System, w2: np.ndarray, load: np.ndarray, rows: np.ndarray | None = None
+    system: Coupled, w2: np.ndarray, load: np.ndarray, rows: np.ndarray | None = None
 ) -> np.ndarray:
     """Return accelerations of free motions, twice integrated; of all coordinates, or by some rows."""
     push = system.free.T @ load
@@ -272,7 +269,7 @@ def free_motion(
     return motions @ (push[:, None] * (w2 > 0) / -moving)
 
 
-def lost_stiffness(system: System, loss: Mapping[str, float]) -> np.ndarray:
+def lost_stiffness(system: Coupled, loss: Mapping[str, float]) -> np.ndarray:
     """Return ``sum eta_j K_j`` in elastic modes."""
     g, rows_of = system.strains
     shapes = system.elastic[1]

@@ -29,7 +29,7 @@ import scipy.sparse as sp
 from solidgear.core import Block, Surface, rotation
 from solidgear.core.kernel.attachment import Attached, with_ports
 from solidgear.core.models.solid.block import rigid_motions
-from solidgear.core.models.solid.drawing import copied, solid_surface
+from solidgear.core.models.solid.drawing import copied
 from solidgear.core.models.solid.matrices import _matrices, weighed
 from solidgear.core.models.solid.mesh import SolidMesh, _isoparametric
 from solidgear.cuts.sector.cyclic import ROUNDING
@@ -212,10 +212,11 @@ class HalfSectorSolid(PieceSolid):
         half, parts = self.sector, []
         for name, vector in moved.items():
             a, b = (
-                solid_surface(self, part).displacement for part in _even_and_odd(self, name, vector)
+                self.outline.surface(part).displacement
+                for part in _even_and_odd(self, name, vector)
             )
             parts.append((name, a, b))
-        undeformed = solid_surface(self, None)
+        undeformed = self.outline.surface(None)
         copies = []
         for k in range(half.count):
             angle = k * half.angle + half.turn

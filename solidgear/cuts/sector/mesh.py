@@ -11,7 +11,7 @@ import numpy as np
 
 from solidgear.core import Surface, rotation
 from solidgear.core.models.solid.block import Facets
-from solidgear.core.models.solid.drawing import copied, solid_surface
+from solidgear.core.models.solid.drawing import copied
 from solidgear.core.models.solid.mesh import SolidMesh, _isoparametric
 from solidgear.core.models.solid.seat_faces import Seats
 from solidgear.cuts.sector.cyclic import Sector
@@ -81,8 +81,8 @@ class SectorSolid(PieceSolid):
         for name, vector in moved.items():
             h = int(name.removeprefix("cyclic_"))
             pieces = (vector,) if h == 0 else (vector[::2], vector[1::2])
-            parts[h] = [solid_surface(self, piece).displacement for piece in pieces]
-        undeformed = solid_surface(self, None)
+            parts[h] = [self.outline.surface(piece).displacement for piece in pieces]
+        undeformed = self.outline.surface(None)
         copies = []
         for k in range(self.sector.count):
             angle = k * self.sector.angle

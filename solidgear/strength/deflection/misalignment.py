@@ -34,7 +34,8 @@ from solidgear.core import System
 from solidgear.core.frames import cross_matrix
 from solidgear.core.reduction.superelement import PortMotion
 from solidgear.trains.assembly.models import Workshop
-from solidgear.trains.file.gears import Member, Pair
+from solidgear.trains.file.gears import Member
+from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.train import Train
 
 #: axes whose angle has a sine below this are parallel

@@ -22,7 +22,7 @@ from solidgear.core.meshing.cells import HIGH, LOW, OUT
 from solidgear.core.models.harmonic.blocks import Work
 from solidgear.core.models.harmonic.families import TORSION, family_of, strains
 from solidgear.core.models.harmonic.mesh import HarmonicMesh
-from solidgear.core.scene.blends import Corner
+from solidgear.core.scene.corner import Corner
 
 #: places on the side of a cell, and the step of differences in its reference coordinates
 PLACES, STEP = 65, 1e-3

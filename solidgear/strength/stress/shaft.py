@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from solidgear.core import SolidgearError
-from solidgear.core.scene.blends import Corner
+from solidgear.core.scene.corner import Corner
 from solidgear.core.scene.outline import radii_of
 from solidgear.strength.stress.din743 import LOADS
 from solidgear.strength.stress.din743 import Load as LoadKind

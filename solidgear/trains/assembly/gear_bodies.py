@@ -10,8 +10,9 @@ from math import cos, pi, sin, sqrt
 
 from solidgear.core import Scene
 from solidgear.trains.assembly.layout import mesh_forces
-from solidgear.trains.file.gears import HeadInertia, Pair
+from solidgear.trains.file.gears import HeadInertia
 from solidgear.trains.file.layout import ends_of, flanks_from_file
+from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.planetary import Stage
 from solidgear.trains.file.tooth_fit import (
     ADDENDUM,

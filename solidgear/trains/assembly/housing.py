@@ -6,7 +6,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,19 +14,14 @@ from solidgear.core.reduction.superelement import PortMotion
 from solidgear.core.scene.housing_matrices import HousingMatrices
 from solidgear.core.system.links import BearingSpring, Link, relative_motion
 from solidgear.core.system.parts import Part, Placed, RigidBody
-from solidgear.trains.assembly.components import FORCE_UNITS, MOTION_UNITS, six_columns
 from solidgear.trains.file.housing import CENTRE, HOUSING, LOSS, TrainHousing
 from solidgear.trains.file.planetary import Stage
 from solidgear.trains.file.train import Train
-
-if TYPE_CHECKING:
-    from solidgear.trains.response.respond import Drive
 
 #: port at its centre of mass
 BOX = f"{HOUSING}.{CENTRE}"
 #: names of its motions
 MOTIONS = [f"along {x}" for x in "xyz"] + [f"about {x}" for x in "xyz"] + ["elastic"]
-ACCELERATION = "m/s²"
 #: distance of a point from its bearing that gives a caution, m
 ASTRAY = 1e-3
 
@@ -148,50 +142,6 @@ def mount_rows(train: Train, system: System) -> dict[str, np.ndarray]:
         name: np.array(mount.stiffness) @ system.motion(f"{HOUSING}.{box.feet[name]}")
         for name, mount in box.mounted.items()
     }
-
-
-def housing_columns(drive: Drive, frequency_hz: np.ndarray) -> dict[str, np.ndarray]:
-    """Return amplitudes of the housing over frequency, by name and unit: loads on every mount,
-    motions and accelerations of the centre of mass and of named points; none without
-    a housing. Magnitudes are the root of the sum of squares of the amplitudes in all three
-    directions.
-    """
-    train, system = drive.workshop.train, drive.system
-    out: dict[str, np.ndarray] = {}
-    if train.housing is None:
-        return out
-    loads = mount_rows(train, system)
-    places = train.housing.free_points
-    rows = [*loads.values(), *(system.motion(f"{HOUSING}.{place}") for place in places)]
-    motions = np.split(drive.motion(frequency_hz, np.vstack(rows)), len(rows), axis=1)
-    for name, load in zip(loads, motions):
-        factor = drive.steady.factor(f"mount {name}", frequency_hz)
-        force = load * factor[:, None]
-        out[f"mount {name} force [N]"] = _magnitude(force)
-        out |= six_columns(f"mount {name}", FORCE_UNITS, force)
-    square = -((2 * np.pi * frequency_hz[:, None]) ** 2)
-    for place, motion in zip(places, motions[len(loads) :]):
-        name, acceleration = f"{HOUSING} {place}", square * motion
-        out[f"{name} acceleration [{ACCELERATION}]"] = _magnitude(acceleration)
-        out |= {
-            f"{name} acceleration {dof} [{ACCELERATION}]": acceleration[:, k]
-            for k, dof in enumerate(DOF_NAMES[:3])
-        }
-        out |= six_columns(name, MOTION_UNITS, motion)
-    return out
-
-
-def housing_amplitudes(drive: Drive, frequency_hz: np.ndarray) -> list[np.ndarray]:
-    """Return columns (f,) of forces on mounts and accelerations of points, in all three directions
-    together.
-    """
-    columns = housing_columns(drive, frequency_hz)
-    return [columns[name] for name in columns if " force [" in name or " acceleration [" in name]
-
-
-def _magnitude(values: np.ndarray) -> np.ndarray:
-    """Return the (f,) size of the first three components."""
-    return np.linalg.norm(values[:, :3], axis=1).astype(complex)
 
 
 def housing_energy(system: System, energy: np.ndarray, shapes: np.ndarray) -> dict[str, np.ndarray]:

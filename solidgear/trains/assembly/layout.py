@@ -10,12 +10,13 @@ from itertools import combinations
 import numpy as np
 
 from solidgear.core import Scene, SceneError
-from solidgear.trains.file.gears import Pair
 from solidgear.trains.file.layout import outward
 from solidgear.trains.file.operation import OperatingPoint
+from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.planetary import Stage
 from solidgear.trains.file.power import shares_of
-from solidgear.trains.file.train import Joint, Train
+from solidgear.trains.file.shafting import Joint
+from solidgear.trains.file.train import Train
 from solidgear.trains.load.contact import Contact, axes_of, contact
 
 #: shafts of a loop of meshes that end this far from where they began, of the distance, do not meet

@@ -39,8 +39,8 @@ from solidgear.trains.assembly.local import local_teeth, mesh_port
 from solidgear.trains.assembly.shaft import JUDGE, LUMPED, RIGID, ShaftModel, checked_model, lumped
 from solidgear.trains.assembly.space import overlaps
 from solidgear.trains.assembly.stages import StageAtWork, stages_at_work
-from solidgear.trains.file.gears import Pair
 from solidgear.trains.file.housing import HOUSING
+from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.train import Train
 from solidgear.trains.load.contact import Contact
 

@@ -19,7 +19,7 @@ from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.file.planetary import PlanetMesh
 from solidgear.trains.file.train import PerTurn
 from solidgear.trains.modes.modes import TrainMode, train_modes
-from solidgear.trains.response.respond import Drive
+from solidgear.trains.response.drive import Drive
 
 #: orders of the mesh at most, and those of shafts that are drawn
 MOST_ORDERS, SHAFT_ORDERS = 20, (1, 2)
@@ -73,7 +73,7 @@ def order_map(
 ) -> OrderMap:
     """Return the order lines of a train with the shafts by models, up to a frequency that is by
     default that of the file; damping and mesh are those of
-    :class:`solidgear.trains.response.respond.Drive`, and orders of other meshes have no force. By
+    :class:`solidgear.trains.response.drive.Drive`, and orders of other meshes have no force. By
     default there are three orders of the mesh, or as many as the transmission error has.
 
     Examples

@@ -19,7 +19,7 @@ from solidgear.bearings.catalogue import catalogue_of
 from solidgear.core import Scene
 from solidgear.guards.bearings import width_of
 from solidgear.trains.assembly.layout import Place
-from solidgear.trains.file.gears import Pair
+from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.train import Train
 
 #: m; less is how numbers are typed

@@ -20,7 +20,7 @@ from solidgear.core.system.links import BearingSpring, Link, RowSpring
 from solidgear.core.system.parts import Part, Placed
 from solidgear.trains.assembly.housing import ring_port
 from solidgear.trains.assembly.layout import Place, sun_ways
-from solidgear.trains.file.gears import Pair
+from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.planetary import MATES, PlanetMesh, Stage
 from solidgear.trains.file.train import Train
 from solidgear.trains.load.contact import Contact

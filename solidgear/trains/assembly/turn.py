@@ -18,8 +18,8 @@ from solidgear.core import System, pinned
 from solidgear.core.system.port_forces import port_forces
 from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.assembly.stages import StageAtWork
-from solidgear.trains.file.planetary import Stage, with_carrier_turned
-from solidgear.trains.file.train import Train
+from solidgear.trains.file.planetary import Stage
+from solidgear.trains.file.train import Train, with_carrier_turned
 from solidgear.trains.load.operation import OperatingState, with_settled_bearings
 from solidgear.trains.load.planet_loads import centrifugal, weights
 from solidgear.trains.system.carrier_turn import FixedSupport, carrier_turn

@@ -1,22 +1,14 @@
-"""Gears, the shafts that carry them, and the pairs that mesh: data only."""
+"""Gears and the shafts that carry them: data only."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
-from functools import cached_property
-from math import isclose, pi
 from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
 from solidgear.core import Model, PositiveLength, Scene, SceneError, listed, nearest
 from solidgear.core.scene.stations import Status
-from solidgear.core.scene.units import TYPED, Inertia, Mass, PitchAngle, SpiralAngle
-from solidgear.trains.file.cylindrical import cylindrical_problems, rolling_fields
-from solidgear.trains.file.operation import OperatingPoint
-from solidgear.trains.file.tables import Mesh
-from solidgear.trains.file.tooth_fit import fit_problems
+from solidgear.core.scene.units import Inertia, Mass, PitchAngle, SpiralAngle
 
 #: relative, of inertias: the last of three digits
 ROUNDED = 5e-3
@@ -132,125 +124,3 @@ class Member(Gear):
         gear = Gear(**{key: getattr(self, key) for key in Gear.model_fields})
         gears = {self.scene.port.name: gear}
         return Shaft(scene=self.scene, gears=gears, scene_load=self.scene_load)
-
-
-@dataclass(frozen=True)
-class Pair:
-    """Two gears that mesh."""
-
-    name: str  #: of the mesh: ``mesh`` where it is the only one
-    #: shafts, ports: of the first gear, called pinion here whatever its size, and of the other
-    shafts: tuple[str, str]
-    ports: tuple[str, str]
-    paths: Mapping[str, tuple]  #: keys of a file at which ``pinion``, ``gear`` and ``mesh`` stand
-    pinion: Member
-    gear: Member
-    mesh: Mesh
-    point: OperatingPoint | None  #: at which the train is looked at
-    #: true where the second gear is first in a further mesh: it drives there with the flank that the
-    #: file names, and is driven here on the flank behind
-    idle: bool = False
-
-    @property
-    def members(self) -> dict[str, Member]:
-        """Both gears, by ``pinion`` and ``gear``."""
-        return {"pinion": self.pinion, "gear": self.gear}
-
-    @property
-    def label(self) -> str:
-        """Name of the mesh in the middle of a phrase; empty where it is the only one."""
-        return self.name.removeprefix("mesh")
-
-    @property
-    def ratio(self) -> float:
-        """Teeth of the gear over teeth of the pinion."""
-        return self.gear.teeth / self.pinion.teeth
-
-    @cached_property
-    def rolling(self) -> Pair:
-        """The pair with pitch radii and angles of parallel shafts where the wheels roll on each other,
-        as module, helix angle, profile shifts and centre distance give them.
-        """
-        return replace(self, **rolling_fields(self.pinion, self.gear, self.mesh))
-
-    def with_file_paths(self, problems: Iterable[SceneError]) -> Iterator[SceneError]:
-        """Yield problems of ``pinion``, ``gear`` or ``mesh`` with the paths of the file."""
-        for problem in problems:
-            first, *further = problem.path
-            yield problem.located(None, path=(*self.paths[first], *further))
-
-
-def pair_problems(pair: Pair) -> Iterator[SceneError]:
-    """Yield problems of two gears that mesh, with paths from ``pinion``, ``gear`` or ``mesh``."""
-    pinion, gear, mesh = pair.pinion, pair.gear, pair.mesh
-    hands = (pinion.hand, gear.hand)
-    curved = any(m.spiral_angle or m.helix_angle for m in (pinion, gear))
-    if curved and None not in hands and hands[0] == hands[1]:
-        kind = "spiral bevel pair" if mesh.shaft_angle else "helical pair on parallel shafts"
-        yield SceneError(
-            f"both wheels are {hands[0]}-handed; a {kind} needs one of each hand",
-            path=("gear", "hand"),
-        )
-    yield from _flanks(pair)
-    if wrong := [*cylindrical_problems(pinion, gear, mesh)]:
-        yield from wrong
-    else:
-        yield from fit_problems(pair)
-    ratio, file_ratio = pair.ratio, mesh.ratio
-    if file_ratio is not None and not isclose(file_ratio, ratio, rel_tol=TYPED):
-        yield SceneError(
-            f"{gear.teeth} over {pinion.teeth} teeth are a ratio of {ratio:.4f}; "
-            "correct it or leave it out",
-            path=("mesh", "ratio"),
-        )
-    yield from _cycles(pair)
-
-
-def _cycles(pair: Pair) -> Iterator[SceneError]:
-    """Yield problems of tables over a mesh cycle, which cover one tooth pitch of the pinion."""
-    teeth, pitch = pair.pinion.teeth, 2 * pi / pair.pinion.teeth
-    tables = {key: getattr(pair.mesh, key) for key in ("stiffness_cycle", "line_cycle")}
-    tables_given = {key: table for key, table in tables.items() if table is not None}
-    for key, table in tables_given.items():
-        if not isclose(table.pitch, pitch, rel_tol=TYPED):
-            yield SceneError(
-                f"covers {table.pitch:.5g} rad of the pinion, but one of its {teeth} teeth takes "
-                f"{pitch:.5g} rad; correct the angles, or the number of teeth",
-                path=("mesh", key, "angle"),
-            )
-    first = [table.angle[0] for table in tables_given.values()]
-    if len(first) > 1 and not isclose(first[0], first[1], abs_tol=TYPED * pitch):
-        yield SceneError(
-            f"begins at {first[1]:.5g} rad, but stiffness_cycle at {first[0]:.5g} rad; let both "
-            "begin at one angle",
-            path=("mesh", "line_cycle", "angle"),
-        )
-
-
-def _flanks(pair: Pair) -> Iterator[SceneError]:
-    """Yield problems of left and right flanks: of cylindrical gears alone, left against left."""
-    pinion, gear, mesh = pair.pinion, pair.gear, pair.mesh
-    sides = [side for side in pair.members if pair.members[side].loaded_side in FLANKS]
-    if sides and mesh.shaft_angle:
-        yield SceneError(
-            "left and right flanks are for parallel shafts (ISO 21771); for a bevel gear write "
-            "concave or convex",
-            path=(sides[0], "loaded_side"),
-        )
-    elif sides and None not in (pinion.flank, gear.flank):
-        if pinion.flank != gear.flank and pair.idle:
-            file_flank = next(flank for flank in FLANKS if flank != gear.flank)
-            yield SceneError(
-                f"is the flank that the {pair.shafts[1]} drives with, so it would be driven on "
-                f"its {gear.flank} flank, but the {pair.shafts[0]} drives it on the "
-                f'{pinion.flank} one: write "{gear.flank}" in place of "{file_flank}", or leave it '
-                "out",
-                path=("gear", "loaded_side"),
-            )
-        elif pinion.flank != gear.flank:
-            yield SceneError(
-                f"is the {gear.flank} flank, but the {pinion.flank} one is loaded on the "
-                f"{pair.shafts[0]}, and left flanks touch left ones; correct one of them, or "
-                "leave the gear's out",
-                path=("gear", "loaded_side"),
-            )

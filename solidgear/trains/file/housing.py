@@ -5,8 +5,8 @@ Everything is in the axes of the train, which are those of the first shaft's sce
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Annotated, Any
+from collections.abc import Mapping
+from typing import Annotated, Any
 
 import numpy as np
 from pydantic import BeforeValidator, Field, InstanceOf, model_validator
@@ -17,9 +17,6 @@ from solidgear.core.scene.housing_matrices import HousingMatrices
 from solidgear.core.scene.stations import Status
 from solidgear.core.scene.units import TYPED, Loss, Mass, quantity
 from solidgear.trains.file.mesh_cycle import Vector
-
-if TYPE_CHECKING:
-    from solidgear.trains.file.train import Train
 
 #: names of the housing among the parts of a train, and of the centre of mass among its points
 HOUSING, CENTRE = "housing", "centre"
@@ -173,38 +170,3 @@ class TrainHousing(Model):
         mounts = {name: mount.position for name, mount in self.mounted.items() if mount.at is None}
         points = {CENTRE: self.centre, **mounts, **self.points}
         return {name: np.subtract(place, self.centre) for name, place in points.items()}
-
-
-def housing_problems(train: Train) -> Iterator[SceneError]:
-    """Yield problems of the housing of a train: unknown or doubly housed shafts, and names."""
-    if train.housing is None:
-        return
-    for kind, names in (("shaft", train.shafts), ("rotor", train.rotors)):
-        if HOUSING in names:
-            reason = f"a {kind} beside a housing cannot be called {HOUSING!r}; give it another name"
-            yield SceneError(reason, path=(kind, HOUSING))
-    for k, side in enumerate(train.housing.carries or ()):
-        if side not in train.shafts:
-            choices = [*train.shafts]
-            reason = (
-                f"names no shaft {side!r}{nearest(side, choices)}; known here: {listed(choices)}"
-            )
-            yield SceneError(reason, path=(HOUSING, "carries", k))
-    if (matrices := train.housing.matrices) is not None:
-        scenes = {side: train.shafts[side].scene for side in train.housed}
-        needed = {f"{side}.{b.name}": "bearing" for side in scenes for b in scenes[side].bearings}
-        needed |= {s.ring_point: "ring" for s in train.stages if {*s.shafts} & {*train.housed}}
-        for name, kind_of_point in needed.items():
-            if name not in (choices := [*matrices.positions]):
-                reason = f"has no point {name!r}{nearest(name, choices)}, where that {kind_of_point} stands"
-                yield SceneError(
-                    f"{reason}; there are {listed(choices)}", path=(HOUSING, "matrices")
-                )
-    for side in train.housed:
-        scene = train.shafts[side].scene
-        if scene.housing is not None or scene.housing_axial is not None:
-            reason = (
-                f"has a [housing] of its own, and that of the train carries the bearings of the {side}; "
-                "leave one out, or the shaft out of carries"
-            )
-            yield SceneError(reason, path=(*train.shaft_path(side), "scene"))

@@ -5,14 +5,11 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Iterator
 from math import isclose
-from typing import TYPE_CHECKING
 
 from solidgear.core import SceneError, listed, nearest
-from solidgear.trains.file.planetary import stage_problems
-
-if TYPE_CHECKING:
-    from solidgear.trains.file.gears import Member
-    from solidgear.trains.file.train import Joint, Train
+from solidgear.trains.file.gears import Member
+from solidgear.trains.file.rules import stage_problems
+from solidgear.trains.file.shafting import Joint, Shafting
 
 #: names that mean something else in a file, in a result or in an order
 RESERVED = (
@@ -38,7 +35,7 @@ class PerTurn(float):
         return out
 
 
-def layout_problems(train: Train) -> Iterator[SceneError]:
+def layout_problems(train: Shafting) -> Iterator[SceneError]:
     """Yield problems of names, of meshes between unknown shafts, and of shafts without a mesh."""
     for name in train.shafts:
         if name in RESERVED or name in train.rotors or "." in name or not name.strip():
@@ -64,7 +61,7 @@ def layout_problems(train: Train) -> Iterator[SceneError]:
         yield from _loops(train)
 
 
-def _meshes(train: Train) -> Iterator[SceneError]:
+def _meshes(train: Shafting) -> Iterator[SceneError]:
     if not train.meshes and not train.planetary:
         reason = "this table is missing; write [[mesh]] with between, stiffness and line of action"
         yield SceneError(reason, path=("mesh",))
@@ -96,7 +93,7 @@ def _meshes(train: Train) -> Iterator[SceneError]:
             )
 
 
-def _rotors(train: Train) -> Iterator[SceneError]:
+def _rotors(train: Shafting) -> Iterator[SceneError]:
     for name, rotor in train.rotors.items():
         path = train.rotor_path(name)
         if name != path[0] and (name in RESERVED or "." in name or not name.strip()):
@@ -110,7 +107,7 @@ def _rotors(train: Train) -> Iterator[SceneError]:
             yield SceneError(f"{problem}; known here: {names}", path=(*path, "shaft"))
 
 
-def _named_twice(train: Train) -> Iterator[SceneError]:
+def _named_twice(train: Shafting) -> Iterator[SceneError]:
     names = [pair.name for pair in train.pairs]
     for k, name in enumerate(names):
         if name in names[:k]:
@@ -118,7 +115,7 @@ def _named_twice(train: Train) -> Iterator[SceneError]:
             yield SceneError(reason, path=("mesh", k, "name"))
 
 
-def ends_of(train: Train, k: int) -> tuple[tuple[str, str], tuple[str, str]]:
+def ends_of(train: Shafting, k: int) -> tuple[tuple[str, str], tuple[str, str]]:
     """Return shaft and lumped point of both gears of mesh k."""
     out = []
     for word in train.meshes[k].between:
@@ -127,12 +124,12 @@ def ends_of(train: Train, k: int) -> tuple[tuple[str, str], tuple[str, str]]:
     return out[0], out[1]
 
 
-def is_idler(train: Train, end: tuple[str, str]) -> bool:
+def is_idler(train: Shafting, end: tuple[str, str]) -> bool:
     """Return True for a gear (shaft and lumped point) that is first in a mesh, and so drives another."""
     return end in [ends_of(train, k)[0] for k in range(len(train.meshes))]
 
 
-def with_flanks(train: Train, k: int, pinion: Member, gear: Member) -> tuple[Member, Member]:
+def with_flanks(train: Shafting, k: int, pinion: Member, gear: Member) -> tuple[Member, Member]:
     """Return both gears of mesh k with their loaded flanks: those of the file, or on parallel shafts
     without an operating point the usual ones.
     """
@@ -143,7 +140,7 @@ def with_flanks(train: Train, k: int, pinion: Member, gear: Member) -> tuple[Mem
     return pinion, gear
 
 
-def _usual_flank(train: Train, side: str, passed: tuple[str, ...] = ()) -> str:
+def _usual_flank(train: Shafting, side: str, passed: tuple[str, ...] = ()) -> str:
     """Return the flank that a shaft drives with where the file gives none: left on the first shaft;
     a shaft that is driven on one flank drives with the other.
     """
@@ -156,7 +153,7 @@ def _usual_flank(train: Train, side: str, passed: tuple[str, ...] = ()) -> str:
 
 
 def flanks_from_file(
-    train: Train, ends: tuple[tuple[str, str], ...], pinion: Member, gear: Member
+    train: Shafting, ends: tuple[tuple[str, str], ...], pinion: Member, gear: Member
 ) -> tuple[Member, Member]:
     """Return both gears of a mesh with the loaded flanks that follow from the file.
 
@@ -181,14 +178,14 @@ def flanks_from_file(
     return pinion, gear
 
 
-def _joined(train: Train) -> list[tuple[str, str]]:
+def _joined(train: Shafting) -> list[tuple[str, str]]:
     """Return the two shafts that each mesh joins, and each planetary stage."""
     words = [mesh.between for mesh in train.meshes]
     words += [(stage.sun, stage.carrier) for stage in train.planetary.values()]
     return [(first.partition(".")[0], second.partition(".")[0]) for first, second in words]
 
 
-def _outward(train: Train, first: str, excluded: int = -1) -> Iterator[tuple[str, int]]:
+def _outward(train: Shafting, first: str, excluded: int = -1) -> Iterator[tuple[str, int]]:
     """Yield the shafts that joints lead to from the first, each with the joint that leads to it (-1 for
     the first); the joint `excluded` is not passed.
     """
@@ -205,7 +202,7 @@ def _outward(train: Train, first: str, excluded: int = -1) -> Iterator[tuple[str
 
 
 def outward(
-    train: Train, first: str, excluded: Joint | None = None
+    train: Shafting, first: str, excluded: Joint | None = None
 ) -> Iterator[tuple[str, Joint | None]]:
     """Yield the shafts that meshes and stages lead to from the first, each with the joint that leads to
     it (None for the first); the joint `excluded` is not passed.
@@ -214,7 +211,7 @@ def outward(
         yield side, None if joint < 0 else train.joints[joint]
 
 
-def turns_of(train: Train) -> dict[str, float]:
+def turns_of(train: Shafting) -> dict[str, float]:
     """Return the turns of every shaft in one turn of the engine's, by the teeth."""
     out: dict[str, float] = {}
     for side, pair in outward(train, train.reference):
@@ -227,7 +224,7 @@ def turns_of(train: Train) -> dict[str, float]:
     return out
 
 
-def _loops(train: Train) -> Iterator[SceneError]:
+def _loops(train: Shafting) -> Iterator[SceneError]:
     """Yield problems of meshes that close a loop with another ratio than the rest of it."""
     turns = turns_of(train)
     for stage in train.stages:

@@ -5,23 +5,21 @@ Azimuths are those of the sun's scene: right-handed about y from x.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from math import atan, cos, pi, tan
-from typing import TYPE_CHECKING, Annotated
+from math import atan, cos, tan
+from typing import Annotated
 
 from pydantic import Field, model_validator
 
-from solidgear.core import Model, SceneError, SolidgearError, listed, nearest
+from solidgear.core import Model, SceneError
 from solidgear.core.scene.planetary_teeth import PlanetaryTeeth
 from solidgear.core.scene.stations import Status
 from solidgear.core.scene.units import MeshSpring, PressureAngle, TorsionSpring
-from solidgear.trains.file.gears import Gear, HeadInertia, Pair, Teeth
+from solidgear.trains.file.gears import Gear, HeadInertia, Shaft, Teeth
+from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.tables import Azimuth, Error, ErrorTable
-
-if TYPE_CHECKING:
-    from solidgear.trains.file.train import Train
 
 MATES = ("sun", "ring")
 MOST_PLANETS = 20
@@ -217,97 +215,13 @@ class Stage:
         return tuple(PlanetMesh(f"{self.name} {mate}", self, mate, planets) for mate in MATES)
 
 
-def stage_of(train: Train, name: str) -> Stage:
+def stage_of(name: str, table: Planetary, shafts: Mapping[str, Shaft]) -> Stage:
     """Return a planetary stage on the shafts of a train."""
-    table = train.planetary[name]
     sun, _, port = table.sun.partition(".")
     carrier, _, flange = table.carrier.partition(".")
-    gears, flange = train.shafts[sun].gears, flange or train.shafts[carrier].scene.port.name
+    gears, flange = shafts[sun].gears, flange or shafts[carrier].scene.port.name
     port = port or next(iter(gears))
     return Stage(name, (sun, carrier), (port, flange), gears[port], table)
-
-
-def stage_problems(train: Train) -> Iterator[SceneError]:
-    """Yield problems of planetary stages: unknown shafts or gears, names, teeth that do not fit."""
-    for name, table in train.planetary.items():
-        path = ("planetary", name)
-        if "." in name or not name.strip() or name in train.shafts or name in train.rotors:
-            reason = f"a stage cannot be called {name!r}; give it a name of its own, without dots"
-            yield SceneError(reason, path=path)
-            continue
-        problems = [*_ends(train, table)]
-        yield from (problem.located(None, prefix=path) for problem in problems)
-        if not problems:
-            yield from (problem.located(None, prefix=path) for problem in _teeth(train, name))
-
-
-def _ends(train: Train, table: Planetary) -> Iterator[SceneError]:
-    """Yield problems of the gear that is the sun, and of the shaft that is the carrier."""
-    for key, word in (("sun", table.sun), ("carrier", table.carrier)):
-        side, dot, port = word.partition(".")
-        if side not in train.shafts:
-            names = listed(train.shafts)
-            hint = nearest(side, train.shafts)
-            yield SceneError(f"names no shaft {side!r}{hint}; known here: {names}", path=(key,))
-            continue
-        shaft = train.shafts[side]
-        places = [*shaft.gears] if key == "sun" else [p.name for p in shaft.scene.ports]
-        kind = "gear" if key == "sun" else "lumped point"
-        if not places:
-            reason = f"the {side} carries no gear; write teeth and module under [shaft.{side}]"
-            yield SceneError(reason, path=(key,))
-        elif dot and port not in places:
-            reason = f"the {side} has no {kind} at {port!r}; it has {listed(places)}"
-            yield SceneError(reason, path=(key,))
-        elif not dot and key == "sun" and len(places) > 1:
-            choices = " or ".join(f'"{side}.{port}"' for port in places)
-            yield SceneError(f"the {side} carries several gears; write {choices}", path=(key,))
-    if table.sun.partition(".")[0] == table.carrier.partition(".")[0]:
-        reason = "sun and carrier are one shaft; name two"
-        yield SceneError(reason, path=("carrier",))
-
-
-def _teeth(train: Train, name: str) -> Iterator[SceneError]:
-    """Yield problems of teeth that are sound each by itself."""
-    stage = stage_of(train, name)
-    gear, (side, _), (port, _) = stage.sun, stage.shafts, stage.ports
-    gear_label = f"the gear {side}.{port}, the sun,"
-    if gear.module is None:
-        yield SceneError(f"{gear_label} needs its module", path=("sun",))
-    elif gear.helix_angle and gear.hand is None:
-        yield SceneError(f"{gear_label} has helical teeth; give their hand", path=("sun",))
-    elif gear.profile_shift:
-        reason = f"{gear_label} has a profile_shift, which stages cannot have; leave it out"
-        yield SceneError(reason, path=("sun",))
-    else:
-        try:
-            _ = stage.teeth
-        except SceneError as error:
-            keys = {"ring": "ring_teeth", "planets": "angles" if stage.table.angles else "planets"}
-            for problem in error.problems:
-                yield problem.located(
-                    None, path=tuple(keys.get(str(key), key) for key in problem.path)
-                )
-
-
-def with_carrier_turned(train: Train, name: str, angle: float) -> Train:
-    """Return a train with the carrier of a stage turned by an angle, rad."""
-    table = train.planetary[name]
-    turned_table = table.with_changes(position=(table.position + angle) % (2 * pi))
-    return train.with_changes(planetary={**train.planetary, name: turned_table})
-
-
-def named_pair(train: Train, word: str | None) -> Pair:
-    """Return a mesh of two shafts by name, as :meth:`solidgear.trains.file.train.Train.named_mesh`; refuse
-    a mesh of planets, whose teeth have no backlash.
-    """
-    mesh = train.named_mesh(word)
-    if isinstance(mesh, PlanetMesh):
-        names = listed(pair.label.strip() for pair in train.pairs) or "none"
-        raise SolidgearError(
-            f"teeth of planets have no backlash; in {train.name} use one of {names}"
-        )
-    return mesh
 
 
 def error_of(driver: Pair | PlanetMesh) -> ErrorTable:

@@ -8,20 +8,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from math import fsum
-from typing import TYPE_CHECKING
 
 from solidgear.core import SceneError
 from solidgear.core.scene.units import TYPED
 from solidgear.trains.file.layout import outward
-
-if TYPE_CHECKING:
-    from solidgear.trains.file.train import Train
+from solidgear.trains.file.shafting import Shafting
 
 #: share of the power below which it is rounding
 NONE = 1e-12
 
 
-def shares_of(train: Train) -> dict[str, float]:
+def shares_of(train: Shafting) -> dict[str, float]:
     """Return the share of the power that every engine brings, and every load takes, below zero."""
     out: dict[str, float] = {}
     for sign, names in ((1.0, train.engines), (-1.0, train.loads)):
@@ -30,7 +27,7 @@ def shares_of(train: Train) -> dict[str, float]:
     return out
 
 
-def flows_of(train: Train) -> dict[str, float | None]:
+def flows_of(train: Shafting) -> dict[str, float | None]:
     """Return the share of the power that every mesh or stage passes from the first shaft to the
     second; None where a loop of meshes divides it by stiffness.
     """
@@ -46,7 +43,7 @@ def flows_of(train: Train) -> dict[str, float | None]:
     return out
 
 
-def carried_of(train: Train) -> dict[str, float]:
+def carried_of(train: Shafting) -> dict[str, float]:
     """Return the share of the power that passes every shaft, without shafts that it does not pass; in
     a loop that of the shaft's engines and loads.
     """
@@ -65,7 +62,7 @@ def carried_of(train: Train) -> dict[str, float]:
     return out
 
 
-def share_problems(train: Train) -> Iterator[SceneError]:
+def share_problems(train: Shafting) -> Iterator[SceneError]:
     """Yield problems of the shares of engines or loads."""
     for kind, names in (("engine", train.engines), ("load", train.loads)):
         if not names:

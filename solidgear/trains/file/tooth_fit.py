@@ -23,7 +23,7 @@ from solidgear.core import SceneError
 from solidgear.trains.file.cylindrical import working_cylinders
 
 if TYPE_CHECKING:
-    from solidgear.trains.file.gears import Pair
+    from solidgear.trains.file.pairs import Pair
 
 #: modules that a tooth reaches beyond its reference circle and within it (ISO 53)
 ADDENDUM, DEDENDUM = 1.0, 1.25

@@ -8,14 +8,15 @@ gears: y along the shaft from the pitch apex towards the back, the mesh on the -
 from __future__ import annotations
 
 from functools import cached_property
+from math import pi
 from typing import Any
 
 import numpy as np
 from pydantic import model_validator
 
 from solidgear.core import Bearing, Model, Scene, SceneError, SolidgearError, listed
-from solidgear.trains.file.gears import HeadInertia, Member, Pair, Shaft, pair_problems
-from solidgear.trains.file.housing import TrainHousing, housing_problems
+from solidgear.trains.file.gears import HeadInertia, Member, Shaft
+from solidgear.trains.file.housing import TrainHousing
 from solidgear.trains.file.layout import (
     PerTurn,
     ends_of,
@@ -24,21 +25,19 @@ from solidgear.trains.file.layout import (
     turns_of,
     with_flanks,
 )
-from solidgear.trains.file.operation import (
-    OperatingPoint,
-    Operation,
-    running_problems,
-    spring_problems,
-)
+from solidgear.trains.file.operation import OperatingPoint, Operation
+from solidgear.trains.file.pair_rules import pair_problems
+from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.planetary import Planetary, PlanetMesh, Stage, stage_of
 from solidgear.trains.file.power import carried_of, flows_of, share_problems
+from solidgear.trains.file.rules import housing_problems
+from solidgear.trains.file.running_rules import running_problems, spring_problems
+from solidgear.trains.file.shafting import Joint
 from solidgear.trains.file.tables import Losses, Mesh, Rotor, TrainAsk
 
 #: names of the shafts, and of what turns with them, in a file of the short form
 SHORT = {"engine": "pinion", "load": "gear"}
 SIDES = tuple(SHORT.values())
-#: teeth by which one shaft turns another
-Joint = Pair | Stage
 
 
 class Train(Model):
@@ -218,7 +217,7 @@ class Train(Model):
     @cached_property
     def stages(self) -> tuple[Stage, ...]:
         """Planetary stages on their shafts."""
-        return tuple(stage_of(self, name) for name in self.planetary)
+        return tuple(stage_of(name, table, self.shafts) for name, table in self.planetary.items())
 
     @cached_property
     def joints(self) -> tuple[Joint, ...]:
@@ -419,3 +418,23 @@ class Train(Model):
             for port, gear in gears.items()
             if gear.head is not None
         }
+
+
+def with_carrier_turned(train: Train, name: str, angle: float) -> Train:
+    """Return a train with the carrier of a stage turned by an angle, rad."""
+    table = train.planetary[name]
+    turned_table = table.with_changes(position=(table.position + angle) % (2 * pi))
+    return train.with_changes(planetary={**train.planetary, name: turned_table})
+
+
+def named_pair(train: Train, word: str | None) -> Pair:
+    """Return a mesh of two shafts by name, as :meth:`Train.named_mesh`; refuse
+    a mesh of planets, whose teeth have no backlash.
+    """
+    mesh = train.named_mesh(word)
+    if isinstance(mesh, PlanetMesh):
+        names = listed(pair.label.strip() for pair in train.pairs) or "none"
+        raise SolidgearError(
+            f"teeth of planets have no backlash; in {train.name} use one of {names}"
+        )
+    return mesh

@@ -20,7 +20,7 @@ from solidgear.trains.assembly.local import undriven
 from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.assembly.shaft import JUDGE
 from solidgear.trains.assembly.slips import mesh_unit_slips
-from solidgear.trains.file.gears import Pair
+from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.planetary import PlanetMesh
 from solidgear.trains.file.tooth_fit import fit_line, fit_of
 from solidgear.trains.file.train import Train

@@ -17,7 +17,7 @@ from solidgear.trains.assembly.housing import housing_hz
 from solidgear.trains.assembly.layout import senses
 from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.assembly.orders import OrderMap, order_map
-from solidgear.trains.file.gears import Pair
+from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.planetary import Stage
 from solidgear.trains.file.train import Train
 from solidgear.trains.judge.judge import JUDGE, MIXED, Verdict, charted_mixes, judge_train

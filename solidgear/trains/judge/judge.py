@@ -27,7 +27,8 @@ from solidgear.trains.assembly.slips import unit_slips
 from solidgear.trains.file.planetary import error_of
 from solidgear.trains.modes.naming import driven, mode_names
 from solidgear.trains.modes.pairing import BEYOND, modes_and_motions, partners
-from solidgear.trains.response.respond import Drive, respond
+from solidgear.trains.response.drive import Drive
+from solidgear.trains.response.respond import respond
 from solidgear.trains.response.response import TrainResponse
 
 #: models of one shaft that are mixed, cheapest first

@@ -20,7 +20,7 @@ from solidgear.core.system.gear_mesh import (
     mesh_point,
     to_gear_frame,
 )
-from solidgear.trains.file.gears import Pair
+from solidgear.trains.file.pairs import Pair
 
 #: a typed line of action with six digits
 UNIT = 1e-6

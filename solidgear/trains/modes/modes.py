@@ -8,7 +8,8 @@ import numpy as np
 
 from solidgear.core import DOF_NAMES, SolidgearError, System
 from solidgear.trains.assembly.housing import free_directions, seat_motion
-from solidgear.trains.assembly.local import local_lines, undriven, waves_of
+from solidgear.trains.assembly.local import undriven, waves_of
+from solidgear.trains.assembly.local_give import local_lines
 from solidgear.trains.assembly.meshes import mesh_bars, mesh_limit
 from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.assembly.shaft import JUDGE, mix_label

@@ -9,18 +9,15 @@ planets press, and where those of two shafts are relieved: ``P_n`` is as large w
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from solidgear.core import SolidgearError
-from solidgear.trains.file.gears import Pair
+from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.planetary import PlanetMesh
 from solidgear.trains.load.operation import mean_forces
+from solidgear.trains.response.drive import Drive
 from solidgear.trains.response.response import figures
-
-if TYPE_CHECKING:
-    from solidgear.trains.response.respond import Drive
 
 #: angles of the mesh cycle at which several orders are added
 ANGLES = 256

@@ -16,7 +16,7 @@ from solidgear.core import DOF_NAMES, SolidgearError, show
 from solidgear.trains.assembly.components import FORCE_UNITS, MOTION_UNITS
 from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.assembly.shaft import mix_label
-from solidgear.trains.response.respond import Drive
+from solidgear.trains.response.drive import Drive
 
 #: a motion this much smaller than reciprocal motions of both ends allow is rounding
 NOTHING = 1e-12

@@ -9,13 +9,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from math import pi
-from typing import Self
+from typing import Protocol, Self
 
 import numpy as np
 import scipy.linalg as sla
 from numpy.typing import ArrayLike
 
-from solidgear.core import SolidgearError, rotation
+from solidgear.core import SolidgearError, System, rotation
 from solidgear.core.system.matrices import not_negative, positive, spd
 from solidgear.core.system.parts import Part, PlanarBody, RigidBody
 
@@ -161,6 +161,30 @@ class Planet:
     def support(self) -> np.ndarray:
         """(6, 6) stiffness of the centre to the carrier, in the planet's axes."""
         return _radial(self.pin)
+
+
+class Members(Protocol):
+    """Sun, ring, carrier and planets of a stage, with the system that they make."""
+
+    @property
+    def sun(self) -> CentralMember:
+        """Sun."""
+
+    @property
+    def ring(self) -> CentralMember:
+        """Ring."""
+
+    @property
+    def carrier(self) -> CentralMember:
+        """Carrier, whose radius is that of its pins."""
+
+    @property
+    def planets(self) -> tuple[Planet, ...]:
+        """Planets by their number."""
+
+    @property
+    def system(self) -> System:
+        """Stage alone, with the names of its parts."""
 
 
 def _radial(stiffness: ArrayLike) -> np.ndarray:

@@ -19,14 +19,11 @@ Parker, Journal of Sound and Vibration 325, 2009, p. 397-420, for six motions.
 from __future__ import annotations
 
 from math import isclose
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from solidgear.trains.system.planetary_members import weights
-
-if TYPE_CHECKING:
-    from solidgear.trains.system.planetary import PlanetaryStage
+from solidgear.trains.system.planetary_members import Members, weights
 
 CENTRAL = ("sun", "ring", "carrier")
 #: share of a mode's kinetic energy below which a motion is rounding
@@ -72,7 +69,7 @@ class PlanetaryMode(NamedTuple):
 class Phases:
     """Shares of the phases of planets in a motion of a stage."""
 
-    def __init__(self, stage: PlanetaryStage):
+    def __init__(self, stage: Members):
         system = stage.system
         rows: list[list[np.ndarray]] = [[] for _ in range(6)]
 
@@ -143,7 +140,7 @@ def patterns(azimuths: list[float]) -> list[np.ndarray]:
     return [basis[:, :1], basis[:, 1:], complement]
 
 
-def named_modes(stage: PlanetaryStage) -> list[PlanetaryMode]:
+def named_modes(stage: Members) -> list[PlanetaryMode]:
     """Return all modes, by ascending frequency, those of one frequency and kind together."""
     modes, phases = stage.system.modes(), Phases(stage)
     out: list[PlanetaryMode] = []

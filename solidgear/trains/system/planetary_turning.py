@@ -23,18 +23,15 @@ In these axes a motion that stands still in space turns backwards at W: a freque
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import scipy.linalg as sla
 
 from solidgear.core import SolidgearError
 from solidgear.core.frames import cross_matrix
-from solidgear.trains.system.planetary_members import CentralMember, Planet
+from solidgear.trains.system.planetary_members import CentralMember, Members, Planet
 from solidgear.trains.system.planetary_modes import CENTRAL, Phases
-
-if TYPE_CHECKING:
-    from solidgear.trains.system.planetary import PlanetaryStage
 
 AXIS = cross_matrix([0.0, 1.0, 0.0])
 ROUND = np.diag([1.0, 0.0, 1.0])
@@ -61,7 +58,7 @@ class TurningMode(NamedTuple):
     shape: np.ndarray  #: (N,) amplitudes of ``exp(i w t)``, of unit ``q* M q``
 
 
-def speeds(stage: PlanetaryStage, carrier: float, ring: float) -> dict[str, float]:
+def speeds(stage: Members, carrier: float, ring: float) -> dict[str, float]:
     """Return the speed of every body about the axis in space, rad/s, from those of carrier and
     ring.
     """
@@ -72,7 +69,7 @@ def speeds(stage: PlanetaryStage, carrier: float, ring: float) -> dict[str, floa
     return {name: 2 * np.pi * speed for name, speed in out.items()}
 
 
-def turning_terms(stage: PlanetaryStage, carrier: float, ring: float = 0.0) -> TurningTerms:
+def turning_terms(stage: Members, carrier: float, ring: float = 0.0) -> TurningTerms:
     """Return terms of a carrier and a ring at some speeds, turns a second."""
     for name, speed in (("carrier", carrier), ("ring", ring)):
         if not np.isfinite(speed):
@@ -106,7 +103,7 @@ def turning_terms(stage: PlanetaryStage, carrier: float, ring: float = 0.0) -> T
     return TurningTerms(gyroscopic, centrifugal, pull)
 
 
-def turning_modes(stage: PlanetaryStage, carrier: float, ring: float = 0.0) -> list[TurningMode]:
+def turning_modes(stage: Members, carrier: float, ring: float = 0.0) -> list[TurningMode]:
     """Return all modes at some speeds, turns a second, by ascending frequency."""
     terms, system = turning_terms(stage, carrier, ring), stage.system
     lower = np.linalg.cholesky(system.mass)

@@ -12,8 +12,8 @@ from typing import Any, ClassVar, Generic, TypeVar
 
 import numpy as np
 
-from solidgear import __version__
 from solidgear.core import Displayed, SolidgearError, listed, nearest, pinned
+from solidgear.core.machine.version import VERSION
 from solidgear.core.models.limits import number
 from solidgear.variants.sweep.curves import Curves, curves_of
 from solidgear.variants.sweep.file_variants import FileVariants
@@ -209,7 +209,7 @@ def run(
     number("sweep", "jobs", jobs, least=1, whole=True)
     team, total = workers(jobs, dask), len(task.variants)
     columns = {"variant": int, **task.variants.columns, "status": str, **task.columns}
-    plan = {**task.plan, **task.variants.plan, "version": __version__}
+    plan = {**task.plan, **task.variants.plan, "version": VERSION}
     with RowFile(Path(out), columns, plan, total, overwrite) as file:
         skipped = len(file.done)
         todo = task.variants.in_turn(k for k in range(total) if k not in file.done)

@@ -22,7 +22,7 @@ from solidgear.trains.file.train import Train
 from solidgear.trains.load.operation import SHAFT, OperatingState, with_settled_bearings
 from solidgear.trains.modes.modes import refuse_unresolved
 from solidgear.trains.modes.parting import joint_name, parting_frequency, teeth_relief
-from solidgear.trains.response.respond import Drive
+from solidgear.trains.response.drive import Drive
 from solidgear.variants.sweep.bench import Bench
 from solidgear.variants.sweep.curves import force_of, misaligned
 from solidgear.variants.sweep.design import Design

@@ -14,7 +14,8 @@ import numpy as np
 
 from solidgear.core.body.revolution import Rings, Wave, revolve, wave
 from solidgear.core.body.surface import Surface
-from solidgear.core.scene.outline import SURFACES, Outline
+from solidgear.core.scene.corner import SURFACES
+from solidgear.core.scene.outline import Outline
 
 if TYPE_CHECKING:
     from solidgear.core.scene.shaft import Shaft

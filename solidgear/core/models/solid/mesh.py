@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 import skfem.element
@@ -13,14 +12,12 @@ from skfem import Element, Mesh
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTet, RefTri
 
+from solidgear.core.body.surface import PIECES as PIECES_OF_EDGE
 from solidgear.core.body.surface import Surface, Volume
 from solidgear.core.elements import ELEMENTS
 from solidgear.core.kernel.assembly import reference, tabulate, unknowns
 from solidgear.core.kernel.lobatto import gauss_box
-from solidgear.core.models.solid.drawing import outline, solid_surface
-
-if TYPE_CHECKING:
-    from solidgear.core.models.solid.drawing import Outline
+from solidgear.core.models.solid.drawing import Outline, face_grid, on_faces
 
 #: pieces to an edge of a facet that the end of a seat crosses
 PIECES = 12
@@ -43,14 +40,11 @@ class SolidMesh:
 
     def surface(self, moved: Mapping[str, np.ndarray]) -> Surface:
         """Return the boundary of the mesh, moved."""
-        return solid_surface(self, moved.get("full"))
+        return self.outline.surface(moved.get("full"))
 
     def rows(self, name: str, chosen: np.ndarray) -> np.ndarray:
         """Return the displacements (3 k, n) of points of the surface by those of the nodes."""
-        # start-up: of responses at points alone
-        from solidgear.core.models.solid.drawing import on_nodes
-
-        values = on_nodes(self)[chosen].toarray()
+        values = self.outline.on_nodes(self.nodes.shape[1])[chosen].toarray()
         return np.einsum("kj,xy->kxjy", values, np.eye(3)).reshape(3 * len(chosen), -1)
 
     def volume(self) -> Volume:
@@ -64,8 +58,47 @@ class SolidMesh:
 
     @cached_property
     def outline(self) -> Outline:
-        """Drawing of the boundary."""
-        return outline(self)
+        """Boundary at rest, which all surfaces of the mesh share, however it moves."""
+        refdom, element, dofs = self.mesh.refdom, self.element, self.dofs
+        linear = len(dofs) == refdom.nnodes
+        # Two pieces end at the nodes in the middle of edges; more only pay where the mesh is coarse
+        # enough to see it.
+        m = PIECES_OF_EDGE if len(self.boundary) < 4000 else 2
+        if linear:
+            m = 1
+        corners = len(refdom.facets[0])
+        grid, cells, rim = face_grid(m, corners)
+        # Every rim point lies k pieces along the edge from corner a to corner b (k = 0 at a).
+        a = np.repeat(np.arange(corners), m)
+        b, k = (a + 1) % corners, np.tile(np.arange(m), corners)
+        parts, keys, faces, lines, count = [], [], [], [], 0
+        for place, elements in self.local_facets(self.boundary):
+            points, s, t = self.on_facet(place, grid.T / m)
+            parts.append((reference(element, points)[0], dofs[:, elements]))
+            serial = count + np.arange(len(elements) * len(grid)).reshape(-1, len(grid))
+            count += serial.size
+            # A point inside a face is unique; one on an edge is named by the vertices of the edge, so that
+            # neighbours share it.
+            key = np.stack([-1 - serial, 0 * serial, 0 * serial], axis=-1)
+            va, vb = (self.mesh.t[refdom.facets[place]][c][:, elements].T for c in (a, b))
+            vb = np.where(k == 0, va, vb)
+            key[:, rim] = np.stack(
+                [np.minimum(va, vb), np.maximum(va, vb), np.where(va <= vb, k, m - k)], axis=-1
+            )
+            keys.append(key.reshape(-1, 3))
+            middle = refdom.p[:, refdom.facets[place]].mean(axis=1)
+            outward = np.cross(s, t) @ (middle - refdom.p.mean(axis=1)) > 0
+            faces.append(serial[:, cells if outward else cells[:, ::-1]].reshape(-1, corners))
+            lines.append(serial[:, np.column_stack([rim, np.roll(rim, -1)])].reshape(-1, 2))
+        _, first, number = np.unique(
+            np.concatenate(keys), axis=0, return_index=True, return_inverse=True
+        )
+        number = number.ravel()
+        by_corners = {corners: number[np.concatenate(faces)]}
+        edges = np.unique(np.sort(number[np.concatenate(lines)], axis=1), axis=0)
+        quads, triangles = (by_corners.get(n, np.zeros((0, n), int)) for n in (4, 3))
+        at_rest = on_faces(parts, self.nodes.T)[first]
+        return Outline(at_rest, quads, triangles, edges, parts, first)
 
     def local_facets(self, facets: np.ndarray):
         """Group facets by their place in the element they are seen from; yield (place, elements)."""
