@@ -17,6 +17,7 @@ import pytest
 
 from solidgear.core.machine.memory import resident_mb
 from solidgear.core.machine.threads import pin
+from tests.by_room import belongs, is_room
 
 pin()
 # A shell starts what it runs in the background deaf to Ctrl-C; tests that interrupt themselves
@@ -32,6 +33,25 @@ def pytest_collection_finish():
     gc.collect()
     gc.freeze()
     gc.enable()
+
+
+def pytest_addoption(parser):
+    text = "only test files that import solidgear.NAME, and the house; such as measured, core.judge"
+    parser.addoption("--room", metavar="NAME", help=text)
+
+
+def pytest_configure(config):
+    room = config.getoption("--room")
+    if room and not is_room(room):
+        raise pytest.UsageError(f"--room {room}: solidgear has no such room")
+
+
+def pytest_ignore_collect(collection_path, config):
+    """Files of other rooms are not even read."""
+    room = config.getoption("--room")
+    if room and collection_path.name.startswith("test_") and not belongs(collection_path, room):
+        return True
+    return None
 
 
 #: cases of wide grids, each of a test that has others in the default run

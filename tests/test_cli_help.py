@@ -30,7 +30,7 @@ def test_help_groups_commands_in_the_order_of_the_work():
 @pytest.mark.parametrize("name", COMMANDS)
 def test_help_loses_no_word_in_square_brackets(name):
     known = _imported(name)
-    texts = [COMMANDS[name], *(getattr(option, "help", None) or "" for option in known.params)]
+    texts = [COMMANDS[name].help, *(getattr(option, "help", None) or "" for option in known.params)]
     words = {word for text in texts for word in BRACKETS.findall(text)}
     told = re.sub(r"[\s│]+", " ", command(name, "--help").stdout)
     assert {word for word in words if word not in told} == set()
@@ -40,7 +40,7 @@ def test_help_loses_no_word_in_square_brackets(name):
 def test_some_help_holds_square_brackets():
     """Or the test above proves nothing."""
     assert "[uncertain]" in str([option.help for option in _imported("identify").params[2:]])
-    assert "[operation]" in COMMANDS["bearing"]
+    assert "[operation]" in COMMANDS["bearing"].help
 
 
 def test_progress_on_a_terminal_prints_names_as_they_are(monkeypatch):

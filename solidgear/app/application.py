@@ -6,7 +6,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
 from importlib import import_module
-from typing import Annotated, Any
+from typing import Annotated, Any, NamedTuple
 
 import typer
 from typer.core import TyperCommand, TyperGroup
@@ -19,119 +19,137 @@ HELP = ("-h", "--help")
 #: texts of commands and options that help prints
 HELP_TEXTS = ("help", "epilog", "short_help")
 
-#: commands by what they are for, in the order of the work, each with the line of its help
+
+class Entry(NamedTuple):
+    """A command: the module below :mod:`solidgear` that has its function, and the line of its help."""
+
+    module: str
+    help: str
+
+
+#: commands by what they are for, in the order of the work, each in the room of its question
 GROUPS = {
     "Start": {
-        "new": ("Write a short, commented scene or train that runs, to be made your own."),
-        "scenes": ("List the scenes that come with solidgear, or copy them into a folder."),
-        "check": (
-            "Say which models hold for a scene or train, which do not, and why; solves light "
-            "meshes only."
+        "new": Entry(
+            "app.files",
+            "Write a short, commented scene or train that runs, to be made your own.",
         ),
-        "options": (
-            "List what --set takes: every builder option with default, limits and meaning."
+        "scenes": Entry(
+            "app.files",
+            "List the scenes that come with solidgear, or copy them into a folder.",
+        ),
+        "check": Entry(
+            "app.check",
+            "Say which models hold for a scene or train, which do not, and why; solves light "
+            "meshes only.",
+        ),
+        "options": Entry(
+            "app.files",
+            "List what --set takes: every builder option with default, limits and meaning.",
         ),
     },
     "One shaft": {
-        "answer": (
+        "answer": Entry(
+            "app.answer",
             "Numbers within a tolerance, each with its error bar, from the cheapest model that "
-            "can show it."
+            "can show it.",
         ),
-        "stiffness": (
-            "6x6 stiffness and compliance at a lumped point, bearings included; 12x12 between two."
+        "stiffness": Entry(
+            "app.stiffness",
+            "6x6 stiffness and compliance at a lumped point, bearings included; 12x12 between two.",
         ),
-        "modes": ("Natural frequencies on the bearings, with the evidence for them."),
-        "compare": (
+        "modes": Entry(
+            "app.modes",
+            "Natural frequencies on the bearings, with the evidence for them.",
+        ),
+        "compare": Entry(
+            "app.compare",
             "Solve a scene or a train with every model and write a report on which to trust, or "
-            "compare two designs."
+            "compare two designs.",
         ),
-        "chart": (
-            "Chart error against cost: every model and element, uniform and graded, with "
-            "the Pareto front."
+        "chart": Entry(
+            "comparison.race.command",
+            "Chart error against cost: every model and element, uniform and graded, with the "
+            "Pareto front.",
         ),
-        "render": (
-            "Draw one mode shape off-screen, or all of them in a page where they can be turned."
+        "render": Entry(
+            "app.render",
+            "Draw one mode shape off-screen, or all of them in a page where they can be turned.",
         ),
-        "bearing": (
-            "Catalogue bearings: stiffness at load, load of every element, pressure, life; for a "
-            "train with an [operation] lives over its points."
+        "bearing": Entry(
+            "app.bearing",
+            "Catalogue bearings: stiffness at load, load of every element, pressure, life; for "
+            "a train with an [operation] lives over its points.",
         ),
-        "stress": (
-            "Stress of shafts at rest: section forces, nominal stress, stress on fillets, DIN 743."
+        "stress": Entry(
+            "strength.stress.command",
+            "Stress of shafts at rest: section forces, nominal stress, stress on fillets, DIN 743.",
         ),
     },
     "Design": {
-        "sweep": (
-            "Thousands of bearing sets on one body, or variants of a shaft or train, as "
-            "rows of a file."
+        "sweep": Entry(
+            "variants.sweep.command",
+            "Thousands of bearing sets on one body, or variants of a shaft or train, as rows of "
+            "a file.",
         ),
-        "sensitivities": (
+        "sensitivities": Entry(
+            "variants.sensitivity.command",
             "What would change a number: its derivatives by every number of the file, from one "
-            "solution."
+            "solution.",
         ),
-        "optimise": ("The best design within ranges, and whether error bars show it to be better."),
-        "budget": (
+        "optimise": Entry(
+            "variants.optimise.command",
+            "The best design within ranges, and whether error bars show it to be better.",
+        ),
+        "budget": Entry(
+            "variants.budget.command",
             "Which unknown is worth measuring: the range of the scene's numbers by every open "
-            "input."
+            "input.",
         ),
     },
     "Measured": {
-        "correlate": (
+        "correlate": Entry(
+            "measured.command",
             "Measured resonances beside computed modes: which belongs to which, how surely, and "
-            "how far apart."
+            "how far apart.",
         ),
-        "identify": ("Entries of a scene from measured resonances, and how sure they are."),
+        "identify": Entry(
+            "measured.command",
+            "Entries of a scene from measured resonances, and how sure they are.",
+        ),
     },
     "Trains": {
-        "system-modes": ("Natural frequencies of a train, each with its name and a proven bound."),
-        "response": (
-            "Steady response to the transmission error: mesh force, reactions, motions, "
-            "and a chart."
+        "system-modes": Entry(
+            "trains.command",
+            "Natural frequencies of a train, each with its name and a proven bound.",
         ),
-        "receptance": (
-            "Receptance between any two ports of a train: table, chart, and peaks with their modes."
+        "response": Entry(
+            "trains.command",
+            "Steady response to the transmission error: mesh force, reactions, motions, and a "
+            "chart.",
         ),
-        "nonlinear": (
-            "Teeth with backlash: where they part, jumps over speed, and the error of the linear "
-            "answer."
+        "receptance": Entry(
+            "trains.response.receptance_command",
+            "Receptance between any two ports of a train: table, chart, and peaks with their "
+            "modes.",
         ),
-        "deflect": (
+        "nonlinear": Entry(
+            "backlash.command",
+            "Teeth with backlash: where they part, jumps over speed, and the error of the "
+            "linear answer.",
+        ),
+        "deflect": Entry(
+            "strength.deflection.command",
             "Deflection of shafts under torque: displacements, misalignment of the gears, "
-            "bearing loads."
+            "bearing loads.",
         ),
-        "judge-system": (
-            "Compare a train with further mixes and reductions; a report only with --out."
+        "judge-system": Entry(
+            "trains.judge.command",
+            "Compare a train with further mixes and reductions; a report only with --out.",
         ),
     },
 }
-COMMANDS = {name: line for group in GROUPS.values() for name, line in group.items()}
-#: modules of commands, each in the room of its question
-MODULES = {
-    "new": "app.files",
-    "scenes": "app.files",
-    "check": "app.check",
-    "options": "app.files",
-    "answer": "app.answer",
-    "stiffness": "app.stiffness",
-    "modes": "app.modes",
-    "compare": "app.compare",
-    "chart": "comparison.race.command",
-    "render": "app.render",
-    "bearing": "app.bearing",
-    "stress": "strength.stress.command",
-    "sweep": "variants.sweep.command",
-    "sensitivities": "variants.sensitivity.command",
-    "optimise": "variants.optimise.command",
-    "budget": "variants.budget.command",
-    "correlate": "measured.command",
-    "identify": "measured.command",
-    "system-modes": "trains.command",
-    "response": "trains.command",
-    "receptance": "trains.response.receptance_command",
-    "nonlinear": "backlash.command",
-    "deflect": "strength.deflection.command",
-    "judge-system": "trains.judge.command",
-}
+COMMANDS = {name: entry for group in GROUPS.values() for name, entry in group.items()}
 
 
 @contextmanager
@@ -186,9 +204,10 @@ class Door(TyperGroup):
 
 def _imported(name: str) -> Any:
     """Return a command with its options."""
-    module = import_module(f"solidgear.{MODULES[name]}")
+    entry = COMMANDS[name]
+    module = import_module(f"solidgear.{entry.module}")
     alone = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
-    alone.command(name, cls=Told, help=COMMANDS[name])(getattr(module, name.replace("-", "_")))
+    alone.command(name, cls=Told, help=entry.help)(getattr(module, name.replace("-", "_")))
     return typer.main.get_command(alone)
 
 
@@ -203,9 +222,17 @@ app = typer.Typer(
     context_settings={"help_option_names": [*HELP]},
     pretty_exceptions_enable=False,
 )
+
+
+def add_command(group: str, name: str, entry: Entry) -> None:
+    """Add a command to the application and to the panel of its group in the help."""
+    COMMANDS[name] = GROUPS.setdefault(group, {})[name] = entry
+    app.command(name, help=entry.help, rich_help_panel=group)(lambda: None)
+
+
 for _group, _commands in GROUPS.items():
-    for _name, _words in _commands.items():
-        app.command(_name, help=_words, rich_help_panel=_group)(lambda: None)
+    for _name, _entry in _commands.items():
+        add_command(_group, _name, _entry)
 
 
 def _version(wanted_version: bool) -> None:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, model_validator
 
 from solidgear.bearings.designation import boundary
+from solidgear.bearings.kinds import SHARES, Shares
 from solidgear.core import Length, Model, PositiveLength, SceneError, SignedAngle, show
 from solidgear.core.scene.load import BearingLoad
 from solidgear.core.scene.units import (
@@ -41,13 +42,6 @@ Arrangement = Literal["single", "double_row", "tandem", "back_to_back", "face_to
 #: clearance classes of ISO 5753-1
 ClearanceClass = Literal["C2", "CN", "C3", "C4"]
 CLASSES = ("C2", "CN", "C3", "C4")
-BALLS = ("deep_groove", "angular_contact", "thrust_ball")
-#: kinds with a contact angle
-ANGLED = ("angular_contact", "tapered", "spherical")
-#: kinds whose rows hold the shaft in one direction along y
-ONE_SIDED = ("angular_contact", "tapered", "thrust_ball")
-#: kinds whose rows carry nothing along y
-FLOATING = ("cylindrical", "needle")
 PAIRED = ("tandem", "back_to_back", "face_to_face")
 #: direction along y in which the lower and the upper row of two hold the shaft
 WAYS = {"back_to_back": ("+y", "-y"), "face_to_face": ("-y", "+y")}
@@ -240,34 +234,44 @@ class Catalogue(Model):
         super().__init__(**data)
 
     @property
+    def nature(self) -> Shares:
+        """Nature and usual inside of the kind."""
+        return SHARES[self.kind]
+
+    @property
     def one_sided(self) -> bool:
         """True where the bearing holds the shaft in one direction along y only."""
-        return self.kind in ONE_SIDED and self.arrangement in ("single", "tandem")
+        return self.nature.holds == "one way" and self.arrangement in ("single", "tandem")
 
     @property
     def angled(self) -> bool:
         """True for kinds with a contact angle."""
-        return self.kind in ANGLED
+        return self.nature.angled
 
     @property
     def own_rows(self) -> int:
         """Rows of a single bearing of this kind."""
-        return 2 if self.kind == "spherical" else 1
+        return self.nature.rows
 
     @property
     def grooved(self) -> bool:
         """True for kinds whose contacts depend on the conformity of grooves."""
-        return self.balls or self.kind == "spherical"
+        return self.balls or self.barrels
 
     @property
     def floats(self) -> bool:
         """True for kinds that carry nothing along y."""
-        return self.kind in FLOATING
+        return self.nature.holds == "nothing"
 
     @property
     def balls(self) -> bool:
         """True for kinds with balls."""
-        return self.kind in BALLS
+        return self.nature.elements == "balls"
+
+    @property
+    def barrels(self) -> bool:
+        """True for kinds with barrels on a sphere, whose ring tilts freely."""
+        return self.nature.elements == "barrels"
 
     @property
     def paired(self) -> bool:

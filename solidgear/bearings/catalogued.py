@@ -65,7 +65,7 @@ def _placed(data: Catalogue, inside: Inside, clearance: float) -> list[BallRow |
     """Return rows at their places along y, each turned by half a pitch against the one before."""
     first = -1 if data.holds == "-y" else 1
     turn = math.pi / inside.elements
-    if data.kind == "spherical":  # the rows face each other: their normals meet in the middle
+    if data.own_rows > 1:  # the rows face each other: their normals meet in the middle
         return [
             _row(data, inside, clearance, side, 0.0, start)
             for side, start in ((-1, 0.0), (1, turn))
@@ -98,7 +98,7 @@ def _row(
         inner, outer = inside.conformity
         kind = ThrustBallRow if data.kind == "thrust_ball" else BallRow
         return kind(inner=inner, outer=outer, **common)
-    if data.kind == "spherical":
+    if data.barrels:
         inner, outer = inside.conformity
         return SphericalRow(length=inside.length, inner=inner, outer=outer, **common)
     return RollerRow(length=inside.length, profile=data.profile, **common)

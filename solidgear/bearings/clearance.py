@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 
-from solidgear.bearings.catalogue import ONE_SIDED, Catalogue
+from solidgear.bearings.catalogue import Catalogue
 from solidgear.bearings.inside import Inside
 from solidgear.core import SceneError
 
@@ -53,7 +53,7 @@ def clearance_range(data: Catalogue) -> tuple[float, float]:
         return data.clearance, data.clearance
     table = {True: _BALLS, False: _ROLLERS}[data.balls]
     table = _SPHERICAL if data.kind == "spherical" else table
-    if data.kind in ONE_SIDED:
+    if data.nature.holds == "one way":
         raise SceneError(
             f"{data.kind.replace('_', ' ')} bearings have no clearance class; write a length, or a "
             "preload",

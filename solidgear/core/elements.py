@@ -3,6 +3,10 @@
 A name begins with the shape: ``tet`` or ``hex``. Measured properties stand where they are used: the
 meshes of charts in :mod:`solidgear.core.ladder.solid`, locking and the price of first order in
 :mod:`solidgear.guards.elements`.
+
+An element on the tetrahedra or hexahedra there are is an entry here.  Another shape of cell needs its
+mesh (:mod:`solidgear.core.meshing`) and its surface (:mod:`solidgear.core.models.solid.drawing`) as
+well.
 """
 
 from __future__ import annotations

@@ -6,6 +6,12 @@ An entry of a compliance (``C_``) or stiffness (``K_``) is named by row and colu
 the wheel under a moment thx on the pinion. In a stiffness between points all other motions are held,
 so that the diagonal ``K_zz@wheel@wheel`` is not the stiffness of one point alone. Any other text is
 the name of a mode, and means the natural frequency of that mode.
+
+To add one: its name in ``QUANTITIES`` (judged and shown) or ``ACROSS`` (on request).  One that is no
+single entry says itself what it is ``of`` a matrix, its ``loads``, ``unit`` and ``diagonals``, and
+has error bars like the others.  Judged frequencies have error bars on every page that lists modes,
+so that documented consoles are written anew.  One with a number that each user gives is no line
+here: ``scene/ask.py``, ``judge/answer.py`` and ``judge/quantities.py`` know quantities by that list.
 """
 
 from __future__ import annotations

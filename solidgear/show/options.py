@@ -2,6 +2,9 @@
 
 A command takes a group as one parameter, and every field of the group is one of its options: what
 is added to a group, all these commands take.
+
+What is an option of every command, given before it, stands in ``everywhere`` of
+:mod:`solidgear.app.application`; that of one command is a parameter of its function.
 """
 
 from __future__ import annotations

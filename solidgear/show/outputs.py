@@ -1,4 +1,8 @@
-"""Files for other programs that a comparison leaves of every model it has solved."""
+"""Files for other programs that a comparison leaves of every model it has solved.
+
+A further one is an :class:`Output`, whose writer writes by ``whole``, and a row in
+``docs/guide/commands.md``.  Clearing up and the list in ``results.json`` read ``OUTPUTS``.
+"""
 
 from __future__ import annotations
 

@@ -6,8 +6,9 @@ import argparse
 import ast
 import json
 import re
+import runpy
 from collections import Counter, defaultdict
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 from validation.house import runs, structure, words
@@ -35,16 +36,19 @@ PAGES = ("show",)
 def figures(tree: Path) -> dict:
     """Return all figures of a checkout that need no run of it."""
     files = sources(tree / "solidgear")
+    floors, room_of = floors_of(tree)
     rooms: dict[str, Counter[str]] = defaultdict(Counter)
     for source in files:
-        rooms[source.room] += source.lines + Counter(files=1)
+        rooms[room_of(source.module) or source.room] += source.lines + Counter(files=1)
+    core = sum((row for name, row in rooms.items() if name.startswith("core")), Counter())
     return {
         "package": {name: dict(rooms[name]) for name in sorted(rooms)},
+        "core": {"files": core.pop("files", 0), "lines": sum(core.values())},
         "other": {
             name: _lines(tree / name) for name in ("tests", "validation", "examples", "docs")
         },
         "pages": sum(_length(p) for p in tree.glob("solidgear/**/*") if p.suffix in PAGE_FILES),
-        **_structure(files),
+        **_structure(files, floors, room_of),
         **_words(files),
         "files to touch": {
             name: [source.place for source in files if re.search(pattern, source.text)]
@@ -62,18 +66,34 @@ def figures(tree: Path) -> dict:
 PAGE_FILES = (".js", ".html", ".css")
 
 
-def _structure(files: Sequence[Source]) -> dict:
+def floors_of(tree: Path) -> tuple[dict[str, set[str]], Callable[[str], str]]:
+    """Return the table of what each room of a checkout may import, and the room of a module."""
+    path = tree / "validation" / "house" / "floors.py"
+    table = runpy.run_path(str(path)) if path.exists() else {"MAY_IMPORT": MAY_IMPORT}
+    return table["MAY_IMPORT"], table.get("room_of", _first_folder)
+
+
+def _first_folder(module: str) -> str:
+    """Return the room of a module in a checkout without a core."""
+    return ".".join(module.split(".")[1:2])
+
+
+def _structure(
+    files: Sequence[Source], floors: dict[str, set[str]], room_of: Callable[[str], str]
+) -> dict:
     """Return what the imports say."""
     running = structure.graph(files, types=False)
     read = structure.graph(files)
-    single = structure.single_importers(running)
+    single = structure.single_importers(running, structure.through_doors(files))
     home = structure.in_own_folder(single)
     lines = {source.module: sum(source.lines.values()) for source in files}
     return {
         "circles of modules as they run": structure.circles(running),
         "circles of modules as they are read": structure.circles(read),
-        "circles of rooms as they are read": structure.circles(structure.between_rooms(read)),
-        "arrows up as the source is read": structure.arrows_up(read, MAY_IMPORT),
+        "circles of rooms as they are read": structure.circles(
+            structure.between_rooms(read, room_of)
+        ),
+        "arrows up as the source is read": structure.arrows_up(read, floors, room_of),
         "modules with one importer": len(single),
         "of these in its own folder": len(home),
         "lines of these": sum(lines[module] for module in home),
@@ -129,11 +149,11 @@ def table(rooms: dict[str, dict[str, int]]) -> Iterator[str]:
     total: Counter[str] = Counter()
     for row in rooms.values():
         total += Counter(row)
-    yield f"{'room':<12}{'files':>6}" + "".join(f"{kind:>10}" for kind in KINDS) + f"{'all':>9}"
+    yield f"{'room':<16}{'files':>6}" + "".join(f"{kind:>10}" for kind in KINDS) + f"{'all':>9}"
     for name, row in [*rooms.items(), ("sum", total)]:
         counts = [row.get(kind, 0) for kind in KINDS]
         cells = "".join(f"{count:>10}" for count in counts)
-        yield f"{name:<12}{row.get('files', 0):>6}{cells}{sum(counts):>9}"
+        yield f"{name:<16}{row.get('files', 0):>6}{cells}{sum(counts):>9}"
     share = total["logic"] / sum(total[kind] for kind in KINDS)
     yield f"share of logic: {100 * share:.1f} %"
 

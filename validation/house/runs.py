@@ -17,9 +17,9 @@ COMMANDS = {
 }
 #: run by a process of its own, in the checkout: counts what is entered of the package
 FOLLOWER = """
-import json, os, sys
+import importlib, json, os, sys
 package = os.path.join(os.getcwd(), "solidgear") + os.sep
-entered, rooms = {}, []
+entered = {}
 def follow(frame, event, argument):
     code = frame.f_code
     if event == "call" and code.co_filename.startswith(package) and code.co_name[0] != "<":
@@ -28,7 +28,8 @@ def follow(frame, event, argument):
 import solidgear
 words = json.loads(sys.argv[1])
 if words:
-    from solidgear.app import main
+    app = "app" if os.path.isdir(package + "app") else "cli"
+    main = importlib.import_module(f"solidgear.{app}").main
     sys.argv = ["solidgear", *words]
     sys.setprofile(follow)
     try:
@@ -36,11 +37,17 @@ if words:
     except SystemExit:
         pass
     sys.setprofile(None)
+def room(place):
+    names = place.split(os.sep)
+    return ".".join(names[: 2 if names[0] == "core" else 1]).removesuffix(".py")
+walk = [room(place) for place, _ in entered]  # functions in the order of their first call
 loaded = [name for name in sys.modules if name.split(".")[0] == "solidgear"]
 print()
 print(json.dumps({
     "modules loaded": len(loaded),
     "files entered": len({place for place, _ in entered}),
+    "rooms entered": len({room(place) for place, _ in entered}),
+    "moves between rooms": sum(a != b for a, b in zip(walk, walk[1:])),
     "functions entered": len(entered),
     "calls": sum(entered.values()),
 }))

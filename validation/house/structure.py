@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import ast
-from collections import Counter, defaultdict
-from collections.abc import Sequence
+import re
+from collections import defaultdict
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 from scipy.sparse import csr_matrix
@@ -46,6 +47,34 @@ def graph(files: Sequence[Source], *, types: bool = True, late: bool = True) -> 
     return {s.module: imports(s, known, types=types, late=late) - {s.module} for s in files}
 
 
+def through_doors(files: Sequence[Source]) -> Graph:
+    """Return for each module those whose names it takes from a package that hands them out, or
+    names in a text as a table of additions does.
+    """
+    packages = {s.module: _handed_out(s) for s in files if s.path.name == "__init__.py"}
+    known = {source.module for source in files}
+    taken: Graph = defaultdict(set)
+    for source in files:
+        for node in ast.walk(source.tree):
+            match node:
+                case ast.ImportFrom(module=str(package), names=names) if package in packages:
+                    handed = packages[package]
+                    taken[source.module] |= {handed[a.name] for a in names if a.name in handed}
+                case ast.Constant(value=str(text)) if re.fullmatch(r"[a-z_0-9.]+(:\w+)?", text):
+                    taken[source.module] |= {f"solidgear.{text.partition(':')[0]}"} & known
+    return {module: (targets & known) - {module} for module, targets in taken.items()}
+
+
+def _handed_out(package: Source) -> dict[str, str]:
+    """Return the names that a package imports, each with its module."""
+    return {
+        alias.asname or alias.name: node.module
+        for node in ast.walk(package.tree)
+        if isinstance(node, ast.ImportFrom) and node.module and not node.level
+        for alias in node.names
+    }
+
+
 def circles(arrows: Graph) -> list[list[str]]:
     """Return strongly connected groups of more than one module or room."""
     names = sorted(arrows)
@@ -55,7 +84,7 @@ def circles(arrows: Graph) -> list[list[str]]:
     return sorted(members for members in groups if len(members) > 1)
 
 
-def between_rooms(arrows: Graph) -> Graph:
+def between_rooms(arrows: Graph, room_of: Callable[[str], str] = room_of) -> Graph:
     """Return the graph of rooms, of an import graph of modules."""
     rooms: Graph = defaultdict(set)
     for module, targets in arrows.items():
@@ -63,7 +92,9 @@ def between_rooms(arrows: Graph) -> Graph:
     return {room: targets - {""} for room, targets in rooms.items() if room}
 
 
-def arrows_up(arrows: Graph, floors: dict[str, set[str]]) -> list[str]:
+def arrows_up(
+    arrows: Graph, floors: dict[str, set[str]], room_of: Callable[[str], str] = room_of
+) -> list[str]:
     """Return the imports between modules that a table of what each room may import forbids."""
     return sorted(
         f"{module} -> {target}"
@@ -75,15 +106,28 @@ def arrows_up(arrows: Graph, floors: dict[str, set[str]]) -> list[str]:
     )
 
 
-def single_importers(arrows: Graph) -> dict[str, str]:
-    """Return the modules that one module alone imports, with that module."""
-    count = Counter(target for targets in arrows.values() for target in targets)
+def single_importers(arrows: Graph, besides: Graph) -> dict[str, str]:
+    """Return the modules that one module alone imports, with that module.
+
+    What others take of it by way of a package, `besides`, counts as well.
+    """
+    users: Graph = defaultdict(set)
+    for module, target in _pairs(arrows, besides):
+        users[target].add(module)
+    count = {target: len(modules) for target, modules in users.items()}
     return {
         target: module
         for module, targets in arrows.items()
         for target in targets
         if count[target] == 1
     }
+
+
+def _pairs(*graphs: Graph) -> Iterator[tuple[str, str]]:
+    """Yield all arrows of graphs."""
+    for arrows in graphs:
+        for module, targets in arrows.items():
+            yield from ((module, target) for target in targets)
 
 
 def in_own_folder(single: dict[str, str]) -> dict[str, str]:

@@ -1,4 +1,8 @@
-"""Options of the builders: what they mean, their limits and why, and their checks."""
+"""Options of the builders: what they mean, their limits and why, and their checks.
+
+A further option is a parameter of its builder and has its limits here; one that leaves the choice of
+meshes to the program is in ``FREE`` of :mod:`solidgear.core.ladder.meshes` too.
+"""
 
 from __future__ import annotations
 

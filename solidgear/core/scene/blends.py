@@ -3,6 +3,10 @@
 An edge is a corner of the meridian (r, y).  At the root of a step material is added in the corner,
 at a rim it is taken away; either way the outline runs from a point on the plane face to a point on
 the cylinder beside it, along an arc or straight.
+
+Another edge of revolution is a :class:`Corner` here, a piece of :mod:`solidgear.core.scene.outline`,
+its volume in :mod:`solidgear.core.scene.closed_form` and its cells in
+:mod:`solidgear.core.meshing.blended`.
 """
 
 from __future__ import annotations

@@ -3,6 +3,9 @@
 A file gives a place in words, such as ``position = "28 mm"`` with ``from = "head.end"``; a scene
 holds the place in m. A model is checked when it is read (`Placed.read`) even where its place is not
 known, because the shaft that the words refer to is in doubt.
+
+A key of a file that gives a place is one of the model's ``Words``, and ``place`` says which fields it
+gives.
 """
 
 from __future__ import annotations

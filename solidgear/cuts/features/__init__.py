@@ -1,4 +1,9 @@
-"""Features of a shaft that are not of revolution: one file for each kind, with data and rules."""
+"""Features of a shaft that are not of revolution: one file for each kind, with data and rules.
+
+A cut into a cylinder is a class of :class:`~solidgear.cuts.features.cut.Cut`, or of ``Long`` where it
+has a plane floor: fields with its ``kind``, rules (``_sized``), ``tool``, ``volume``, ``edges`` and
+``distance``.  Files, models that hold it, meshes, sizes, the sketch and error bars ask the class.
+"""
 
 from __future__ import annotations
 

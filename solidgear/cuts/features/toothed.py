@@ -1,4 +1,9 @@
-"""Teeth on a cone, and splines on a cylinder."""
+"""Teeth on a cone, and splines on a cylinder.
+
+Another kind of teeth is a class of ``_Toothed`` with its ``kind``, usual proportions as defaults, and
+``on_cones = False`` where it is for cylinders alone.  What repeats itself around the axis and is no
+teeth needs a way to be drawn in :mod:`solidgear.cuts.sector.meshing` as well.
+"""
 
 from __future__ import annotations
 

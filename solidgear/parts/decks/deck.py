@@ -1,4 +1,9 @@
-"""Content of a mesh file, whatever the format: nodes, elements of one kind, and groups of them."""
+"""Content of a mesh file, whatever the format: nodes, elements of one kind, and groups of them.
+
+A further format is a reader in this room that gives a :class:`Deck`, a line in ``FORMATS`` and a case
+in ``tests/test_part_materials.py``.  A mesh of other origin becomes a body by
+:func:`solidgear.parts.own_mesh.solid_body`.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Models of the shafts of a train, and the system that they make."""
+"""Models of the shafts of a train, and the system that they make.
+
+A further model of one shaft is added by ``add_part`` or ``add_model``; of all shafts, its name here.
+"""
 
 from __future__ import annotations
 
