@@ -16,6 +16,8 @@ def cautions(scene: Scene, body: Body) -> list[str]:
 
 def open_ranges(scene: Scene, body: Body | None = None) -> OpenNumbers:
     """Return the ranges of numbers that inputs with an open value cause."""
+    if not scene.uncertain and all(bearing.catalogue is None for bearing in scene.bearings):
+        return OpenNumbers()
     remark = addition("remark", "open ranges")
     return remark(scene, body) if remark else OpenNumbers()
 
