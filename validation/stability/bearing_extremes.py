@@ -124,9 +124,7 @@ def measure(quick: bool = False) -> Finding:
             rows.append(row | {"rounding / lambda_1": rounding_over_first(body, supports, first)})
         free = sg.condense(
             body,
-            as_supports(
-                [b.with_changes(matrix=np.zeros((6, 6))) for b in shaft(1.0).bearings]
-            ),
+            as_supports([b.with_changes(matrix=np.zeros((6, 6))) for b in shaft(1.0).bearings]),
             port="end",
         )
         none = Supports(("1", "2"), np.zeros((12, 12)))
