@@ -15,7 +15,6 @@ from solidgear.comparison.race import command
 from solidgear.comparison.race import rows as race_rows
 from solidgear.comparison.race import style as race_style
 from solidgear.comparison.race import timing as racing
-from solidgear.comparison.race.answers import answer
 from solidgear.comparison.race.cases import AUTO, plan
 from solidgear.comparison.race.figure import draw, race_chart
 from solidgear.comparison.race.pareto import Race, Row
@@ -30,7 +29,7 @@ from solidgear.comparison.race.rows import (
     write_rows,
 )
 from solidgear.comparison.race.tables import front_rows, section
-from solidgear.comparison.race.timing import race
+from solidgear.comparison.race.timing import answer, race
 from solidgear.core.quantity import QUANTITIES
 from solidgear.show.panel import SHAPES
 from tests.charted import SETUP, few, texts_of, words_of

@@ -10,7 +10,7 @@ import pytest
 
 import solidgear as sg
 from solidgear.cuts.corrected import body as module
-from solidgear.cuts.corrected.modal import modal
+from solidgear.cuts.corrected.body import modal
 
 ROOT = Path(__file__).parent.parent
 

@@ -199,7 +199,7 @@ def test_a_missing_number_is_told_once(tmp_path):
 
 def test_commands_tell_what_is_doubtful(tmp_path, capsys):
     """On the terminal beside the numbers, for commands without cautions of their own."""
-    from solidgear.show.arguments import load
+    from solidgear.show.remarks import load
 
     write_mesh(tmp_path / "part.inp", POINTS, "tetra", CELLS, GROUPS)
     scene = tmp_path / "scene.toml"

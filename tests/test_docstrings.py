@@ -20,7 +20,7 @@ DEAR = {
         "parts/body_file.py",
         "comparison/models.py",
         "strength/stress/shaft.py",
-        "variants/sweep/choice.py",
+        "variants/sweep/command.py",
         "variants/sweep/file_task.py",
         "trains/judge/check.py",
         "backlash/train.py",

@@ -8,7 +8,7 @@ import pytest
 from test_nonlinear_pair import pair
 
 import solidgear as sg
-from solidgear.backlash.results import BacklashStudy
+from solidgear.backlash.command import BacklashStudy
 from solidgear.backlash.solver.apart import search
 from solidgear.backlash.solver.continuation import follow
 from solidgear.backlash.solver.motion import steady_motion

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.variants.optimise.wishes import Wish, limit_of, wish_of
+from solidgear.variants.optimise.optimise import Wish, limit_of, wish_of
 from tests.command import command
 
 SHAFT = "geometry/shaft_stepped.toml"

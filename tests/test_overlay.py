@@ -14,11 +14,11 @@ from universal_files import nodes, response, units, written
 
 import solidgear as sg
 from solidgear.core.scene.file import load
+from solidgear.measured.command import turned_beside
 from solidgear.measured.correlate import correlate
 from solidgear.measured.data import load_measured
 from solidgear.measured.overlay import overlay, stiffer_motions
 from solidgear.measured.shapes import SurfacePoints
-from solidgear.measured.turned import turned_beside
 
 pytest.importorskip("pyuff")
 

@@ -11,12 +11,10 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.comparison.race import answers
 from solidgear.comparison.race import timing as racing
-from solidgear.comparison.race.answers import answer
 from solidgear.comparison.race.cases import plan, setup_seconds
 from solidgear.comparison.race.pareto import Race, Row, front
-from solidgear.comparison.race.timing import race, scaled_error
+from solidgear.comparison.race.timing import answer, race, scaled_error
 from solidgear.core.errors import SolidgearError
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
@@ -205,7 +203,7 @@ def test_lumped_has_the_compliance_of_its_source_and_its_own_frequency(scene):
 
 
 def test_a_lumped_model_that_cannot_be_made_fails_with_the_reason(scene, monkeypatch):
-    monkeypatch.setattr(answers, "preferred", lambda made: None)
+    monkeypatch.setattr(racing, "preferred", lambda made: None)
     with pytest.raises(SolidgearError, match="no lumped mass is positive"):
         answer(scene, "lumped", {}, 10)
 

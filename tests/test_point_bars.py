@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.comparison.page.front import numbers
-from solidgear.comparison.page.point_tables import points
+from solidgear.comparison.page.html import further_points, numbers
 from solidgear.comparison.recording import recorded
 from solidgear.core.judge.quantities import between, canonical_name, measure, size
 from solidgear.core.judge.settle import settle
@@ -215,7 +214,7 @@ def test_judged_and_reported(shaft):
     first = {row[0]: row[1:] for row in numbers(record, ENGINEERING).rows}
     value, bar = first["Compliance across the shaft, wheel under loads on pinion, C_zz"]
     assert value[0].startswith("2.5") and bar.startswith("± ")
-    table = points(record)
+    table = further_points(record)
     assert "relative to the geometric mean" in table.note
     rows = iter(table.rows)
     next(row for row in rows if row[0].startswith("C_zz, wheel for a load on pinion"))

@@ -9,7 +9,7 @@ import re
 import pytest
 
 import solidgear as sg
-from solidgear.comparison.page import front
+from solidgear.comparison.page import html
 from solidgear.core.errors import SolidgearError
 from solidgear.core.judge.record import Record
 from solidgear.show.terminal import matrix_table
@@ -132,59 +132,59 @@ def test_page_one_has_date_version_and_hash():
     digest = re.search(r"scene hash ([0-9a-f]{12}) ", text).group(1)
     changed = fixture_results()
     changed["scene"]["segments"][2]["outer1"] += 1e-9
-    assert front.scene_hash(fixture_results()["scene"]) == digest
-    assert front.scene_hash(changed["scene"]) != digest
+    assert html.scene_hash(fixture_results()["scene"]) == digest
+    assert html.scene_hash(changed["scene"]) != digest
 
 
 def test_hash_is_of_the_data_and_not_of_the_file():
     scene = sg.load("geometry/pinion_overhung.toml")
     told = Record(scene=scene.as_dict()).scene
-    assert front.scene_hash(told) == front.scene_hash(json.loads(json.dumps(told)))
+    assert html.scene_hash(told) == html.scene_hash(json.loads(json.dumps(told)))
 
 
 def test_numbers_are_those_of_the_trusted_model_with_its_bars():
     record = record_of()
     record.models["harmonic"].band.each["C_zz"] = 0.02
-    rows = {row[0]: row for row in front.numbers(record, ENGINEERING).rows}
+    rows = {row[0]: row for row in html.numbers(record, ENGINEERING).rows}
     assert rows["First bending mode"][1:] == [("2758 Hz", "strong"), "± 0.050 %"]
     assert rows["Compliance across the shaft, C_zz"][1:] == [("0.596 µm/kN", "strong"), "± 2.00 %"]
     assert rows["Stiffness along the shaft, K_yy"][2] == "no error bar"
     record.verdict.trust = "solid"
-    (first, *_) = front.numbers(record, ENGINEERING).rows
+    (first, *_) = html.numbers(record, ENGINEERING).rows
     assert first[1] == ("2759 Hz", "strong")
 
 
 def test_what_the_scene_asks_for_is_among_the_numbers():
     scene = copy.deepcopy(fixture_results()["scene"])
     scene["ask"]["quantities"] = ["torsion 1", "C_z,thx"]
-    told = [row[0] for row in front.numbers(record_of(scene=scene), ENGINEERING).rows]
+    told = [row[0] for row in html.numbers(record_of(scene=scene), ENGINEERING).rows]
     assert "First torsion mode" in told and any("C_z,thx" in label for label in told)
     # one that has no words is told by its symbol, not left out
     scene["ask"]["quantities"] = ["C_x,thz", "bending 3"]
-    told = [row[0] for row in front.numbers(record_of(scene=scene), ENGINEERING).rows]
+    told = [row[0] for row in html.numbers(record_of(scene=scene), ENGINEERING).rows]
     assert "C_x,thz" in told and "bending 3" in told
 
 
 def test_two_directions_across_are_told_apart():
     record = record_of()
-    labels = [row[0] for row in front.numbers(record, ENGINEERING).rows]
+    labels = [row[0] for row in html.numbers(record, ENGINEERING).rows]
     assert not any("K_xx" in label for label in labels)
     record.models["harmonic"].stiffness[0][0] *= 1.05
-    *_, last = front.numbers(record, ENGINEERING).rows
+    *_, last = html.numbers(record, ENGINEERING).rows
     assert "K_xx" in last[0] and last[1][0].startswith("4946")
 
 
 def test_three_sentences_say_why():
-    own, second, others = front.reasons(record_of())
+    own, second, others = html.reasons(record_of())
     assert "harmonic solid" in own and "0.050 % in first bending" in own and "5 %" in own
     assert "3D solid" in second and "0.098 %" in second and "less than both error bars" in second
     assert others == "No cheaper model was shown to be within 5 %: do not use the Euler beam here."
     record = record_of()
     record.verdict.cheapest = "timoshenko"
-    assert front.reasons(record)[2].startswith("The Timoshenko beam is enough within 5 %;")
+    assert html.reasons(record)[2].startswith("The Timoshenko beam is enough within 5 %;")
     del record.models["solid"]
     record.deviations = [d for d in record.deviations if d.model != "solid"]
-    assert front.reasons(record)[1].startswith("No second solid")
+    assert html.reasons(record)[1].startswith("No second solid")
 
 
 def test_without_trust_page_one_says_so():

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.variants.optimise.searching import FINE, search_box
+from solidgear.variants.optimise.optimise import FINE, search_box
 
 #: a shaft with a disc at either end: bending 2 is high where bearing B stands beside either
 DISCS = """

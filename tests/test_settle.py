@@ -25,7 +25,7 @@ from solidgear.core.quantity import QUANTITIES
 from solidgear.core.scene import Bearing
 from solidgear.core.solve.statics import condense
 from solidgear.variants.sweep.bearing_variants import bearing_variants
-from solidgear.variants.sweep.choice import settled_for_sweep
+from solidgear.variants.sweep.command import settled_for_sweep
 
 ROOT = Path(__file__).parent.parent
 SCENE = str(ROOT / "geometry" / "pinion_overhung.toml")

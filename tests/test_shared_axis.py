@@ -7,7 +7,7 @@ import pytest
 
 import solidgear as sg
 from solidgear.core.meshing.placing import turn_of
-from solidgear.parts.shared_axis import shared_axis
+from solidgear.parts.part import shared_axis
 from validation.step_parts import shaft_step, write_step
 
 SCENE = """

@@ -11,7 +11,7 @@ from command import command
 import solidgear as sg
 from solidgear.core.errors import SolidgearError
 from solidgear.trains.assembly.models import Workshop
-from solidgear.trains.load.life import train_lives
+from solidgear.trains.load.life_command import train_lives
 from solidgear.trains.load.operation import Operating
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.backlash.results import BacklashStudy
+from solidgear.backlash.command import BacklashStudy
 from solidgear.backlash.solver.balance import Balance
 from solidgear.backlash.solver.continuation import follow
 from solidgear.backlash.solver.integrated import Integrated

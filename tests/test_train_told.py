@@ -15,7 +15,7 @@ from solidgear.trains.assembly.layout import senses
 from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.load.operation import Operating
-from solidgear.trains.response.at_speed import Coincidence
+from solidgear.trains.response.speed_command import Coincidence
 from solidgear.trains.system.equilibrium import without_rounding
 
 GEARBOX, REDUCER = "geometry/gearbox_train.toml", "geometry/reducer.toml"

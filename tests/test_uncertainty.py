@@ -4,15 +4,13 @@ import pytest
 from pytest import approx
 
 import solidgear as sg
-from solidgear.comparison.page.front import numbers
-from solidgear.core.judge.open_record import IntervalRecord
-from solidgear.core.judge.record import Record
+from solidgear.comparison.page.html import numbers
+from solidgear.core.judge.record import IntervalRecord, Record
 from solidgear.core.scene.uncertain import with_ranges
 from solidgear.show.open_words import acting, interval, parts
 from solidgear.show.open_words import budget as budget_table
 from solidgear.show.units import ENGINEERING
-from solidgear.variants.budget.budget import beside, budget
-from solidgear.variants.budget.open_inputs import open_inputs
+from solidgear.variants.budget.budget import beside, budget, open_inputs
 from tests.command import command
 
 STEPPED, GEARBOX = "geometry/shaft_stepped.toml", "geometry/gearbox_catalogue.toml"

@@ -30,12 +30,12 @@ from solidgear.core.models.harmonic import body as harmonic_body
 from solidgear.core.quantity import COMPLIANCE, Quantity
 from solidgear.core.scene import Scene
 from solidgear.core.scene.file import scene_of
-from solidgear.core.scene.paths import entry, label_of
+from solidgear.core.scene.paths import entry, label_of, replace_entry
 from solidgear.core.scene.toml_file import parse
 from solidgear.variants.sensitivity.beam import BeamAdjoint
-from solidgear.variants.sensitivity.entries import around, numbers, put
 from solidgear.variants.sensitivity.harmonic import HarmonicAdjoint
 from solidgear.variants.sensitivity.harmonic_motion import Motion
+from solidgear.variants.sensitivity.run import around, numbers
 from validation.campaign.scenes.shafts import random_scene
 from validation.common import toml
 
@@ -209,7 +209,7 @@ def _changed(file: Path, tables: Any, told: Mapping, weights: Mapping, sign: flo
     out = tables
     for keys, weight in weights.items():
         text = str(entry(keys, tables))
-        out = put(out, keys, float(text) + sign * float(weight) * told[keys])
+        out = replace_entry(out, keys, float(text) + sign * float(weight) * told[keys])
     return scene_of(dict(out), str(file))
 
 

@@ -768,7 +768,7 @@ MUTATIONS = (
     ),
     Mutation(
         "planetary: half a Coriolis force",
-        "solidgear/trains/system/planetary_turning.py",
+        "solidgear/trains/system/planetary.py",
         "turning_terms",
         "2 * about * body.mass",
         "about * body.mass",
@@ -776,7 +776,7 @@ MUTATIONS = (
     ),
     Mutation(
         "planetary: members that tilt are no gyroscopes",
-        "solidgear/trains/system/planetary_turning.py",
+        "solidgear/trains/system/planetary.py",
         "turning_terms",
         "2 * across - polar",
         "2 * across",
@@ -784,7 +784,7 @@ MUTATIONS = (
     ),
     Mutation(
         "planetary: planets pull where they were",
-        "solidgear/trains/system/planetary_turning.py",
+        "solidgear/trains/system/planetary.py",
         "turning_terms",
         "turned = -force * relative.T @ cross_matrix(outward) @ carried[3:]",
         "turned = 0 * system.mass",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import sys
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
@@ -15,13 +15,12 @@ from solidgear.core.judge.answer import answer as solve
 from solidgear.core.judge.steps import ABOVE, BELOW
 from solidgear.core.judge.where import error_places
 from solidgear.core.models.kinds import PARTS
-from solidgear.show.arguments import load
 from solidgear.show.command import NOT_REACHED, caution, command, say
 from solidgear.show.open_words import columns as ranges
 from solidgear.show.open_words import remark
 from solidgear.show.options import SceneFile, Shown, relative
 from solidgear.show.plot import check_ending
-from solidgear.show.remarks import bearing_cautions, open_ranges
+from solidgear.show.remarks import bearing_cautions, load, open_ranges
 from solidgear.show.settled import sentences
 from solidgear.show.table import Column, Table, text
 from solidgear.show.units import units_named
@@ -83,7 +82,10 @@ def answer(
     if run.as_json:
         out = answered.as_dict() | {"open": open_.model_dump(mode="json")}
         if where or picture is not None:
-            out["where"] = {"error": unplaced} if places is None else _plain(places)
+            out["where"] = {"error": unplaced}
+            if places is not None:  # without the mesh and its cells
+                cells = {"model", "points", "cells", "shares"}
+                out["where"] = places.model_dump(exclude=cells)
         print(json.dumps(out, allow_nan=False))
     else:
         say(_values(answered, run.units, open_), _path(answered))
@@ -189,11 +191,6 @@ def _sentence(places: WhereRecord) -> str:
     """Return the sentence on the places with most of the error."""
     total = percent(places.total, signed=False)
     return f"{places.sentence} (a bound by local problems, {total}; {seconds(places.seconds)} s)."
-
-
-def _plain(places: WhereRecord) -> dict[str, Any]:
-    """Return places as plain data without the mesh and its cells."""
-    return places.model_dump(exclude={"model", "points", "cells", "shares"})
 
 
 def _draw(places: WhereRecord, picture: Path) -> None:

@@ -20,10 +20,10 @@ from solidgear.comparison.two.two_shafts import TwoShafts, two_shafts
 from solidgear.comparison.two.two_trains import TwoTrains, two_trains
 from solidgear.core import ELEMENTS, LADDER, SolidgearError, is_train, listed
 from solidgear.core import load as read
-from solidgear.show.arguments import load
 from solidgear.show.command import caution, command, say
 from solidgear.show.folder import held
 from solidgear.show.options import MODEL, SceneFile, Shown, options_by_name, refuse
+from solidgear.show.remarks import load
 from solidgear.show.terminal import closing_lines, final_table, verdict_text
 from solidgear.show.units import units_named
 from solidgear.trains.assembly.shaft import checked_model

@@ -23,10 +23,9 @@ from solidgear.core.judge.coarser_mesh import coarser_bars
 from solidgear.core.judge.completeness import completeness, cut_short, split_apart
 from solidgear.core.judge.hidden import complete_list, less_widest
 from solidgear.core.solve.mixtures import mixtures
-from solidgear.show.arguments import load
 from solidgear.show.command import caution, command, say
 from solidgear.show.options import Run, SceneFile, Solved, options, speed_of
-from solidgear.show.remarks import cautions, open_ranges
+from solidgear.show.remarks import cautions, load, open_ranges
 from solidgear.show.settled import (
     SECOND_MESH,
     bar_lines,

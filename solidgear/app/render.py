@@ -11,9 +11,9 @@ import typer
 from solidgear.comparison.page.write import Drawn, render_mode, turn_modes
 from solidgear.core import LADDER, SolidgearError
 from solidgear.core import modes as solve
-from solidgear.show.arguments import load
 from solidgear.show.command import command
 from solidgear.show.options import Choice, Fixed, SceneFile
+from solidgear.show.remarks import load
 
 
 @command

@@ -14,11 +14,10 @@ from solidgear.core.judge.coarser_mesh import static_bars
 from solidgear.core.scene.rules import no_such_point
 from solidgear.core.solve.condensed import Condensed, Coupled
 from solidgear.core.solve.statics import condense
-from solidgear.show.arguments import load
 from solidgear.show.command import caution, command, say
 from solidgear.show.open_words import table as open_table
 from solidgear.show.options import SceneFile, Shown, Solved, options
-from solidgear.show.remarks import cautions, open_ranges
+from solidgear.show.remarks import cautions, load, open_ranges
 from solidgear.show.settled import SECOND_MESH, bar_lines, ended, heading, largest_bar
 from solidgear.show.table import Column, Table
 from solidgear.show.terminal import matrix_table

@@ -10,7 +10,7 @@ import numpy as np
 from solidgear.bearings.catalogue import catalogue_of
 from solidgear.bearings.catalogued import Catalogued, End
 from solidgear.bearings.life import Life, life
-from solidgear.bearings.solved import AS_STATED, Choice, Solved, solved
+from solidgear.bearings.solved import AS_STATED, Choice, solved
 from solidgear.core import Bearing, Body, Scene
 from solidgear.core.scene import Lubrication
 
@@ -61,14 +61,16 @@ def bearing_lives(
     label, choices = left_open([scene])
     states = [solved(scene, body, choice) for choice in (AS_STATED, *choices)]
     return [
-        life_of(bearing, scene.lubrication, label, speed, [_place(s, bearing) for s in states])
+        life_of(
+            bearing,
+            scene.lubrication,
+            label,
+            speed,
+            [(state.made[bearing.name], state.motion[bearing.name]) for state in states],
+        )
         for bearing in scene.bearings
         if bearing.catalogue is not None
     ]
-
-
-def _place(state: Solved, bearing: Bearing) -> Place:
-    return state.made[bearing.name], state.motion[bearing.name]
 
 
 def left_open(scenes: Iterable[Scene]) -> tuple[str, list[Choice]]:

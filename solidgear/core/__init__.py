@@ -18,9 +18,8 @@ if TYPE_CHECKING:
     from solidgear.core.errors import SceneError, SolidgearError, listed, near, nearest, show
     from solidgear.core.frames import DOF_NAMES, rotation
     from solidgear.core.judge.change import BarredMode
-    from solidgear.core.judge.open_record import OpenNumbers
     from solidgear.core.judge.quantities import change, size
-    from solidgear.core.judge.record import Record, WhereRecord
+    from solidgear.core.judge.record import OpenNumbers, Record, WhereRecord
     from solidgear.core.judge.settle import Settled, bars_of_modes, settle
     from solidgear.core.judge.solution import Solution
     from solidgear.core.judge.ties import SCENE
@@ -140,7 +139,7 @@ _WHERE = {
     "DOF_NAMES": "solidgear.core.frames",
     "rotation": "solidgear.core.frames",
     "BarredMode": "solidgear.core.judge.change",
-    "OpenNumbers": "solidgear.core.judge.open_record",
+    "OpenNumbers": "solidgear.core.judge.record",
     "change": "solidgear.core.judge.quantities",
     "size": "solidgear.core.judge.quantities",
     "Record": "solidgear.core.judge.record",

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from solidgear.core import SceneError, listed
 from solidgear.core.scene.parts import Material, Segment
-from solidgear.core.scene.seat import Seat
+from solidgear.core.scene.places import Seat
 from solidgear.parts.body_file import BodyFile
 
 if TYPE_CHECKING:

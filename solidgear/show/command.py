@@ -35,13 +35,12 @@ def say(*blocks: RenderableType, soft_wrap: bool = True) -> None:
     for block in blocks:
         if isinstance(block, str) and not soft_wrap:
             # rich breaks lines at the spaces that hold the digits of a number together as well
-            block = "\n".join(_broken(line, terminal.width) for line in block.split("\n"))
+            lines = block.split("\n")
+            block = "\n".join(
+                textwrap.fill(line, terminal.width, break_long_words=False, break_on_hyphens=False)
+                for line in lines
+            )
         terminal.print(block, soft_wrap=isinstance(block, str), crop=False)
-
-
-def _broken(line: str, width: int) -> str:
-    """Break a line at plain spaces."""
-    return textwrap.fill(line, width, break_long_words=False, break_on_hyphens=False)
 
 
 def filled(text: str) -> str:

@@ -86,7 +86,11 @@ class Chart:
 
     def spec(self) -> dict[str, Any]:
         """Return the chart in Vega-Lite."""
-        rows = [part for row in self.rows for part in _parts(row, self.width)]
+        rows = [
+            part
+            for row in self.rows
+            for part in in_columns(row, max(1, int(self.width / row[0].least)))
+        ]
         beside = max(panel.beside for row in rows for panel in row)
         drawn = [self._row(row, beside) for row in rows]
         out: dict[str, Any] = {"vconcat": drawn, "resolve": SEPARATE}
@@ -130,11 +134,6 @@ class Chart:
 def in_columns(panels: Sequence[Panel], columns: int) -> list[list[Panel]]:
     """Split panels into rows."""
     return [list(panels[k : k + columns]) for k in range(0, len(panels), columns)]
-
-
-def _parts(row: list[Panel], width: float) -> list[list[Panel]]:
-    """Split rows of panels to the width."""
-    return in_columns(row, max(1, int(width / row[0].least)))
 
 
 def _compact(svg: str, name: str) -> str:

@@ -1,11 +1,23 @@
-"""Remarks beside the numbers of one shaft, as far as rooms of features add them."""
+"""What commands say beside numbers of one shaft: doubts about its part, and remarks that rooms of
+features add."""
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator
+from pathlib import Path
 
 from solidgear.core import Body, OpenNumbers, Scene
+from solidgear.core import load as read
 from solidgear.core.registry import addition
+
+
+def load(path: Path) -> Scene:
+    """Read a scene and print doubts about the file of its part."""
+    scene = read(path)
+    for sentence in scene.body.doubts(scene.material) if scene.body is not None else ():
+        print(f"caution: {sentence}", file=sys.stderr)
+    return scene
 
 
 def cautions(scene: Scene, body: Body) -> list[str]:

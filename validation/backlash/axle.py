@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 import solidgear as sg
-from solidgear.backlash.results import BacklashStudy
+from solidgear.backlash.command import BacklashStudy
 from solidgear.backlash.solver.motion import steady_motion
 from solidgear.backlash.torque import Backlash
 from solidgear.backlash.train import FADED, teeth_of, with_backlash

@@ -16,7 +16,7 @@ from solidgear.core.meshing.grading import Grading
 from solidgear.core.meshing.layout import layout
 from solidgear.core.meshing.meridian import meridian
 from solidgear.core.models.harmonic.blocks import Work
-from solidgear.core.models.harmonic.circumferential import Families
+from solidgear.core.models.harmonic.body import Families
 from solidgear.core.models.harmonic.mesh import harmonic_mesh
 from solidgear.core.scene import STEEL, Material, Scene, Segment
 from solidgear.core.solve.groups import LIGHT, MARGIN

@@ -17,11 +17,11 @@ from solidgear.comparison.race.rows import PICTURE, left_out, records, write_row
 from solidgear.comparison.race.tables import front_table
 from solidgear.comparison.race.timing import BUDGET, FULL_BUDGET, FULL_SURE, race
 from solidgear.core import Record, Scene, SolidgearError
-from solidgear.show.arguments import load
 from solidgear.show.border import as_record
 from solidgear.show.command import Progress, command, say
 from solidgear.show.folder import clear_halves, held
 from solidgear.show.options import Run, SceneFile
+from solidgear.show.remarks import load
 
 
 @command

@@ -159,7 +159,7 @@ class Body(Displayed):
         (:class:`solidgear.core.body.surface.Drawing`).
     further : object or None
         Builder of further circumferential families, such as
-        :class:`solidgear.core.models.harmonic.circumferential.Families`; None where the blocks are all that the
+        :class:`solidgear.core.models.harmonic.body.Families`; None where the blocks are all that the
         model has.
     cache : Cache
         Results of solvers for this body, such as its factors.

@@ -125,7 +125,7 @@ def refined(scene: Scene, body: Body, mesh: Meshed, score: np.ndarray, tol: floa
 
 def corner_strength(kind: str, angle: float) -> float:
     """Return the exponent of displacement at a corner (Williams 1952) of a kind of
-    :func:`solidgear.core.bounds.singular.singular_vertices` and an angle of material, rad: the less, the
+    :func:`solidgear.core.bounds.richer_space.singular_vertices` and an angle of material, rad: the less, the
     sharper.
 
     Examples

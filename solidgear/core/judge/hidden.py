@@ -40,7 +40,8 @@ def complete_list(scene: Scene, body: Body, supports: Supports, listed: ModeSet)
     if first is None:
         return listed
     all_modes = replace(extended, beyond=(*extended.beyond, *extended.above), above=())
-    names = [mode.name for mode in (*_elastic(listed), *first)]
+    elastic = [mode for mode in listed.modes if mode.frequency_hz > 0]
+    names = [mode.name for mode in (*elastic, *first)]
     bounds = harmonic_bounds(
         coned(scene), body, statics=False, modes=all_modes, wanted=names, safety=LOCAL
     )
@@ -58,10 +59,6 @@ def less_widest(evidence: dict, bars: Iterable[float]) -> dict:
     if widest is None or COUNTED not in evidence or COMPLETE in evidence:
         return evidence
     return evidence | {COMPLETE: evidence[COUNTED] * max(1 - widest, 0.0)}
-
-
-def _elastic(listed: ModeSet) -> list[Mode]:
-    return [mode for mode in listed.modes if mode.frequency_hz > 0]
 
 
 def _first_above(modes: ModeSet) -> list[Mode] | None:

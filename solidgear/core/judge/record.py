@@ -7,14 +7,134 @@ nor infinity. Quantities are called as in :data:`solidgear.core.quantity.QUANTIT
 
 from __future__ import annotations
 
-from typing import Any
+import math
+from typing import Annotated, Any
 
-from pydantic import ConfigDict, Field
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    ValidationError,
+    ValidatorFunctionWrapHandler,
+    field_validator,
+)
+from pydantic_core import PydanticUseDefault
 
 from solidgear.core.body.mode_names import ModeName
-from solidgear.core.judge.open_record import OpenNumbers
-from solidgear.core.judge.part import Facts, Matrix, Number, Numbers, Part, Quantities
 from solidgear.core.quantity import Quantity
+
+
+def _plain(value: Any) -> Any:
+    """Return a value as lists, dicts, texts and finite numbers; anything else from numpy is None."""
+    if isinstance(value, dict):
+        return {str(k): _plain(v) for k, v in value.items()}
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    if isinstance(value, (list, tuple)):
+        return [_plain(v) for v in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value
+
+
+Number = Annotated[float | None, BeforeValidator(_plain)]
+Numbers = Annotated[list[float | None], BeforeValidator(_plain)]
+Matrix = Annotated[list[list[float | None]], BeforeValidator(_plain)]
+Facts = Annotated[dict[str, Any], BeforeValidator(_plain)]
+Quantities = dict[str, Number]
+
+
+class Part(BaseModel):
+    """Part of a record: fields that are missing, or None where None is not allowed, have their
+    default; unknown ones are kept. It may be made from an object with attributes of the same names.
+    """
+
+    model_config = ConfigDict(extra="allow", from_attributes=True)
+
+    @field_validator("*", mode="wrap")
+    @classmethod
+    def _none_is_missing(cls, value: Any, validate: ValidatorFunctionWrapHandler) -> Any:
+        try:
+            return validate(value)
+        except ValidationError:
+            if value is None:
+                raise PydanticUseDefault from None
+            raise
+
+
+class InputRecord(Part):
+    """An open input: path in the file, source, range in words."""
+
+    path: str = ""
+    source: str = ""
+    said: str = ""
+
+
+class IntervalRecord(Part):
+    """Lowest and highest of a number, relative to the value with all inputs as the scene says.
+
+    ``deviation`` is the relative standard deviation where every input is equally likely anywhere in
+    its range; None where it was not worked out.
+    """
+
+    low: Number = 0.0
+    high: Number = 0.0
+    deviation: Number = None
+
+
+class SampledRecord(IntervalRecord):
+    """Interval of seeded samples of all inputs together: ends of all, and of 95 % of them."""
+
+    low95: Number = None
+    high95: Number = None
+
+
+class OpenRecord(Part):
+    """A number with its interval by every input, by every source and in total.
+
+    ``value`` is that of ``OpenNumbers.model``, SI; couplings are relative to the geometric mean of
+    their diagonal entries, as bars are.
+    """
+
+    quantity: Quantity = Quantity("")
+    value: Number = None
+    total: IntervalRecord = IntervalRecord()
+    by_source: dict[str, IntervalRecord] = {}
+    by_input: dict[str, IntervalRecord] = {}
+    sampled: SampledRecord | None = None
+
+    @property
+    def shares(self) -> dict[str, float]:
+        """Share of every input in the sum of variances, the largest first; empty without any."""
+        parts = {path: (interval.deviation or 0.0) ** 2 for path, interval in self.by_input.items()}
+        total = sum(parts.values())
+        ordered = sorted(parts, key=lambda path: -parts[path])
+        return {path: parts[path] / total for path in ordered} if total else {}
+
+
+class OpenNumbers(Part):
+    """Open inputs of a scene, and the numbers that they leave open.
+
+    ``lost`` names bearings that carry nothing somewhere in the ranges, ``refused`` says why points
+    could not be solved, ``left_out`` why nothing was worked out.
+    """
+
+    model: str = ""
+    title: str = ""
+    inputs: list[InputRecord] = []
+    numbers: list[OpenRecord] = []
+    points: int = 0
+    samples: int = 0
+    seed: int | None = None
+    lost: list[str] = []
+    refused: list[str] = []
+    left_out: str = ""
+
+    def of(self, quantity: str) -> OpenRecord | None:
+        """Return the entry of a quantity."""
+        return next((number for number in self.numbers if number.quantity == quantity), None)
+
 
 #: version of this layout; it rises when a field is renamed or removed
 SCHEMA = 4

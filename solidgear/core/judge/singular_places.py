@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from solidgear.core.meshing.grading import corner_length
-from solidgear.core.scene.attached import attached_stations
+from solidgear.core.scene.shaft import attached_stations
 
 if TYPE_CHECKING:
     from solidgear.core.scene import Scene, Segment

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from solidgear.core.elements import ELEMENTS
 from solidgear.core.ladder.meshes import FREE, Sequence, fixed_refinements, levels
-from solidgear.core.ladder.model import Options, Series, features_of
-from solidgear.core.ladder.volume import PER_TETRAHEDRON, Volume
+from solidgear.core.ladder.model import SOLID, Model, Options, Series, features_of
 from solidgear.core.models.kinds import BODIES, CUTS, CYCLIC, PARTS
 from solidgear.core.models.options import SOLID_OPTIONS
 from solidgear.core.registry import addition
@@ -16,6 +15,31 @@ from solidgear.core.registry import addition
 if TYPE_CHECKING:
     from solidgear.core.body import Body
     from solidgear.core.models.size import Size
+
+
+#: unknowns of a tetrahedron of second order, most of which it shares
+PER_TETRAHEDRON = 4.0
+
+
+class Volume(Model):
+    """A model on a 3D mesh: without section ties, the volume off by arcs between nodes."""
+
+    family = SOLID
+    section_ties = False
+    mass_tolerance = 1e-3
+
+    def wanted(self, scene: Any, options: Options) -> list[tuple[Any, str]]:
+        """Return the stations with their attachments."""
+        from solidgear.core.scene.shaft import attached_stations
+
+        return [*attached_stations(scene.stations, options["attachments"])]
+
+    def limits(self, scene: Any) -> str:
+        """Return the reason why the features of a scene have no sector that can be meshed; empty if
+        they have.
+        """
+        return addition("question of features", "no sector")(scene)
+
 
 Level = dict[str, Any]
 

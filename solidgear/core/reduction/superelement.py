@@ -26,7 +26,7 @@ Two things about Y are kept with a superelement, as its
 - ``defect``, ``V' M Y Y' M V`` for a K-orthonormal Y: the work of inertia forces of V on Y.
 
 From these follows a proven bound on every frequency of any system the body is built into
-(:mod:`solidgear.core.system.bound`).
+(:mod:`solidgear.core.system.system`).
 """
 
 from __future__ import annotations

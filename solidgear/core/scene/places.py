@@ -13,14 +13,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Annotated, Any, ClassVar, Protocol, TypeVar
 
-from pydantic import AfterValidator, Field
+from pydantic import AfterValidator, Field, model_validator
 from pydantic.fields import FieldInfo
 
 from solidgear.core.errors import SceneError, listed, nearest
 from solidgear.core.scene.patches import Patch
-from solidgear.core.scene.seat import Seat
 from solidgear.core.scene.typed import Model, Problems, by_key, not_misspelt, unknown_keys
-from solidgear.core.scene.units import Length
+from solidgear.core.scene.units import Length, PositiveLength
 
 #: in place of a place that is not known, m
 SOMEWHERE = 1.0
@@ -254,3 +253,17 @@ class Placed(Model):
         fields = [key for key, field in cls.model_fields.items() if field.is_required()]
         seated = ["seat_width"] if "seat" in table and "seat_width" in fields else []
         return dict.fromkeys([key for key in fields if key not in keys] + seated)
+
+
+class Seat(Model):
+    """A stretch of a cylinder of the part, counted from the origin of the body."""
+
+    diameter: PositiveLength
+    from_: Length = Field(alias="from")
+    to: Length
+
+    @model_validator(mode="after")
+    def _long(self):
+        if self.to <= self.from_:
+            raise SceneError("must lie beyond from", path=("to",))
+        return self

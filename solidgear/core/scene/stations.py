@@ -14,8 +14,7 @@ from solidgear.core.registry import addition
 from solidgear.core.scene.bearing_stiffness import Matrix, refuse_two_stiffnesses
 from solidgear.core.scene.housing import Elastic, elastic
 from solidgear.core.scene.patches import Patch, Point, fields_on_patch, patch_problems
-from solidgear.core.scene.places import Along, Placed, Places
-from solidgear.core.scene.seat import Seat
+from solidgear.core.scene.places import Along, Placed, Places, Seat
 from solidgear.core.scene.support import (
     HOLDS,
     Hold,

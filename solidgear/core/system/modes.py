@@ -23,7 +23,7 @@ class SystemModes:
     #: fraction of each mode's strain energy in every elastic part and link; zero in rigid motions
     energy: Mapping[str, np.ndarray]
     #: (k,) largest relative error of each frequency that the reduction of parts leaves, proven
-    #: (:mod:`solidgear.core.system.bound`); infinite where nothing can be promised
+    #: (:mod:`solidgear.core.system.system`); infinite where nothing can be promised
     error_bound: np.ndarray
     residual: float  #: largest ``|K u - w^2 M u|`` relative to ``|K| |u|``
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from solidgear.core.models.size import Size
 from solidgear.core.models.solid.plan import tetrahedra_plan, usual_size
-from solidgear.core.scene.attached import attached_stations
+from solidgear.core.scene.shaft import attached_stations
 from solidgear.cuts.solid.featured import cut_size, meshed
 from solidgear.cuts.solid.meshing import FeaturedMesh
 

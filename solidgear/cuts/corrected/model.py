@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from solidgear.core.bounds.safety import FEATURES
 from solidgear.core.ladder.meshes import FREE, Sequence
 from solidgear.core.ladder.model import Options, Series
-from solidgear.core.ladder.volume import PER_TETRAHEDRON, Volume
+from solidgear.core.ladder.solid import PER_TETRAHEDRON, Volume
 from solidgear.core.models.kinds import CUTS
 from solidgear.core.models.options import CORRECTED_OPTIONS
 

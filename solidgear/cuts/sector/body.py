@@ -20,10 +20,9 @@ from solidgear.core.models.size import Size, size_of_mesh
 from solidgear.core.models.solid.block import body_of, free_block, mesh_facts
 from solidgear.core.models.solid.mesh import SolidMesh, _isoparametric, basis_of
 from solidgear.core.models.solid.plan import tetrahedra_plan
-from solidgear.core.scene.attached import attached_stations
 from solidgear.core.scene.feature import SMALLEST
 from solidgear.core.scene.parts import Segment
-from solidgear.core.scene.shaft import resolved
+from solidgear.core.scene.shaft import attached_stations, resolved
 from solidgear.cuts.features.around import SAME_ANGLE, middle, mirror_angle, no_common_sector
 from solidgear.cuts.sector.cyclic import cyclic_blocks
 from solidgear.cuts.sector.half import half_sector_blocks, half_sector_solid

@@ -25,7 +25,7 @@ from solidgear.core import DOF_NAMES, SolidgearError, System, coned, listed, pin
 from solidgear.core.bounds.harmonic import HarmonicBounds, harmonic_bounds, with_tail
 from solidgear.core.bounds.safety import LOCAL
 from solidgear.core.judge.deviations import WITHIN, gap_verdict
-from solidgear.core.system.port_forces import port_forces
+from solidgear.core.system.system import port_forces
 from solidgear.strength.deflection.misalignment import misalignment
 from solidgear.strength.deflection.shaft import ShaftDeflection, shaft_deflection
 from solidgear.trains.assembly.components import FORCE_UNITS

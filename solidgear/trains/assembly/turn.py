@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from solidgear.core import System, pinned
-from solidgear.core.system.port_forces import port_forces
+from solidgear.core.system.system import port_forces
 from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.assembly.stages import StageAtWork
 from solidgear.trains.file.planetary import Stage

@@ -23,7 +23,7 @@ import numpy as np
 from solidgear.bearings.catalogued import Catalogued
 from solidgear.bearings.solved import AS_STATED, Choice, catalogued_bearings
 from solidgear.core import SceneError, SolidgearError, System, listed
-from solidgear.core.system.port_forces import port_forces
+from solidgear.core.system.system import port_forces
 from solidgear.trains.assembly.housing import housing_port
 from solidgear.trains.assembly.layout import force_on, mesh_forces, rotor_torques
 from solidgear.trains.assembly.models import Workshop

@@ -10,11 +10,11 @@ import typer
 
 from solidgear.core import SolidgearError, listed
 from solidgear.core.judge.answer import asked_for
-from solidgear.show.arguments import load
 from solidgear.show.command import command, say
 from solidgear.show.open_words import budget as budget_table
 from solidgear.show.options import Run, SceneFile
 from solidgear.show.plot import check_ending
+from solidgear.show.remarks import load
 from solidgear.variants.budget.budget import budget as solve_budget
 from solidgear.variants.budget.chart import budget_chart
 

@@ -2,29 +2,178 @@
 
 Every design is read, meshed and solved as a variant of a sweep, its mesh refined until its error bars
 are within the tolerance: it costs seconds, and its small jumps from mesh to mesh would spoil differences.
+
+Search of a box for the least of a number that is costly and a little rough: a sample of the whole
+box first, searches from the best places of it, and a last step at the best.
+
+The sample has the corners of a small box and points of Sobol's sequence inside, the searches are those
+of SciPy that want no derivative: Brent's bounded scalar search for one coordinate without limits, and
+COBYQA (Ragonneau and Zhang 2024), a trust-region method with bounds and constraints, for all others.
+A box of one minimum costs little more than one search; the sample shows whether there are several.
 """
 
 from __future__ import annotations
 
+import itertools
 import math
 import os
-from collections.abc import Callable, Iterable
+import re
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
-from solidgear.core import SolidgearError, nearest
-from solidgear.variants.optimise.optimum import Design, Optimum
-from solidgear.variants.optimise.searching import search_box
-from solidgear.variants.optimise.wishes import Wish, limit_of, wish_of
-from solidgear.variants.sweep.amounts import in_si
+from solidgear.core import Displayed, SceneError, SolidgearError, nearest, show
+from solidgear.core.judge.change import Change
+from solidgear.core.scene.units import quantity, si_factor
 from solidgear.variants.sweep.design import Design as SweepDesign
 from solidgear.variants.sweep.entries import Entry, assignment
+from solidgear.variants.sweep.file_task import without_bars
 from solidgear.variants.sweep.file_variants import SceneVariants, scene_variants
-from solidgear.variants.sweep.scene_task import STATICS, SceneTask
-from solidgear.variants.sweep.spans import plain_number
+from solidgear.variants.sweep.scene_task import MOST_MODES, STATICS, SceneTask
+from solidgear.variants.sweep.spans import amount, in_si, plain_number
+
+
+@dataclass(frozen=True)
+class Design:
+    """A design that was solved."""
+
+    number: int  #: in order; 0 is the file as it is
+    values: dict[str, Any]  #: of the entries that vary, SI
+    #: value, bar: of the goal, and its error bar
+    value: float | None
+    bar: float | None
+    kept: bool  #: whether every limit is kept with its error bar
+    status: str  #: ``ok``, or why it has no numbers
+    row: dict[str, Any]  #: all numbers
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Optimum(Displayed):
+    """Result of a search."""
+
+    shown: ClassVar[str] = "variants.optimise.tables:designs"
+
+    scene: str
+    goal: Wish
+    keep: tuple[Wish, ...]
+    path: tuple[Design, ...]  #: all designs, the file as it is first
+    best: Design | None  #: none where no design keeps every limit
+    at_end: tuple[str, ...]  #: entries of the best design that are at an end of their range
+    how: str = ""  #: the search in words
+    model: str | None = None  #: that was given, and has no error bars
+
+    @property
+    def gain(self) -> Change | None:
+        """Change from the file to the best design; None where one of them has no number."""
+        first, best = self.path[0], self.best
+        if best is None or first.value is None or best.value is None:
+            return None
+        return Change(first.value, best.value, first.bar, best.bar)
+
+    @property
+    def sentences(self) -> list[str]:
+        """Conclusions."""
+        return list(_sentences(self))
+
+    @property
+    def results(self) -> dict[str, Any]:
+        """Plain data that JSON can hold, SI."""
+        return {
+            "kind": "optimum",
+            "scene": self.scene,
+            "goal": str(self.goal),
+            "keep": [str(wish) for wish in self.keep],
+            "best": None if self.best is None else self.best.number,
+            "at_end": list(self.at_end),
+            "search": self.how,
+            "bars": without_bars(self.model) if self.model else "beside each value",
+            "gain": None if self.gain is None else self.gain.as_dict(),
+            "designs": [
+                {
+                    "number": design.number,
+                    **design.values,
+                    "value": design.value,
+                    "bar": design.bar,
+                    "kept": design.kept,
+                    "status": design.status,
+                }
+                for design in self.path
+            ],
+            "sentences": self.sentences,
+        }
+
+
+def _sentences(optimum: Optimum) -> Iterator[str]:
+    best, gain = optimum.best, optimum.gain
+    solved = sum(design.status == "ok" for design in optimum.path)
+    if not solved:
+        yield f"No design could be solved; the file as it is: {optimum.path[0].status}."
+        return
+    if best is None:
+        limits = ", ".join(map(str, optimum.keep))
+        yield f"No design of {solved} keeps {limits}, error bars included."
+        yield from _nearest_miss(optimum)
+        return
+    yield f"{optimum.goal}: {_with_bar(best.value, best.bar)} (SI) at {_listed_values(best)}."
+    if optimum.how:
+        yield f"Searched: {optimum.how}; {solved} designs solved."
+    if best.number == 0:
+        yield "No design is better than the file as it is by more than the error bars."
+    elif gain is not None:
+        file = f"the file as it is, {_with_bar(gain.a, gain.bar_a)}"
+        if not optimum.path[0].kept:
+            file += ", which misses a limit"
+        percent = f"{100 * (gain.relative or 0.0):+.3g} % from {file}"
+        if gain.verdict == "no band":
+            yield f"{percent}; a model that is given has no error bars."
+        elif gain.verdict == "resolved":
+            yield f"{percent}."
+        else:
+            yield (
+                f"No gain is claimed over {file}: the difference is within the error bars; a "
+                "smaller --tol narrows them."
+            )
+    count = sum(design is not best and _as_good(optimum, design) for design in optimum.path)
+    if count:
+        designs = "designs are" if count > 1 else "design is"
+        yield f"{count} more {designs} as good within the error bars."
+    for label in optimum.at_end:
+        yield f"{label} is at the end of its range; a wider range may hold a better design."
+
+
+def _with_bar(value: float | None, bar: float | None) -> str:
+    return f"{value:.6g}" + (f" ± {bar:.2g}" if bar else "")
+
+
+def _listed_values(design: Design) -> str:
+    return ", ".join(f"{label} = {value:.6g}" for label, value in design.values.items())
+
+
+def _as_good(optimum: Optimum, design: Design) -> bool:
+    """True if error bars do not distinguish a design from the best."""
+    best = optimum.best
+    if best is None or not design.kept or design.value is None or best.value is None:
+        return False
+    return Change(design.value, best.value, design.bar, best.bar).verdict == "not resolved"
+
+
+def _nearest_miss(optimum: Optimum) -> Iterator[str]:
+    misses = [
+        (max(wish.missing(design.row) for wish in optimum.keep), design)
+        for design in optimum.path
+        if design.status == "ok"
+    ]
+    if misses:
+        short, design = min(misses, key=lambda pair: pair[0])
+        yield (
+            f"The nearest misses by {100 * short:.3g} % of the limit, at {_listed_values(design)} "
+            "(SI)."
+        )
+
 
 #: of a range: distance of two designs that are the same, and of an optimum at the end from the end
 SAME, AT_END = 1e-6, 1e-6
@@ -219,3 +368,213 @@ def _with_both_ends(text: str) -> str:
             f"--vary {text}: both ends are the same, and nothing is left to choose"
         )
     return f"{path}={spec}:2"
+
+
+#: coordinates of a box whose corners are all sampled
+MOST_CORNERED = 3
+#: points of the sample: on a line, and for each coordinate of other boxes (a power of two for two)
+LINE, INSIDE = 9, 8
+#: searches from the sample, distance of their beginnings, and most designs of one a coordinate
+STARTS, DISTANCE, MOST = 3, 0.25, 12
+#: of a range: last steps of a search and of the last one, and a distance that is moved to the end
+COARSE, FINE, NEAR = 1e-2, 1e-4, 2e-2
+#: of the number, for a limit that is missed by all of it
+PENALTY = 2.0
+
+#: from a place in the unit box
+Number = Callable[[np.ndarray], float]
+
+
+def search_box(dimension: int, goal: Number, misses: Sequence[Number], begin: np.ndarray) -> str:
+    """Search the least of a number where no miss is above zero, each relative to a size of its own, from
+    a (dimension,) place `begin` and those of a sample; return the search in words.
+
+    The caller keeps the places that its numbers were asked for: the best of them is the result.
+    """
+    merit = _merit(goal, misses)
+    places = _sample(dimension)
+    merits = [merit(place) for place in places]
+    if dimension == 1 and not misses:
+        count = _on_the_line(goal, [float(place[0]) for place in places], merits)
+        return f"{LINE} designs across the range, then Brent's method from {_best(count)}"
+    starts = _distant([begin, *places], [merit(begin), *merits])
+    best = min(starts, key=merit)
+    for start in starts:
+        best = min(best, _trust_region(goal, misses, start, 0.2, COARSE), key=merit)
+    ends = np.where(best < NEAR, 0.0, np.where(best > 1 - NEAR, 1.0, best))
+    best = min(best, ends, key=merit)
+    _trust_region(goal, misses, best, COARSE, FINE)
+    return (
+        f"{len(places)} designs across the ranges, then COBYQA from {_best(len(starts))}, and a last "
+        f"step of {FINE:g} of the ranges"
+    )
+
+
+def _best(count: int) -> str:
+    return "the best of them" if count == 1 else f"the {count} best separate ones"
+
+
+def _merit(goal: Number, misses: Sequence[Number]) -> Number:
+    """Return the number with a penalty for limits that are missed."""
+
+    def merit(place: np.ndarray) -> float:
+        missing = sum(max(0.0, miss(place)) for miss in misses)
+        return goal(place) + (1.0 + PENALTY * missing if missing else 0.0)
+
+    return merit
+
+
+def _sample(dimension: int) -> list[np.ndarray]:
+    """Return the places of a sample of the unit box."""
+    from scipy.stats import qmc  # slow to import, and few commands have a use for it
+
+    if dimension == 1:
+        return list(np.linspace(0.0, 1.0, LINE)[:, None])
+    corners: list[np.ndarray] = []
+    if dimension <= MOST_CORNERED:
+        corners = [*map(np.array, itertools.product((0.0, 1.0), repeat=dimension))]
+    inside = qmc.Sobol(dimension, scramble=False).random_base2(int(np.log2(INSIDE * dimension)))
+    return [*corners, *inside[1:]]  # the sequence begins in a corner
+
+
+def _on_the_line(goal: Number, places: Sequence[float], values: Sequence[float]) -> int:
+    """Run Brent's search about the places of a line that are better than their neighbours, the best
+    first, and return their number.
+    """
+    from scipy.optimize import minimize_scalar
+
+    wall = [np.inf, *values, np.inf]
+    least = [k for k in range(len(places)) if wall[k] > wall[k + 1] <= wall[k + 2]]
+    least = sorted(least, key=lambda k: values[k])[:STARTS]
+    for k in least:
+        low, high = places[max(k - 1, 0)], places[min(k + 1, len(places) - 1)]
+        minimize_scalar(
+            lambda x: goal(np.array([x])),
+            bounds=(low, high),
+            method="bounded",
+            options={"xatol": COARSE / 2, "maxiter": MOST},
+        )
+    return len(least)
+
+
+def _distant(places: Sequence[np.ndarray], merits: Sequence[float]) -> list[np.ndarray]:
+    """Return the best places that lie a distance from each other."""
+    starts: list[np.ndarray] = []
+    for k in np.argsort(merits, kind="stable"):
+        far = all(np.abs(places[k] - start).max() > DISTANCE for start in starts)
+        if far and len(starts) < STARTS:
+            starts.append(places[k])
+    return starts
+
+
+def _trust_region(
+    goal: Number, misses: Sequence[Number], start: np.ndarray, first: float, last: float
+) -> np.ndarray:
+    """Run COBYQA with a first and last radius of the region, and return its last place."""
+    from scipy.optimize import NonlinearConstraint, minimize
+
+    limits = [NonlinearConstraint(miss, -np.inf, 0.0) for miss in misses]
+    result = minimize(
+        goal,
+        start,
+        bounds=[(0.0, 1.0)] * len(start),
+        constraints=limits,
+        method="COBYQA",
+        options={
+            "maxfev": MOST * len(start) + MOST * bool(misses),
+            "initial_tr_radius": first,
+            "final_tr_radius": last,
+        },
+    )
+    return np.clip(result.x, 0.0, 1.0)
+
+
+_GOAL = re.compile(r"\s*(?P<sense>max|min)(?:imi[sz]e)?\s+(?P<name>.+?)\s*", re.I)
+_KEEP = re.compile(r"\s*(?P<name>.+?)\s*(?P<sense>[<>])=?\s*(?P<value>.+?)\s*")
+_FIRST = re.compile(r"f(?P<number>[1-9]\d*)")
+
+
+@dataclass(frozen=True)
+class Wish:
+    """A number of a design that should be large or small, or stay beyond a limit."""
+
+    name: str  #: ``mass``, a compliance or stiffness, ``f1``, or a mode such as ``bending 1``
+    upward: bool  #: large is good
+    limit: float | None = None  #: SI; None of a goal
+
+    def value(self, row: dict[str, Any]) -> tuple[float, float | None] | None:
+        """Return the value of a design and its error bar, SI; None where it has no number, or bar."""
+        column = self._column(row)
+        value = row.get(column)
+        if value is None:
+            return None
+        return float(value), row.get(f"{column} bar")
+
+    def _column(self, row: dict[str, Any]) -> str:
+        if first := _FIRST.fullmatch(self.name):
+            return f"f{first['number']}_hz"
+        for k in range(1, MOST_MODES + 1):
+            if row.get(f"mode{k}") == self.name:
+                return f"f{k}_hz"
+        return self.name
+
+    def missing(self, row: dict[str, Any]) -> float:
+        """Compute the distance beyond a limit, error bar included, relative to it; 0 and less is
+        kept.
+        """
+        number = self.value(row)
+        if number is None or self.limit is None:
+            return math.inf
+        value, bar = number[0], number[1] or 0.0
+        short = self.limit - (value - bar) if self.upward else (value + bar) - self.limit
+        return short / abs(self.limit or 1.0)
+
+    def __str__(self) -> str:
+        if self.limit is None:
+            return f"{'max' if self.upward else 'min'} {self.name}"
+        return f"{self.name} {'>' if self.upward else '<'} {self.limit:.6g}"
+
+
+def wish_of(text: str) -> Wish:
+    """Read a goal such as ``max bending 1``."""
+    match = _GOAL.fullmatch(text)
+    if match is None:
+        raise SolidgearError(
+            f'--goal {show(text, 40)}: write "max NUMBER" or "min NUMBER", such as "max bending 1"'
+        )
+    return Wish(match["name"], match["sense"].lower() == "max")
+
+
+def limit_of(text: str) -> Wish:
+    """Read a limit such as ``C_zz < 5 um/kN``."""
+    match = _KEEP.fullmatch(text)
+    if match is None:
+        raise SolidgearError(
+            f'--keep {show(text, 40)}: write NUMBER < VALUE, such as "C_zz < 5 um/kN" or "f1 > 600 Hz"'
+        )
+    name = match["name"]
+    return Wish(name, match["sense"] == ">", _limit_in_si(name, match["value"], text))
+
+
+def _limit_in_si(name: str, value: str, text: str) -> float:
+    if (number := plain_number(value)) is not value:
+        return float(number)
+    static = next((q for q in STATICS if str(q) == name), None)
+    try:
+        if static is None:
+            return quantity(value, "mass" if name == "mass" else "frequency")
+        return _static_in_si(value, static.unit)
+    except SceneError as error:
+        raise SolidgearError(f"--keep {show(text, 40)}: {error}") from None
+
+
+def _static_in_si(value: str, si_unit: str) -> float:
+    """Return a compliance or stiffness in SI, from any unit of its dimension."""
+    match = amount(value)
+    if match is None:
+        raise SceneError(f"{show(value)} is not a number with a unit")
+    number, unit = match.groups()
+    factor, si = si_factor(unit), si_factor(si_unit)
+    if factor is None or si is None or factor[2] != si[2]:
+        raise SceneError(f"{unit!r} is not a unit of a number in {si_unit}")
+    return float(number) * factor[0]

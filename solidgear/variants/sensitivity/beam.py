@@ -25,7 +25,7 @@ from solidgear.core.models.beam.body import (
 )
 from solidgear.core.models.beam.element import MATTER, SHAPE, Elements, Section, owners
 from solidgear.core.models.beam.shoulder import hinges
-from solidgear.core.scene.attached import attached_stations
+from solidgear.core.scene.shaft import attached_stations
 from solidgear.variants.sensitivity.adjoint import Form
 
 #: imaginary step: its square is negligible beside 1

@@ -1,19 +1,26 @@
-"""Command ``sensitivities``: derivatives of numbers of a shaft by the entries of its file."""
+"""Command ``sensitivities``: derivatives of numbers of a shaft by the entries of its file; tables, chart
+and files."""
 
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from contextlib import nullcontext
+from functools import partial
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 from solidgear.show.command import command, say
 from solidgear.show.folder import held
 from solidgear.show.options import Fixed, SceneFile, Shown, options
-from solidgear.show.units import units_named
-from solidgear.variants.sensitivity import tables as sensitivity
+from solidgear.show.panel import PERCENT, Axis, Panel, Series, readout, wrapped
+from solidgear.show.plot import NARROW, WIDE, Chart
+from solidgear.show.sheet_files import write_files
+from solidgear.show.table import Column, Table, text
+from solidgear.show.units import Units, units_named
+from solidgear.show.words import percent
 from solidgear.variants.sensitivity.run import sensitivities as derive
 
 
@@ -48,12 +55,159 @@ def sensitivities(
     with held(out) if out else nullcontext(), run.progress() as progress:
         result = derive(scene, fixed.name, of, by, progress=progress, **builder_options)
         units = units_named(run.units)
-        files = sensitivity.write(out, result, units) if out else []
+        files = write(out, result, units) if out else []
     if run.as_json:
         print(json.dumps(result.as_dict(), allow_nan=False))
         return
     say(f"{result.title}, by the {result.model} model")
-    say(*(sensitivity.table(number, units) for number in result.of))
-    say(*sensitivity.notes(result), soft_wrap=False)
+    say(*(table(number, units) for number in result.of))
+    say(*notes(result), soft_wrap=False)
     if files:
         say(f"Written: {', '.join(map(str, files))}")
+
+
+#: most rows of a table and bars of a chart; further entries move the number little
+MOST = 15
+#: smallest distance from the derivative on a coarser mesh that is shown, of the number
+LEAST = 1e-4
+#: px; height of a bar, and of names on a wide and on a narrow page
+BAR, NAMES, NARROW_NAMES = 20.0, 250.0, 172.0
+UP, DOWN = "a larger entry raises it", "a larger entry lowers it"
+
+
+def strongest(of: Any) -> list[Any]:
+    """Return the derivatives by the entries that move a number most."""
+    return [derivative for derivative in of.derivatives if derivative.elasticity][:MOST]
+
+
+def table(of: Any, units: Units, rows: Sequence[Any] | None = None) -> Table:
+    """Return the table of the entries that move one number."""
+    shown = strongest(of) if rows is None else rows
+    columns: list[Column] = [
+        text("entry of the file", lambda d: d.path),
+        text("as written", lambda d: d.written),
+        Column("for 1 % more", lambda d: d.elasticity / 100, percent),
+        Column("by its unit", lambda d: _by_unit(d, of.unit, units)),
+    ]
+    distances = [d.apart / 100 for d in shown if d.apart is not None]
+    if max(distances, default=0.0) >= LEAST:
+        columns.append(Column("mesh", lambda d: d.apart and d.apart / 100, _mesh))
+    others = [d for d in of.derivatives if d not in shown]
+    without_effect = sum(not d.elasticity for d in others)
+    note = []
+    if distances and max(distances) < LEAST:
+        note.append(f"Mesh: below {percent(LEAST, signed=False)} everywhere.")
+    if len(others) > without_effect:
+        most = percent(abs(others[0].elasticity) / 100, signed=False)
+        note.append(f"{len(others) - without_effect} more move it by {most} or less.")
+    if without_effect:
+        note.append(f"Without effect: {without_effect}.")
+    value = units.text(of.value, of.unit)
+    return Table(f"What would move {of.name} ({value})", columns, shown, " ".join(note))
+
+
+def _by_unit(derivative: Any, unit: str, units: Units) -> str:
+    """Return a derivative by one unit of the file, to four digits with its sign."""
+    value = units.value(derivative.by_unit, unit) or 0.0
+    return f"{value:+.4g} {units.unit(unit)} per {derivative.unit or '1 in SI'}"
+
+
+def _mesh(share: float) -> str:
+    if share < LEAST:
+        return f"< {percent(LEAST, signed=False)}"
+    return f"+- {percent(share, signed=False)}"
+
+
+def lines(result: Any) -> Table:
+    """Return the table of all derivatives for other programs, in SI."""
+    heads = (
+        "number",
+        "value",
+        "unit",
+        "value from coarser mesh",
+        "entry",
+        "written",
+        "at",
+        "derivative",
+        "elasticity",
+        "elasticity from coarser mesh",
+        "one-sided",
+    )
+    rows = [
+        (
+            number.name,
+            number.value,
+            number.unit,
+            number.apart,
+            d.path,
+            d.written,
+            d.at,
+            d.by,
+            d.elasticity,
+            d.apart,
+            d.side,
+        )
+        for number in result.of
+        for d in number.derivatives
+    ]
+    return Table("sensitivities", [Column(head, write=repr) for head in heads], rows)
+
+
+def chart(of: Any, width: float = WIDE) -> Chart | None:
+    """Draw bars of the change of one number for one per cent of each entry."""
+    rows = strongest(of)
+    if not rows:
+        return None
+    left = NAMES if width > NARROW else NARROW_NAMES
+    names = {float(k): "\n".join(wrapped(d.path, left - 10)) for k, d in enumerate(rows)}
+    thick = max(BAR, 15.0 * max(name.count("\n") + 1 for name in names.values()) + 2)
+    top = 1.05 * abs(rows[0].elasticity) / 100
+    panel = Panel(
+        Axis(f"change of {of.name} for 1 % more", (-top, top), label=PERCENT),
+        Axis("", (len(rows) - 0.5, -0.5), ticks=names, grid=False),
+        thick * len(rows),
+        series={UP: Series("#0072b2"), DOWN: Series("#b3305c")},
+        legend={"orient": "top", "symbolType": "square", "columns": 2 if width > NARROW else 1},
+        left=left,
+    )
+    bars = [
+        {
+            "x": 0.0,
+            "x2": d.elasticity / 100,
+            "y": k - 0.38,
+            "y2": k + 0.38,
+            "name": UP if d.elasticity > 0 else DOWN,
+            "readout": readout(
+                d.path,
+                ("in the file", d.written, ""),
+                ("1 % more", percent(d.elasticity / 100), ""),
+            ),
+        }
+        for k, d in enumerate(rows)
+    ]
+    panel.draw({"type": "rect", "strokeWidth": 0}, bars)
+    return Chart([[panel]], width)
+
+
+def write(folder: Path, result: Any, units: Units) -> list[Path]:
+    """Write page, CSV, JSON and charts into a folder."""
+    charts = {
+        f"sensitivities_{k}": partial(chart, number) for k, number in enumerate(result.of, start=1)
+    }
+    return write_files(
+        folder,
+        "sensitivities",
+        f"{result.title}: sensitivities",
+        f"By the {result.model} model.",
+        [table(number, units) for number in result.of],
+        result.as_dict(),
+        lines={"sensitivities": lines(result)},
+        charts=charts,
+        notes=notes(result),
+    )
+
+
+def notes(result: Any) -> list[str]:
+    """Return sentences on entries held, accuracy of derivatives, and entries without any."""
+    without = [f"No derivative by {path}: {why}." for path, why in result.without.items()]
+    return [*result.notes, *without]

@@ -24,7 +24,7 @@ from solidgear.core.kernel.assembly import reference
 from solidgear.core.meshing.bands import radial_bands
 from solidgear.core.models.harmonic.blocks import Work
 from solidgear.core.models.harmonic.families import TORSION, Family, family_of
-from solidgear.core.scene.attached import attached_stations
+from solidgear.core.scene.shaft import attached_stations
 from solidgear.variants.sensitivity.adjoint import Form
 
 

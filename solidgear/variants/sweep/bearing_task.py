@@ -324,7 +324,7 @@ def bearing_task(
         exceeds it makes the basis larger, and where that does not do it is solved in full.
     bars : mapping of str to float, optional
         Relative, of the mesh, by the names of numbers and modes, as of
-        :func:`solidgear.variants.sweep.choice.bars_of_rows`; bars stand in columns beside numbers.
+        :func:`solidgear.variants.sweep.command.bars_of_rows`; bars stand in columns beside numbers.
     judged_on : int
         Bearing sets that these are the largest over.
 

@@ -32,8 +32,7 @@ from solidgear.core.scene.paths import (
     replace_entry,
 )
 from solidgear.core.scene.text_keys import is_text
-from solidgear.variants.sweep.amounts import amount, in_si
-from solidgear.variants.sweep.spans import Span, spread
+from solidgear.variants.sweep.spans import Span, amount, in_si, spread
 
 #: from a path to the file that holds it, by its name among all, and the path within
 Owner = Callable[[str], tuple[str, str]]

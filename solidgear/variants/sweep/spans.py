@@ -1,16 +1,48 @@
-"""Values of entries that vary in a study: ``a:b:n`` (n values, evenly), ``log:a:b:n`` (geometrically) or a
-list ``a,b,c``, their full product or a Latin hypercube.
-"""
+"""Numbers as people write them, with a unit or without one, and values of entries that vary in a study:
+``a:b:n`` (n values, evenly), ``log:a:b:n`` (geometrically) or a list ``a,b,c``, their full product or
+a Latin hypercube."""
 
 from __future__ import annotations
 
 import itertools
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from solidgear.core import SceneError, SolidgearError
+from solidgear.core import DIMENSIONS, SceneError, SolidgearError
+from solidgear.core.scene.units import quantity
+
+_NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)", re.S)
+
+
+def in_si(value: object) -> float | None:
+    """Return a number, or a text with a unit, in SI; None for any other value.
+
+    Examples
+    --------
+    >>> in_si("20 mm"), in_si("3000 rpm") == in_si("50 Hz"), in_si("concave"), in_si(20)
+    (0.02, False, None, 20.0)
+    """
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
+        return float(value)
+    if not isinstance(value, str):
+        return None
+    if not (match := amount(value)) or not match[2]:
+        return None
+    for dimension in DIMENSIONS:
+        try:
+            return quantity(value, dimension)
+        except SceneError:
+            continue
+    return None
+
+
+def amount(word: object) -> re.Match[str] | None:
+    """Match number and unit of a text."""
+    return _NUMBER.fullmatch(word.strip()) if isinstance(word, str) else None
+
 
 #: More variants than this are a slip of the keyboard.
 MOST = 10_000_000

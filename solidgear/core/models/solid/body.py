@@ -22,9 +22,8 @@ from solidgear.core.models.solid.block import body_of, free_block, mesh_facts, m
 from solidgear.core.models.solid.mesh import _isoparametric
 from solidgear.core.models.solid.plan import hexahedra_layout, tetrahedra_of, tetrahedra_plan
 from solidgear.core.registry import addition
-from solidgear.core.scene.attached import attached_stations
 from solidgear.core.scene.closed_form import volume_of
-from solidgear.core.scene.shaft import feature_labels, resolved, without_axis
+from solidgear.core.scene.shaft import attached_stations, feature_labels, resolved, without_axis
 
 
 def solid(

@@ -13,8 +13,7 @@ from solidgear.core.models.solid.body import _tets
 from solidgear.core.models.solid.mesh import basis_of
 from solidgear.core.models.solid.plan import hexahedra_layout, tetrahedra_plan
 from solidgear.core.registry import addition
-from solidgear.core.scene.attached import attached_stations
-from solidgear.core.scene.shaft import resolved
+from solidgear.core.scene.shaft import attached_stations, resolved
 
 
 def solid_size(
