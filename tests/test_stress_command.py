@@ -14,8 +14,8 @@ import solidgear as sg
 from solidgear.core.scene.closed_form import mass_properties
 from solidgear.strength.stress import shaft
 from solidgear.strength.stress.at_rest import StressSettings, stress_of_scene, stress_of_train
-from solidgear.strength.stress.files import shaft_tables
 from solidgear.strength.stress.rating import Conditions
+from solidgear.strength.stress.sheet import shaft_tables
 from solidgear.trains.file.operation import GRAVITY, OperatingPoint
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"

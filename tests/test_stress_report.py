@@ -8,9 +8,8 @@ from filleted import STRONG, shoulder
 from test_fillet_stress import loads_on
 
 from solidgear.show.units import US
-from solidgear.strength.stress import tables as stress_tables
+from solidgear.strength.stress import sheet as stress_tables
 from solidgear.strength.stress.rating import Conditions
-from solidgear.strength.stress.section_chart import section_chart
 from solidgear.strength.stress.shaft import shaft_stress
 
 
@@ -80,7 +79,7 @@ def test_sharp_corners_are_told_in_one_sentence():
 
 
 def test_a_chart_is_read_at_every_load(found):
-    facts = facts_of(section_chart(found.forces, "a shaft").svg())
+    facts = facts_of(stress_tables.section_chart(found.forces, "a shaft").svg())
     told = dict(facts)
     assert told["N before gear"]["N"] == "2000.0 N"
     assert told["T beyond gear"]["T"] == "0 N m"
@@ -95,7 +94,7 @@ def test_the_size_of_a_moment_is_no_straight_line_between_loads(found):
     arms = sum(loads[name][0] * y for name, y in places(scene))
     loads["B"] = loads["B"] + [0, 0, 0, 0, 0, arms]
     forces = shaft_stress(scene.with_changes(blends=()), loads).forces
-    panel = section_chart(forces).rows[2][0]
+    panel = stress_tables.section_chart(forces).rows[2][0]
     size = next(rows for mark, rows, _ in panel.layers if rows[0].get("name") == "M")
     for row in size:
         six = forces.at(row["x"] / 1e3)

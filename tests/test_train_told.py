@@ -9,7 +9,7 @@ import solidgear as sg
 from solidgear.show import speed_tables
 from solidgear.show.command import say
 from solidgear.show.units import ENGINEERING
-from solidgear.strength.deflection import tables as deflection_tables
+from solidgear.strength.deflection.sheet import meanings
 from solidgear.strength.deflection.train import Measured, deflect_train
 from solidgear.trains.assembly.layout import senses
 from solidgear.trains.assembly.models import Workshop
@@ -65,9 +65,9 @@ def test_what_misalignments_mean_is_said_once_for_all_meshes():
             ),
         ]
 
-    alike = deflection_tables.meanings([*mesh("a-b", 0.04), *mesh("b-c", 0.04)], ENGINEERING)
+    alike = meanings([*mesh("a-b", 0.04), *mesh("b-c", 0.04)], ENGINEERING)
     assert alike == "across: slope across it; f_sh: over 40 mm of face"
-    both = deflection_tables.meanings([*mesh("a-b", 0.04), *mesh("b-c", 0.05)], ENGINEERING)
+    both = meanings([*mesh("a-b", 0.04), *mesh("b-c", 0.05)], ENGINEERING)
     assert both.endswith("f_sh: over the face (40 mm a-b, 50 mm b-c)")
 
 

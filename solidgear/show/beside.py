@@ -11,8 +11,7 @@ from typing import Any
 
 from solidgear.show.folder import begun
 from solidgear.show.plot import Make
-from solidgear.show.sheet import Section, write_sheet
-from solidgear.show.sheet_files import write_charts, write_json
+from solidgear.show.sheet import Section, write_charts, write_json, write_sheet
 from solidgear.show.table import Cell, Column, Table, text, word
 from solidgear.show.units import Units
 from solidgear.show.words import DASH, hertz, percent, seconds

@@ -1,15 +1,29 @@
-"""A page on one question: charts to be read, modes to be turned, and the numbers."""
+"""The sheet of a study: tables, charts and sentences, for the terminal, a page, files and JSON.
+
+A study lists what it shows once, in a :class:`Sheet`; :func:`present` solves and shows it as its
+command was asked to.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+import json
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
+from solidgear.core import whole
 from solidgear.core.machine.whole_file import write_page
+from solidgear.show.command import NOT_REACHED, Progress, caution, say
+from solidgear.show.folder import held
 from solidgear.show.page_parts import Contents, template
-from solidgear.show.plot import Make, page_svg
+from solidgear.show.plot import WIDE, Make, page_svg
 from solidgear.show.table import Table
+from solidgear.show.units import in_ascii
+
+if TYPE_CHECKING:
+    from solidgear.show.options import Run
 
 #: what charts say in words, by how their names begin
 WORDS = {
@@ -82,6 +96,115 @@ class Section:
     tables: Sequence[Table] = ()  #: those without rows are left out
     #: SVG by what it says in words, before the charts
     drawings: Mapping[str, bytes | None] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Terminal:
+    """Parts that a terminal shows in another way than the page; None is as on the page."""
+
+    heading: Sequence[str] | None = None  #: in place of title and lead
+    tables: Sequence[Table] | None = None
+    closing: Sequence[str] | None = None  #: in place of notes and cautions
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """Everything that a study shows, in the order in which it is read."""
+
+    name: str  #: of its page and its JSON
+    title: str
+    lead: str  #: what the numbers hold for
+    tables: Sequence[Table]  #: those without rows are left out
+    data: Mapping[str, Any]  #: plain, in SI, as JSON holds it
+    charts: Mapping[str, Make] = field(default_factory=dict)  #: by file
+    lines: Mapping[str, Table] = field(default_factory=dict)  #: in SI for other programs, by file
+    headline: str = ""  #: the main result in a sentence, which ends the lead of the page
+    verdict: Sequence[str] = ()
+    notes: Sequence[str] = ()
+    cautions: Sequence[str] = ()
+    sections: Sequence[Section] = ()  #: of the page alone
+    viewer: str = ""  #: HTML of shapes, of the page alone
+    reached: bool = True  #: whether every error bar is within the tolerance
+    terminal: Terminal = Terminal()
+
+
+def present(study: Callable[[Progress], Sheet], run: Run, out: Path | None = None) -> None:
+    """Solve a study, write its folder if there is one, print its sheet, and exit with code 3 where
+    the tolerance is not reached.
+    """
+    with held(out) if out else nullcontext(), run.progress() as progress:
+        sheet = study(progress)
+        files = write_folder(sheet, out) if out else []
+    if run.as_json:
+        print(as_json(sheet))
+    else:
+        print_sheet(sheet)
+        if files:
+            say(f"Written: {', '.join(map(str, files))}", soft_wrap=False)
+    if not sheet.reached:
+        import typer  # start-up: pages are written without a command line
+
+        raise typer.Exit(NOT_REACHED)
+
+
+def print_sheet(sheet: Sheet) -> None:
+    """Print a sheet on the terminal, broken at its width."""
+    terminal = sheet.terminal
+    heading, tables, closing = terminal.heading, terminal.tables, terminal.closing
+    if heading is None:
+        heading = [sheet.title, sheet.lead]
+    if tables is None:
+        tables = sheet.tables
+    if closing is None:
+        closing = [*sheet.notes, *map(caution, sheet.cautions)]
+    results = [in_ascii(sheet.headline), *sheet.verdict]
+    say(*heading, *(table for table in tables if table), soft_wrap=False)
+    say(*(sentence for sentence in results if sentence), *closing, soft_wrap=False)
+
+
+def as_json(sheet: Sheet) -> str:
+    """Return the data of a sheet as a line of JSON."""
+    return json.dumps(sheet.data, allow_nan=False)
+
+
+def write_folder(sheet: Sheet, folder: Path) -> list[Path]:
+    """Write a page and its data, tables by file name, and charts; return the paths."""
+    folder.mkdir(parents=True, exist_ok=True)
+    files = [table.write(folder / f"{stem}.csv") for stem, table in sheet.lines.items()]
+    files.append(folder / f"{sheet.name}.json")
+    write_json(files[-1], sheet.data)
+    for charts in (sheet.charts, *(section.charts for section in sheet.sections)):
+        for stem, make in charts.items():
+            files += write_charts(folder / stem, make)
+    page = write_sheet(
+        folder / f"{sheet.name}.html",
+        sheet.title,
+        f"{sheet.lead} {sheet.headline}".strip(),
+        sheet.tables,
+        charts=sheet.charts,
+        notes=sheet.notes,
+        cautions=sheet.cautions,
+        verdict=sheet.verdict,
+        viewer=sheet.viewer,
+        sections=sheet.sections,
+    )
+    return [page, *files]
+
+
+def write_json(path: Path, data: Mapping[str, Any]) -> None:
+    """Write plain data as a whole file or none."""
+    with whole(path) as half:
+        half.write_text(json.dumps(data, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+
+
+def write_charts(stem: Path, make: Make) -> list[Path]:
+    """Write a chart as PNG and SVG."""
+    chart = make(WIDE)
+    if chart is None:
+        return []
+    files = [stem.with_suffix(f".{kind}") for kind in ("png", "svg")]
+    chart.write(*files)
+    return files
 
 
 def write_sheet(

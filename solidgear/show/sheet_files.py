@@ -1,15 +1,13 @@
-"""The files of one question: numbers, charts as PNG and SVG, and a page to read them."""
+"""The files of one question, of studies that have no sheet of their own yet."""
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from solidgear.core import whole
-from solidgear.show.plot import WIDE, Make
-from solidgear.show.sheet import Section, write_sheet
+from solidgear.show.plot import Make
+from solidgear.show.sheet import Section, Sheet, write_folder
 from solidgear.show.table import Table
 
 
@@ -30,40 +28,18 @@ def write_files(
     sections: Sequence[Section] = (),
 ) -> list[Path]:
     """Write a page and its data (SI), tables by file name, and charts; return the paths."""
-    folder.mkdir(parents=True, exist_ok=True)
-    files = [table.write(folder / f"{stem}.csv") for stem, table in lines.items()]
-    files.append(folder / f"{name}.json")
-    write_json(files[-1], data)
-    drawn = [charts, *(section.charts for section in sections)]
-    for stem, make in (item for some in drawn for item in some.items()):
-        files += write_charts(folder / stem, make)
-    path = folder / f"{name}.html"
-    write_sheet(
-        path,
-        title,
-        lead,
-        tables,
+    sheet = Sheet(
+        name=name,
+        title=title,
+        lead=lead,
+        tables=tables,
+        data=data,
         charts=charts,
+        lines=lines,
+        verdict=verdict,
         notes=notes,
         cautions=cautions,
-        verdict=verdict,
-        viewer=viewer,
         sections=sections,
+        viewer=viewer,
     )
-    return [path, *files]
-
-
-def write_json(path: Path, data: Mapping[str, Any]) -> None:
-    """Write plain data as a whole file or none."""
-    with whole(path) as half:
-        half.write_text(json.dumps(data, indent=1, allow_nan=False) + "\n", encoding="utf-8")
-
-
-def write_charts(stem: Path, make: Make) -> list[Path]:
-    """Write a chart as PNG and SVG."""
-    chart = make(WIDE)
-    if chart is None:
-        return []
-    files = [stem.with_suffix(f".{kind}") for kind in ("png", "svg")]
-    chart.write(*files)
-    return files
+    return write_folder(sheet, folder)

@@ -12,8 +12,6 @@ from solidgear.bearings.study import loaded_by
 from solidgear.core import Scene, SceneError, SolidgearError, as_written, is_train, show
 from solidgear.show.command import Group
 from solidgear.show.options import refuse
-from solidgear.show.units import Units
-from solidgear.strength.deflection.tables import DOFS, LOAD_OF
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.train import Train
 from solidgear.trains.load.operation import named_point
@@ -95,14 +93,3 @@ class Acting(Group):
                 raise
             raise SolidgearError(f"--of {show(self.of, 40)}: {error.reason}") from None
         return train, train.told(point)
-
-
-def load_in_words(scene: Scene, units: Units) -> str:
-    """Return the load of a scene in words, such as ``z 2000 N at pinion``."""
-    six = scene.load.six if scene.load else [0.0] * 6
-    parts = [
-        f"{name} {units.text(float(value), si, 4)}"
-        for name, value, si in zip(DOFS, six, LOAD_OF)
-        if value
-    ]
-    return f"{', '.join(parts) or 'no force'} at {scene.port.name}"

@@ -16,7 +16,7 @@ from solidgear.show.outputs import OUTPUTS
 from solidgear.show.page_parts import data_uri
 from solidgear.show.reading import model_name
 from solidgear.show.render import Drawing, RenderJob, render_modes
-from solidgear.show.sheet_files import write_json
+from solidgear.show.sheet import write_json
 from solidgear.show.turning import Turned, turned
 from solidgear.show.viewer import TURNED, Turning
 

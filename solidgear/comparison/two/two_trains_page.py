@@ -20,7 +20,7 @@ from solidgear.show.sheet import Section
 from solidgear.show.table import Cell, Column, Table, quantity, text, word
 from solidgear.show.units import ENGINEERING, Units, in_ascii
 from solidgear.show.words import hertz, percent
-from solidgear.strength.deflection.tables import meanings
+from solidgear.strength.deflection.sheet import meanings
 from solidgear.trains.page import tables as train_tables
 from solidgear.trains.page.chart import columns_chart, response_chart
 from solidgear.trains.page.files import over_frequency

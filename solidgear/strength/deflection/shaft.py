@@ -139,6 +139,7 @@ class SceneDeflection:
     """A shaft at rest under the load of the scene, by several models."""
 
     title: str
+    port: str  #: the lumped point
     load: np.ndarray  #: (6,) at the lumped point, N and N m
     shafts: tuple[ShaftDeflection, ...]  #: one a model, the finest last
 
@@ -171,7 +172,7 @@ def deflect_scene(
     for model in models:
         progress(model)
         shafts.append(ShaftAtRest(scene, model).settled())
-    return SceneDeflection(scene.title or scene.name, load, tuple(shafts))
+    return SceneDeflection(scene.title or scene.name, scene.port.name, load, tuple(shafts))
 
 
 def load_of(scene: Scene) -> np.ndarray:

@@ -138,6 +138,7 @@ class Deflections:
     cautions: tuple[str, ...]
     senses: dict[str, str]  #: in which each shaft turns, ``+y`` or ``-y`` of its scene
     points: tuple[TrainDeflection, ...] = ()
+    planets: tuple[str, ...] = ()  #: meshes that stand for one of each planet
 
     @property
     def judge(self) -> TrainDeflection:
@@ -224,6 +225,7 @@ def deflect_train(
         cautions=workshop.data_cautions,
         senses=senses(workshop.train, workshop.on_flank(point.coast).contacts, point.coast),
         points=tuple(points),
+        planets=tuple(stage.name for stage in workshop.train.stages),
     )
 
 

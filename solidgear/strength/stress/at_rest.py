@@ -81,14 +81,30 @@ class StressSettings:
         check_tolerance(self.tolerance)
 
 
+@dataclass(frozen=True, eq=False)
+class LoadAtPort:
+    """Load of a scene at its port, and torques that the port takes out."""
+
+    port: str
+    load: np.ndarray  #: (6,) N and N m
+    drive: Mapping[str, float]  #: N m, by the place where each enters
+
+
+@dataclass(frozen=True)
+class AtPoint:
+    """Operating point of a train, and the mesh force there."""
+
+    point: OperatingPoint
+    mesh_force: float  #: N
+
+
 @dataclass(frozen=True)
 class StressAtRest:
     """Stress of a shaft under a load, or of both shafts of a train at an operating point."""
 
     title: str
     model: str  #: on which shafts and bearings settled
-    #: load of a scene, or operating point and mesh force of a train, as plain data in SI
-    under: Mapping[str, Any]
+    under: LoadAtPort | AtPoint
     asked: StressSettings
     shafts: tuple[StressedShaft, ...]
     open_by: str  #: open data of bearings, in words; empty if none
@@ -143,7 +159,7 @@ def stress_of_scene(
             shaft_loads.add(port, np.array([0, 0, 0, 0, -torque, 0.0]))
         return {scene.name: shaft_loads}
 
-    under = {"port": port, "load": load, "drive": drive}
+    under = LoadAtPort(port, load, drive)
     shafts, open_by = _shafts({scene.name: scene}, acting, asked, progress)
     cautions = (*_file_cautions(file, scene), *_load_cautions(scene, drive))
     return StressAtRest(scene.title or scene.name, model, under, asked, shafts, open_by, cautions)
@@ -203,7 +219,7 @@ def stress_of_train(
             shop, usual if as_stated else Operating(shop, model, choice=choice).at(point)
         )
 
-    under = {"point": point.model_dump(mode="json"), "mesh_force": usual.mesh_force}
+    under = AtPoint(point, usual.mesh_force)
     shafts, open_by = _shafts(
         {side: train.shaft(side) for side in train.shafts}, acting, asked, progress
     )

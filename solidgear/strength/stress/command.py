@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-from contextlib import nullcontext
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Annotated
@@ -12,14 +10,14 @@ import typer
 
 from solidgear.core import SceneError, SolidgearError, explained, show
 from solidgear.core.scene.units import quantity
-from solidgear.show.command import NOT_REACHED, Group, caution, command, say
-from solidgear.show.folder import held
+from solidgear.show.command import Group, Progress, command
 from solidgear.show.options import BY_MODEL, MODEL, Choice, Shown, refuse, relative
-from solidgear.show.units import in_ascii, units_named
-from solidgear.strength.acting import Acting, AtRestFile, load_in_words
+from solidgear.show.sheet import Sheet, present
+from solidgear.show.units import units_named
+from solidgear.strength.acting import Acting, AtRestFile
 from solidgear.strength.stress.at_rest import StressSettings, stress_of_scene, stress_of_train
-from solidgear.strength.stress.files import headline, sentences, shaft_tables, write_stress
 from solidgear.strength.stress.rating import Conditions
+from solidgear.strength.stress.sheet import sheet
 
 
 @dataclass(frozen=True)
@@ -93,36 +91,19 @@ def stress(
     run: Shown,
 ) -> None:
     settings = StressSettings(tol, rated.conditions())
-    loading = acting.read(file)
-    units = units_named(run.units)
-    torques = dict(map(_torque, drive or ()))
-    with held(out) if out else nullcontext(), run.progress() as progress:
-        if isinstance(loading, tuple):
+    loaded, units = acting.read(file), units_named(run.units)
+    torques, model = dict(map(_torque, drive or ())), str(fidelity)
+
+    def study(progress: Progress) -> Sheet:
+        if isinstance(loaded, tuple):
             instead = "torques come by the springs of engine and load"
             refuse({"--drive": bool(drive)}, f"a shaft, and {file} is a train: {instead}")
-            train, point = loading
-            stressed = stress_of_train(train, point, str(fidelity), settings, progress)
-            force = units.text(stressed.under["mesh_force"], "N", 5)
-            lead = f"At {point.label}: mesh force {force} along the line of action"
-        else:
-            with explained(file):
-                stressed = stress_of_scene(loading, str(fidelity), torques, settings, progress)
-            lead = f"Under {load_in_words(loading, units)}"
-            for name, torque in torques.items():
-                lead += f", and {units.text(torque, 'N m', 4)} from {name} to {loading.port.name}"
-        lead += f"; bearing reactions by {stressed.model}."
-        files = write_stress(out, stressed, lead, units) if out else []
-    if run.as_json:
-        print(json.dumps(stressed.as_dict(), allow_nan=False))
-    else:
-        say(f"{stressed.title}: stress", lead, soft_wrap=False)
-        for shaft in stressed.shafts:
-            say(*shaft_tables(stressed, shaft, units, every=False), soft_wrap=False)
-        say(*filter(None, [in_ascii(headline(stressed, units))]), soft_wrap=False)
-        say(*sentences(stressed, units), *map(caution, stressed.cautions), soft_wrap=False)
-        say(*([f"Written: {', '.join(map(str, files))}"] if files else []), soft_wrap=False)
-    if not stressed.reached:
-        raise typer.Exit(NOT_REACHED)
+            train, point = loaded
+            return sheet(stress_of_train(train, point, model, settings, progress), units)
+        with explained(file):
+            return sheet(stress_of_scene(loaded, model, torques, settings, progress), units)
+
+    present(study, run, out)
 
 
 def _torque(text: str) -> tuple[str, float]:

@@ -15,7 +15,7 @@ from solidgear.show.folder import begun
 from solidgear.show.page_parts import Contents, data_uri, template
 from solidgear.show.plot import Make, page_svg
 from solidgear.show.run_tables import pairs_of
-from solidgear.show.sheet_files import write_charts, write_json
+from solidgear.show.sheet import write_charts, write_json
 from solidgear.show.sketch_page import sketch_svg
 from solidgear.show.table import Table
 from solidgear.show.units import ENGINEERING, Units, units_named

@@ -1,23 +1,27 @@
-"""Tables of the stress of a shaft: section forces, nominal stress, fillets, and their rating."""
+"""Sheet of the stress of shafts at rest: section forces, nominal stress, fillets, their rating."""
 
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from solidgear.core import listed
+from solidgear.show.panel import GREY, Axis, Panel, Series, curve, readout
+from solidgear.show.plot import WIDE, Chart
+from solidgear.show.sheet import Sheet, Terminal
 from solidgear.show.table import Cell, Column, Table, quantity, text, word
 from solidgear.show.units import ENGINEERING, Units, plain
 from solidgear.show.words import percent
-
-if TYPE_CHECKING:
-    from solidgear.strength.stress.rating import Entry, Rating
-    from solidgear.strength.stress.section_forces import SectionForces
-    from solidgear.strength.stress.shaft import Notch, ShaftStress
+from solidgear.strength.deflection.sheet import load_in_words
+from solidgear.strength.stress.at_rest import LoadAtPort, StressAtRest, StressedShaft
+from solidgear.strength.stress.rating import Entry, Rating
+from solidgear.strength.stress.section_forces import SectionForces
+from solidgear.strength.stress.shaft import Notch, ShaftStress
 
 #: SI unit of a stress in tables
 STRESS = "Pa stressed"
@@ -43,6 +47,132 @@ NOTHING = 1e-9
 LITTLE = 1e-3
 #: safety that DIN 743 asks for where loads and strength are sure
 LEAST = 1.2
+#: what holds of all of it
+ELASTIC = "Linear elastic; no stress at keyways, teeth and press fits, and no residual stress."
+#: px; height of a panel of the chart
+TALL = 130.0
+COLOURS = {"Q_x": "#1f5fa8", "Q_z": "#2b7a4b", "M_x": "#2b7a4b", "M_z": "#1f5fa8"}
+ALONE, SIZE = "#00805e", "#b3305c"
+#: panels: name, SI unit, and components by their place among the six
+PANELS: tuple[tuple[str, str, dict[str, int]], ...] = (
+    ("axial force N", "N", {"N": 1}),
+    ("shear Q", "N", {"Q_x": 0, "Q_z": 2}),
+    ("bending M", "N m", {"M_x": 3, "M_z": 5}),
+    ("torque T", "N m", {"T": 4}),
+)
+#: places between two loads, of a curve that is not straight
+BETWEEN = 24
+
+
+def sheet(stressed: StressAtRest, units: Units) -> Sheet:
+    """Return the sheet of the stress of a shaft, or of all shafts of a train."""
+    shafts = {re.sub(r"[^A-Za-z0-9_-]", "_", shaft.name): shaft for shaft in stressed.shafts}
+    return Sheet(
+        name="stress",
+        title=f"{stressed.title}: stress",
+        lead=f"{loads_in_words(stressed, units)}; bearing reactions by {stressed.model}.",
+        tables=_tables(stressed, units),
+        data=stressed.as_dict(),
+        charts={
+            f"section_forces_{name}": partial(_chart, stressed, shaft, units)
+            for name, shaft in shafts.items()
+        },
+        lines={
+            f"section_forces_{name}": components(shaft.found.forces)
+            for name, shaft in shafts.items()
+        },
+        headline=headline(stressed, units),
+        notes=sentences(stressed, units),
+        cautions=stressed.cautions,
+        reached=stressed.reached,
+        terminal=Terminal(tables=_tables(stressed, units, all_ratings=False)),
+    )
+
+
+def loads_in_words(stressed: StressAtRest, units: Units) -> str:
+    """Return the load, or the operating point, that the shafts are under in words."""
+    load = stressed.under
+    if isinstance(load, LoadAtPort):
+        words = f"Under {load_in_words(load.load, load.port, units)}"
+        for name, torque in load.drive.items():
+            words += f", and {units.text(torque, 'N m', 4)} from {name} to {load.port}"
+        return words
+    force = units.text(load.mesh_force, "N", 5)
+    return f"At {load.point.label}: mesh force {force} along the line of action"
+
+
+def _chart(stressed: StressAtRest, shaft: StressedShaft, units: Units, width: float) -> Chart:
+    """Chart the section forces of one shaft, named where there are several."""
+    title = f"Section forces, {shaft.name}" if len(stressed.shafts) > 1 else "Section forces"
+    return section_chart(shaft.found.forces, title, units, width)
+
+
+def _tables(stressed: StressAtRest, units: Units, all_ratings: bool = True) -> list[Table]:
+    return [
+        table
+        for shaft in stressed.shafts
+        for table in shaft_tables(stressed, shaft, units, all_ratings)
+    ]
+
+
+def shaft_tables(
+    stressed: StressAtRest,
+    shaft: StressedShaft,
+    units: Units = ENGINEERING,
+    all_ratings: bool = True,
+) -> list[Table]:
+    """Return tables of one shaft without empty ones; `all_ratings` or that of the worst fillet."""
+    stress = shaft.found
+    rated = [notch for notch in stress.worst if notch.rating is not None]
+    out = [
+        section_forces(stress.forces, units, shaft.open_moment, stressed.open_by),
+        nominal_stress(stress, units),
+        fillets(stress, units),
+        surface_stress(stress, shaft.open, units, stressed.open_by),
+        form_factors(stress),
+        safeties(stress),
+        *(rating(notch, units) for notch in rated[: None if all_ratings else 1]),
+    ]
+    if len(stressed.shafts) > 1:
+        for table in out:
+            table.title = f"{table.title}, {shaft.name}"
+    return [table for table in out if table]
+
+
+def headline(stressed: StressAtRest, units: Units = ENGINEERING) -> str:
+    """Return the sentence on the worst fillet of all shafts; empty where none has one."""
+    worst = [(shaft, shaft.found.worst[0]) for shaft in stressed.shafts if shaft.found.notches]
+    if not worst:
+        return ""
+    shaft, notch = min(worst, key=lambda pair: pair[1].severity)
+    value, bar = (
+        units.number(stress, STRESS, digits)
+        for stress, digits in ((notch.local.amplitude, 4), (notch.local.amplitude_bar, 2))
+    )
+    place = f"{shaft.name}, {notch.name}" if len(stressed.shafts) > 1 else notch.name
+    sentence = f"Worst at {place}: {value} ± {bar} {units.unit(STRESS)} by bending"
+    if notch.rating is not None:
+        fatigue, yielding = map(safety, (notch.rating.fatigue, notch.rating.yielding))
+        sentence += f", safety {fatigue} against fatigue and {yielding} against yielding by DIN 743"
+    return f"{sentence}."
+
+
+def sentences(stressed: StressAtRest, units: Units = ENGINEERING) -> list[str]:
+    """Return sentences on the shafts: places without a stress, and what was left out."""
+    out = []
+    for shaft in stressed.shafts:
+        lead = f"{shaft.name}: " if len(stressed.shafts) > 1 else ""
+        shaft_remarks = remarks(shaft.found, units)
+        if not shaft.found.notches:
+            shaft_remarks.insert(0, "no shoulder has a fillet, so there is no stress on one.")
+        if shaft.weak:
+            names = ", ".join(f'"{name}"' for name in shaft.weak)
+            shaft_remarks.append(
+                f"not rated: the material of {names} has no strength; write strength = {{ "
+                'yield_point = "700 MPa", ultimate = "1000 MPa" } beside E, nu and density.'
+            )
+        out += [lead + remark for remark in shaft_remarks]
+    return [*out, ELASTIC]
 
 
 def section_forces(
@@ -109,19 +239,20 @@ def _sides(forces: SectionForces, names: Sequence[str]) -> list[tuple[float, str
 
 def nominal_stress(shaft_stress: ShaftStress, units: Units = ENGINEERING) -> Table:
     """Return the nominal stress on both sides of every load and joint."""
-    rows = [row for row in shaft_stress.nominal if row.forces.any()]
+    loaded = [row for row in shaft_stress.nominal if row.forces.any()]
     kinds = {"sigma_N": "tension", "sigma_b": "bending", "tau_t": "torsion", "tau_q": "shear"}
-    weighty = _of_weight(getattr(row.stress, kind) for row in rows for kind in kinds.values())
-
-    def stress(head: str, kind: str) -> Column:
-        return _stress(head, units, lambda row: weighty(getattr(row.stress, kind)))
-
+    stresses = [[getattr(row.stress, kind) for kind in kinds.values()] for row in loaded]
+    weighty = _of_weight(value for row in stresses for value in row)
     columns = [
-        quantity("y", "m", units, lambda row: row.y),
-        text("in", lambda row: row.segment),
-        quantity("d", "m", units, lambda row: 2 * row.section.outer, 4),
-        quantity("bore", "m", units, lambda row: 2 * row.section.inner, 4),
-        *(stress(head, kind) for head, kind in kinds.items()),
+        quantity("y", "m", units),
+        text("in"),
+        quantity("d", "m", units, digits=4),
+        quantity("bore", "m", units, digits=4),
+        *(_stress(head, units) for head in kinds),
+    ]
+    rows = [
+        [row.y, row.segment, 2 * row.section.outer, 2 * row.section.inner, *map(weighty, values)]
+        for row, values in zip(loaded, stresses)
     ]
     note = (
         "Plain sections: N/A, M a/I, T a/(2 I). The shaft turns under loads at rest: bending is "
@@ -130,9 +261,9 @@ def nominal_stress(shaft_stress: ShaftStress, units: Units = ENGINEERING) -> Tab
     return Table(f"Nominal stress, {units.unit(STRESS)}", columns, rows, note)
 
 
-def _stress(head: str, units: Units, value: Callable[[Any], float], digits: int = 4) -> Column:
+def _stress(head: str, units: Units, digits: int = 4) -> Column:
     """Return a column of stresses for a table with their unit in its title."""
-    return Column(head, value, partial(units.number, si=STRESS, digits=digits))
+    return Column(head, write=partial(units.number, si=STRESS, digits=digits))
 
 
 def fillets(stress: ShaftStress, units: Units = ENGINEERING) -> Table:
@@ -157,30 +288,31 @@ def surface_stress(
 ) -> Table:
     """Return stress on the fillets with error bars, and ranges of amplitudes by `open_by`, Pa."""
     columns = [
-        text("fillet", lambda row: row[0].name),
-        word("by", lambda row: row[1]),
-        _stress("nominal", units, lambda row: getattr(row[0].nominal, row[1])),
-        _stress("surface", units, lambda row: getattr(row[0].local, BY[row[1]])),
-        _stress("error bar", units, lambda row: getattr(row[0].local, f"{BY[row[1]]}_bar"), 2),
+        text("fillet"),
+        word("by"),
+        _stress("nominal", units),
+        _stress("surface", units),
+        _stress("error bar", units, 2),
     ]
+    rows = []
+    for notch, load in _by_load(stress.notches):
+        surface, bar = (getattr(notch.local, name) for name in (BY[load], f"{BY[load]}_bar"))
+        range_ = _open(open_, units, notch) if open_ and load == "bending" else None
+        rows.append([notch.name, load, getattr(notch.nominal, load), surface, bar, range_])
     note = (
         "Surface: largest stress along the meridian: by bending the amplitude of the turning "
         "shaft, shear force included, so that it is not Kt times nominal; by tension and torsion "
         "(shear at the same place) a mean. Error bar: of the harmonic solid around the fillet."
     )
     if open_:
-        columns.append(Column("range", partial(_open, open_, units)))
+        columns.append(Column("range"))
         note += f" Range: by {open_by} of the bearings."
     title = f"Stress on the fillets, {units.unit(STRESS)}"
-    return Table(title, columns, _by_load(stress.notches), note)
+    return Table(title, columns, rows, note)
 
 
-def _open(
-    open_: Mapping[str, tuple[float, float]], units: Units, row: tuple[Notch, str]
-) -> str | None:
-    if row[1] != "bending":
-        return None
-    low, high = (units.number(value, STRESS, 4) for value in open_[row[0].name])
+def _open(open_: Mapping[str, tuple[float, float]], units: Units, notch: Notch) -> str:
+    low, high = (units.number(value, STRESS, 4) for value in open_[notch.name])
     return f"{low} to {high}"
 
 
@@ -312,3 +444,104 @@ def remarks(stress: ShaftStress, units: Units = ENGINEERING) -> list[str]:
                 "mesh is refined; give fillets."
             )
     return out + [f"{remark}." for remark in stress.remarks]
+
+
+def section_chart(
+    forces: SectionForces,
+    title: str = "",
+    units: Units = ENGINEERING,
+    width: float = WIDE,
+) -> Chart:
+    """Chart the section forces over the length of a shaft, one kind below the other.
+
+    Parameters
+    ----------
+    width : float
+        px.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from solidgear.strength.stress.section_forces import Load, section_forces
+    >>> ends = [Load("A", 0.0, [0, -5, 0, 0, 0, 0]), Load("B", 0.2, [0, 5, 0, 0, 0, 0])]
+    >>> "axial force N" in section_chart(section_forces(ends, 0.2)).svg()
+    True
+    """
+    panels = [_panel(forces, *panel, units, last=panel is PANELS[-1]) for panel in PANELS]
+    return Chart([[panel] for panel in panels], width, title)
+
+
+def _panel(
+    forces: SectionForces,
+    name: str,
+    si: str,
+    components: dict[str, int],
+    units: Units,
+    last: bool,
+) -> Panel:
+    """Return the panel of one kind of section force."""
+    y = units.values(np.repeat(forces.y, 2), "m")
+    sides = np.stack([forces.left, forces.right], axis=1).reshape(-1, 6)
+    curves = {
+        key: (y, units.values(sides[:, component], si)) for key, component in components.items()
+    }
+    if len(curves) > 1:
+        curves[name.split()[-1]] = _size(*curves.values())
+    series = {key: Series(COLOURS.get(key, SIZE if len(curves) > 1 else ALONE)) for key in curves}
+    panel = Panel(
+        Axis(f"y in {units.unit('m')}" if last else "", (float(y[0]), float(y[-1]))),
+        Axis(f"{name} in {units.unit(si)}", _ends([values for _, values in curves.values()])),
+        TALL,
+        series=series,
+        legend={"orient": "right", "symbolType": "stroke", "symbolStrokeWidth": 3}
+        if len(curves) > 1
+        else None,
+        right=70.0,
+    )
+    panel.draw({"type": "rule", "color": GREY, "strokeWidth": 1}, [{"y": 0.0}])
+    for key, (place, values) in curves.items():
+        mark = {"type": "line", "strokeWidth": 2}
+        if key not in components:
+            mark |= {"strokeDash": [5, 3]}
+        panel.draw(mark, curve(place, values, name=key))
+        if key in components:
+            panel.read(
+                _read(forces, y, key, values, units.unit(si), units.unit("m")), series[key].colour
+            )
+    return panel
+
+
+def _size(
+    a: tuple[np.ndarray, np.ndarray], b: tuple[np.ndarray, np.ndarray]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the resultant of two components that are straight between loads, as places and
+    values.
+    """
+    share = np.linspace(0.0, 1.0, BETWEEN)
+    (y, first), (_, second) = a, b
+
+    def fine(values: np.ndarray) -> np.ndarray:
+        return (values[1:-1:2, None] * (1 - share) + values[2::2, None] * share).ravel()
+
+    return fine(y), np.hypot(fine(first), fine(second))
+
+
+def _read(
+    forces: SectionForces, y: np.ndarray, key: str, values: np.ndarray, unit: str, length: str
+) -> list[dict[str, Any]]:
+    """Return places to be read: both sides of every load."""
+    rows = curve(y, values)
+    for k, row in enumerate(rows):
+        name = f"{key} {'beyond' if k % 2 else 'before'} {forces.names[k // 2] or 'end'}"
+        facts = ("y", plain(row["x"]), length), (key, plain(row["y"]), unit)
+        row["readout"] = readout(name, *facts)
+    return rows
+
+
+def _ends(curves: list[np.ndarray]) -> tuple[float, float]:
+    """Return ends of an axis that hold curves and zero, with some room."""
+    low, high = min(0.0, *(c.min() for c in curves)), max(0.0, *(c.max() for c in curves))
+    room = 0.08 * (high - low) or 1.0
+    return float(low - room if low < 0 else -0.3 * room), float(
+        high + room if high > 0 else 0.3 * room
+    )

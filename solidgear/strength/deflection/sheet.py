@@ -1,0 +1,474 @@
+"""Sheets of a shaft and of a train at rest under load: sentences, tables, charts and lines."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from math import degrees, isfinite
+
+import numpy as np
+
+from solidgear.bearings.life import Life
+from solidgear.core import DOF_NAMES, listed
+from solidgear.show.command import caution
+from solidgear.show.panel import GREY, Axis, Panel, Series, curve, lines_legend, readout
+from solidgear.show.plot import NARROW, WIDE, Chart, Make, in_columns
+from solidgear.show.sheet import Sheet, Terminal
+from solidgear.show.table import Cell, Column, Table, numbers, quantity, text, word
+from solidgear.show.units import ENGINEERING, Units
+from solidgear.strength.deflection.shaft import (
+    WITHOUT_BAR,
+    BearingState,
+    SceneDeflection,
+    ShaftDeflection,
+)
+from solidgear.strength.deflection.train import MOVED, Deflections, Measured, TrainDeflection
+from solidgear.trains.assembly.components import FORCE_UNITS
+from solidgear.trains.assembly.layout import senses_sentence
+from solidgear.trains.assembly.turn import PlanetTurn, StageTurn
+from solidgear.trains.page.chart import COLOURS
+
+#: per cent; no smaller error bar is shown
+LEAST = 0.01
+#: of the largest of a motion's translations or rotations; less is rounding
+ROUNDING = 1e-9
+
+
+def scene_sheet(deflected: SceneDeflection, units: Units) -> Sheet:
+    """Return the sheet of a shaft under the load of its scene."""
+    judge = deflected.shafts[-1]
+    load = load_in_words(deflected.load, deflected.port, units)
+    lead = f"Under {load}; numbers by {judge.model}."
+    title = f"{deflected.title}: deflection"
+    by_model = {shaft.model: [shaft] for shaft in deflected.shafts}
+    note = f"No error bars: {WITHOUT_BAR}."
+    return Sheet(
+        name="deflection",
+        title=title,
+        lead=lead,
+        tables=[
+            models(deflected.shafts, deflected.port, note, units),
+            *bearings([judge], units),
+            displacements([judge], units),
+        ],
+        data=deflected.as_dict(),
+        charts={"deflection": partial(deflection_chart, by_model, title, units)},
+        lines={f"deflection_{judge.name}": line(judge)},
+        cautions=judge.notes,
+        terminal=Terminal(heading=[deflected.title, lead]),
+    )
+
+
+def load_in_words(load: Sequence[float] | np.ndarray, port: str, units: Units) -> str:
+    """Return a load (6,) at a port in words, such as ``z 2000 N at pinion``."""
+    parts = [
+        f"{name} {units.text(float(value), si, 4)}"
+        for name, value, si in zip(DOF_NAMES, load, FORCE_UNITS)
+        if value
+    ]
+    return f"{', '.join(parts) or 'no force'} at {port}"
+
+
+def train_sheet(deflected: Deflections, units: Units) -> Sheet:
+    """Return the sheet of a train at an operating point."""
+    judge = deflected.judge
+    point = judge.point
+    force = mesh_forces_in_words(deflected, units)
+    sense = senses_sentence(deflected.senses)
+    skew = misalignment(deflected, units)
+    turning = over_a_turn(judge.turns, units)
+    by_point = over_points(deflected.points, units)
+    housed = housing(judge, units)
+    carried = [*bearings(judge.shafts, units), displacements(judge.shafts, units)]
+    flank = "coast" if point.coast else "drive"
+    terminal = Terminal(
+        heading=[
+            f"{deflected.title} at {point.label}",
+            f"Mesh force {force} along the line of action, {flank} flank.",
+            f"{sense[0].upper()}{sense[1:]}.",
+        ],
+        tables=[skew, *carried, *housed, *turning, *by_point],
+        closing=[*judge.notes, *map(caution, deflected.cautions)],
+    )
+    title = f"{deflected.title}: deflection"
+    by_model = {model.model: model.shafts for model in deflected.solutions}
+    charts: dict[str, Make] = {"deflection": partial(deflection_chart, by_model, title, units)}
+    charts |= {f"turn_{turn.stage}": partial(turn_chart, turn, units) for turn in judge.turns}
+    lines = {f"deflection_{shaft.name}": line(shaft) for shaft in judge.shafts}
+    lines |= {f"turn_{turn.stage}": turn_lines(turn) for turn in judge.turns}
+    return Sheet(
+        name="deflection",
+        title=title,
+        lead=f"At {point.label}: {force} along the line of action.",
+        tables=[skew, *turning, *by_point, *housed, *carried],
+        data=deflected.as_dict(),
+        charts=charts,
+        lines=lines,
+        headline=deflected.verdict(),
+        cautions=[sense, *judge.notes, *deflected.cautions],
+        terminal=terminal,
+    )
+
+
+def mesh_forces_in_words(deflected: Deflections, units: Units) -> str:
+    """Return the force of every mesh in words; a planetary stage has it once for each planet."""
+    words = []
+    for name, size in deflected.judge.mesh_forces.items():
+        planets = " (each planet)" if name in deflected.planets else ""
+        words.append(f"{units.text(size, 'N', 5)}{name.removeprefix('mesh')}{planets}")
+    return ", ".join(words)
+
+
+def misalignment(deflected: Deflections, units: Units = ENGINEERING) -> Table:
+    """Return misalignment by every model, with error bar and range by bearing data."""
+    judge = deflected.judge
+    columns = [word("of the axes", lambda m: f"{m.name}, {units.unit(m.unit)}")]
+    columns += [Column(model.model, partial(_of, model, units)) for model in deflected.solutions]
+    columns.append(Column("error bar", _bar))
+    if any(m.open is not None for m in judge.misalignment):
+        columns.append(Column("range", lambda m: _range(m, units)))
+    note = (
+        f"{meanings(judge.misalignment, units)}. Error bar: of the last model's mesh, "
+        "by local problems; models differ by what their theory leaves out."
+    )
+    if any(m.open is not None for m in judge.misalignment):
+        note += " Range: by estimated insides and classes of clearance of the bearings."
+    return Table("Misalignment", columns, judge.misalignment, note)
+
+
+def meanings(measures: Sequence[Measured], units: Units) -> str:
+    """Return the meanings of all numbers, each once for all meshes, with their faces."""
+    meanings = {m.name.removesuffix(m.mesh): m.meaning for m in measures}
+    faces: dict[str, list[str]] = {}
+    for m in measures:
+        if m.face is not None:
+            faces.setdefault(units.given(m.face, "m"), []).append(m.mesh.strip())
+    unit = units.unit("m")
+    parts = ", ".join(f"{face} {unit} {listed(meshes)}" for face, meshes in faces.items())
+    width = (
+        f"the face ({parts})" if len(faces) > 1 else "".join(f"{f} {unit} of face" for f in faces)
+    )
+    each = (f"{name}: {meaning}" for name, meaning in meanings.items())
+    return "; ".join(each).replace("the face", width)
+
+
+def over_a_turn(turns: Sequence[StageTurn], units: Units = ENGINEERING) -> list[Table]:
+    """Return the mesh forces of planets over a turn of their carrier, a table for each stage."""
+
+    def force(title: str, of: Callable[[PlanetTurn], float]) -> Column:
+        return quantity(title, "N", units, of, 4)
+
+    note = (
+        "Force of each planet with the sun, and with the ring alike, since it spins freely; "
+        "bearings have their stiffness at this position. Here: at the file's position; once a "
+        "turn: amplitude at the carrier's frequency."
+    )
+    return [
+        Table(
+            f"Mesh forces over a turn of the carrier ({turn.stage})",
+            [
+                Column("planet", lambda planet: planet.planet),
+                force("here", lambda planet: planet.at),
+                force("mean", lambda planet: planet.mean),
+                force("least", lambda planet: planet.least),
+                force("largest", lambda planet: planet.most),
+                force("once a turn", lambda planet: planet.once),
+            ],
+            turn.planets,
+            note,
+        )
+        for turn in turns
+    ]
+
+
+def turn_lines(turn: StageTurn) -> Table:
+    """Return the mesh force of every planet over the angle of the carrier in SI, for other
+    programs.
+    """
+    forces = {f"planet {k} [N]": force for k, force in enumerate(turn.force.T, start=1)}
+    return numbers({"carrier [rad]": turn.angle, **forces})
+
+
+def over_points(points: Sequence[TrainDeflection], units: Units = ENGINEERING) -> list[Table]:
+    """Return misalignment and radial bearing loads over several operating points; none for one
+    point.
+    """
+    if not points:
+        return []
+    first = points[0]
+    label = text("at", lambda deflected: deflected.point.label)
+    forces = [
+        quantity("mesh force" + name.removeprefix("mesh"), "N", units, partial(_force, name), 4)
+        for name in first.mesh_forces
+    ]
+    lie = [
+        quantity(m.name, m.unit, units, partial(_lies, k), 3)
+        for k, m in enumerate(first.misalignment)
+    ]
+    widest = [_widest(points, k) for k in range(len(first.misalignment))]
+    bars = [f"{m.name} {bar}" for m, bar in zip(first.misalignment, widest) if bar]
+    note = f"By {first.model}; error bars {', '.join(bars)} at most." if bars else ""
+    ends = [
+        (s, f"{shaft.name}.{b.name}")
+        for s, shaft in enumerate(first.shafts)
+        for b in shaft.bearings
+    ]
+    carried = [quantity(end, "N", units, partial(_radial, s, end), 4) for s, end in ends]
+    return [
+        Table("Misalignment over the operating points", [label, *forces, *lie], points, note),
+        Table("Radial bearing loads over the operating points", [label, *carried], points),
+    ]
+
+
+def _force(name: str, deflected: TrainDeflection) -> float:
+    return deflected.mesh_forces[name]
+
+
+def _lies(k: int, deflected: TrainDeflection) -> float:
+    return deflected.misalignment[k].value
+
+
+def _radial(side: int, end: str, deflected: TrainDeflection) -> float:
+    shaft = deflected.shafts[side]
+    return next(b.radial for b in shaft.bearings if f"{shaft.name}.{b.name}" == end)
+
+
+def _widest(points: Sequence[TrainDeflection], k: int) -> str | None:
+    """Return the widest error bar of a number over all points, in per cent of its largest value."""
+    measures = [deflected.misalignment[k] for deflected in points]
+    largest = max(abs(m.value) for m in measures)
+    bars = [m.bar for m in measures if m.bar is not None]
+    return f"± {max(100 * max(bars) / largest, LEAST):.2g} %" if bars and largest else None
+
+
+def _of(deflected: TrainDeflection, units: Units, measured: Measured) -> str:
+    value = next(m.value for m in deflected.misalignment if m.name == measured.name)
+    return units.number(value, measured.unit, 3)
+
+
+def _bar(measured: Measured) -> str | None:
+    if measured.bar is None or not measured.value:
+        return None
+    share = 100 * measured.bar / abs(measured.value)
+    return f"± {max(share, LEAST):.2g} %"
+
+
+def _range(measured: Measured, units: Units) -> str | None:
+    if measured.open is None:
+        return None
+    low, high = (units.number(v, measured.unit, 3) for v in measured.open)
+    return f"{low} to {high}"
+
+
+def displacements(shafts: Sequence[ShaftDeflection], units: Units = ENGINEERING) -> Table:
+    """Return the motion of every lumped point and bearing."""
+    rows = [
+        [f"{shaft.name}.{name}", *_rounded(six)]
+        for shaft in shafts
+        for name, six in shaft.ports.items()
+    ]
+    note = "Relative to the unloaded state, in the axes of each shaft's scene, y along it."
+    return Table("Displacements", [word("place"), *_six(MOVED, units)], rows, note)
+
+
+def housing(deflected: TrainDeflection, units: Units = ENGINEERING) -> list[Table]:
+    """Return loads on the mounts of a housing and its motion; none without one."""
+    if not deflected.mounts:
+        return []
+    loads = {name: [m.value for m in six] for name, six in deflected.mounts.items()}
+    most = np.abs(list(loads.values())).max(axis=0)
+    carried = [[name, *_rounded(six, most)] for name, six in loads.items()]
+    note = "Load of the housing on each mount, in the axes of the first shaft's scene."
+    motion = np.array([m.value for m in deflected.displacement["housing"]])
+    moved = [["centre of mass", *_rounded(motion)]]
+    return [
+        Table("Mount loads", [word("mount"), *_six(FORCE_UNITS, units)], carried, note),
+        Table("Motion of the housing", [word("place"), *_six(MOVED, units)], moved),
+    ]
+
+
+def models(
+    shafts: Sequence[ShaftDeflection], port: str, note: str, units: Units = ENGINEERING
+) -> Table:
+    """Return the motion of one place by every model."""
+    rows = [[shaft.model, *_rounded(shaft.ports[port])] for shaft in shafts]
+    return Table(f"Motion of {port}", [word("model"), *_six(MOVED, units)], rows, note)
+
+
+def _six(si_units: Sequence[str], units: Units) -> list[Column]:
+    """Return columns of six components."""
+    return [quantity(dof, si, units, digits=4) for dof, si in zip(DOF_NAMES, si_units)]
+
+
+def _rounded(
+    six: Sequence[float] | np.ndarray, scale: Sequence[float] | np.ndarray | None = None
+) -> list[float]:
+    """Return six components, zero for those that are rounding beside the largest translation or
+    rotation, or force or moment, of a scale (by default their own).
+    """
+    sizes = np.abs(six if scale is None else scale).reshape(2, 3)
+    least = np.repeat(ROUNDING * sizes.max(axis=1), 3)
+    return np.where(np.abs(six) > least, six, 0.0).tolist()
+
+
+def bearings(shafts: Sequence[ShaftDeflection], units: Units = ENGINEERING) -> list[Table]:
+    """Return loads of every bearing, and the elements that carry them in catalogue bearings."""
+    rows = [(f"{s.name}.{b.name}", b) for s in shafts for b in s.bearings]
+    inside = [row for row in rows if row[1].rows]
+    name = word("bearing", lambda row: row[0])
+    loads = [
+        name,
+        quantity("radial", "N", units, lambda row: row[1].radial, 4),
+        Column("at, deg", lambda row: f"{degrees(row[1].azimuth):.0f}"),
+        quantity("axial", "N", units, lambda row: float(row[1].load[1]), 4),
+        quantity("moment", "N m", units, lambda row: row[1].moment, 4),
+    ]
+    note = "Load of the shaft on the bearing; it acts at an angle from x towards z."
+    if inside:
+        loads += [
+            Column("C0/P0", lambda row: _life(row[1], lambda life: life.static_safety)),
+            Column("L10r, 1e6", lambda row: _life(row[1], lambda life: life.reference / 1e6)),
+        ]
+        note += (
+            " C0/P0: static safety (ISO 76); L10r: basic reference life (ISO/TS 16281) in 1e6 "
+            "revolutions; solidgear bearing shows their ranges and duty tables."
+        )
+    out = [Table("Bearing loads", loads, rows, note)]
+    if inside:
+        carried = [
+            name,
+            word("loaded", lambda row: _elements(row[1])),
+            quantity("largest", "N", units, lambda row: _largest(row[1]), 4),
+            quantity("pressure", "Pa", units, lambda row: row[1].pressure, 4),
+            quantity("clearance", "m moved", units, lambda row: row[1].clearance, 3),
+        ]
+        note = (
+            "Number of loaded elements of all, row by row; largest load of an element; largest "
+            "pressure at both rings, by Hertz or in slices; radial clearance once mounted and "
+            "warm."
+        )
+        out.append(Table("Inside the bearings", carried, inside, note))
+    return out
+
+
+def _life(bearing: BearingState, number: Callable[[Life], float]) -> str | None:
+    if bearing.life is None:
+        return None
+    value = number(bearing.life)
+    return f"{value:.3g}" if isfinite(value) else "endless"
+
+
+def _elements(bearing: BearingState) -> str | Cell | None:
+    if not bearing.rows:
+        return None
+    counts = ", ".join(f"{n}/{len(row.load)}" for n, row in zip(bearing.loaded, bearing.rows))
+    return counts if any(bearing.loaded) else Cell("none", "bad")
+
+
+def _largest(bearing: BearingState) -> float | None:
+    return max((float(row.load.max()) for row in bearing.rows), default=None)
+
+
+def line(shaft: ShaftDeflection) -> Table:
+    """Return the deflection line of a shaft in SI, for other programs."""
+    heads = [f"{dof} [{si.split()[0]}]" for dof, si in zip(DOF_NAMES, MOVED)]
+    return numbers({"y [m]": shaft.stations, **dict(zip(heads, shaft.line.T))})
+
+
+def turn_chart(turn: StageTurn, units: Units = ENGINEERING, width: float = WIDE) -> Chart:
+    """Chart the mesh force of every planet of a stage over a turn of the carrier."""
+    names = [f"planet {k}" for k in range(1, turn.force.shape[1] + 1)]
+    looks = {name: Series(COLOURS[k % len(COLOURS)]) for k, name in enumerate(names)}
+    angle = np.degrees(np.append(turn.angle, 2 * np.pi))
+    force = units.values(np.vstack([turn.force, turn.force[:1]]), "N")
+    unit, room = units.unit("N"), 0.12 * np.ptp(force) or 0.12 * np.abs(force).max()
+    panel = Panel(
+        Axis(
+            "carrier in degrees", (0.0, 360.0), ticks={a: f"{a:g}" for a in np.arange(0.0, 361, 60)}
+        ),
+        Axis(f"mesh force in {unit}", (force.min() - room, force.max() + room)),
+        230.0,
+        series=looks,
+        legend=lines_legend(6),
+    )
+    for name, values in zip(names, force.T):
+        panel.draw("line", curve(angle, values, name=name))
+        read = curve(angle, values)
+        for row in read:
+            position, size = ("at", f"{row['x']:.0f}", "°"), ("", f"{row['y']:.4g}", unit)
+            row["readout"] = readout(name, position, size)
+        panel.read(read, looks[name].colour)
+    return Chart([[panel]], width, f"Mesh forces over a turn of the carrier ({turn.stage})")
+
+
+#: planes by the translation and the rotation that belong to each
+PLANES = {"x": (0, 5), "z": (2, 3)}
+
+
+def deflection_chart(
+    shafts: Mapping[str, Sequence[ShaftDeflection]],
+    title: str,
+    units: Units = ENGINEERING,
+    width: float = WIDE,
+) -> Chart:
+    """Chart the deflection of every shaft in both planes by every model, the last of them the
+    reference.
+    """
+    looks = {name: Series(COLOURS[k % len(COLOURS)]) for k, name in enumerate(shafts)}
+    names = [shaft.name for shaft in next(iter(shafts.values()))]
+    panels = [
+        _panel(shafts, looks, k, plane, units, width, first=k == 0 and plane == "x")
+        for k in range(len(names))
+        for plane in PLANES
+    ]
+    columns = 2 if width > NARROW else 1
+    return Chart(in_columns(panels, columns), width, title)
+
+
+def _panel(
+    by_model: Mapping[str, Sequence[ShaftDeflection]],
+    looks: Mapping[str, Series],
+    k: int,
+    plane: str,
+    units: Units,
+    width: float,
+    first: bool,
+) -> Panel:
+    """Return the panel of one shaft in one plane."""
+    component = PLANES[plane][0]
+    shafts = {name: lines[k] for name, lines in by_model.items()}
+    reference = list(shafts.values())[-1]
+    along = {name: units.values(s.stations, "m") for name, s in shafts.items()}
+    moved = {name: units.values(s.line[:, component], "m moved") for name, s in shafts.items()}
+    ends = _ends(np.concatenate(list(moved.values())))
+    length, unit = units.unit("m"), units.unit("m moved")
+    last = float(along[list(shafts)[-1]][-1])
+    panel = Panel(
+        Axis(f"y of {reference.name} in {length}", (0.0, last)),
+        Axis(f"{plane} in {unit}", ends),
+        190.0,
+        f"{reference.name}, {plane}",
+        series=looks,
+        legend=lines_legend(4) if first else None,
+    )
+    panel.draw({"type": "rule", "color": GREY}, [{"y": 0.0}])
+    for bearing in reference.bearings:
+        place = float(units.values(np.array([bearing.place]), "m")[0])
+        panel.draw({"type": "rule", "color": GREY, "strokeDash": [2, 3]}, [{"x": place}])
+        name = {"type": "text", "color": GREY, "align": "left", "dx": 3, "dy": -85}
+        panel.draw(name, [{"x": place, "text": bearing.name}], y={"value": 95})
+    for model in shafts:
+        panel.draw("line", curve(along[model], moved[model], name=model))
+        read = curve(along[model], moved[model])
+        for row in read:
+            abscissa, size = ("y", f"{row['x']:.1f}", length), (plane, f"{row['y']:.3g}", unit)
+            row["readout"] = readout(model, abscissa, size)
+        panel.read(read, looks[model].colour)
+    return panel
+
+
+def _ends(values: np.ndarray) -> tuple[float, float]:
+    """Return ends of an axis that holds all values and zero, with room."""
+    low, high = min(values.min(), 0.0), max(values.max(), 0.0)
+    room = 0.12 * (high - low) or 1.0
+    return float(low - room), float(high + room)
