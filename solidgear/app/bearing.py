@@ -17,6 +17,7 @@ from solidgear.bearings.life_command import plain_life, print_life
 from solidgear.bearings.rolling import UNITS
 from solidgear.bearings.study import BearingFacts, bearing_facts, loaded_by, over_load
 from solidgear.core import DOF_NAMES, Scene, SolidgearError, as_written, explained, parse, shaft
+from solidgear.core.plain import plain
 from solidgear.core.scene.toml_file import describes_train
 from solidgear.show.command import command, say
 from solidgear.show.options import Run, SceneFile, speed_of
@@ -164,10 +165,7 @@ def _print(fact: BearingFacts) -> None:
 
 
 def _plain(fact: BearingFacts) -> dict[str, Any]:
-    def numbers(values) -> list:
-        return [float(v) if np.isfinite(v) else None for v in values]
-
-    return {
+    data = {
         "name": fact.name,
         "kind": fact.data.kind,
         "designation": fact.data.designation,
@@ -176,19 +174,20 @@ def _plain(fact: BearingFacts) -> dict[str, Any]:
         "inside": fact.inside,
         "estimated": fact.made.estimated,
         "clearance": fact.made.clearance,
-        "load": fact.load.tolist(),
-        "displacement": fact.motion.tolist(),
-        "stiffness": fact.stiffness.tolist(),
-        "spread": None if fact.spread is None else [end.tolist() for end in fact.spread],
+        "load": fact.load,
+        "displacement": fact.motion,
+        "stiffness": fact.stiffness,
+        "spread": fact.spread,
         "rows": [
             {
-                "azimuth": numbers(row.azimuth),
-                "load": numbers(row.load),
-                "contact_angle": numbers(row.angle),
-                "pressure_inner": numbers(row.inner),
-                "pressure_outer": numbers(row.outer),
+                "azimuth": row.azimuth,
+                "load": row.load,
+                "contact_angle": row.angle,
+                "pressure_inner": row.inner,
+                "pressure_outer": row.outer,
             }
             for row in fact.rows
         ],
         "notes": fact.notes,
     }
+    return plain(data)

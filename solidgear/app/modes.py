@@ -22,6 +22,7 @@ from solidgear.core.judge.at_rest import spin_caution
 from solidgear.core.judge.coarser_mesh import coarser_bars
 from solidgear.core.judge.completeness import completeness, cut_short, split_apart
 from solidgear.core.judge.hidden import complete_list, less_widest
+from solidgear.core.plain import plain
 from solidgear.core.solve.mixtures import mixtures
 from solidgear.show.command import caution, command, say
 from solidgear.show.options import Run, SceneFile, Solved, options, speed_of
@@ -119,7 +120,7 @@ def modes(
             "cautions": warnings,
             "open": open_.model_dump(mode="json"),
         }
-        record |= {} if settled is None else settled.as_dict()
+        record |= {} if settled is None else plain(settled)
         record |= {"without_bar": bare, "why_without_bar": reason}
         print(json.dumps(record, default=float))
         ended(settled)

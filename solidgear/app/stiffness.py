@@ -11,6 +11,7 @@ import typer
 
 from solidgear.core import COMPLIANCE, DOF_NAMES, STIFFNESS, Port, Quantity, Scene, SolidgearError
 from solidgear.core.judge.coarser_mesh import static_bars
+from solidgear.core.plain import plain
 from solidgear.core.scene.rules import no_such_point
 from solidgear.core.solve.condensed import Condensed, Coupled
 from solidgear.core.solve.statics import condense
@@ -62,10 +63,10 @@ def stiffness(
 
     if run.as_json:
         record: dict[str, Any] = {"scene": loaded.name, "fidelity": body.fidelity}
-        record |= _plain(condensed) if coupled is None else _plain_coupled(coupled)
-        evidence = {"evidence": record.pop("evidence")}
-        record |= {"dofs": body.size, **evidence, "cautions": warnings}
-        record |= {"bars": bars} if settled is None else settled.as_dict()
+        at_points = condensed if coupled is None else coupled
+        record |= plain(at_points)
+        record |= {"dofs": body.size, "evidence": at_points.evidence, "cautions": warnings}
+        record |= {"bars": bars} if settled is None else plain(settled)
         record |= {"why_without_bar": reason}
         print(json.dumps(record | {"open": open_.model_dump(mode="json")}))
         ended(settled)
@@ -100,35 +101,6 @@ def _points(scene: Scene, port: str | None) -> tuple[str, ...]:
         if names.count(name) > 1:
             raise SolidgearError(f"--port {port}: {name} is named twice; name each point once")
     return tuple(names)
-
-
-def _numbers(matrix) -> list[list[float | None]]:
-    return [[float(v) if np.isfinite(v) else None for v in row] for row in matrix]
-
-
-def _plain(condensed: Condensed) -> dict[str, Any]:
-    return {
-        "port": condensed.port,
-        "attachment": condensed.attachment,
-        "order": DOF_NAMES,
-        "stiffness": _numbers(condensed.stiffness),
-        "compliance": _numbers(condensed.compliance),
-        "free": condensed.free_names,
-        "free_oblique": condensed.oblique.T.tolist(),
-        "evidence": condensed.evidence,
-    }
-
-
-def _plain_coupled(coupled: Coupled) -> dict[str, Any]:
-    return {
-        "ports": coupled.ports,
-        "attachments": coupled.attachments,
-        "order": [f"{port} {name}" for port in coupled.ports for name in DOF_NAMES],
-        "stiffness": _numbers(coupled.stiffness),
-        "compliance": _numbers(coupled.compliance),
-        "free": coupled.free_names,
-        "evidence": coupled.evidence,
-    }
 
 
 def _at(port: Port) -> str:

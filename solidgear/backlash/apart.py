@@ -5,7 +5,7 @@ data on them.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import asdict, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -14,6 +14,7 @@ from solidgear.backlash.solver.apart import STARTS, search
 from solidgear.backlash.solver.continuation import Branch
 from solidgear.backlash.solver.stability import multipliers
 from solidgear.backlash.torque import Backlash, Range
+from solidgear.core.plain import plain
 
 #: share of a mean force that the linear one must exceed where branches apart are looked for
 LIVELY = 0.2
@@ -130,8 +131,8 @@ def _branch(branch: Backlash) -> dict[str, Any]:
     return {
         "mesh_periods": branch.periods,
         "end": branch.end,
-        **asdict(_range(branch.frequency_hz)),
-        "stable": asdict(branch.calm) if branch.calm else None,
+        **plain(_range(branch.frequency_hz)),
+        "stable": plain(branch.calm),
         "largest": {"frequency_hz": hz, "force": size} if branch.calm else None,
         "off_in_time": branch.departs,
     }

@@ -6,7 +6,7 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from contextlib import nullcontext
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -20,6 +20,7 @@ from solidgear.backlash.speed_run import SpeedRun, ramp_of, speed_run
 from solidgear.backlash.torque import AtForce, Backlash, Jump, Range, Teeth
 from solidgear.backlash.train import InTime
 from solidgear.core import SceneError, SolidgearError, show
+from solidgear.core.plain import plain
 from solidgear.core.scene.units import quantity
 from solidgear.show.command import caution, command, say
 from solidgear.show.folder import held
@@ -492,15 +493,15 @@ class BacklashStudy:
             "teeth": self._teeth_data(),
             "sentences": self.sentences(),
             "mixes": [self._mix_data(mix) for mix in self.mixes],
-            "beside_the_first": [asdict(result) for result in self.sufficiency()],
-            "over_mean_force": [asdict(force) for force in self.over_force],
-            "in_time": [asdict(motion) | {"off": motion.error} for motion in self.in_time],
+            "beside_the_first": plain(self.sufficiency()),
+            "over_mean_force": plain(self.over_force),
+            "in_time": plain(self.in_time),
             "runs": [self._run_data(run) for run in self.runs],
         }
 
     def _teeth_data(self) -> dict[str, Any]:
         """Return the teeth as plain data; the only mesh has no name and no others."""
-        data = asdict(self.teeth)
+        data = plain(self.teeth)
         if len(self.train.meshes) > 1:
             return data
         return {key: value for key, value in data.items() if key not in ("mesh", "others")}
@@ -521,7 +522,7 @@ class BacklashStudy:
         hz, size = run.loudest
         return {
             "largest": {"frequency_hz": hz, "force": size},
-            "parts": asdict(run.lost) if run.lost else None,
+            "parts": plain(run.lost),
             "share_that_parts": float(np.mean(run.parted)),
             "tolerance": self.train.ask.tolerance,
             "share_within_tolerance_of_steady": run.followed(self.train.ask.tolerance),
@@ -537,8 +538,8 @@ class BacklashStudy:
             "harmonics": max(point.balance.count for point in mix.points),
             "parts": driven["parts"],
             "other_flank": driven["other_flank"],
-            "jumps": [asdict(jump) for jump in mix.jumps],
-            "unstable": [{"by": kind, **asdict(r)} for kind, r in mix.wandering],
+            "jumps": plain(mix.jumps),
+            "unstable": [{"by": kind, **plain(span)} for kind, span in mix.wandering],
             **branch_data(mix),
             **driven,
             **({"other_meshes": other_meshes} if other_meshes else {}),
@@ -547,13 +548,13 @@ class BacklashStudy:
     def _mesh_data(self, mesh: Backlash) -> dict[str, Any]:
         (hz, size), (linear_hz, linear) = mesh.worst.loudest, mesh.linear_loudest
         return {
-            "parts": [asdict(r) for r in mesh.lost],
-            "other_flank": [asdict(r) for r in mesh.both_flanks],
+            "parts": plain(mesh.lost),
+            "other_flank": plain(mesh.both_flanks),
             "largest": {"frequency_hz": hz, "force": size},
             "linear_largest": {"frequency_hz": linear_hz, "force": linear},
             "linear_off": [
-                {**asdict(r), "decibels": error}
-                for r, error in mesh.linear_errors(self.train.ask.decibels)
+                {**plain(span), "decibels": error}
+                for span, error in mesh.linear_errors(self.train.ask.decibels)
             ],
             "orders_at_largest": mesh.worst.spectrum().tolist(),
         }

@@ -301,6 +301,8 @@ def over_force(
 class InTime:
     """A motion found in time, compared with the nearest of the branch."""
 
+    plain_names = ("frequency_hz", "rising", "cycle", "force", "branch_force", ("off", "error"))
+
     frequency_hz: float
     rising: bool  #: whether the speed rose to it
     cycle: int  #: periods of the mesh after which it repeats itself; 0 where it never did

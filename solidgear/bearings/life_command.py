@@ -9,6 +9,7 @@ from typing import Any
 
 from solidgear.bearings.bearing_life import BearingLife
 from solidgear.bearings.life import Life
+from solidgear.core.plain import plain
 from solidgear.show.command import say
 from solidgear.show.table import Column, Table
 from solidgear.show.words import engineering
@@ -88,33 +89,25 @@ def _sources(life: Life) -> Iterator[str]:
 
 def plain_life(bearing: BearingLife) -> dict[str, Any]:
     """Return lives of a bearing as plain data in SI; infinite ones are None."""
-
-    def known(value: float) -> float | None:
-        return float(value) if math.isfinite(value) else None
-
     life = bearing.life
-    modified = life.modified
-    return {
+    data = {
         "speed": bearing.speed or None,
-        "basic": known(life.basic),
-        "reference": known(life.reference),
-        "modified": None
-        if modified is None
-        else {k: known(v) for k, v in modified._asdict().items()},
+        "basic": life.basic,
+        "reference": life.reference,
+        "modified": life.modified,
         "no_modified_life": life.without,
-        "range": {
-            line.name.split()[0]: [known(end) for end in line.ends] for line in _lines(bearing)
-        },
+        "range": {line.name.split()[0]: line.ends for line in _lines(bearing)},
         "not_known": bearing.told,
-        "equivalent_load": {k: known(v) for k, v in life.equivalent._asdict().items()},
+        "equivalent_load": life.equivalent,
         "reference_load": life.reference_load,
         "static_load": life.static_load,
-        "static_safety": known(life.static_safety),
+        "static_safety": life.static_safety,
         "ratings": {
             "C": life.rated.dynamic,
             "C0": life.rated.static,
             "Cu": life.rated.fatigue,
             "sources": life.rated.sources,
         },
-        "notes": list(life.notes),
+        "notes": life.notes,
     }
+    return plain(data)

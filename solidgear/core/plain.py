@@ -12,10 +12,12 @@ import numpy as np
 
 
 def plain(value: Any) -> Any:
-    """Return a result as plain data: dataclasses as dicts, arrays as lists, infinite numbers as None.
+    """Return a result as plain data: dataclasses and named tuples as dicts, arrays as lists, infinite
+    numbers as None.
 
     The tuple ``plain_names`` of a dataclass lists its keys in order, each the name of a field or a
     property, or a pair of key and name; without it, all fields but those that no ``repr`` shows.
+    A method ``as_dict`` of a nested result is not called.
 
     Examples
     --------
@@ -33,7 +35,11 @@ def plain(value: Any) -> Any:
     >>> plain({"front": Bearing("A", np.array([1.0, 2.0]), math.inf)})
     {'front': {'name': 'A', 'axial_load': 2.0, 'life': None}}
     """
-    if is_dataclass(value) and not isinstance(value, type):
+    if isinstance(value, (np.ndarray, np.generic)):
+        value = value.tolist()
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if is_dataclass(value):
         names = getattr(value, "plain_names", None)
         if names is None:
             names = [field.name for field in fields(value) if field.repr]
@@ -44,11 +50,7 @@ def plain(value: Any) -> Any:
     if hasattr(value, "model_dump"):  # of pydantic
         return value.model_dump(mode="json")
     if isinstance(value, Mapping):
-        return {key: plain(entry) for key, entry in value.items()}
-    if isinstance(value, (np.ndarray, np.generic)):
-        return plain(value.tolist())
+        return {str(key): plain(entry) for key, entry in value.items()}
     if isinstance(value, (list, tuple)):
         return [plain(entry) for entry in value]
-    if isinstance(value, PurePath):
-        return str(value)
-    return None if isinstance(value, float) and not math.isfinite(value) else value
+    return str(value) if isinstance(value, PurePath) else value

@@ -12,6 +12,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from solidgear.core import BarredMode, Displayed, ModeName, Scene, pinned, without_axis
+from solidgear.core.plain import plain
 from solidgear.measured.alignment import Alignment, Peak
 from solidgear.measured.computed import Computed, computed_up_to
 from solidgear.measured.data import Measured, MeasuredMode
@@ -138,8 +139,8 @@ class Correlation(Displayed):
             "measurement": self.title,
             "mesh": self.mesh,
             "rms": None if self.worst is None else self.rms,
-            "common": self.common and vars(self.common),
-            "other_part": self.likeness.results,
+            "common": plain(self.common),
+            "other_part": plain(self.likeness),
             "pairs": [
                 self._damping(pair.number)
                 | {

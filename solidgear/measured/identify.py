@@ -32,6 +32,7 @@ from solidgear.core import (
     pinned,
 )
 from solidgear.core.loading import scene_of
+from solidgear.core.plain import plain
 from solidgear.core.scene.paths import Tables, replace_entry
 from solidgear.measured.computed import Computed, computed_like, computed_up_to
 from solidgear.measured.correlate import DEVIATIONS, SURE, placed_in
@@ -107,6 +108,23 @@ class Identification(Displayed):
     """Entries identified from measured resonances."""
 
     shown: ClassVar[str] = "measured.tables:entries"
+    plain_names = (
+        "kind",
+        "scene",
+        ("measurement", "title"),
+        "mesh",
+        "entries",
+        ("fit_alike", "alike"),
+        "correlations",
+        ("other_part", "likeness"),
+        "fitted",
+        ("unpaired_hz", "unpaired"),
+        "rms",
+        "rms_left_out",
+        "predicted",
+        "sentences",
+    )
+    kind = "identification"
 
     scene: str
     title: str
@@ -135,22 +153,7 @@ class Identification(Displayed):
     @property
     def results(self) -> dict[str, Any]:
         """Plain data that JSON can hold, SI."""
-        return {
-            "kind": "identification",
-            "scene": self.scene,
-            "measurement": self.title,
-            "mesh": self.mesh,
-            "entries": [vars(entry) for entry in self.entries],
-            "fit_alike": [list(values) for values in self.alike],
-            "correlations": self.correlations.tolist(),
-            "other_part": self.likeness.results,
-            "fitted": [vars(resonance) for resonance in self.fitted],
-            "unpaired_hz": list(self.unpaired),
-            "rms": self.rms,
-            "rms_left_out": self.rms_left_out,
-            "predicted": [vars(mode) for mode in self.predicted],
-            "sentences": self.sentences,
-        }
+        return plain(self)
 
 
 def _sentences(result: Identification) -> Iterator[str]:

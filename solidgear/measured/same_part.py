@@ -72,6 +72,8 @@ class Common:
 class Likeness:
     """Likeness of measured resonances to those of one part, whatever the modulus."""
 
+    plain_names = ("in_question", "scatter", ("scatter_at_least", "least"))
+
     #: resonances, pairs: measured, and those of them that have a mode
     resonances: int
     pairs: int
@@ -109,13 +111,9 @@ class Likeness:
         return many and self.pairs >= FEWEST_FAR and self.scatter < SAME_PART
 
     @property
-    def results(self) -> dict[str, float | bool]:
-        """Plain data that JSON can hold."""
-        return {
-            "in_question": self.scattered or self.lonely,
-            "scatter": self.scatter,
-            "scatter_at_least": self.least,
-        }
+    def in_question(self) -> bool:
+        """Return whether they may be those of another part."""
+        return self.scattered or self.lonely
 
     @property
     def sentence(self) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
 import numpy as np
@@ -116,10 +116,3 @@ def _moved(pair: ModePair[Any], change: Change) -> str:
     assert pair.a is not None and pair.b is not None
     name = both_names(pair.a.name, pair.b.name)
     return f"{name}, from {hertz(change.a)} to {hertz(change.b)} Hz ({percent(change.relative)})"
-
-
-def plain_pair(pair: ModePair[Any]) -> dict[str, Any]:
-    """Return a pair of modes as plain data that JSON can hold."""
-    sides = {key: None if m is None else asdict(m) for key, m in (("a", pair.a), ("b", pair.b))}
-    change = pair.change
-    return {**sides, "mac": pair.mac, "frequency": None if change is None else change.as_dict()}

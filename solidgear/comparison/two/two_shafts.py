@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from time import perf_counter
@@ -39,6 +39,7 @@ from solidgear.core.judge.change import Change, ModePair, all_pairs
 from solidgear.core.judge.correlation import pair_modes
 from solidgear.core.judge.quantities import in_order, judged
 from solidgear.core.machine.environment import environment
+from solidgear.core.plain import plain
 from solidgear.guards.one_shaft import OneShaft, Progress, one_shaft
 from solidgear.show.open_words import interval
 from solidgear.show.units import ENGINEERING, Units, units_named
@@ -421,7 +422,7 @@ def results(shafts: TwoShafts) -> dict[str, Any]:
         "kind": "two shafts",
         "shafts": {shaft.letter.lower(): _shaft(shaft) for shaft in shafts.both},
         "tolerance": shafts.tolerance,
-        "differences": [asdict(difference) for difference in shafts.inputs],
+        "differences": plain(shafts.inputs),
         "sentences": sentences(shafts),
         "numbers": {number.name: _number(number) for number in shafts.changes},
         "asked": {number.name: number.better or None for number in shafts.asked},
@@ -429,7 +430,7 @@ def results(shafts: TwoShafts) -> dict[str, Any]:
             letter: numbers.model_dump(mode="json") for letter, numbers in zip("ab", shafts.open)
         },
         "paired": shafts.pairing,
-        "modes": [beside.plain_pair(pair) for pair in shafts.modes],
+        "modes": plain(shafts.modes),
         "alone": {letter.lower(): list(names) for letter, names in shafts.alone.items()},
         "cautions": shafts.cautions,
         "environment": environment(),
@@ -442,12 +443,12 @@ def _shaft(shaft: OneShaft) -> dict[str, Any]:
         "file": shaft.name,
         "title": shaft.scene.title or shaft.scene.name,
         "scene": shaft.scene.as_dict(),
-        "solved": shaft.settled.as_dict(),
+        "solved": plain(shaft.settled),
     }
 
 
 def _number(number: NumberChange) -> dict[str, Any]:
-    out = number.change.as_dict() | {"relative": number.relative, "unit": number.unit}
+    out = plain(number.change) | {"relative": number.relative, "unit": number.unit}
     out["scale"] = number.scale if math.isfinite(number.scale) else None
     if number.partner:
         out["mode_of_b"] = number.partner

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from time import perf_counter
@@ -22,6 +22,7 @@ from solidgear.comparison.two.two_trains_page import write_two_trains
 from solidgear.core import LADDER, SolidgearError, listed, pinned
 from solidgear.core.judge.change import Change, Side
 from solidgear.core.machine.environment import environment
+from solidgear.core.plain import plain
 from solidgear.show.units import ENGINEERING, Units, units_named
 from solidgear.show.words import hertz, percent
 from solidgear.strength.deflection.train import TrainDeflection, deflection, with_ranges
@@ -80,6 +81,8 @@ class OneTrain(Side):
 @dataclass(frozen=True)
 class PeakPair:
     """A peak of the mesh force of one train and the partner; either may be missing."""
+
+    plain_names = ("a", "b", "decibels")
 
     a: Peak | None
     b: Peak | None
@@ -461,22 +464,15 @@ def _results(trains: TwoTrains) -> dict[str, Any]:
         "models": trains.models,
         **({"mesh": trains.mesh} if len(trains.forces) > 1 else {}),
         "highest_hz": trains.highest_hz,
-        "differences": [asdict(difference) for difference in trains.inputs],
+        "differences": plain(trains.inputs),
         "sentences": _conclusions(trains),
         "paired": trains.pairing,
-        "modes": [beside.plain_pair(pair) for pair in trains.modes],
-        "peaks": [
-            {
-                "a": None if pair.a is None else asdict(pair.a),
-                "b": None if pair.b is None else asdict(pair.b),
-                "decibels": pair.decibels,
-            }
-            for pair in trains.peaks
-        ],
+        "modes": plain(trains.modes),
+        "peaks": plain(trains.peaks),
         "largest": {column: _largest(trains, column) for column in trains.columns},
         "responses": {key: _curves(train) for key, train in by_letter.items()},
         "misalignment": {
-            name: {"unit": unit.split()[0], **change.as_dict()}
+            name: {"unit": unit.split()[0], **plain(change)}
             for name, unit, _, change in trains.misalignment()
         },
         "at_rest": loaded,
@@ -498,10 +494,6 @@ def _largest(trains: TwoTrains, column: str) -> dict[str, Any]:
 
 
 def _curves(train: OneTrain) -> dict[str, Any]:
-    def numbers(values: np.ndarray) -> list[float | None]:
-        return [value if np.isfinite(value) else None for value in np.abs(values).tolist()]
-
-    return {
-        "frequency_hz": train.response.frequency_hz.tolist(),
-        "amplitude": {name: numbers(values) for name, values in train.response.columns.items()},
-    }
+    columns = train.response.columns.items()
+    amplitude = {name: np.abs(values) for name, values in columns}
+    return plain({"frequency_hz": train.response.frequency_hz, "amplitude": amplitude})

@@ -14,7 +14,7 @@ import math
 import re
 import time
 from collections.abc import Callable, Iterable
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from solidgear.core.display import Displayed
@@ -31,6 +31,7 @@ from solidgear.core.ladder.model import BEAM, SOLID
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.machine.memory import one_run
 from solidgear.core.machine.threads import pinned
+from solidgear.core.plain import plain
 from solidgear.core.quantity import ACROSS, QUANTITIES, Quantity
 from solidgear.core.scene.shaft import without_axis
 from solidgear.core.scene.units import quantity
@@ -76,11 +77,7 @@ class Answered(Displayed):
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain data."""
-        out = asdict(self)
-        for row in (*out["values"], *out["steps"]):
-            if row["bar"] is not None and not math.isfinite(row["bar"]):
-                row["bar"] = None
-        return out
+        return plain(self)
 
 
 @pinned

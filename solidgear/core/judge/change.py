@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Generic, TypeVar
 
 from solidgear.core.judge.deviations import resolution
@@ -22,6 +22,8 @@ class Change:
     >>> Change(100.0, 100.4, 0.2, 0.3).verdict, Change(100.0, 101.0).verdict
     ('not resolved', 'no band')
     """
+
+    plain_names = ("a", "b", "bar_a", "bar_b", "difference", "relative", "band", "verdict")
 
     a: float
     b: float
@@ -49,15 +51,6 @@ class Change:
         """``resolved``, ``not resolved`` or ``no band``."""
         return resolution(abs(self.difference), self.band)
 
-    def as_dict(self) -> dict:
-        """Return plain data that JSON can hold."""
-        return asdict(self) | {
-            "difference": self.difference,
-            "relative": self.relative,
-            "band": self.band,
-            "verdict": self.verdict,
-        }
-
 
 @dataclass(frozen=True)
 class BarredMode:
@@ -79,6 +72,8 @@ M = TypeVar("M", bound=BarredMode)
 @dataclass(frozen=True)
 class ModePair(Generic[M]):
     """A mode of one design and the partner in another; either may be missing."""
+
+    plain_names = ("a", "b", "mac", ("frequency", "change"))
 
     a: M | None
     b: M | None

@@ -7,7 +7,6 @@ nor infinity. Quantities are called as in :data:`solidgear.core.quantity.QUANTIT
 
 from __future__ import annotations
 
-import math
 from typing import Annotated, Any
 
 from pydantic import (
@@ -22,26 +21,13 @@ from pydantic import (
 from pydantic_core import PydanticUseDefault
 
 from solidgear.core.body.mode_names import ModeName
+from solidgear.core.plain import plain
 from solidgear.core.quantity import Quantity
 
-
-def _plain(value: Any) -> Any:
-    """Return a value as lists, dicts, texts and finite numbers; anything else from numpy is None."""
-    if isinstance(value, dict):
-        return {str(k): _plain(v) for k, v in value.items()}
-    if hasattr(value, "tolist"):
-        value = value.tolist()
-    if isinstance(value, (list, tuple)):
-        return [_plain(v) for v in value]
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    return value
-
-
-Number = Annotated[float | None, BeforeValidator(_plain)]
-Numbers = Annotated[list[float | None], BeforeValidator(_plain)]
-Matrix = Annotated[list[list[float | None]], BeforeValidator(_plain)]
-Facts = Annotated[dict[str, Any], BeforeValidator(_plain)]
+Number = Annotated[float | None, BeforeValidator(plain)]
+Numbers = Annotated[list[float | None], BeforeValidator(plain)]
+Matrix = Annotated[list[list[float | None]], BeforeValidator(plain)]
+Facts = Annotated[dict[str, Any], BeforeValidator(plain)]
 Quantities = dict[str, Number]
 
 

@@ -55,6 +55,8 @@ SAME = 1e-6
 class Settled:
     """A body on the cheapest mesh that answers a question, with error bars."""
 
+    plain_names = ("rung", "setting", "options", "tolerance", "bars", "reached", "judged_on")
+
     scene: str
     tolerance: float
     rung: str
@@ -81,18 +83,6 @@ class Settled:
     def largest(self) -> tuple[Quantity, float] | None:
         """Quantity with the largest error bar, and the bar; None where nothing is judged."""
         return widest(self.bars)
-
-    def as_dict(self) -> dict[str, Any]:
-        """Return plain data, without the body."""
-        return {
-            "rung": self.rung,
-            "setting": self.setting,
-            "options": self.options,
-            "tolerance": self.tolerance,
-            "bars": {q: bar if math.isfinite(bar) else None for q, bar in self.bars.items()},
-            "reached": self.reached,
-            "judged_on": self.judged_on,
-        }
 
 
 def widest(bars: Mapping[Quantity, float]) -> tuple[Quantity, float] | None:

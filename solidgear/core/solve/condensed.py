@@ -17,6 +17,16 @@ class Condensed(Displayed):
     """Static behaviour seen from one port, bearings included."""
 
     shown: ClassVar[str] = "condensed"
+    plain_names = (
+        "port",
+        "attachment",
+        "order",
+        "stiffness",
+        "compliance",
+        ("free", "free_names"),
+        ("free_oblique", "oblique_rows"),
+    )
+    order = DOF_NAMES  #: components of motions and loads
 
     port: str
     attachment: str
@@ -43,6 +53,11 @@ class Condensed(Displayed):
         first = np.argmax(size > (1 - 1e-9) * size.max(axis=0, initial=0.0), axis=0)
         return motions / motions[first, np.arange(motions.shape[1])]
 
+    @property
+    def oblique_rows(self) -> np.ndarray:
+        """(k, 6) the same, a row each."""
+        return self.oblique.T
+
     def _alone(self) -> np.ndarray:
         """Return the mask of the components whose unit motion nothing resists."""
         return np.array([not np.any(row) for row in self.stiffness])
@@ -66,6 +81,14 @@ class Coupled(Displayed):
     """
 
     shown: ClassVar[str] = "coupled"
+    plain_names = (
+        "ports",
+        "attachments",
+        "order",
+        "stiffness",
+        "compliance",
+        ("free", "free_names"),
+    )
 
     ports: tuple[str, ...]
     attachments: tuple[str, ...]
@@ -82,6 +105,11 @@ class Coupled(Displayed):
     #: asymmetry, refinement residual, back end, and ``stiffness_error``: the relative error that
     #: inverting leaves in the stiffness
     evidence: dict = field(default_factory=dict)
+
+    @property
+    def order(self) -> list[str]:
+        """Components of motions and loads, port by port."""
+        return [f"{port} {name}" for port in self.ports for name in DOF_NAMES]
 
     def between(self, one: str, other: str, kind: str = "compliance") -> np.ndarray:
         """Return the block of two ports.

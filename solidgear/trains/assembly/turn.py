@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from solidgear.core import System, pinned
+from solidgear.core.plain import plain
 from solidgear.core.system.system import port_forces
 from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.assembly.stages import StageAtWork
@@ -40,11 +41,18 @@ ALIKE = 3
 class StageTurn:
     """Mesh forces of a stage over a turn of the carrier."""
 
+    plain_names = ("angle", ("force", "force_by_planet"), "planets")
+
     stage: str
     angle: np.ndarray  #: (a,) of the carrier from its position in the file, the way it turns, rad
     #: (a, n) of each planet, with the sun, and equally with the ring, for it spins freely, N; less
     #: than zero would need teeth that pull
     force: np.ndarray
+
+    @property
+    def force_by_planet(self) -> np.ndarray:
+        """(n, a) the same, a row each."""
+        return self.force.T
 
     @property
     def planets(self) -> list[PlanetTurn]:
@@ -60,14 +68,12 @@ class StageTurn:
                 most=float(force.max()),
                 once=float(amplitude),
             )
-            for k, (force, amplitude) in enumerate(zip(self.force.T, once), 1)
+            for k, (force, amplitude) in enumerate(zip(self.force_by_planet, once), 1)
         ]
 
     def as_dict(self) -> dict:
         """Return plain data in SI for JSON."""
-        return {"angle": self.angle.tolist(), "force": self.force.T.tolist()} | {
-            "planets": [vars(planet) for planet in self.planets]
-        }
+        return plain(self)
 
 
 @dataclass(frozen=True)

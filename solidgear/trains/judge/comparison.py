@@ -5,12 +5,13 @@ file.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter
 from typing import Any
 
 from solidgear.core.machine.environment import environment
+from solidgear.core.plain import plain
 from solidgear.core.scene.bearing_stiffness import stiffness_entries
 from solidgear.show.turning import Turned
 from solidgear.trains.assembly.housing import housing_hz
@@ -98,8 +99,8 @@ class TrainComparison:
             "verdict": self.verdict.as_dict() | {"sentences": self.verdict.sentences()},
             "loudest": self.top.as_dict(),
             "modes": self.modes.as_dict() | {"notes": self.modes.notes()},
-            "peaks": [asdict(peak) for peak in self.verdict.responses[0].peaks],
-            "crossings": [asdict(crossing) for crossing in self.orders.crossings],
+            "peaks": plain(self.verdict.responses[0].peaks),
+            "crossings": plain(self.orders.crossings),
             "environment": environment(),
             "seconds_total": self.seconds,
         }

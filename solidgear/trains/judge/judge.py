@@ -15,11 +15,12 @@ furthest.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from solidgear.core import BEAM, LADDER, SolidgearError
+from solidgear.core.plain import plain
 from solidgear.trains.assembly.meshes import mesh_bars
 from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.assembly.shaft import JUDGE, LUMPED, checked_model, ladder_place, mix_label
@@ -109,7 +110,7 @@ class Departure:
 
     def as_dict(self) -> dict:
         """Return plain data for JSON."""
-        out = asdict(self)
+        out = plain(self)
         return out.pop("models") | out
 
 

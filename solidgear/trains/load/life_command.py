@@ -15,6 +15,7 @@ from solidgear.bearings.duty import DutyLife, DutyPoint, duty_life
 from solidgear.bearings.life_command import plain_life
 from solidgear.bearings.solved import AS_STATED
 from solidgear.core import SolidgearError
+from solidgear.core.plain import plain
 from solidgear.show.command import say
 from solidgear.show.table import Column, Table
 from solidgear.show.words import engineering, percent
@@ -110,10 +111,6 @@ def _print_duty(lives: list[TrainBearingLife]) -> None:
 
 def _plain(bearing: TrainBearingLife) -> dict[str, Any]:
     """Return lives of a bearing as plain data in SI; infinite ones are None."""
-
-    def known(value: float) -> float | None:
-        return value if math.isfinite(value) else None
-
     duty = bearing.duty
     points = [
         {"at": point.label} | plain_life(life) for point, life in zip(bearing.points, bearing.lives)
@@ -121,13 +118,13 @@ def _plain(bearing: TrainBearingLife) -> dict[str, Any]:
     all_points = None
     if duty is not None:
         all_points = {
-            "hours": known(duty.hours),
-            "revolutions": known(duty.revolutions),
+            "hours": duty.hours,
+            "revolutions": duty.revolutions,
             "of": bearing.kind,
-            "damage": list(duty.damage),
+            "damage": duty.damage,
             "worst": duty.worst,
         }
-    return {"bearing": bearing.end, "points": points, "duty": all_points}
+    return plain({"bearing": bearing.end, "points": points, "duty": all_points})
 
 
 @dataclass(frozen=True)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from solidgear.core import DOF_NAMES, SolidgearError, System
+from solidgear.core.plain import plain
 from solidgear.trains.assembly.housing import free_directions, seat_motion
 from solidgear.trains.assembly.local import undriven, waves_of
 from solidgear.trains.assembly.local_give import local_lines
@@ -68,7 +69,7 @@ class TrainModes:
 
     def as_dict(self) -> dict:
         """Return plain data for JSON."""
-        out = asdict(self)
+        out = plain(self)
         return {"train": out.pop("train")} | out.pop("models") | out
 
     def heading(self) -> list[str]:

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from solidgear.core.plain import plain
 from solidgear.show import speed_tables
 from solidgear.show.plot import Make
 from solidgear.show.sheet_files import write_files
@@ -52,9 +53,7 @@ def write_response(
     if orders is not None:
         tables["orders"] = crossings(orders, shaft)
         charts["orders"] = partial(order_chart, orders, title, teeth, chosen_units)
-        shown_tables.append(
-            train_tables.crossings([vars(c) for c in orders.crossings], chosen_units, shaft)
-        )
+        shown_tables.append(train_tables.crossings(plain(orders.crossings), chosen_units, shaft))
     remarks: list[str] = []
     if speed is not None:
         tables["lines"] = speed_tables.all_lines(speed.lines)
@@ -67,7 +66,7 @@ def write_response(
             charts = {"measured": make, **charts}
             speed_rows = [speed_tables.measured(speed), *speed_rows]
         shown_tables = [*speed_rows, *shown_tables]
-    peaks = [{**r.models, "peaks": [vars(p) for p in r.peaks]} for r in responses]
+    peaks = [{**r.models, "peaks": plain(r.peaks)} for r in responses]
     return write_files(
         folder,
         "response",

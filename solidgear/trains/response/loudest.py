@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from math import inf
 from typing import Any
 
 import numpy as np
 
 from solidgear.core import Scene
+from solidgear.core.plain import plain
 from solidgear.trains.file.train import PerTurn, Train
 from solidgear.trains.modes.modes import TrainMode
 from solidgear.trains.response.response import OrderCurve, TrainResponse, figures
@@ -55,7 +56,7 @@ class Loudest:
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain data for JSON."""
-        return asdict(self) | {"sentences": self.sentences()}
+        return plain(self) | {"sentences": self.sentences()}
 
     @property
     def limit_hz(self) -> float:

@@ -4,7 +4,7 @@ that peaks of a measured spectrum belong to, and what is printed of them."""
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from math import pi
 from pathlib import Path
 from typing import Annotated, Any
@@ -13,6 +13,7 @@ import numpy as np
 import typer
 
 from solidgear.core import SceneError, SolidgearError, show
+from solidgear.core.plain import plain
 from solidgear.core.scene.units import quantity
 from solidgear.show import speed_tables
 from solidgear.show.command import Group, say
@@ -228,15 +229,15 @@ class AtSpeed:
             f"{self.shaft}_rpm": self.rpm,
             "speed": self.speed,
             "within": self.within,
-            "lines": [asdict(line) for line in self.lines],
-            "coincidences": [asdict(coincidence) for coincidence in self.coincidences],
+            "lines": plain(self.lines),
+            "coincidences": plain(self.coincidences),
         }
         if self.spectrum is not None:
             out["measured"] = {
                 "file": self.spectrum.name,
                 "what": self.spectrum.what,
                 "unit": self.spectrum.unit,
-                "peaks": [asdict(peak) for peak in self.peaks],
+                "peaks": plain(self.peaks),
                 "covered": self.covered,
             }
         return out

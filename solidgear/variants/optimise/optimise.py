@@ -28,6 +28,7 @@ import numpy as np
 
 from solidgear.core import Displayed, SceneError, SolidgearError, nearest, show
 from solidgear.core.judge.change import Change
+from solidgear.core.plain import plain
 from solidgear.core.scene.units import quantity, si_factor
 from solidgear.variants.sweep.design import Design as SweepDesign
 from solidgear.variants.sweep.entries import Entry, assignment
@@ -91,7 +92,7 @@ class Optimum(Displayed):
             "at_end": list(self.at_end),
             "search": self.how,
             "bars": without_bars(self.model) if self.model else "beside each value",
-            "gain": None if self.gain is None else self.gain.as_dict(),
+            "gain": None if self.gain is None else plain(self.gain),
             "designs": [
                 {
                     "number": design.number,

@@ -378,7 +378,7 @@ def _sweep_bearings(
     if run.as_json:
         record = plain(result)
         if settled is not None:
-            record |= settled.as_dict()
+            record |= plain(settled)
         print(json.dumps(record, default=str))
         ended(settled)
         return
