@@ -186,10 +186,14 @@ def compare_two(
     if run.as_json:
         print(json.dumps(pair.results, allow_nan=False))
         return
-    printed = two_trains_page.printed if trains[0] else two_shafts_page.printed
+    units = units_named(run.units)
+    if isinstance(pair, TwoTrains):
+        printed = two_trains_page.printed(pair, units)
+    else:
+        printed = two_shafts_page.printed(pair, units)
     say(
         *(f"{train.label}, {train.title}" for train in pair.both),
-        *printed(pair, units_named(run.units)),
+        *printed,
         *map(caution, pair.cautions),
         f"Report: {out / 'report.html'}",
         soft_wrap=False,

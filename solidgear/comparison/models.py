@@ -171,7 +171,7 @@ def compare(
             "compare takes scenes of one shaft; trains are compared by the command: "
             "solidgear compare A.toml B.toml"
         )
-    if without_axis(scene) or without_axis(models):
+    if any(isinstance(s, Scene) and without_axis(s) for s in (scene, models)):
         raise SolidgearError(
             "compare: a body without an axis has one model, the 3D solid; run solidgear modes and "
             "stiffness"

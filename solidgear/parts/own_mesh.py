@@ -16,16 +16,16 @@ from solidgear.core.models.solid.seat_faces import Seats
 if TYPE_CHECKING:
     from skfem import Mesh
 
-    from solidgear.core.scene import Material
-    from solidgear.core.scene.shaft import Shaft
+    from solidgear.core.scene import Material, Scene
+    from solidgear.core.scene.shaft import Station
 
 
 def solid_body(
     mesh: Mesh,
-    shaft: Shaft,
+    shaft: Scene,
     *,
     element: str,
-    wanted: Sequence[tuple[Any, str]] | None = None,
+    wanted: Sequence[tuple[Station, str]] | None = None,
     clipped: bool = True,
     facts: Mapping[str, Any] | None = None,
     owner: np.ndarray | None = None,

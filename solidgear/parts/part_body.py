@@ -7,7 +7,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from solidgear.core import Body, SolidgearError
 from solidgear.core.elements import SOLVED_AS
@@ -23,6 +23,11 @@ from solidgear.parts import step
 from solidgear.parts.own_mesh import solid_body
 from solidgear.parts.part_file import file_mesh
 
+if TYPE_CHECKING:
+    from solidgear.core import Scene
+    from solidgear.core.scene import Material
+    from solidgear.parts.body_file import BodyFile, CoarseMesh
+
 #: seconds after which a mesh is given up
 MESH_SECONDS = 900.0
 #: planes across a part reach beyond its largest radius by this factor
@@ -30,7 +35,7 @@ BEYOND = 1.1
 
 
 def part_body(
-    scene: Any,
+    scene: Scene,
     wanted: Sequence,
     *,
     size: float | None,
@@ -46,7 +51,8 @@ def part_body(
     Refused where the file has changed since the scene was read, where no face lies on a seat, and
     where it cannot be meshed.
     """
-    file = scene.body
+    file: BodyFile | None = scene.body
+    assert file is not None
     source = _read(file, coarser)
     place = Placing(file.unit, file.turn, file.foot)
     facts = {"file": source.name, "refinement": refinement, "coarser": coarser}
@@ -103,7 +109,7 @@ def part_body(
     )
 
 
-def _read(file: Any, coarser: int) -> Any:
+def _read(file: BodyFile, coarser: int) -> BodyFile | CoarseMesh:
     """Return the file of a part, or of one of its coarser meshes; refuse it where it has changed
     since the scene was read.
     """
@@ -112,7 +118,7 @@ def _read(file: Any, coarser: int) -> Any:
             f"solid: coarser = {coarser}, and the scene lists {len(file.coarser)} meshes coarser than "
             f"{file.name}"
         )
-    source = (*file.coarser, file)[-1 - coarser]
+    source = file if coarser == 0 else file.coarser[-coarser]
     try:
         same = hashlib.sha256(Path(source.path).read_bytes()).hexdigest() == source.sha256
     except OSError as error:
@@ -122,16 +128,17 @@ def _read(file: Any, coarser: int) -> Any:
     return source
 
 
-def _rough_scale(file: Any, material: Any) -> float:
+def _rough_scale(file: BodyFile, material: Material) -> float:
     """Estimate the lowest elastic eigenvalue, rad^2/s^2, of a rod as long as a body and of its
     volume, or of half a wave of shear along it.
     """
+    assert file.edges is not None
     length = max(file.edges)
     wave = material.E / material.density * (4.73 / length) ** 4 * file.volume / length
     return min(wave / (4 * math.pi), (math.pi / length) ** 2 * material.E / material.density / 3)
 
 
-def _meshed(file: Any, function: Any, *arguments: Any, **limits: Any) -> Any:
+def _meshed(file: BodyFile | CoarseMesh, function: Any, *arguments: Any, **limits: Any) -> Any:
     """Call a mesher, with its errors as those of the file."""
     try:
         return function(*arguments, **limits)
@@ -141,7 +148,7 @@ def _meshed(file: Any, function: Any, *arguments: Any, **limits: Any) -> Any:
         raise MeshError(f"{file.name} {error}") from None
 
 
-def step_plan(scene: Any, wanted: Sequence, *, size, graded_size, refinement, around) -> dict:
+def step_plan(scene: Scene, wanted: Sequence, *, size, graded_size, refinement, around) -> dict:
     """Return cuts and sizes of the mesh of a STEP part for :func:`solidgear.parts.step.mesh`,
     those of the round part inside it; sizes as for :func:`solidgear.core.models.solid.body.solid`.
     """

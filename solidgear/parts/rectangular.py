@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import ceil, prod
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from skfem import Mesh, MeshHex
@@ -15,6 +15,9 @@ from solidgear.core.meshing.quality import cell_sizes
 from solidgear.core.scene.patches import FACES
 from solidgear.parts.own_mesh import solid_body
 
+if TYPE_CHECKING:
+    from solidgear.core import Scene
+
 #: cells along the shortest edge at refinement 1; of longer edges they grow with the root of the edge,
 #: since waves along an edge are longer than those across: every edge is divided by a multiple of this,
 #: and meshes of refinements 1/4, 1/2, 1 and so on are nested
@@ -22,7 +25,7 @@ CELLS = 4
 
 
 def block_body(
-    scene: Any, wanted: Sequence, *, element: str, size: float | None, refinement: float
+    scene: Scene, wanted: Sequence, *, element: str, size: float | None, refinement: float
 ) -> Body:
     """Build the free body, in one block, of a scene with a ``body`` that is a block; sizes as for
     :func:`solidgear.core.models.solid.body.solid`.
@@ -42,7 +45,7 @@ def block_body(
 
 
 def block_mesh(
-    scene: Any, wanted: Sequence, element: str, size: float | None, refinement: float
+    scene: Scene, wanted: Sequence, element: str, size: float | None, refinement: float
 ) -> Mesh:
     """Return boxes with a line at every section, their number along an edge by its length beside the
     shortest, or of one size; tetrahedra are refused.
@@ -54,6 +57,7 @@ def block_mesh(
         raise SolidgearError(
             f"solid: element = {element} is not for a block; use hex8, hex20 or hex27"
         )
+    assert scene.body is not None
     x, y, z = scene.body.edges
     least = min(x, y, z)
     sizes = [size or edge / CELLS / max(1, round((edge / least) ** 0.5)) for edge in (x, y, z)]

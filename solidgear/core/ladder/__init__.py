@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from solidgear.core.errors import SolidgearError, nearest, show
 from solidgear.core.ladder.registry import LADDER
@@ -21,15 +21,16 @@ if TYPE_CHECKING:
 NO_MODEL = "no model solves all features of the scene"
 
 
-def way_out(scene: Any) -> str:
+def way_out(scene: Shaft) -> str:
     """Return advice for a scene that no model holds: smear its teeth, with the loss by that;
     `NO_MODEL` alone where smearing does not help.
     """
+    from solidgear.core.scene import Scene  # start-up: every command reads the ladder
     from solidgear.core.scene.shaft import feature_labels
 
-    features = getattr(scene, "features", ())
+    features = scene.features
     cut = [f for f in features if f.sort == CYCLIC and not f.smeared and f.toothed]
-    if not cut:
+    if not cut or not isinstance(scene, Scene):
         return NO_MODEL
     cones = (f.with_changes(model="pitch_cone") if f in cut else f for f in features)
     smeared = scene.with_changes(features=tuple(cones))

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from solidgear.core.ladder.model import BEAM, Model, Series
 from solidgear.core.models.options import BEAM_OPTIONS
 
 if TYPE_CHECKING:
     from solidgear.core.body import Body
+    from solidgear.core.scene.shaft import Shaft
 
 
 class Timoshenko(Model):
@@ -30,7 +31,7 @@ class Timoshenko(Model):
 
         return beam
 
-    def series(self, scene: Any, full: bool) -> list[Series]:
+    def series(self, scene: Shaft, full: bool) -> list[Series]:
         """Return few elements and the usual number."""
         return [(BEAM, self.heading, [{"elements": 1}, {}])]
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from solidgear.core.ladder.meshes import FREE, Sequence, levels
 from solidgear.core.ladder.model import SOLID, Model, Options, Series
@@ -11,6 +11,7 @@ from solidgear.core.models.options import HARMONIC_OPTIONS
 
 if TYPE_CHECKING:
     from solidgear.core.body import Body
+    from solidgear.core.scene.shaft import Shaft
 
 
 class Harmonic(Model):
@@ -42,7 +43,7 @@ class Harmonic(Model):
         """
         return Sequence((dict(options),), bool(set(options) - set(FREE)), False)
 
-    def series(self, scene: Any, full: bool) -> list[Series]:
+    def series(self, scene: Shaft, full: bool) -> list[Series]:
         """Return refinement at order 2 and rising orders, each on uniform and on graded meshes."""
         flat = {"layers": 0, "edge_layers": 0, "size": scene.outline.least_radius}
         graded = {"layers": 3, "edge_layers": 1}

@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from solidgear.core.ladder.model import LUMPED, Model
+
+if TYPE_CHECKING:
+    pass
 
 
 class Lumped(Model):

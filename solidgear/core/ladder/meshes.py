@@ -11,9 +11,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from solidgear.core.models.options import FACTORING_OPTIONS
+
+if TYPE_CHECKING:
+    pass
 
 Options = dict[str, Any]
 

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from solidgear.core.bounds.safety import Safety
     from solidgear.core.ladder.meshes import Sequence
     from solidgear.core.models.size import Size
+    from solidgear.core.scene.shaft import Shaft
 
 LUMPED, BEAM, SOLID = "lumped", "beam", "solid"
 Options = Mapping[str, Any]
@@ -24,7 +25,7 @@ Options = Mapping[str, Any]
 Series = tuple[str, str, list[dict[str, Any]]]
 
 
-def features_of(scene: Any) -> tuple[Any, ...]:
+def features_of(scene: Shaft) -> tuple[Any, ...]:
     """Return the features of a scene that are not smeared."""
     from solidgear.core.scene.shaft import resolved  # start-up: every command reads the ladder
 
@@ -74,27 +75,27 @@ class Model:
         """Import and return the builder: ``builder(scene, **options)`` gives the free body."""
         raise NotImplementedError(f"the {self.title} has no body")
 
-    def build(self, scene: Any, **options: Any) -> Body:
+    def build(self, scene: Shaft, **options: Any) -> Body:
         """Build the free body of a scene, by options of the builder within their limits."""
         return self.builder()(scene, **{**self.preset, **options})
 
-    def size(self, scene: Any, options: Options) -> Size:
+    def size(self, scene: Shaft, options: Options) -> Size:
         """Count the unknowns and matrix entries on the mesh."""
         return self._size(scene, self.defaults() | self.checked(self.given(scene, options)))
 
-    def _size(self, scene: Any, options: dict[str, Any]) -> Size:
+    def _size(self, scene: Shaft, options: dict[str, Any]) -> Size:
         """Count with all options given; a cheap body is built and counted."""
         from solidgear.core.models.size import size_of_body
 
         return size_of_body(self.builder()(scene, **self.split(options)[0]))
 
-    def rough_unknowns(self, scene: Any, options: Options) -> float:
+    def rough_unknowns(self, scene: Shaft, options: Options) -> float:
         """Estimate the unknowns of tetrahedra to within a factor of about three, without meshing; 0
         for models without tetrahedra.
         """
         return 0.0
 
-    def can_halve(self, scene: Any, options: Options) -> bool:
+    def can_halve(self, scene: Shaft, options: Options) -> bool:
         """Return True where an option ``half`` makes the body smaller."""
         return False
 
@@ -102,27 +103,27 @@ class Model:
         """Return the meshes of a solid, coarse to fine, by the options that were asked for."""
         raise NotImplementedError(f"the {self.title} is solved once")
 
-    def meshes_of(self, scene: Any, options: Options) -> Sequence:
+    def meshes_of(self, scene: Shaft, options: Options) -> Sequence:
         """Return the meshes for a scene, coarse to fine."""
         return self.meshes({**self.preset, **self.given(scene, options)})
 
-    def series(self, scene: Any, full: bool) -> list[Series]:
+    def series(self, scene: Shaft, full: bool) -> list[Series]:
         """Return lines of a chart of error against cost, with more levels when full; the usual mesh
         alone by default.
         """
         return [(self.family, self.heading, [{}])]
 
-    def limits(self, scene: Any) -> str:
+    def limits(self, scene: Shaft) -> str:
         """Return the reason why this model cannot solve the scene, although it supports its
         features; empty if it can. Called for scenes with features of `CYCLIC` only.
         """
         return ""
 
-    def unfit(self, scene: Any) -> str:
+    def unfit(self, scene: Shaft) -> str:
         """Return the reason why it does not model a scene; empty if it does."""
         from solidgear.core.scene.shaft import feature_labels
 
-        features, with_smeared = features_of(scene), getattr(scene, "features", ())
+        features, with_smeared = features_of(scene), scene.features
         if self.for_features and not any(f.sort in self.holds for f in with_smeared):
             kinds = sorted(kind for kind, cls in added("feature").items() if cls.sort in self.holds)
             return (
@@ -147,12 +148,12 @@ class Model:
             return f"{unfit}: it would answer for the plain part"
         return unfit if strange else f"{unfit}, and no mesh has both"
 
-    def concerns(self, scene: Any) -> bool:
+    def concerns(self, scene: Shaft) -> bool:
         """Return True where it is among the models solved for a scene when none is named."""
         sorts = {f.sort for f in features_of(scene)}
         return not self.for_features or not sorts.isdisjoint(self.holds)
 
-    def given(self, scene: Any, options: Options) -> dict[str, Any]:
+    def given(self, scene: Shaft, options: Options) -> dict[str, Any]:
         """Return options for the builder of a scene: those asked for over those that features
         need.
         """
@@ -226,13 +227,13 @@ class Ladder:
         """Names of the models that build a body."""
         return tuple(m.name for m in self.models if m.family != LUMPED)
 
-    def fit(self, scene: Any) -> tuple[str, ...]:
+    def fit(self, scene: Shaft) -> tuple[str, ...]:
         """Return the models with a body, without those made for features that a scene does not
         have.
         """
         return tuple(n for n in self.bodies if self[n].concerns(scene))
 
-    def holding(self, scene: Any) -> tuple[str, ...]:
+    def holding(self, scene: Shaft) -> tuple[str, ...]:
         """Return the models with a body that model all of a scene."""
         return tuple(n for n in self.bodies if not self[n].unfit(scene))
 

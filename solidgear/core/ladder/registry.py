@@ -11,12 +11,17 @@ validation.campaign features``.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from solidgear.core.ladder.beams import Euler, Timoshenko
 from solidgear.core.ladder.harmonic import Harmonic
 from solidgear.core.ladder.lumped import Lumped
 from solidgear.core.ladder.model import Ladder
 from solidgear.core.ladder.solid import Solid
 from solidgear.core.registry import added
+
+if TYPE_CHECKING:
+    pass
 
 _further = [model() for model in added("model").values()]
 LADDER = Ladder(Lumped(), Euler(), Timoshenko(), Harmonic(), *_further, Solid())

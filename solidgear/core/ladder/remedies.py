@@ -72,7 +72,7 @@ def refusal(
 class _Remedies:
     """Remedies for one refusal, in order of the accuracy and work they cost."""
 
-    scene: Any
+    scene: Shaft
     model: Model
     options: dict[str, Any]
     body: Body | None

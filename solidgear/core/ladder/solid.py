@@ -15,6 +15,7 @@ from solidgear.core.registry import addition
 if TYPE_CHECKING:
     from solidgear.core.body import Body
     from solidgear.core.models.size import Size
+    from solidgear.core.scene.shaft import Shaft
 
 
 #: unknowns of a tetrahedron of second order, most of which it shares
@@ -103,12 +104,12 @@ class Solid(Volume):
 
         return solid
 
-    def _size(self, scene: Any, options: dict[str, Any]) -> Size:
+    def _size(self, scene: Shaft, options: dict[str, Any]) -> Size:
         from solidgear.core.models.solid.size import solid_size
 
         return solid_size(scene, **self.split(options)[0])
 
-    def rough_unknowns(self, scene: Any, options: Options) -> float:
+    def rough_unknowns(self, scene: Shaft, options: Options) -> float:
         """Estimate the unknowns of tetrahedra."""
         from solidgear.core.models.solid.plan import tetrahedra_of, tetrahedra_plan
 
@@ -119,19 +120,19 @@ class Solid(Volume):
         plan = tetrahedra_plan(scene, self.wanted(scene, full_options), **sizes)
         return PER_TETRAHEDRON * tetrahedra_of(scene, plan, full_options["refinement"])
 
-    def can_halve(self, scene: Any, options: Options) -> bool:
+    def can_halve(self, scene: Shaft, options: Options) -> bool:
         """Return True where all cuts of a shaft have one mirror plane."""
         mirror_plane = addition("question of features", "mirror plane")
         cuts = features_of(scene)
         return bool(cuts) and all(f.sort == CUTS for f in cuts) and mirror_plane(cuts) is not None
 
-    def concerns(self, scene: Any) -> bool:
+    def concerns(self, scene: Shaft) -> bool:
         """Return False where the mesh would be copies of a sector: that is no second opinion, and
         solved only when named.
         """
         return {CYCLIC} != {f.sort for f in features_of(scene)}
 
-    def limits(self, scene: Any) -> str:
+    def limits(self, scene: Shaft) -> str:
         """Return the reason why features of a scene have no sector, or cannot be cut beside each
         other; empty if they can.
         """
@@ -139,7 +140,7 @@ class Solid(Volume):
             return super().limits(scene)
         return addition("question of features", "not together")(scene)
 
-    def given(self, scene: Any, options: Options) -> dict[str, Any]:
+    def given(self, scene: Shaft, options: Options) -> dict[str, Any]:
         """Return options with tetrahedra for features, fillets, chamfers or a part from a file,
         beside which layered hexahedra converge too slowly for error bars; and hexahedra for a
         block.
@@ -151,7 +152,7 @@ class Solid(Volume):
             return {"element": "tet10", **options}
         return dict(options)
 
-    def meshes_of(self, scene: Any, options: Options) -> Sequence:
+    def meshes_of(self, scene: Shaft, options: Options) -> Sequence:
         """Return the meshes of files, or the usual list."""
         full_options = {**self.preset, **self.given(scene, options)}
         body = getattr(scene, "body", None)
@@ -178,7 +179,7 @@ class Solid(Volume):
         tetrahedra = TETRAHEDRA if second else LINEAR
         return Sequence(tuple({**level, **options} for level in tetrahedra), False, False)
 
-    def series(self, scene: Any, full: bool) -> list[Series]:
+    def series(self, scene: Shaft, full: bool) -> list[Series]:
         """Return every element type, on uniform and on graded meshes."""
         from solidgear.core.models.solid.plan import usual_size
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from solidgear.core.errors import SceneError
 from solidgear.core.scene.blends import Fillet
 
 if TYPE_CHECKING:
+    from solidgear.core.scene.model import Scene
     from solidgear.core.scene.outline import Torus
     from solidgear.core.scene.parts import Segment
 
@@ -15,15 +16,15 @@ if TYPE_CHECKING:
 QUARTER = 1e-3
 
 
-def filleted(scene: Any) -> Any:
+def filleted(scene: Scene) -> Scene:
     """Return the round part of a scene with a fillet for every quarter of a turn at the root of an
     outer shoulder, other arcs as cones; a scene of segments, or of a part whose fillets reach into a
     seat, unchanged. Segments keep their names, and those of cones go.
     """
-    body = getattr(scene, "body", None)
+    body = scene.body
     if body is None or not body.tori:
         return scene
-    segments, blends = list(scene.segments), []
+    segments, blends = list(scene.segments), list[Fillet]()
     for torus in body.tori:
         fillet = _fillet(torus, segments)
         blends += [fillet] if fillet else []

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
 if TYPE_CHECKING:
     from solidgear.core.scene.outline import Outline
     from solidgear.core.scene.parts import Segment
     from solidgear.core.scene.point_mass import PointMass
     from solidgear.core.scene.stations import Bearing, Port
+
+    Station: TypeAlias = Port | Bearing | PointMass
 
 
 class Shaft(Protocol):
@@ -31,8 +33,16 @@ class Shaft(Protocol):
     def length(self) -> float:
         """Overall length, m."""
 
+    @property
+    def features(self) -> tuple[Any, ...]:
+        """Features cut out of the segments or standing on them."""
 
-def resolved(scene: Any) -> tuple[Any, ...]:
+    @property
+    def body(self) -> Any:
+        """Part from a file, whose round part the segments are; None of a shaft of segments."""
+
+
+def resolved(scene: Shaft) -> tuple[Any, ...]:
     """Return the features of a scene that models of revolution cannot hold, and its part from a file;
     teeth that are smeared into a cone do not count.
 
@@ -43,15 +53,13 @@ def resolved(scene: Any) -> tuple[Any, ...]:
     >>> [feature.name for feature in resolved(scene)]
     ['key']
     """
-    body = getattr(scene, "body", None)
-    parts = () if body is None else (body,)
-    return (*(f for f in getattr(scene, "features", ()) if not f.smeared), *parts)
+    parts = () if scene.body is None else (scene.body,)
+    return (*(f for f in scene.features if not f.smeared), *parts)
 
 
-def without_axis(scene: Any) -> bool:
+def without_axis(scene: Shaft) -> bool:
     """Return True for a block or another body that is no shaft, whose segments only give places."""
-    body = getattr(scene, "body", None)
-    return body is not None and body.edges is not None
+    return scene.body is not None and scene.body.edges is not None
 
 
 def turning_speed(scene: Any) -> float | None:
@@ -76,8 +84,8 @@ def feature_labels(features: Iterable[Any]) -> str:
 
 
 def attached_stations(
-    stations: Iterable[Any], attachments: Sequence[str] | None = None
-) -> Iterator[tuple[Any, str]]:
+    stations: Iterable[Station], attachments: Sequence[str] | None = None
+) -> Iterator[tuple[Station, str]]:
     """Yield stations with each of their attachments: those given, else the one of the station; the
     middle of an end face is always a section.
 

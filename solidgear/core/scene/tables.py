@@ -29,7 +29,7 @@ class BearingData(Protocol):
     preload: Any
     load: Any
     displacement: Any
-    speed: float | None  #: rad/s
+    speed: float  #: rad/s
 
     @property
     def estimated(self) -> Sequence[str]: ...

@@ -15,6 +15,7 @@ from solidgear.core.models.options import CORRECTED_OPTIONS
 if TYPE_CHECKING:
     from solidgear.core import Body
     from solidgear.core.models.size import Size
+    from solidgear.core.scene.shaft import Shaft
 
 #: free modes kept on the coarsest mesh, whose supported modes err by more than those left out give
 FEWER = 10
@@ -53,12 +54,12 @@ class Corrected(Volume):
 
         return corrected
 
-    def _size(self, scene: Any, options: dict[str, Any]) -> Size:
+    def _size(self, scene: Shaft, options: dict[str, Any]) -> Size:
         from solidgear.cuts.corrected.mesh import corrected_size
 
         return corrected_size(scene, options["refinement"], options["attachments"])
 
-    def rough_unknowns(self, scene: Any, options: Options) -> float:
+    def rough_unknowns(self, scene: Shaft, options: Options) -> float:
         """Estimate the unknowns of one of the 3D solids."""
         from solidgear.core.models.solid.plan import tetrahedra_of
         from solidgear.cuts.corrected.mesh import plan_of
@@ -75,7 +76,7 @@ class Corrected(Volume):
             return Sequence((coarser, finest), True, True)
         return Sequence(tuple({**level, **options} for level in CORRECTED), False, True)
 
-    def series(self, scene: Any, full: bool) -> list[Series]:
+    def series(self, scene: Shaft, full: bool) -> list[Series]:
         """Return the meshes, for a scene with such features."""
         if not self.concerns(scene):
             return []

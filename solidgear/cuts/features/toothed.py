@@ -54,7 +54,7 @@ def arc(half: float) -> np.ndarray:
     return np.linspace(-half, half, max(chords, 1) + 1)
 
 
-class _Toothed(OnSegment):
+class Toothed(OnSegment):
     """Trapezoid teeth, the same in every section but for the size.
 
     The angle is that of the middle of a tooth at the start of the segment, rad: 0 is +z.
@@ -176,7 +176,7 @@ class _Toothed(OnSegment):
                 return
 
 
-class Teeth(_Toothed):
+class Teeth(Toothed):
     """Straight or spiral teeth on a whole segment: a cone, or a cylinder.
 
     Every section is the same trapezoid with straight flanks, in proportion to the radius of the
@@ -196,7 +196,7 @@ class Teeth(_Toothed):
     kind: Literal["teeth"] = "teeth"
 
 
-class Spline(_Toothed):
+class Spline(Toothed):
     """Teeth on a cylinder, with the fields of :class:`Teeth`."""
 
     on_cones: ClassVar[bool] = False

@@ -7,7 +7,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from skfem import MeshTet2
@@ -37,12 +37,16 @@ from solidgear.cuts.sector.meshing import (
 )
 from solidgear.cuts.solid.holes import fine_lines
 
+if TYPE_CHECKING:
+    from solidgear.core import Scene
+    from solidgear.core.scene.shaft import Shaft
+
 #: eigenvalues of pairs in a real matrix made of a complex one differ by rounding
 PAIRS = 1e-9
 
 
 def sector(
-    scene: Any,
+    scene: Scene,
     *,
     size: float | None = None,
     graded_size: float | None = None,
@@ -112,7 +116,7 @@ def _solved_part(meshed: SectorMesh) -> tuple[SolidMesh, Callable[..., tuple[Blo
     return mesh, partial(cyclic_blocks, mesh, mesh.sector)
 
 
-def whole(scene: Any, wanted: Sequence, *, refinement: float, **sizes: Any) -> Body:
+def whole(scene: Scene, wanted: Sequence, *, refinement: float, **sizes: Any) -> Body:
     """Build the free body, in one block, of the same shaft in full: all sectors, copies of one mesh
     with the ``size`` and ``graded_size`` of :func:`sector`.
     """
@@ -128,7 +132,7 @@ def whole(scene: Any, wanted: Sequence, *, refinement: float, **sizes: Any) -> B
 
 
 def whole_mesh(
-    scene: Any, wanted: Sequence, **sizes: Any
+    scene: Scene, wanted: Sequence, **sizes: Any
 ) -> tuple[MeshTet2, np.ndarray, SectorMesh]:
     """Return the mesh of all sectors, the segment of each element, and the sector that it is copied
     from; parameters as for :func:`whole`.
@@ -137,15 +141,15 @@ def whole_mesh(
     return (*replicated(meshed), meshed)
 
 
-def cyclic_features(scene: Any) -> tuple[Any, ...]:
+def cyclic_features(scene: Shaft) -> tuple[Any, ...]:
     """Return the features of a scene that repeat themselves around the axis: the resolved ones, or,
     without any, teeth that the scene smears for other models.
     """
-    cyclic = tuple(f for f in getattr(scene, "features", ()) if f.sort == CYCLIC)
+    cyclic = tuple(f for f in scene.features if f.sort == CYCLIC)
     return tuple(f for f in cyclic if not f.smeared) or cyclic
 
 
-def no_sector(scene: Any) -> str:
+def no_sector(scene: Shaft) -> str:
     """Return the reason why the features of a scene have no sector that can be meshed; empty if they
     have one.
 
@@ -161,7 +165,7 @@ def no_sector(scene: Any) -> str:
     return _edge_in_teeth(scene.outline, features) or no_common_sector(features)
 
 
-def not_together(scene: Any) -> str:
+def not_together(scene: Shaft) -> str:
     """Return the reason why teeth and bolt circles of a scene cannot be meshed beside cuts;
     empty if they can.
     """
@@ -235,7 +239,7 @@ def sectors_around(scene, options: Mapping[str, Any]) -> int:
     return options.get("count") or max(1, sectors_of(cyclic_features(scene)))
 
 
-def halved(scene: Any, count: int) -> bool:
+def halved(scene: Shaft, count: int) -> bool:
     """Return True where the middle of one of so many sectors can lie in a mirror plane of all features.
 
     Examples

@@ -19,9 +19,9 @@ sector's part of a seat, the motion is ``A_full^{-1} Re(P b' T q)`` with
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy.sparse as sp
@@ -31,6 +31,10 @@ from solidgear.core.kernel.attachment import Attached, with_ports
 from solidgear.core.models.solid.block import rigid_motions
 from solidgear.core.models.solid.matrices import _matrices, weighed
 from solidgear.core.models.solid.mesh import SolidMesh
+
+if TYPE_CHECKING:
+    from solidgear.core import Scene
+    from solidgear.core.scene.shaft import Station
 
 #: port components of the two harmonics that ports move in
 PORTED: dict[int, tuple[int, ...]] = {0: (1, 4), 1: (0, 2, 3, 5)}
@@ -124,12 +128,16 @@ def _interleaved(matrix: np.ndarray) -> np.ndarray:
     return np.stack([matrix.real, matrix.imag], axis=1).reshape(2 * len(matrix), -1)
 
 
+#: pieces whose mean motion is that of a station, and the nodes that a rigid seat holds
+SeatParts = tuple[Iterable, np.ndarray | None]
+
+
 def cyclic_blocks(
     mesh: SolidMesh,
     sector: Sector,
-    scene: Any,
-    wanted: Sequence[tuple[Any, str]],
-    parts_of: Callable[[Any, str], Any],
+    scene: Scene,
+    wanted: Sequence[tuple[Station, str]],
+    parts_of: Callable[[Station, str], SeatParts],
     harmonics: Sequence[int] = (),
 ) -> tuple[Block, ...]:
     """Return the blocks of a whole part from the mesh of one sector: ``cyclic_0`` (components 1, 4),

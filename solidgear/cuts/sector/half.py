@@ -21,7 +21,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy.sparse as sp
@@ -35,6 +35,11 @@ from solidgear.core.models.solid.mesh import SolidMesh, _isoparametric
 from solidgear.cuts.sector.cyclic import ROUNDING
 from solidgear.cuts.sector.mesh import PieceSolid
 from solidgear.cuts.sector.meshing import MATCH, SectorMesh
+
+if TYPE_CHECKING:
+    from solidgear.core import Scene
+    from solidgear.core.scene.shaft import Station
+    from solidgear.cuts.sector.cyclic import SeatParts
 
 #: blocks that ports move in: harmonic index and components
 PORTED: dict[str, tuple[int, tuple[int, ...]]] = {
@@ -118,9 +123,9 @@ def basis(half: HalfSector, nodes: int, h: int) -> tuple[sp.csr_matrix, np.ndarr
 
 def half_sector_blocks(
     mesh: HalfSectorSolid,
-    scene: Any,
-    wanted: Sequence[tuple[Any, str]],
-    parts_of: Callable[[Any, str], Any],
+    scene: Scene,
+    wanted: Sequence[tuple[Station, str]],
+    parts_of: Callable[[Station, str], SeatParts],
     harmonics: Sequence[int] = (),
 ) -> tuple[Block, ...]:
     """Return the blocks of a whole part from the mesh of half a sector, as by

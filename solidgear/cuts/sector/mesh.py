@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,8 +17,11 @@ from solidgear.core.models.solid.seat_faces import Seats
 from solidgear.cuts.sector.cyclic import Sector
 from solidgear.cuts.sector.meshing import SectorMesh, cut_vertices, matched
 
+if TYPE_CHECKING:
+    from solidgear.core import Scene
 
-def seats(mesh: SolidMesh, straight: np.ndarray, scene: Any, features: Sequence[Any]) -> Facets:
+
+def seats(mesh: SolidMesh, straight: np.ndarray, scene: Scene, features: Sequence[Any]) -> Facets:
     """Return the function that gives facets of seats, in a sector or the whole: on the rest of
     surfaces of revolution, and on flanks, tips and roots of teeth; of the places (3, nv) of straight
     vertices only y and the radius count.

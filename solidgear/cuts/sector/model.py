@@ -15,6 +15,7 @@ from solidgear.core.models.options import SECTOR_OPTIONS
 if TYPE_CHECKING:
     from solidgear.core import Body
     from solidgear.core.models.size import Size
+    from solidgear.core.scene.shaft import Shaft
 
 #: one sector holds meshes that are finer than those of a whole shaft
 SECTOR: tuple[dict[str, Any], ...] = tuple({"refinement": r} for r in (0.7, 1.0, 1.4, 2.0, 2.8))
@@ -44,12 +45,12 @@ class Sector(Volume):
 
         return sector
 
-    def _size(self, scene: Any, options: dict[str, Any]) -> Size:
+    def _size(self, scene: Shaft, options: dict[str, Any]) -> Size:
         from solidgear.cuts.sector.body import sector_size
 
         return sector_size(scene, **self.split(options)[0])
 
-    def rough_unknowns(self, scene: Any, options: Options) -> float:
+    def rough_unknowns(self, scene: Shaft, options: Options) -> float:
         """Estimate the unknowns of all that is solved on half a sector."""
         from solidgear.cuts.sector.body import rough_sector
 
@@ -61,7 +62,7 @@ class Sector(Volume):
             * rough_sector(scene, self.wanted(scene, full_options), **sizes)
         )
 
-    def can_halve(self, scene: Any, options: Options) -> bool:
+    def can_halve(self, scene: Shaft, options: Options) -> bool:
         """Return True where the middle of a sector can lie in a mirror plane of all features."""
         from solidgear.cuts.sector.body import halved, sectors_around
 
@@ -73,7 +74,7 @@ class Sector(Volume):
             return fixed_refinements(options)
         return Sequence(tuple({**level, **options} for level in SECTOR), False, False)
 
-    def series(self, scene: Any, full: bool) -> list[Series]:
+    def series(self, scene: Shaft, full: bool) -> list[Series]:
         """Return the meshes, for a scene with such features."""
         if not self.concerns(scene):
             return []

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import cos, hypot, pi
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,8 +12,12 @@ from solidgear.core.scene.closed_form import integrals_along
 from solidgear.cuts.features.toothed import arc
 from solidgear.cuts.solid.cuts import ACROSS, GROWTH
 
+if TYPE_CHECKING:
+    from solidgear.core.scene.parts import Segment
+    from solidgear.cuts.features.toothed import Toothed
 
-def outline(teeth: Any, count: int) -> tuple[np.ndarray, np.ndarray]:
+
+def outline(teeth: Toothed, count: int) -> tuple[np.ndarray, np.ndarray]:
     """Return corners of the section of one of `count` sectors, from one cut face to the other:
     angles from the middle, rad, and radii over the pitch radius.
 
@@ -41,7 +45,7 @@ def outline(teeth: Any, count: int) -> tuple[np.ndarray, np.ndarray]:
     return angle, radius
 
 
-def half_outline(teeth: Any, count: int) -> tuple[np.ndarray, np.ndarray]:
+def half_outline(teeth: Toothed, count: int) -> tuple[np.ndarray, np.ndarray]:
     """Return corners of the section of half a sector, from the middle to a cut face, as of
     :func:`outline`.
 
@@ -59,7 +63,7 @@ def half_outline(teeth: Any, count: int) -> tuple[np.ndarray, np.ndarray]:
     return np.r_[0.0, angle[past_middle]], np.r_[radius[k] * cos(angle[k]), radius[past_middle]]
 
 
-def section_area(teeth: Any) -> float:
+def section_area(teeth: Toothed) -> float:
     """Return the area of a toothed section of unit pitch radius, closed form.
 
     Examples
@@ -74,7 +78,7 @@ def section_area(teeth: Any) -> float:
     return float(teeth.count * triangles.sum())
 
 
-def section_polar(teeth: Any) -> float:
+def section_polar(teeth: Toothed) -> float:
     """Return the polar second moment of area of a toothed section of unit pitch radius, closed
     form.
 
@@ -93,7 +97,7 @@ def section_polar(teeth: Any) -> float:
     return float(teeth.count * (twice * square).sum() / 12)
 
 
-def lacking(teeth: Any, segment: Any) -> tuple[float, float]:
+def lacking(teeth: Toothed, segment: Segment) -> tuple[float, float]:
     """Return mass, kg, and polar inertia, kg m^2, that a toothed segment has beyond the cone; below
     zero where the cone has more.
     """
@@ -104,7 +108,7 @@ def lacking(teeth: Any, segment: Any) -> tuple[float, float]:
     )
 
 
-def turn_at(y: np.ndarray, twists: list[tuple[Any, Any]]) -> np.ndarray:
+def turn_at(y: np.ndarray, twists: list[tuple[Segment, Toothed]]) -> np.ndarray:
     """Return the angle about +y, rad, by which spiral teeth on segments have turned the sections at
     places y, m: zero at the start of the shaft, and constant outside the teeth.
 
@@ -130,7 +134,7 @@ def turn_at(y: np.ndarray, twists: list[tuple[Any, Any]]) -> np.ndarray:
     return out
 
 
-def tooth_size(teeth: Any, segment: Any, refinement: float) -> str:
+def tooth_size(teeth: Toothed, segment: Segment, refinement: float) -> str:
     """Return a formula (in x, y, z, m) of the element edge at teeth: a part of their height in the
     section that refinement divides, growing inwards.
     """

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -22,6 +22,9 @@ from solidgear.core.models.solid.seat_faces import Seats
 from solidgear.core.scene.shaft import resolved
 from solidgear.cuts.solid.halves import HalfDrawing, half_blocks
 from solidgear.cuts.solid.meshing import FeaturedMesh, featured_mesh, submesh
+
+if TYPE_CHECKING:
+    from solidgear.core import Scene
 
 
 def meshed(scene, plan: dict, refinement: float, half: bool, edges: bool = False) -> FeaturedMesh:
@@ -39,13 +42,18 @@ def meshed(scene, plan: dict, refinement: float, half: bool, edges: bool = False
     )
 
 
-def cut_body(scene: Any, wanted: Sequence, plan: dict, refinement: float, half: bool) -> Body:
+def cut_body(scene: Scene, wanted: Sequence, plan: dict, refinement: float, half: bool) -> Body:
     """Build the free body of a scene with cuts; parameters as for :func:`meshed`."""
     return featured_body(scene, wanted, meshed(scene, plan, refinement, half), refinement)
 
 
 def featured_body(
-    scene: Any, wanted: Sequence, cut_mesh: FeaturedMesh, refinement: float, *, plain: bool = False
+    scene: Scene,
+    wanted: Sequence,
+    cut_mesh: FeaturedMesh,
+    refinement: float,
+    *,
+    plain: bool = False,
 ) -> Body:
     """Build the free body of a meshed scene with its features cut out or, `plain`, left in: two
     blocks where there is a mirror plane, one where there is none; refuse a seat without faces and
@@ -74,7 +82,7 @@ def featured_body(
     return body_of(scene, wanted, blocks, facts, drawing)
 
 
-def cut_size_of(scene: Any, plan: dict, refinement: float, half: bool) -> Size:
+def cut_size_of(scene: Scene, plan: dict, refinement: float, half: bool) -> Size:
     """Mesh a scene with cuts and count; parameters as for :func:`meshed`."""
     return cut_size(meshed(scene, plan, refinement, half))
 
@@ -90,7 +98,7 @@ def cut_size(cut_mesh: FeaturedMesh) -> Size:
     return replace(halves, unknowns=halves.unknowns - 3 * on_plane)
 
 
-def _facets(solid: SolidMesh, scene: Any) -> Facets:
+def _facets(solid: SolidMesh, scene: Scene) -> Facets:
     """Return the facets of seats on the rest of surfaces of revolution, and on teeth."""
     cyclic = [f for f in resolved(scene) if f.sort == CYCLIC]
     if not cyclic:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy.sparse as sp
@@ -21,6 +21,9 @@ from solidgear.core.models.solid.drawing import copied
 from solidgear.core.models.solid.matrices import _matrices, rigid_part, weighed
 from solidgear.core.models.solid.mesh import SolidMesh
 
+if TYPE_CHECKING:
+    from solidgear.core import Scene
+
 #: by the axis at right angles to the plane: name and port components of the symmetric and of the
 #: antisymmetric motions
 PARTS: dict[int, tuple[tuple[str, tuple[int, ...]], tuple[str, tuple[int, ...]]]] = {
@@ -30,7 +33,7 @@ PARTS: dict[int, tuple[tuple[str, tuple[int, ...]], tuple[str, tuple[int, ...]]]
 
 
 def half_blocks(
-    mesh: SolidMesh, scene: Any, wanted: Sequence, facets_of: Facets, axis: int
+    mesh: SolidMesh, scene: Scene, wanted: Sequence, facets_of: Facets, axis: int
 ) -> tuple[Block, Block]:
     """Return the symmetric and the antisymmetric block of a whole part from the mesh of its half,
     whose cut faces lie in the plane at right angles to an axis, 0 or 2; refuse a seat without faces

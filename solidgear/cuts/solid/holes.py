@@ -5,13 +5,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import cos, pi, sin, sqrt
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from solidgear.core.meshing.element_size import _num
 from solidgear.cuts.sector.teeth import turn_at
 from solidgear.cuts.solid.cuts import ACROSS, GROWTH
+
+if TYPE_CHECKING:
+    from solidgear.core.scene.parts import Segment
+    from solidgear.cuts.features.bolt_circle import BoltCircle
+    from solidgear.cuts.features.toothed import Toothed
 
 Place = tuple[float, float]
 #: share of the section that holes take from which elements at them are refined as all others are.
@@ -34,7 +39,7 @@ class Hole:
     least: float  #: element edge on the wall
 
 
-def hole_of(bolts: Any, segment: Any, refinement: float) -> Hole:
+def hole_of(bolts: BoltCircle, segment: Segment, refinement: float) -> Hole:
     """Return the holes of a bolt circle in a segment, with the element edge that a refinement asks
     of them.
     """
@@ -48,7 +53,11 @@ def hole_of(bolts: Any, segment: Any, refinement: float) -> Hole:
 
 
 def hole_places(
-    bolts: Any, segment: Any, twists: list[tuple[Any, Any]], first: float, reach: float
+    bolts: BoltCircle,
+    segment: Segment,
+    twists: list[tuple[Segment, Toothed]],
+    first: float,
+    reach: float,
 ) -> list[Place]:
     """Return the middles (x, z) of holes in the straight sector, whose middle looks to +z, m.
 

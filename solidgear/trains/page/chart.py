@@ -23,6 +23,8 @@ from solidgear.show.plot import BETWEEN, NARROW, WIDE, Chart, in_columns
 from solidgear.show.units import ENGINEERING, Units, plain
 from solidgear.show.words import hertz
 from solidgear.trains.page.tables import turned
+from solidgear.trains.response.receptance import TrainReceptance
+from solidgear.trains.response.response import TrainResponse
 
 COLOURS = ("#00805e", "#0072b2", "#c98a00", "#b3305c", "#5a3e8c", "#444444", "#1f9bb8", "#8a6d3b")
 #: of two responses beside each other, told apart by everyone
@@ -41,7 +43,7 @@ PANELS = (
 
 
 def response_chart(
-    responses: Sequence[Any],
+    responses: Sequence[TrainResponse],
     title: str,
     teeth: float | None,
     band: float | None,
@@ -103,7 +105,7 @@ def response_chart(
 
 
 def columns_chart(
-    responses: Sequence[Any],
+    responses: Sequence[TrainResponse],
     columns: Sequence[tuple[str, str]],
     teeth: float | None,
     units: Units = ENGINEERING,
@@ -140,7 +142,7 @@ def columns_chart(
     return Chart(in_columns(panels, in_row), width) if panels else None
 
 
-def _cut(response: Any, first: float) -> str:
+def _cut(response: TrainResponse, first: float) -> str:
     """Return a remark on the part below the axis; empty if there is none."""
     if first <= response.frequency_hz[0]:
         return ""
@@ -150,7 +152,7 @@ def _cut(response: Any, first: float) -> str:
 
 
 def receptance_chart(
-    receptances: Sequence[Any],
+    receptances: Sequence[TrainReceptance],
     title: str,
     teeth: float,
     units: Units = ENGINEERING,
@@ -203,7 +205,9 @@ class _Curve(NamedTuple):
     read: tuple[tuple[str, str, np.ndarray], ...]
 
 
-def _models(curves: Sequence[Any], colours: Sequence[str] = COLOURS) -> dict[str, Series]:
+def _models(
+    curves: Sequence[TrainResponse | TrainReceptance], colours: Sequence[str] = COLOURS
+) -> dict[str, Series]:
     """Return models by their labels, the colours in turn."""
     colours = colours if len(curves) == len(PAIR) else COLOURS
     return {item.label: Series(colours[k % len(colours)]) for k, item in enumerate(curves)}
@@ -283,7 +287,7 @@ def _tops(peaks: Sequence[tuple[float, float, str]], si: str, units: Units) -> l
 
 def _peaks(
     panel: Panel,
-    models: Sequence[Any],
+    models: Sequence[TrainResponse | TrainReceptance],
     tops: Sequence[list],
     teeth: float | None,
     names: tuple[str, str],

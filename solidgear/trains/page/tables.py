@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from math import degrees
 from typing import Any
 
 from solidgear.show.table import NUMBER, Cell, Column, Table, quantity, text, word
 from solidgear.show.units import ENGINEERING, GROUP, Units, engineering
 from solidgear.show.words import DASH, grouped, hertz, percent, seconds, whole
+from solidgear.trains.file.layout import PerTurn
+from solidgear.trains.response.response import TrainResponse
 
 #: relative; no frequency is shown with a smaller bound, whatever the proof says
 ROUNDING = 1e-12
@@ -69,11 +71,11 @@ def _housing(box: Mapping[str, Any], units: Units) -> list[list[str]]:
     return rows
 
 
-def housing_columns(response: Any) -> list[tuple[str, str]]:
-    """Return columns of a response for its housing, with their titles."""
+def housing_columns(columns: Iterable[str]) -> list[tuple[str, str]]:
+    """Return those columns of a response that the housing moves, with titles."""
     return [
         (column, column.partition(" [")[0])
-        for column in response.columns
+        for column in columns
         if column.startswith("mount ")
         and " force [" in column
         or column.startswith("housing ")
@@ -81,10 +83,10 @@ def housing_columns(response: Any) -> list[tuple[str, str]]:
     ]
 
 
-def housing(response: Any, units: Units = ENGINEERING) -> Table:
+def housing(response: TrainResponse, units: Units = ENGINEERING) -> Table:
     """Return the largest loads of mounts and accelerations of the housing over a response."""
     rows = []
-    for column, name in housing_columns(response):
+    for column, name in housing_columns(response.columns):
         size = abs(response.columns[column])
         si, top = column.partition(" [")[2].rstrip("]"), int(size.argmax())
         rows.append((name, units.text(float(size[top]), si, 4), response.frequency_hz[top]))
@@ -252,7 +254,7 @@ def modes(
     def bound(mode: Mapping[str, Any]) -> str:
         return "exact" if mode["frequency_hz"] == 0 else f"{max(mode['bound'], ROUNDING):.0e}"
 
-    def mesh(mode: Mapping[str, Any]) -> Any:
+    def mesh(mode: Mapping[str, Any]) -> float | str | None:
         return missing if mode["mesh"] is None else mode["mesh"]
 
     columns = [
@@ -296,9 +298,9 @@ def peaks(
     )
 
 
-def turned(teeth: Any) -> str:
+def turned(teeth: float | None) -> str:
     """Return the shaft of speeds: the pinion unless the teeth name another."""
-    return str(getattr(teeth, "of", "pinion"))
+    return teeth.of if isinstance(teeth, PerTurn) else "pinion"
 
 
 def crossings(

@@ -19,15 +19,18 @@ from solidgear.core.scene.patches import point_of
 if TYPE_CHECKING:
     from solidgear.core.body.surface import Drawing
     from solidgear.core.meshing.quality import MeshQuality
+    from solidgear.core.scene import Scene
+    from solidgear.core.scene.parts import Material, Segment
+    from solidgear.core.scene.shaft import Station
 
 #: components of a node by those of its mirror image, in the planes x = 0, z = 0 and x = z
 SWAPPED = [2, 1, 0]
 PLANES = (([0, 1, 2], (-1, 1, 1)), ([0, 1, 2], (1, 1, -1)), (SWAPPED, (1, 1, 1)))
 #: facets of a mesh that carry a station, by its attachment
-Facets = Callable[[Any, str], np.ndarray]
+Facets = Callable[["Station", str], np.ndarray]
 
 
-def seat_facets(mesh: SolidMesh, segments: Sequence[Any], tolerance: float) -> Facets:
+def seat_facets(mesh: SolidMesh, segments: Sequence[Segment], tolerance: float) -> Facets:
     """Return the function that gives the facets of seats and sections of a body of revolution, within
     a tolerance, m, by station and attachment.
     """
@@ -122,11 +125,11 @@ def mirrored(nodes: np.ndarray, hair: float) -> tuple[np.ndarray, tuple[Reflecti
 def free_block(
     mesh: SolidMesh,
     scene,
-    wanted: Sequence[tuple[Any, str]],
+    wanted: Sequence[tuple[Station, str]],
     facets_of: Facets,
     *,
     clipped: bool = False,
-    materials: Sequence[Any] | None = None,
+    materials: Sequence[Material] | None = None,
     reflections: tuple[Reflection, ...] = (),
 ) -> Block:
     """Build the free block of a mesh, of all six components, with its ports; refuse a seat without
@@ -170,8 +173,8 @@ def free_block(
 
 
 def body_of(
-    scene: Any,
-    wanted: Sequence[tuple[Any, str]],
+    scene: Scene,
+    wanted: Sequence[tuple[Station, str]],
     blocks: tuple[Block, ...],
     facts: dict[str, Any],
     drawing: Drawing,

@@ -11,7 +11,7 @@ nodes, and those of a cylinder do not.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy.sparse as sp
@@ -20,6 +20,9 @@ from scipy.sparse.csgraph import connected_components
 from solidgear.core.errors import SolidgearError
 from solidgear.core.models.solid.block import BEYOND, chords, edges_of
 from solidgear.core.models.solid.mesh import SolidMesh
+
+if TYPE_CHECKING:
+    from solidgear.core.scene.parts import Segment
 
 #: distance of a node from a surface of revolution, over its radius, at which it is on it
 ON_SURFACE = 2e-5
@@ -36,14 +39,14 @@ class Seats:
     that reach beyond the ends of a seat.
     """
 
-    def __init__(self, mesh: SolidMesh, segments: Sequence[Any], clipped: bool) -> None:
+    def __init__(self, mesh: SolidMesh, segments: Sequence[Segment], clipped: bool) -> None:
         self.mesh, self.segments, self.clipped = mesh, segments, clipped
         # teeth may leave no segment of revolution
         self.length = segments[-1].y1 if len(segments) else float(mesh.mesh.p[1].max())
         self.corners = mesh.mesh.facets[:, mesh.boundary]
         self.y = mesh.mesh.p[1, self.corners]
         self.r = np.hypot(*mesh.mesh.p[[0, 2]][:, self.corners])
-        self._by_segment: dict[Any, tuple[np.ndarray, np.ndarray]] = {}
+        self._by_segment: dict[Segment, tuple[np.ndarray, np.ndarray]] = {}
 
     def __call__(self, station, attachment: str) -> np.ndarray:
         """Return the facets that carry a station; refuse a station without a section, and faces

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from solidgear.core.elements import SOLVED_AS
 from solidgear.core.kernel.room import assemblable
@@ -15,9 +15,12 @@ from solidgear.core.models.solid.plan import hexahedra_layout, tetrahedra_plan
 from solidgear.core.registry import addition
 from solidgear.core.scene.shaft import attached_stations, resolved
 
+if TYPE_CHECKING:
+    from solidgear.core.scene.shaft import Shaft
+
 
 def solid_size(
-    scene: Any,
+    scene: Shaft,
     *,
     element: str,
     size: float | None,
@@ -38,7 +41,7 @@ def solid_size(
     wanted = [*attached_stations(scene.stations, attachments)]
     sorts = {f.sort for f in resolved(scene)}
     sizes = {"size": size, "graded_size": graded_size, "refinement": refinement}
-    file = getattr(scene, "body", None)
+    file = scene.body
     if file is not None and file.counts is not None:
         return _of_file(file)
     if BODIES in sorts:
