@@ -11,6 +11,7 @@ import pytest
 import solidgear as sg
 from solidgear.cuts.corrected import body as module
 from solidgear.cuts.corrected.body import modal
+from solidgear.cuts.solid.halves import PARTS
 
 ROOT = Path(__file__).parent.parent
 
@@ -32,7 +33,7 @@ def body(scene):
 
 def recognised(exact, before, after=None):
     """How many modes are."""
-    found = module._recognised(exact, before, after or before, module._families(None))
+    found = module._recognised(exact, before, after or before, [("full", tuple(range(6)))])
     return found.motions.shape[1]
 
 
@@ -81,7 +82,7 @@ def test_without_a_difference_it_is_the_harmonic_solid(scene, plain):
     representation leaves out, 1e-6 in the first modes.
     """
     exact = modal(plain, 16)
-    numbers = module._corrected(exact, exact, exact, module._families(0))
+    numbers = module._corrected(exact, exact, exact, [*PARTS[0]])
     blocks = module._blocks(numbers, plain, exact, 0)
     same = sg.Body("corrected", blocks, plain.ports, plain.scale, plain.length, {"round": False})
     a, b = (sg.condense(x, scene.plain, "pinion").compliance for x in (same, plain))
@@ -197,7 +198,7 @@ def test_what_ports_feel_beside_the_modes_stays_what_it_was(plain):
         whole = rest + exact.motions @ np.linalg.solve(value, exact.motions.T)
         return replace(exact, value=value, static=whole)
 
-    found = module._corrected(exact, mesh(1.1), mesh(1.1 * 0.8), module._families(0))
+    found = module._corrected(exact, mesh(1.1), mesh(1.1 * 0.8), [*PARTS[0]])
     rest = exact.residual(np.eye(10))[0]
     assert np.abs(found.static - rest).max() < 1e-9 * np.abs(exact.static).max()
     assert (np.diag(found.value) < 0.83 * np.diag(exact.value)).all()

@@ -232,6 +232,8 @@ def test_the_child_starts_without_the_rest_of_the_package():
     assert set(json.loads(out.stdout)) == {
         "solidgear",
         "solidgear.core",
+        "solidgear.core.machine",
+        "solidgear.core.machine.version",
         "solidgear.core.registry",
         "solidgear.rooms",
         "solidgear.show",

@@ -300,7 +300,7 @@ MUTATIONS = (
     Mutation(
         "hand of a spiral turned",
         "solidgear/cuts/features/toothed.py",
-        "_Toothed.twist",
+        "Toothed.twist",
         "1 if self.hand == 'right' else -1",
         "-1 if self.hand == 'right' else 1",
         "tests/test_sector.py::test_a_right_hand_turns_about_y_along_y",

@@ -1,6 +1,6 @@
 """Teeth on a cone, and splines on a cylinder.
 
-Another kind of teeth is a class of ``_Toothed`` with its ``kind``, usual proportions as defaults, and
+Another kind of teeth is a class of ``Toothed`` with its ``kind``, usual proportions as defaults, and
 ``on_cones = False`` where it is for cylinders alone.  What repeats itself around the axis and is no
 teeth needs a way to be drawn in :mod:`solidgear.cuts.sector.meshing` as well.
 """
