@@ -1019,7 +1019,7 @@ MUTATIONS = (
     ),
     Mutation(
         "transmission error added to the stretch of the teeth",
-        "solidgear/trains/response/respond.py",
+        "solidgear/trains/response/drive.py",
         "Drive._teeth",
         "factor * (dte - error)",
         "factor * (dte + error)",
@@ -1027,7 +1027,7 @@ MUTATIONS = (
     ),
     Mutation(
         "bearing reactions from the diagonal alone",
-        "solidgear/trains/response/respond.py",
+        "solidgear/trains/response/drive.py",
         "Drive._reaction_rows",
         "force = -np.array(supports.stiffness) @ seats",
         "force = -np.diag(np.diag(supports.stiffness)) @ seats",
