@@ -1,4 +1,4 @@
-"""What each room of a feature adds to the core.
+"""Additions to the core by the rooms of features.
 
 A further kind of cut, mesh, back end or file is a line here; :mod:`solidgear.core.registry` imports
 it when it is first needed.

@@ -1,6 +1,6 @@
-"""Additions to the core: what rooms of features register, imported when it is first asked for.
+"""Additions to the core that rooms of features register, imported when first asked for.
 
-The core names none of its features.  It asks for what was added under a kind, such as ``feature``
+The core names none of its features.  It asks for the additions of a kind, such as ``feature``
 or ``solid body``, and :mod:`solidgear.rooms` says where each addition stands.  A room that is not
 installed adds nothing.
 """
@@ -23,7 +23,7 @@ def register(kind: str, name: str, place: str) -> None:
 
 @cache
 def added(kind: str) -> dict[str, Any]:
-    """Return all that was added under a kind, by name, in the order of registration."""
+    """Return all additions of a kind, by name, in the order of registration."""
     return {
         name: thing for name in _PLACES.get(kind, ()) if (thing := addition(kind, name)) is not None
     }

@@ -1,4 +1,4 @@
-"""Options on what acts on a train or a shaft at rest, and what they make of its file."""
+"""Options on loads of a train or a shaft at rest, and the scene or train that they give."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tables of what was solved: which models may be used, their summary, 6x6 matrices and natural
+"""Tables of the solutions: which models may be used, their summary, 6x6 matrices and natural
 frequencies.
 """
 

@@ -37,7 +37,7 @@ class Supports:
     attachments : tuple of (str or None)
         Attachment asked for at each port; None takes the body's first.
     inertia : (6 m, 6 m) ndarray or None
-        Mass matrix of what moves with the ports, symmetric positive semidefinite, SI; None where
+        Mass matrix of all that moves with the ports, symmetric positive semidefinite, SI; None where
         nothing does.
 
     Examples
@@ -63,7 +63,7 @@ class Supports:
 
     @cached_property
     def masses(self) -> np.ndarray:
-        """(6 m, 6 m) mass matrix of what moves with the ports; zero where nothing does."""
+        """(6 m, 6 m) mass matrix of all that moves with the ports; zero where nothing does."""
         return np.zeros_like(self.stiffness) if self.inertia is None else self.inertia
 
     def rigid_mass(self, body: Body) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""What steady motion reads of a system: matrices, free motions and elastic modes."""
+"""System as steady motion reads it: matrices, free motions and elastic modes."""
 
 from __future__ import annotations
 
