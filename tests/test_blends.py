@@ -389,7 +389,7 @@ def test_check_tells_of_the_mesh_that_holds_a_chamfer():
     scene = stepped(Chamfer(name="root", y=0.068, length=0.01, angle="30 deg")).with_changes(
         port=Port(y=0.04, lo=0.014, hi=0.066)
     )
-    with pytest.raises(sg.SolidgearError, match="among the cells of the chamfer"):
+    with pytest.raises(sg.SolidgearError, match="inside the cells of the chamfer"):
         LADDER["solid"].size(scene, {"element": "hex20"})
     counted = LADDER["solid"].size(scene, {"element": "tet10"}).unknowns
     fact = next(elements.memory(Probe(scene, sg.build(scene, "timoshenko")))).sentence

@@ -83,7 +83,7 @@ def test_without_a_difference_it_is_the_harmonic_solid(scene, plain):
     """
     exact = modal(plain, 16)
     numbers = module._corrected(exact, exact, exact, [*PARTS[0]])
-    blocks = module._blocks(numbers, plain, exact, 0)
+    blocks = tuple(module._block(numbers, plain, exact, *part) for part in PARTS[0])
     same = sg.Body("corrected", blocks, plain.ports, plain.scale, plain.length, {"round": False})
     a, b = (sg.condense(x, scene.plain, "pinion").compliance for x in (same, plain))
     on = np.isfinite(b)

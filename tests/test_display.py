@@ -1,6 +1,7 @@
 """What scenes, bodies and results tell of themselves: short, whole, and fit for a notebook."""
 
 import builtins
+import re
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -9,9 +10,11 @@ import pytest
 
 import solidgear as sg
 from solidgear.comparison.models import Comparison
+from solidgear.core.display import _shown
 from solidgear.show.table import MOST_ROWS, Table
 
 ROOT = Path(__file__).parent.parent
+PACKAGE = ROOT / "solidgear"
 
 
 @pytest.fixture(scope="module")
@@ -118,3 +121,12 @@ def test_what_is_told_is_found_for_every_result(told):
     assert isinstance(told["comparison"], Comparison)
     for result in told.values():
         assert type(result).shown and isinstance(result.table(), Table)
+
+
+def test_every_result_names_a_function_that_is_there():
+    """Rooms move; a result that shows itself by a name must find it."""
+    names = set()
+    for path in sorted(PACKAGE.rglob("*.py")):
+        names |= set(re.findall(r'shown: ClassVar\[str\] = "(\w[\w.:]*)"', path.read_text()))
+    assert len(names) > 8
+    assert [name for name in sorted(names) if not callable(_shown(name))] == []

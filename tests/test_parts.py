@@ -182,7 +182,7 @@ def test_rungs_say_whether_they_hold_a_part(shipped):
     scene, _ = shipped
     for name in ("euler", "timoshenko", "harmonic"):
         assert "it would answer for the plain part" in LADDER[name].unfit(scene)
-    assert "made for features" in LADDER["corrected"].unfit(scene)
+    assert "needs features" in LADDER["corrected"].unfit(scene)
     assert not LADDER["solid"].unfit(scene)
     assert scene.plain.body is None and scene.plain.segments == scene.segments
     with pytest.raises(sg.SolidgearError, match="use solid$"):

@@ -236,7 +236,7 @@ def test_teeth_of_a_loop_part_as_in_motion_in_time(tmp_path):
     teeth = teeth_of(shop, 300.0)
     made = backlash_model(shop, ["timoshenko"], teeth, 2500.0)
     carried = made.mean * np.diag(made.stiffness)
-    np.testing.assert_allclose(carried, [one.mean_force for one in teeth.every], rtol=1e-9)
+    np.testing.assert_allclose(carried, [one.mean_force for one in teeth.meshes], rtol=1e-9)
     branch = follow(made, 2 * np.pi * 835, 2 * np.pi * 880, step=0.05)
     at = 2 * np.pi * 845.0
     point = branch.at(at)[0]

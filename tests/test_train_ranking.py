@@ -51,7 +51,7 @@ def test_residual_fields_are_what_makes_free_modes_converge():
     kinds = {"rubin": (8, 24), "craig_bampton": (8, 24), "no residuals": (8, 24)}
     train = sg.load_train("geometry/axle_overhung.toml")
     found = measured(train, kinds, reference=60, mesh=COARSE)
-    error = {(r["reduction"], r["modes per shaft"]): r["largest error"] for r in found}
+    error = {(r["reduction"], r["modes a shaft"]): r["largest error"] for r in found}
     assert error["rubin", 8] < 1e-7
     # the rule of twice the frequency: the first fixed-interface mode lies above, and is needed
     assert 1e-3 < error["craig_bampton", 8] < 2e-2

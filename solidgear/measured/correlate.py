@@ -80,7 +80,7 @@ class Pair:
 class Correlation(Displayed):
     """Measured resonances paired with computed modes."""
 
-    shown: ClassVar[str] = "measured.tables:pairs"
+    shown: ClassVar[str] = "measured.command:pairs"
 
     #: scene, title: of the scene and of the measurement
     scene: str

@@ -107,7 +107,7 @@ class Predicted:
 class Identification(Displayed):
     """Entries identified from measured resonances."""
 
-    shown: ClassVar[str] = "measured.tables:entries"
+    shown: ClassVar[str] = "measured.command:entries"
     plain_names = (
         "kind",
         "scene",

@@ -101,7 +101,7 @@ class Series(NamedTuple):
 
 
 class Panel:
-    """A pair of axes and the layers drawn between them.
+    """A pair of axes and what is drawn between them.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Remarks of commands beside numbers of one shaft: doubts about its part, and remarks that rooms of
+"""What commands say beside numbers of one shaft: doubts about its part, and remarks that rooms of
 features add."""
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Tables of the run itself: costs, origin of the numbers, meshes and machine."""
+"""Tables of the run itself: what it cost, where its numbers come from, meshes and machine."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """The sheet of a study: tables, charts and sentences, for the terminal, a page, files and JSON.
 
-A study lists its tables, charts and sentences once, in a :class:`Sheet`; :func:`present` solves and shows it as its
+A study lists what it shows once, in a :class:`Sheet`; :func:`present` solves and shows it as its
 command was asked to.
 """
 

@@ -1,4 +1,4 @@
-"""Train as rules and layout read it: its tables and the quantities that follow from them."""
+"""What rules and layout read of a train: its tables, and what follows from them."""
 
 from __future__ import annotations
 

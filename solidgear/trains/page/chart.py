@@ -23,8 +23,6 @@ from solidgear.show.plot import BETWEEN, NARROW, WIDE, Chart, in_columns
 from solidgear.show.units import ENGINEERING, Units, plain
 from solidgear.show.words import hertz
 from solidgear.trains.page.tables import turned
-from solidgear.trains.response.receptance import TrainReceptance
-from solidgear.trains.response.response import TrainResponse
 
 COLOURS = ("#00805e", "#0072b2", "#c98a00", "#b3305c", "#5a3e8c", "#444444", "#1f9bb8", "#8a6d3b")
 #: of two responses beside each other, told apart by everyone
@@ -43,7 +41,7 @@ PANELS = (
 
 
 def response_chart(
-    responses: Sequence[TrainResponse],
+    responses: Sequence[Any],
     title: str,
     teeth: float | None,
     band: float | None,
@@ -105,7 +103,7 @@ def response_chart(
 
 
 def columns_chart(
-    responses: Sequence[TrainResponse],
+    responses: Sequence[Any],
     columns: Sequence[tuple[str, str]],
     teeth: float | None,
     units: Units = ENGINEERING,
@@ -142,7 +140,7 @@ def columns_chart(
     return Chart(in_columns(panels, in_row), width) if panels else None
 
 
-def _cut(response: TrainResponse, first: float) -> str:
+def _cut(response: Any, first: float) -> str:
     """Return a remark on the part below the axis; empty if there is none."""
     if first <= response.frequency_hz[0]:
         return ""
@@ -152,7 +150,7 @@ def _cut(response: TrainResponse, first: float) -> str:
 
 
 def receptance_chart(
-    receptances: Sequence[TrainReceptance],
+    receptances: Sequence[Any],
     title: str,
     teeth: float,
     units: Units = ENGINEERING,
@@ -205,9 +203,7 @@ class _Curve(NamedTuple):
     read: tuple[tuple[str, str, np.ndarray], ...]
 
 
-def _models(
-    curves: Sequence[TrainResponse | TrainReceptance], colours: Sequence[str] = COLOURS
-) -> dict[str, Series]:
+def _models(curves: Sequence[Any], colours: Sequence[str] = COLOURS) -> dict[str, Series]:
     """Return models by their labels, the colours in turn."""
     colours = colours if len(curves) == len(PAIR) else COLOURS
     return {item.label: Series(colours[k % len(colours)]) for k, item in enumerate(curves)}
@@ -287,7 +283,7 @@ def _tops(peaks: Sequence[tuple[float, float, str]], si: str, units: Units) -> l
 
 def _peaks(
     panel: Panel,
-    models: Sequence[TrainResponse | TrainReceptance],
+    models: Sequence[Any],
     tops: Sequence[list],
     teeth: float | None,
     names: tuple[str, str],

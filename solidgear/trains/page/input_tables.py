@@ -1,4 +1,4 @@
-"""Tables of the input: the scene in facts, its segments and its bearings."""
+"""Tables of what was given: the scene in facts, its segments and its bearings."""
 
 from __future__ import annotations
 

@@ -20,20 +20,18 @@ from solidgear.show.sketch_page import sketch_svg
 from solidgear.show.table import Table
 from solidgear.show.units import ENGINEERING, Units, units_named
 from solidgear.show.words import capital, seconds
-from solidgear.trains.assembly.orders import OrderMap
 from solidgear.trains.page import input_tables
 from solidgear.trains.page import tables as train_tables
 from solidgear.trains.page.chart import columns_chart, response_chart
 from solidgear.trains.page.files import crossings, over_frequency
 from solidgear.trains.response.order_chart import order_chart
-from solidgear.trains.response.response import TrainResponse
 
 
 def write_train(
     results: Mapping[str, Any],
-    responses: Sequence[TrainResponse],
+    responses: Sequence[Any],
     marks: Mapping[str, float],
-    orders: OrderMap,
+    orders: Any,
     out: str | os.PathLike,
     draw: Callable[[Path], Mapping[str, Any]] | None = None,
     units: str | Units = ENGINEERING,
@@ -70,7 +68,7 @@ def write_train(
         ),
         "orders": partial(order_chart, orders, driven, teeth, chosen),
     }
-    if housing := train_tables.housing_columns(responses[0].columns):
+    if housing := train_tables.housing_columns(responses[0]):
         charts["housing"] = partial(columns_chart, responses[:1], housing, teeth, chosen)
     with begun(out) as folder:
         files = ["report.html", "response.csv", "orders.csv"]

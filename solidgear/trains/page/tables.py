@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from math import degrees
 from typing import Any
 
 from solidgear.show.table import NUMBER, Cell, Column, Table, quantity, text, word
 from solidgear.show.units import ENGINEERING, GROUP, Units, engineering
 from solidgear.show.words import DASH, grouped, hertz, percent, seconds, whole
-from solidgear.trains.file.layout import PerTurn
-from solidgear.trains.response.response import TrainResponse
 
 #: relative; no frequency is shown with a smaller bound, whatever the proof says
 ROUNDING = 1e-12
@@ -71,11 +69,11 @@ def _housing(box: Mapping[str, Any], units: Units) -> list[list[str]]:
     return rows
 
 
-def housing_columns(columns: Iterable[str]) -> list[tuple[str, str]]:
-    """Return those columns of a response that the housing moves, with titles."""
+def housing_columns(response: Any) -> list[tuple[str, str]]:
+    """Return columns of a response for its housing, with their titles."""
     return [
         (column, column.partition(" [")[0])
-        for column in columns
+        for column in response.columns
         if column.startswith("mount ")
         and " force [" in column
         or column.startswith("housing ")
@@ -83,10 +81,10 @@ def housing_columns(columns: Iterable[str]) -> list[tuple[str, str]]:
     ]
 
 
-def housing(response: TrainResponse, units: Units = ENGINEERING) -> Table:
+def housing(response: Any, units: Units = ENGINEERING) -> Table:
     """Return the largest loads of mounts and accelerations of the housing over a response."""
     rows = []
-    for column, name in housing_columns(response.columns):
+    for column, name in housing_columns(response):
         size = abs(response.columns[column])
         si, top = column.partition(" [")[2].rstrip("]"), int(size.argmax())
         rows.append((name, units.text(float(size[top]), si, 4), response.frequency_hz[top]))
@@ -254,7 +252,7 @@ def modes(
     def bound(mode: Mapping[str, Any]) -> str:
         return "exact" if mode["frequency_hz"] == 0 else f"{max(mode['bound'], ROUNDING):.0e}"
 
-    def mesh(mode: Mapping[str, Any]) -> float | str | None:
+    def mesh(mode: Mapping[str, Any]) -> Any:
         return missing if mode["mesh"] is None else mode["mesh"]
 
     columns = [
@@ -298,9 +296,9 @@ def peaks(
     )
 
 
-def turned(teeth: float | None) -> str:
+def turned(teeth: Any) -> str:
     """Return the shaft of speeds: the pinion unless the teeth name another."""
-    return teeth.of if isinstance(teeth, PerTurn) else "pinion"
+    return str(getattr(teeth, "of", "pinion"))
 
 
 def crossings(

@@ -56,7 +56,7 @@ class Design:
 class Optimum(Displayed):
     """Result of a search."""
 
-    shown: ClassVar[str] = "variants.optimise.tables:designs"
+    shown: ClassVar[str] = "variants.optimise.command:designs"
 
     scene: str
     goal: Wish
