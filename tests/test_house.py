@@ -10,6 +10,8 @@ from pathlib import Path
 import pytest
 
 from solidgear import core
+from solidgear.core.registry import addition, register
+from solidgear.rooms import ADDITIONS
 from validation.house import structure
 from validation.house.floors import FEATURES, MAY_IMPORT, room_of
 from validation.house.source import Source, sources
@@ -76,7 +78,6 @@ DOORS = {
     *(PACKAGE / "core" / "ladder").glob("*.py"),
     PACKAGE / "cuts" / "corrected" / "model.py",
     PACKAGE / "cuts" / "sector" / "model.py",
-    PACKAGE / "parts" / "volume.py",
 }
 
 
@@ -167,6 +168,15 @@ def test_the_core_answers_without_any_room_of_features(words):
     # an answer has no title
     said = "Within the 5 % asked." if command == "answer" else "shaft_stepped"
     assert said in run.stdout
+
+
+def test_every_addition_stands_where_the_table_of_rooms_says():
+    """A wrong place would be an error; one that is not there must not pass for a missing room."""
+    places = [(kind, name) for kind, names in ADDITIONS.items() for name in names]
+    assert [place for place in places if addition(*place) is None] == []
+    register("made-up", "moved", "solidgear.cuts.nowhere:Cut")
+    with pytest.raises(ModuleNotFoundError, match="nowhere"):
+        addition("made-up", "moved")
 
 
 def test_names_that_features_share_come_through_the_door_of_the_core():

@@ -84,8 +84,8 @@ def branch_sentences(
         if branch.calm:
             hz, size = branch.loudest
             motion = (
-                f"stable from {range_text(branch.calm)}, up to {size:.0f} N at {frequency_text(hz)}; in time a period is "
-                f"off by {100 * branch.departs:.1g} %"
+                f"stable from {range_text(branch.calm)}, up to {size:.0f} N at "
+                f"{frequency_text(hz)}; in time a period is off by {100 * branch.departs:.1g} %"
             )
         sentence = MERGED if branch.end == "merged" else APART
         lines.append(

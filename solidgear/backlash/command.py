@@ -81,7 +81,8 @@ def nonlinear(
         list[str] | None,
         typer.Option(
             "--against",
-            help="Further models to judge, as PINION+GEAR, one for each shaft; lumped and Timoshenko shafts by default.",
+            help="Further models to judge, as PINION+GEAR, one for each shaft; lumped and "
+            "Timoshenko shafts by default.",
         ),
     ] = None,
     apart: Annotated[
@@ -332,8 +333,8 @@ class BacklashStudy:
         if not judge.teeth.varies:
             holding = float(judge.holding[1].max())
             lines.append(
-                f"At mean forces{self._mesh_suffix(judge)} above {holding:.0f} N ({holding * self.lever:.0f} N m on the "
-                f"{self.train.reference}) the teeth never part on the branch from low speed."
+                f"At mean forces{self._mesh_suffix(judge)} above {holding:.0f} N "
+                f"({holding * self.lever:.0f} N m on the {self.train.reference}) the teeth never part on the branch from low speed."
             )
         lines += [line for mesh in judge.meshes for line in self._linear_errors(mesh)]
         lines += [*self._time_check(), *self._run_lines(), *self._verdict()]

@@ -17,11 +17,9 @@ _PLACES: dict[str, dict[str, str]] = {}
 def register(kind: str, name: str, place: str) -> None:
     """Add an object, ``module:attribute``, under a kind and a name."""
     _PLACES.setdefault(kind, {})[name] = place
-    added.cache_clear()
     addition.cache_clear()
 
 
-@cache
 def added(kind: str) -> dict[str, Any]:
     """Return all additions of a kind, by name, in the order of registration."""
     return {
@@ -36,10 +34,14 @@ def addition(kind: str, name: str) -> Any:
     if place is None:
         return None
     module, _, attribute = place.partition(":")
-    room = ".".join(module.split(".")[:2])
     try:
         return getattr(import_module(module), attribute)
     except ModuleNotFoundError as error:
-        if error.name and (error.name == room or error.name.startswith(room + ".")):
+        if _is_room(error.name or ""):
             return None
-        raise
+        raise  # a wrong place, or a library that is missing
+
+
+def _is_room(module: str) -> bool:
+    """Return True for a package right below solidgear: that of the addition or one it builds on."""
+    return module.startswith("solidgear.") and module.count(".") == 1

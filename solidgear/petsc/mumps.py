@@ -16,6 +16,7 @@ class Mumps:
     """
 
     name = "mumps"
+    package, install = "python-mumps", "pip install 'solidgear[mumps]'"
 
     def __init__(self, matrix: sp.csr_matrix, definite: bool = True, out_of_core: bool = False):
         import mumps

@@ -21,7 +21,8 @@ LEAST = 1e-4
 SLENDEREST = 7.0
 #: px; the most that a half section gets, and of paper that the number of a place takes
 HIGHEST, DIGIT = 330.0, 20.0
-#: px, least and most; a picture from close by of cells at a place whose corners are nearer than this share of the length
+#: px, least and most; a picture from close by of cells at a place whose corners are nearer than
+#: this share of the length
 CLOSE, LARGEST, SMALL = 170.0, 200.0, 0.02
 #: places that are named, and the share from which on they are
 MOST_PLACES, WORTH_NAMING = 5, 5e-4

@@ -76,7 +76,8 @@ def chart(
         say(*failures, soft_wrap=False)
         if left_out(raced):
             say(
-                f"left out ({raced.budget:g} s of processor time for the points; reasons in {out / 'rows.csv'}): {left_out(raced)}"
+                f"left out ({raced.budget:g} s of processor time for the points; reasons in "
+                f"{out / 'rows.csv'}): {left_out(raced)}"
             )
         say(f"Chart: {out / PICTURE}" + (f", and in {out / 'report.html'}" if reported else ""))
     if not raced.complete:

@@ -233,7 +233,8 @@ class Scene(Displayed, Model):
         ----------
         **changes
             Fields by name; constants of a new `material` also replace those of the old one in the
-            segments that have them from it, and under a new `load` bearings of catalogue data wait for their stiffness again.
+            segments that have them from it, and under a new `load` bearings of catalogue data wait
+            for their stiffness again.
 
         Returns
         -------

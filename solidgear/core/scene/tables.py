@@ -46,58 +46,37 @@ class BearingData(Protocol):
     def with_changes(self, **changes: Any) -> Any: ...
 
 
-class Pairing(Protocol):
-    """Reader of the key ``arrangement``, which mounts two bearings as a pair."""
+class Pairing:
+    """Reader of the key ``arrangement``, which mounts two bearings as a pair; without a room that
+    reads it there are no pairs.
+    """
 
-    Words: Any  #: type of the key
+    #: type of the key
+    Words: Any = Annotated[tuple, BeforeValidator(lambda value: _refuse(value) if value else ())]
 
-    def read_pairs(self, words: Any, tables: Sequence[Mapping[str, Any]]) -> list | None: ...
-
-    def readable_tables(
-        self, tables: Sequence[Mapping[str, Any]], pairs: list | None
-    ) -> Sequence: ...
-
-
-class Unpaired:
-    """Pairing where no room reads the key."""
-
-    Words = Annotated[tuple, BeforeValidator(lambda value: _refuse(value) if value else ())]
-
-    def read_pairs(self, words: Any, tables: Sequence[Mapping[str, Any]]) -> list:
-        """Return no pairs."""
+    def read_pairs(self, words: Any, tables: Sequence[Mapping[str, Any]]) -> list | None:
+        """Return the pairs that the words of a file name; None where tables are wrong."""
         return []
 
     def readable_tables(self, tables: Sequence[Mapping[str, Any]], pairs: list | None) -> Sequence:
-        """Return the tables as they are."""
+        """Return the tables of bearings with a direction for those that wait for one."""
         return tables
 
 
-class PartReader(Protocol):
-    """Reader of the table ``body``, which takes the shaft from another file."""
+class PartReader:
+    """Reader of the table ``body``, which takes the shaft from another file; without a room that
+    reads it the table is refused.
+    """
 
-    Table: Any  #: type of the table
-    Body: Any  #: type of the body that it becomes
-
-    def with_port(self, tables: Mapping[str, Any]) -> Mapping[str, Any]: ...
-
-    def with_seats(self, part: Any, stations: Iterable, segments: Sequence) -> Any: ...
-
-    def refuse_parts(self, table: Any, folder: Path) -> Any: ...
-
-    def recognise(self, table: Any, folder: Path) -> Any: ...
-
-
-class NoParts:
-    """Reader of parts where no room has one."""
-
-    Table = Body = Absent
+    Table: Any = Absent  #: type of the table
+    Body: Any = Absent  #: type of the body that it becomes
 
     def with_port(self, tables: Mapping[str, Any]) -> Mapping[str, Any]:
-        """Return the tables as they are."""
+        """Return the tables of a file with the port that a body without an axis needs."""
         return tables
 
     def with_seats(self, part: Any, stations: Iterable, segments: Sequence) -> Any:
-        """Return the part as it is."""
+        """Return the body with remarks on seats that are not whole."""
         return part
 
     def refuse_parts(self, table: Any, folder: Path) -> Any:
@@ -107,11 +86,11 @@ class NoParts:
     recognise = refuse_parts
 
 
-def pairing() -> Any:
-    """Return the reader of pairs of bearings, a :class:`Pairing`."""
-    return (addition("table", "arrangement") or Unpaired)()
+def pairing() -> Pairing:
+    """Return the reader of pairs of bearings."""
+    return (addition("table", "arrangement") or Pairing)()
 
 
-def parts() -> Any:
-    """Return the reader of parts from files, a :class:`PartReader`."""
-    return (addition("table", "body") or NoParts)()
+def parts() -> PartReader:
+    """Return the reader of parts from files."""
+    return (addition("table", "body") or PartReader)()

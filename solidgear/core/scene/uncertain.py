@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 #: range of a bearing with the status "assumed" where the file states none: a factor two each way
 ASSUMED = "0.5 : 2"
 _KNOWN = (
-    "a range may have material.E, material.density, segment.NAME.material.E, load, load.z, housing, bearing.NAME.stiffness, "
-    "bearing.NAME.stiffness.kxx or bearing.NAME.catalogue.preload"
+    "a range may have material.E, material.density, segment.NAME.material.E, load, load.z, housing, "
+    "bearing.NAME.stiffness, bearing.NAME.stiffness.kxx or bearing.NAME.catalogue.preload"
 )
 
 

@@ -13,8 +13,9 @@ with the directions r along the radius and t around: both conditions of the whol
 Inside a and b do not meet. On the axis h = 0 leaves y to a, and h = 1 one number, ``z + i x``.
 
 There are as many real unknowns as the whole sector has complex ones, and one of every pair of
-twins: the other one is ``-i V``. With h = 0 a (axial) and b (torsion) are separate blocks; with h = 1 the unknowns are bending in the plane of y and z, and the block in the plane of x and y
-mirrors it (Thomas 1979 solves the pair at once).
+twins: the other one is ``-i V``. With h = 0 a (axial) and b (torsion) are separate blocks; with
+h = 1 the unknowns are bending in the plane of y and z, and the block in the plane of x and y mirrors
+it (Thomas 1979 solves the pair at once).
 """
 
 from __future__ import annotations

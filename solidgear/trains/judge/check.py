@@ -108,8 +108,8 @@ def _facts(workshop: Workshop, limit: float) -> Iterator[str]:
     for stage in train.stages:
         mesh, teeth_of_stage = stage.table.mesh, stage.teeth
         yield (
-            f"{stage.called}: {teeth_of_stage.sun}, {teeth_of_stage.planet} and {teeth_of_stage.ring} teeth, {len(teeth_of_stage.azimuths)} "
-            f"planets, one turn of the {stage.shafts[1]} in {stage.ratio:.6g} of the "
+            f"{stage.called}: {teeth_of_stage.sun}, {teeth_of_stage.planet} and "
+            f"{teeth_of_stage.ring} teeth, {len(teeth_of_stage.azimuths)} planets, one turn of the {stage.shafts[1]} in {stage.ratio:.6g} of the "
             f"{stage.shafts[0]}; pins at {1e3 * teeth_of_stage.pin_radius:.6g} mm, meshes "
             f"{mesh.sun_stiffness:.4g} N/m with the sun and {mesh.ring_stiffness:.4g} N/m with the ring"
         )

@@ -3,7 +3,8 @@
 Every cell is carried along with its unknowns by a velocity V of the nodes: ``d(phi,i) = -phi,j V_j,i``,
 ``d(phi / r) = -(phi / r) V_r / r`` and ``d(r dA) = (V_r / r + div V) r dA``.  The change of the energy
 of two states is linear in V, so it is gathered once as a force on every node and then multiplied
-with the velocities of any number of parameters (the volume form of the shape derivative; see Haug, Choi and Komkov, Design Sensitivity Analysis of Structural Systems, 1986, ch. 3).
+with the velocities of any number of parameters (the volume form of the shape derivative; see Haug,
+Choi and Komkov, Design Sensitivity Analysis of Structural Systems, 1986, ch. 3).
 It is the exact derivative of the discrete number on the moving mesh.
 
 Where surfaces of two segments meet without a step but move differently, the nodes between take the

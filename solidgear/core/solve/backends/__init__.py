@@ -32,11 +32,8 @@ BACKENDS: dict[str, Any] = {
 }
 #: those that factor in single precision, and those that keep a factor in files
 SINGLE, OUT_OF_CORE = ("pardiso", "superlu"), ("pardiso", "mumps")
-INSTALL = {
-    "pardiso": "pip install 'solidgear[fast]'",
-    "cholmod": "pip install 'solidgear[cholmod]'",
-    "mumps": "pip install 'solidgear[mumps]'",
-}
+#: commands that install what a back end needs, of those that SciPy does not bring
+INSTALL = {name: back.install for name, back in BACKENDS.items() if back.install}
 
 
 @lru_cache
@@ -48,12 +45,7 @@ def missing(name: str) -> str:
     >>> missing("superlu")
     ''
     """
-    module = {
-        "pardiso": "pypardiso",
-        "cholmod": "scikit-sparse",
-        "mumps": "python-mumps",
-        "superlu": "scipy",
-    }[name]
+    module = BACKENDS[name].package
     try:
         back = BACKENDS[name](sp.identity(2, format="csr"))
         back.factor()

@@ -15,6 +15,7 @@ class Cholmod:
     """
 
     name = "cholmod"
+    package, install = "scikit-sparse", "pip install 'solidgear[cholmod]'"
 
     def __init__(self, matrix: sp.csr_matrix, definite: bool = True, planar: bool = False):
         from sksparse.cholmod import analyze

@@ -97,6 +97,7 @@ class Pardiso:
     """
 
     name = "pardiso"
+    package, install = "pypardiso", "pip install 'solidgear[fast]'"
     ERRORS = {
         -2: "not enough memory",
         -4: "a zero or negative pivot: the matrix is not positive definite",

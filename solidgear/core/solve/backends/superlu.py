@@ -22,6 +22,7 @@ class SuperLU:
     """SciPy's SuperLU in symmetric mode; pivots stay on the diagonal unless one vanishes."""
 
     name = "superlu"
+    package, install = "scipy", ""
 
     def __init__(
         self,
