@@ -14,7 +14,7 @@ from solidgear.core.registry import addition, register
 from solidgear.rooms import ADDITIONS
 from validation.house import structure
 from validation.house.floors import FEATURES, MAY_IMPORT, room_of
-from validation.house.source import Source, sources
+from validation.house.source import sources
 from validation.house.words import shapes
 
 PACKAGE = Path(__file__).parent.parent / "solidgear"
@@ -23,19 +23,15 @@ LONGEST = 700
 
 
 @functools.cache
-def read_graph():
-    """Imports of every file as they are read: those for types alone and those in functions too."""
-    return structure.graph(sources(PACKAGE))
-
-
-def room(path):
-    return room_of(Source(path, PACKAGE).module)
+def files():
+    """All files of the package, each parsed once for all that look at it."""
+    return sources(PACKAGE)
 
 
 @functools.cache
-def tree_of(path):
-    """A file as Python reads it, once for all that look at it."""
-    return ast.parse(path.read_text())
+def read_graph():
+    """Imports of every file as they are read: those for types alone and those in functions too."""
+    return structure.graph(files())
 
 
 def test_a_room_imports_only_what_lies_below():
@@ -64,13 +60,11 @@ def test_beams_share_no_code_with_solids():
 
 
 def test_a_file_is_one_thing():
-    files = PACKAGE.rglob("*.py")
-    assert [str(p) for p in files if len(p.read_text().splitlines()) > LONGEST] == []
+    assert [s.place for s in files() if len(s.text.splitlines()) > LONGEST] == []
 
 
 def test_modules_are_imported_at_the_top_or_by_a_statement():
-    files = PACKAGE.rglob("*.py")
-    assert [str(p) for p in files if "__import__(" in p.read_text()] == []
+    assert [s.place for s in files() if "__import__(" in s.text] == []
 
 
 #: files that are imported at every start, and import each of their models when it is built
@@ -81,15 +75,14 @@ DOORS = {
 }
 
 
-def unexplained(path):
+def unexplained(source):
     """Imports inside functions without a comment on their line or above their run: of the command
     line all, elsewhere those of this package.
     """
-    lines = [line.strip() for line in path.read_text().splitlines()]
-    functions = [n for n in ast.walk(tree_of(path)) if isinstance(n, ast.FunctionDef)]
+    lines = [line.strip() for line in source.text.splitlines()]
     late = [
         node
-        for function in functions
+        for function in source.functions
         for node in ast.walk(function)
         if isinstance(node, ast.Import | ast.ImportFrom)
     ]
@@ -99,17 +92,19 @@ def unexplained(path):
         while above in inside:
             above -= 1
         own = (
-            "solidgear" in ast.unparse(node) or path.stem.endswith("command") or room(path) == "app"
+            "solidgear" in ast.unparse(node)
+            or source.path.stem.endswith("command")
+            or source.room == "app"
         )
         said = lines[above - 1].startswith("#") or "#" in lines[node.lineno - 1]
         if own and not said:
             yield ast.unparse(node)
 
 
-@pytest.mark.parametrize("path", sorted(PACKAGE.rglob("*.py")), ids=lambda p: p.stem)
-def test_an_import_inside_a_function_says_why(path):
+@pytest.mark.parametrize("source", files(), ids=lambda s: s.place)
+def test_an_import_inside_a_function_says_why(source):
     """An optional dependency, or start-up: whatever else a module needs stands at its top."""
-    assert path in DOORS or not list(unexplained(path))
+    assert source.path in DOORS or not list(unexplained(source))
 
 
 def test_a_division_by_zero_in_our_own_code_is_an_error_and_in_others_is_theirs():
@@ -127,7 +122,7 @@ def test_a_division_by_zero_in_our_own_code_is_an_error_and_in_others_is_theirs(
 @pytest.mark.long
 def test_no_sentence_is_multiplied_by_a_truth_value_and_no_condition_holds_another():
     """What a reader would have to parse twice; names are starred in calls still."""
-    forms = shapes(sources(PACKAGE))
+    forms = shapes(files())
     assert set(forms) <= {"starred name in a call"}
 
 
@@ -181,7 +176,7 @@ def test_every_addition_stands_where_the_table_of_rooms_says():
 
 def test_names_that_features_share_come_through_the_door_of_the_core():
     users = {}
-    for source in sources(PACKAGE):
+    for source in files():
         if source.room in ("core", "__init__", "rooms", "__main__"):
             continue
         for node in ast.walk(source.tree):
