@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 import solidgear as sg
-from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.modes.modes import train_modes
 from solidgear.trains.response.drive import Drive
 
@@ -25,12 +25,12 @@ GEOMETRY = Path(__file__).parent.parent / "geometry"
 def main():
     """First bending mode of the gear by both, and the mesh force at 700 Hz."""
     train = sg.load_train(GEOMETRY / "axle_overhung.toml")
-    shop = Workshop(train, settings={"harmonic": {"order": 2}})
+    assembly = Assembly(train, settings={"harmonic": {"order": 2}})
     first, force = {}, {}
     for gear in ("timoshenko", "harmonic"):
-        found = train_modes(shop, "timoshenko", gear, max_frequency=1000.0)
+        found = train_modes(assembly, "timoshenko", gear, max_frequency=1000.0)
         first[gear] = next(m.frequency_hz for m in found.modes if m.name == "gear bending 1")
-        drive = Drive(shop, "timoshenko", gear)
+        drive = Drive(assembly, "timoshenko", gear)
         force[gear] = float(abs(drive.mesh(np.array([700.0]))[1][0]))
         print(f"gear {gear}: bending at {first[gear]:.0f} Hz, {force[gear]:.0f} N at 700 Hz")
     for line in found.remarks():

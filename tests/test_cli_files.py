@@ -15,7 +15,7 @@ from solidgear.core.errors import SolidgearError
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.scene.file import load
 from solidgear.strength.deflection.train import deflection
-from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.assembly import Assembly
 from tests.command import command
 
 ROOT = Path(__file__).parent.parent
@@ -37,8 +37,8 @@ def test_a_new_train_runs_and_its_shafts_do(kind, tmp_path):
     assert done.exit_code == 0 and len(list(tmp_path.iterdir())) == 3
     assert len(start(kind, "my box")) == 3
     train = sg.load_train(tmp_path / "my box.toml")
-    assert train.title == "my box" and not Workshop(train).cautions
-    found = deflection(Workshop(train), train.operation[0], "timoshenko", "timoshenko")
+    assert train.title == "my box" and not Assembly(train).cautions
+    found = deflection(Assembly(train), train.operation[0], "timoshenko", "timoshenko")
     assert found.mesh_force > 1000 and not found.notes
     again = command("new", tmp_path / "my box", "--kind", kind)
     assert "there is such a file already" in str(again.exception)

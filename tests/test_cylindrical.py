@@ -8,8 +8,8 @@ import pytest
 
 import solidgear as sg
 from solidgear.core.errors import SceneError
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.layout import contacts
-from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.file.cylindrical import working_cylinders
 from solidgear.trains.load.operation import at_point
 from solidgear.trains.modes.modes import train_modes
@@ -121,7 +121,7 @@ def test_names_belong_to_their_shaft(gearbox):
         load=gearbox.load.with_changes(spring=spring),
     )
     both = [
-        train_modes(Workshop(settled(train)), "timoshenko", "timoshenko", max_frequency=2000.0)
+        train_modes(Assembly(settled(train)), "timoshenko", "timoshenko", max_frequency=2000.0)
         for train in (gearbox, alike)
     ]
     one, two = ([(m.frequency_hz, m.name) for m in found.modes] for found in both)

@@ -9,8 +9,8 @@ from solidgear.core.errors import SolidgearError
 from solidgear.core.models.harmonic.patch import Patch, PatchMotion
 from solidgear.core.reduction.waves import local_compliance, own_waves, with_waves
 from solidgear.core.solve.factor import factorise
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.local import TEETH, patch_of, undriven
-from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.modes.modes import train_modes
 from solidgear.trains.response.drive import Drive
 from tests.command import command
@@ -180,7 +180,7 @@ def test_without_harmonics_the_port_is_the_present_model(gear, train):
     """n = 0 and 1: the mesh point carried rigidly by the lumped point, moment included."""
     scene, body = gear
     plain = sg.rubin(body, 8)
-    vector = Workshop(train).contact.gear
+    vector = Assembly(train).contact.gear
     part = with_waves(plain, body, scene.port.name, vector.point, np.eye(3), {})
     now = vector.normal @ part.ports[TEETH].rows[:3]
     assert now == pytest.approx(vector.vector @ plain.ports["gear"].rows, rel=1e-12, abs=1e-14)
@@ -188,13 +188,13 @@ def test_without_harmonics_the_port_is_the_present_model(gear, train):
 
 @pytest.fixture(scope="module")
 def usual(train):
-    return Workshop(train, settings=LIGHT)
+    return Assembly(train, settings=LIGHT)
 
 
 def difference(train, usual, harmonics):
     """dB of the mesh force over frequency."""
     hz = np.linspace(100.0, 4000.0, 1951)
-    one = Drive(Workshop(waved(train, harmonics), settings=LIGHT), "harmonic", "harmonic")
+    one = Drive(Assembly(waved(train, harmonics), settings=LIGHT), "harmonic", "harmonic")
     other = Drive(usual, "harmonic", "harmonic")
     return hz, 20 * np.log10(np.abs(one.mesh(hz)[1] / other.mesh(hz)[1])), one.system
 
@@ -219,7 +219,7 @@ def test_on_rigid_shafts_they_add_nothing(train, usual):
 
     members = {s: train.member(s).with_changes(scene=rigid(train.member(s).scene)) for s in SIDES}
     stiff = train.with_changes(**members)
-    _, decibels, _ = difference(stiff, Workshop(stiff, settings=LIGHT), (2,))
+    _, decibels, _ = difference(stiff, Assembly(stiff, settings=LIGHT), (2,))
     assert np.abs(decibels).max() < 1e-2
 
 
@@ -231,7 +231,7 @@ def test_modes_say_what_is_driven(train, usual):
     found = train_modes(usual, "harmonic", "harmonic", max_frequency=4000.0)
     assert list(found.undriven) == ["gear"] and list(found.undriven["gear"]) == [2, 3]
     assert any("not driven by this mesh model: gear n=2 187" in line for line in found.notes())
-    local = Workshop(waved(train, (2,)), settings=LIGHT)
+    local = Assembly(waved(train, (2,)), settings=LIGHT)
     now = train_modes(local, "harmonic", "harmonic", max_frequency=4000.0)
     assert list(now.undriven["gear"]) == [3]
     own = [mode for mode in now.modes if "gear ovalising n=2" in mode.name]
@@ -260,18 +260,21 @@ def test_two_gears_of_a_shaft_squeeze_it_together():
         mesh.with_changes(local_harmonics=asked)
         for mesh, asked in zip(train.meshes, ((2,), (2, 3)))
     ]
-    shop = Workshop(train.with_changes(meshes=tuple(meshes)), settings=LIGHT)
-    body, part = shop.shaft_model("middle", "harmonic").body, shop.shaft_part("middle", "harmonic")
+    assembly = Assembly(train.with_changes(meshes=tuple(meshes)), settings=LIGHT)
+    body, part = (
+        assembly.shaft_model("middle", "harmonic").body,
+        assembly.shaft_part("middle", "harmonic"),
+    )
     own = own_waves(part)
     assert list(own) == [2, 3]
     patches, pushes, rows, moved = [], [], [], []
-    for pair, end in zip(shop.train.pairs, (1, 0)):
-        met = shop.contacts[pair.name]
+    for pair, end in zip(assembly.train.pairs, (1, 0)):
+        met = assembly.contacts[pair.name]
         vector = (met.pinion, met.gear)[end]
-        patch = patch_of(pair, "middle", shop.scenes["middle"], vector.point)
+        patch = patch_of(pair, "middle", assembly.scenes["middle"], vector.point)
         patches.append(patch)
         pushes.append(patch.axes.T @ vector.normal)
-        rows.append(PatchMotion(shop.scenes["middle"], body, patch).rows(2))
+        rows.append(PatchMotion(assembly.scenes["middle"], body, patch).rows(2))
         moved.append(vector.normal @ part.ports[f"{TEETH} {'-'.join(pair.shafts)}"].rows[:3])
     matrix = body.family(2).blocks[0].stiffness.tocsc()
     give = np.vstack(rows) @ spla.spsolve(matrix, np.vstack(rows).T)
@@ -290,9 +293,9 @@ def test_two_gears_of_a_shaft_squeeze_it_together():
 def test_rigid_seats_have_no_waves(train):
     tied = {s: train.member(s).scene.with_attachment("rigid") for s in SIDES}
     members = {s: train.member(s).with_changes(scene=tied[s]) for s in SIDES}
-    shop = Workshop(waved(train, (2,)).with_changes(**members), settings=LIGHT)
+    assembly = Assembly(waved(train, (2,)).with_changes(**members), settings=LIGHT)
     with pytest.raises(SolidgearError, match="tied rigidly, which suppresses all waves"):
-        shop.system("harmonic", "timoshenko")
+        assembly.system("harmonic", "timoshenko")
 
 
 @pytest.mark.parametrize("text", ["1,2", "2,2", "", "33", "two"])

@@ -14,7 +14,7 @@ from solidgear.backlash.solver.continuation import follow
 from solidgear.backlash.solver.motion import steady_motion
 from solidgear.backlash.solver.stability import stable
 from solidgear.backlash.train import teeth_of, with_backlash
-from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.assembly import Assembly
 
 OVERHUNG = Path(__file__).parent.parent / "geometry" / "axle_overhung.toml"
 
@@ -29,9 +29,11 @@ def loudest(branch):
 def axle():
     train = sg.load_train(OVERHUNG)
     mesh = train.mesh.with_changes(backlash="100 um", transmission_error="10 um")
-    shop = Workshop(train.with_changes(mesh=mesh))
-    found = with_backlash(shop, ["lumped"], teeth_of(shop, 5000.0), 2000.0, 150.0, search_speeds=32)
-    return shop, found
+    assembly = Assembly(train.with_changes(mesh=mesh))
+    found = with_backlash(
+        assembly, ["lumped"], teeth_of(assembly, 5000.0), 2000.0, 150.0, search_speeds=32
+    )
+    return assembly, found
 
 
 @pytest.mark.long
@@ -54,13 +56,13 @@ def test_the_largest_force_of_the_axle_is_on_branches_apart_that_time_bears_out(
 
 @pytest.mark.long
 def test_what_is_told_of_the_axle_names_both_and_what_was_looked_for(axle):
-    shop, found = axle
-    told = " ".join(BacklashStudy(shop.train, (found,), 0.044).sentences())
+    assembly, found = axle
+    told = " ".join(BacklashStudy(assembly.train, (found,), 0.044).sentences())
     assert "A separate branch of two mesh periods from 100" in told
     assert "searched from 1024 starts at 32 speeds" in told and "there may be others" in told
     assert "on a separate branch, 7392 N" in told
     alone = " ".join(
-        BacklashStudy(shop.train, (replace(found, branches_apart=()),), 0.044).sentences()
+        BacklashStudy(assembly.train, (replace(found, branches_apart=()),), 0.044).sentences()
     )
     assert "with 1 to 3 mesh periods: none was found, and there may be some." in alone
 

@@ -12,7 +12,7 @@ from solidgear.comparison.page.charts import CHARTS
 from solidgear.show.panel import Axis, Panel, read_places, readout
 from solidgear.show.plot import NARROW, WIDE, Chart, page_svg
 from solidgear.show.units import SYSTEMS
-from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.page.chart import receptance_chart, response_chart
 from solidgear.trains.response.receptance import receptance
 from solidgear.trains.response.respond import respond
@@ -133,13 +133,13 @@ def test_every_chart_of_values_is_read_and_the_narrow_drawing_says_what_the_wide
 
 
 @pytest.fixture(scope="module")
-def shop():
-    return Workshop(sg.load_train(OVERHUNG), settings=COARSE)
+def assembly():
+    return Assembly(sg.load_train(OVERHUNG), settings=COARSE)
 
 
 @pytest.fixture(scope="module")
-def found(shop):
-    return respond(shop, *SIDE, highest_hz=900.0)
+def found(assembly):
+    return respond(assembly, *SIDE, highest_hz=900.0)
 
 
 def test_a_response_that_is_drawn_from_further_up_says_so(found):
@@ -181,9 +181,9 @@ def test_a_response_is_read_in_the_units_chosen(found, units, newton, micrometre
     assert any(text.startswith(top.mode) for text in texts_of(chart))
 
 
-def test_a_receptance_is_read_with_its_phase(shop):
+def test_a_receptance_is_read_with_its_phase(assembly):
     one = receptance(
-        shop, *SIDE, from_=("pinion.pinion", "z"), to=("gear.gear", "thx"), highest_hz=900.0
+        assembly, *SIDE, from_=("pinion.pinion", "z"), to=("gear.gear", "thx"), highest_hz=900.0
     )
     make = partial(receptance_chart, [one], "", 14, SYSTEMS["us"])
     facts = [fact for _, fact in facts_of(page_svg("receptance", make).decode())]

@@ -11,7 +11,7 @@ from solidgear.core.body import as_supports
 from solidgear.core.judge.at_rest import opened_words, spin_caution
 from solidgear.core.scene import Bearing, Material, PointMass, Scene
 from solidgear.core.solve.spin import couplings, opened, spin_openings
-from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.modes.modes import train_modes
 from tests.shafts import shaft
 from validation.shipped import GEOMETRY
@@ -157,7 +157,7 @@ def test_a_train_tells_spin_at_its_fastest_operating_point():
     # its bearings part the pair by more than 8,000 rpm do: 1.3 %, within the tolerance of 2 %
     slow, fast = (
         train_modes(
-            Workshop(train.with_changes(operation=[point.with_changes(speed=speed)])),
+            Assembly(train.with_changes(operation=[point.with_changes(speed=speed)])),
             "timoshenko",
             "timoshenko",
             max_frequency=900.0,

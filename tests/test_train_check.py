@@ -7,7 +7,7 @@ import pytest
 
 import solidgear as sg
 from solidgear.guards.probe import Probe
-from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.slips import mesh_unit_slips, unit_slips
 from solidgear.trains.judge import check as checked
 from solidgear.trains.judge.check import check_train
@@ -19,7 +19,7 @@ TRAIN = sg.load_train(AXLE)
 
 @pytest.fixture(scope="module")
 def found():
-    return check_train(Workshop(TRAIN))
+    return check_train(Assembly(TRAIN))
 
 
 def said(lines, *words):
@@ -65,7 +65,7 @@ def test_little_loss_and_a_short_table_are_told(no_shafts):
     table = {"frequency": [10.0, 900.0], "amplitude": [1e-6, 1e-6]}
     mesh = type(TRAIN.mesh)(**TRAIN.mesh.model_dump() | {"transmission_error": table})
     odd = TRAIN.with_changes(mesh=mesh, losses=TRAIN.losses.with_changes(springs=1e-4))
-    cautions = check_train(Workshop(odd))["cautions"]
+    cautions = check_train(Assembly(odd))["cautions"]
     assert said(cautions, "springs 0.0001", "depend on this number alone")
     assert said(cautions, "given up to 900 Hz", "constant from there to the 4000 Hz")
 
@@ -79,23 +79,23 @@ def test_a_slip_of_a_thousand_in_the_mesh_is_told(no_shafts, key, factor):
     for size, slip in ((factor, True), (factor ** (1 / 3), False)):
         value = {"stiffness": 2.5e8, "transmission_error": 2e-6}[key] * size
         mesh = type(TRAIN.mesh)(**TRAIN.mesh.model_dump() | {key: value})
-        told = check_train(Workshop(TRAIN.with_changes(mesh=mesh)))["cautions"]
+        told = check_train(Assembly(TRAIN.with_changes(mesh=mesh)))["cautions"]
         assert bool(said(told, "probably a wrong unit", key.replace("_", " "))) == slip
 
 
 def test_a_frequency_beyond_the_reduction_is_a_fault(no_shafts):
-    faults = check_train(Workshop(TRAIN, kept=4), 9000.0)["faults"]
+    faults = check_train(Assembly(TRAIN, kept=4), 9000.0)["faults"]
     assert said(faults, "9000 Hz is beyond the reduction")
 
 
 def test_local_harmonics_are_not_called_undriven(no_shafts):
     local = TRAIN.with_changes(mesh=TRAIN.mesh.with_changes(local_harmonics=(2,)))
-    (line,) = said(check_train(Workshop(local))["cautions"], "nodal diameters")
+    (line,) = said(check_train(Assembly(local))["cautions"], "nodal diameters")
     assert "n = 3" in line and "n = 2" not in line
 
 
 def test_the_command_on_a_train(monkeypatch, found):
-    monkeypatch.setattr(checked, "check_train", lambda shop: found)
+    monkeypatch.setattr(checked, "check_train", lambda assembly: found)
     done = command("check", AXLE)
     assert done.exit_code == 0
     assert done.output.index("== pinion") < done.output.index("== gear")
@@ -117,7 +117,7 @@ def test_commands_tell_a_slip_above_their_table_in_the_words_of_check(tmp_path):
         text = text.replace(f'"{name}.toml"', f'"{Path("geometry", name).absolute()}.toml"')
     file = tmp_path / "slip.toml"
     file.write_text(text)
-    (sentence,) = mesh_unit_slips(Workshop(sg.load_train(file))) or ("",)
+    (sentence,) = mesh_unit_slips(Assembly(sg.load_train(file))) or ("",)
     assert sentence.startswith("probably a wrong unit: mesh stiffness")
     beams = [file, "--pinion", "euler", "--gear", "euler", "--max-frequency", "600"]
     for words in (["system-modes", *beams], ["response", *beams, "--out", tmp_path / "out"]):
@@ -137,7 +137,7 @@ def test_a_slip_in_the_data_of_a_shaft_is_told_with_its_side():
     ]
     scene = gear.with_changes(bearings=tuple(soft))
     odd = TRAIN.with_changes(gear=TRAIN.gear.with_changes(scene=scene))
-    (sentence,) = unit_slips(Workshop(odd))
+    (sentence,) = unit_slips(Assembly(odd))
     assert sentence.startswith("gear: probably a wrong unit: ")
 
 

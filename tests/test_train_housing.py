@@ -10,8 +10,8 @@ import pytest
 import solidgear as sg
 from solidgear.core.errors import SceneError, SolidgearError
 from solidgear.strength.deflection.train import deflection
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.meshes import mesh_bars
-from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.judge.judge import _Judge
 from solidgear.trains.load.operation import Operating
 from solidgear.trains.modes.modes import train_modes
@@ -50,8 +50,8 @@ def train(bare):
 
 
 @pytest.fixture(scope="module")
-def shop(train):
-    return Workshop(train)
+def assembly(train):
+    return Assembly(train)
 
 
 def places_by_hand():
@@ -97,8 +97,8 @@ def housed_by_hand(mass, stiffness, motion):
     return k, m
 
 
-def test_rigid_shafts_and_their_housing_move_like_matrices_written_by_hand(shop):
-    found = shop.system(RIGID).modes(25)
+def test_rigid_shafts_and_their_housing_move_like_matrices_written_by_hand(assembly):
+    found = assembly.system(RIGID).modes(25)
     mass = np.diag([MASS, MASS, MASS, 0, 0, 0])
     mass[3:, 3:] = INERTIA
     own = housed_by_hand(mass, np.zeros((6, 6)), lambda name, place: carried(place - CENTRE))
@@ -155,13 +155,13 @@ def test_a_housing_of_matrices_moves_like_them(tmp_path):
     beside[at : at + 6, at : at + 6] = carried([0, -0.002, 0])
     there = {**places, "middle.b1": places["middle.b1"] + [0, 0.002, 0]}
     own = (beside.T @ one @ beside for one in (mass, stiffness))
-    shop = Workshop(sg.load_train(elastic(tmp_path, *own, there)))
-    found = shop.system(RIGID).modes(len(exact) - 1)
+    assembly = Assembly(sg.load_train(elastic(tmp_path, *own, there)))
+    found = assembly.system(RIGID).modes(len(exact) - 1)
     assert found.rigid == 1
     assert found.frequency_hz[1:] == pytest.approx(exact[1:], rel=1e-9)
     moved = "'middle.b1' of the housing lies 2 mm from that bearing"
-    assert any(moved in text for text in shop.cautions)
-    modes = train_modes(shop, RIGID, max_frequency=1500.0).modes
+    assert any(moved in text for text in assembly.cautions)
+    modes = train_modes(assembly, RIGID, max_frequency=1500.0).modes
     assert any("housing elastic" in mode.name for mode in modes)
 
 
@@ -173,11 +173,11 @@ def test_a_stiff_housing_of_matrices_is_a_rigid_one(tmp_path, bare):
         mount.with_changes(at=None, position=place) for mount, place in zip(box.mounts, MOUNTS)
     )
     rigid = box.with_changes(matrices=None, mounts=feet)
-    shops = [Workshop(bare.with_changes(housing=one)) for one in (box, rigid)]
-    found, exact = (shop.system("euler").modes(12).frequency_hz[1:] for shop in shops)
+    shops = [Assembly(bare.with_changes(housing=one)) for one in (box, rigid)]
+    found, exact = (assembly.system("euler").modes(12).frequency_hz[1:] for assembly in shops)
     assert found == pytest.approx(exact, rel=1e-5)
     point = bare.with_changes(operation=({"torque": 100.0, "weight": "-z"},)).operation[0]
-    one, other = (deflection(shop, point, "euler") for shop in shops)
+    one, other = (deflection(assembly, point, "euler") for assembly in shops)
     for key in ("1", "2", "3"):
         loads = [[m.value for m in own.mounts[key]] for own in (one, other)]
         assert loads[0] == pytest.approx(loads[1], rel=1e-4, abs=1e-6)
@@ -211,8 +211,8 @@ def test_matrices_of_no_free_housing_are_refused_in_a_sentence(tmp_path, change,
 )
 def test_a_housing_that_cannot_move_is_none(bare, still):
     models, n = ("euler", "rigid/euler", "rigid/euler"), 9
-    usual = Workshop(bare).system(*models).modes(n).frequency_hz[1:]
-    found = Workshop(bare.with_changes(housing=housing(**still))).system(*models).modes(n + 6)
+    usual = Assembly(bare).system(*models).modes(n).frequency_hz[1:]
+    found = Assembly(bare.with_changes(housing=housing(**still))).system(*models).modes(n + 6)
     elastic = found.frequency_hz[found.frequency_hz > 1.0]
     assert elastic[:n] == pytest.approx(usual, rel=1e-6)
 
@@ -223,33 +223,33 @@ def test_on_bearings_that_do_not_hold_a_housing_has_the_modes_of_a_mass_on_its_m
     a, b = 0.12, 0.2
     corners = [(x + CENTRE[0], y + CENTRE[1], CENTRE[2]) for x in (-a, a) for y in (-b, b)]
     box = housing(mass, (ix, iy, iz), (kx, ky, kz), corners)
-    shop = Workshop(bare.with_changes(housing=box))
+    assembly = Assembly(bare.with_changes(housing=box))
     names = [f"{side}.b{k}" for side in SHAFTS for k in (0, 1)]
     soft = np.diag([1e-6, 1e-6, 1e-6, 1e-8, 0.0, 1e-8])
-    found = shop.with_bearings(dict.fromkeys(names, soft)).system(RIGID).modes(25).frequency_hz
+    found = assembly.with_bearings(dict.fromkeys(names, soft)).system(RIGID).modes(25).frequency_hz
     turns = kz * b**2 / ix, kz * a**2 / iy, (kx * b**2 + ky * a**2) / iz
     exact = [sqrt(4 * k) / (2 * pi) for k in (kx / mass, ky / mass, kz / mass, *turns)]
     assert [found[np.argmin(abs(found - hz))] for hz in exact] == pytest.approx(exact, rel=1e-9)
-    system = shop.with_bearings(dict.fromkeys(names, soft)).system(RIGID)
-    modes, seen = modes_and_motions(shop, system, max(exact) + 1)
+    system = assembly.with_bearings(dict.fromkeys(names, soft)).system(RIGID)
+    modes, seen = modes_and_motions(assembly, system, max(exact) + 1)
     near = [np.argmin(abs(modes.frequency_hz[modes.rigid :] - hz)) for hz in exact]
     assert np.linalg.norm(seen[:, near], axis=0).min() > 0.1  # a mode is paired by what it moves
 
 
 def test_without_mounts_six_motions_more_are_free_and_told_and_loads_at_rest_are_refused(bare):
-    shop = Workshop(bare.with_changes(housing=housing(mounts=())))
-    found = train_modes(shop, RIGID, max_frequency=2000.0)
+    assembly = Assembly(bare.with_changes(housing=housing(mounts=())))
+    found = train_modes(assembly, RIGID, max_frequency=2000.0)
     assert found.rigid == 7 and [m.frequency_hz for m in found.modes[:8]].count(0.0) == 7
     assert "7 motions are free" in found.free[0] and "bearings" not in found.free[0]
     assert "no mount holds the housing in x y z thx thy thz" in found.free[0]
     point = bare.with_changes(operation=({"torque": 100.0},)).operation[0]
     with pytest.raises(SolidgearError, match="no mount holds the housing in thy"):
-        Operating(shop, RIGID).at(point)
+        Operating(assembly, RIGID).at(point)
 
 
 def test_mounts_carry_the_difference_of_both_torques_and_the_weight(train):
     loaded = train.with_changes(operation=({"torque": 100.0, "weight": "-z"},))
-    found = deflection(Workshop(loaded), loaded.operation[0], "euler")
+    found = deflection(Assembly(loaded), loaded.operation[0], "euler")
     load = {n: np.array([one.value for one in six]) for n, six in found.mounts.items()}
     force = sum(six[:3] for six in load.values())
     moment = sum(np.cross(at, six[:3]) for at, six in zip(MOUNTS, load.values()))
@@ -257,7 +257,7 @@ def test_mounts_carry_the_difference_of_both_torques_and_the_weight(train):
     weight = 9.80665 * (MASS + DENSITY * sum(volumes))
     assert force == pytest.approx([0, 0, -weight], rel=1e-10, abs=1e-10 * weight)
     unloaded = train.with_changes(operation=({"torque": 1e-9, "weight": "-z"},))
-    own = deflection(Workshop(unloaded), unloaded.operation[0], "euler").mounts.values()
+    own = deflection(Assembly(unloaded), unloaded.operation[0], "euler").mounts.values()
     moment -= sum(np.cross(p, [m.value for m in six[:3]]) for p, six in zip(MOUNTS, own))
     # the left flank's load turns the input about +y, against the engine; two meshes turn it back
     torque = -100.0 * (1 - 57 / 20 * 55 / 18)
@@ -291,7 +291,7 @@ def test_lines_of_shafts_are_told_against_a_housing_however_soft_it_stands(train
     )
     boxed = loaded.housing.with_changes(mounts=soft)
     one, other = (
-        deflection(Workshop(each), each.operation[0], "euler")
+        deflection(Assembly(each), each.operation[0], "euler")
         for each in (loaded, loaded.with_changes(housing=boxed))
     )
     moved = [abs(found.displacement["housing"][2].value) for found in (one, other)]
@@ -308,7 +308,7 @@ def test_what_bearings_mounts_and_inertia_do_to_a_housing_is_in_balance_at_every
     """Losses included: force for force, by what the response tells."""
     hz = np.array([8.0, 35.0, 240.0, 900.0])
     for boxed, foot in boxes(train, tmp_path):
-        drive = Drive(Workshop(boxed), "euler")
+        drive = Drive(Assembly(boxed), "euler")
         told, mass = drive.columns(hz), boxed.housing.mass
         moved = drive.motion(hz, drive.system.motion(f"housing.{foot}"))[:, 2]
         assert told["mount 1 z [N]"] / moved == pytest.approx(
@@ -326,10 +326,10 @@ def test_what_bearings_mounts_and_inertia_do_to_a_housing_is_in_balance_at_every
 
 
 def test_a_force_on_the_cover_moves_a_gear_as_one_on_the_gear_moves_the_cover(bare):
-    shop = Workshop(bare.with_changes(housing=housing(points={"cover": (0.0, 0.2, 0.3)})))
+    assembly = Assembly(bare.with_changes(housing=housing(points={"cover": (0.0, 0.2, 0.3)})))
     ends, hz = (("housing.cover", "z"), ("output.gear", "x")), np.array([30.0, 500.0])
     there, back = (
-        receptance(shop, "euler", from_=a, to=b, frequency_hz=hz).value
+        receptance(assembly, "euler", from_=a, to=b, frequency_hz=hz).value
         for a, b in (ends, ends[::-1])
     )
     assert there == pytest.approx(back, rel=1e-9) and np.abs(there).min() > 0
@@ -340,7 +340,7 @@ def test_finer_meshes_stay_within_the_bars_of_a_train_in_a_housing(train):
     """Beams of the other shafts are what they are, so that the pinion's solid alone may fall."""
     models = {"input": "harmonic", "middle": "euler", "output": "euler"}
     shops = [
-        Workshop(train, kept=8, settings={"harmonic": how})
+        Assembly(train, kept=8, settings={"harmonic": how})
         for how in ({"order": 2, "layers": 1}, {"order": 4})
     ]
     coarse, fine = (s.system(*models.values()).modes(16).frequency_hz[1:] for s in shops)
@@ -354,15 +354,15 @@ def test_mixes_are_judged_where_a_housing_stands_on_nothing(bare):
     """Seven motions at 0 Hz take no part: equal models leave no band."""
     coarse = {"harmonic": {"order": 2, "layers": 1}}
     free = bare.with_changes(housing=housing(mounts=()))
-    judge = _Judge(Workshop(free, kept=8, settings=coarse), 800.0)
+    judge = _Judge(Assembly(free, kept=8, settings=coarse), 800.0)
     assert judge.found.rigid == 7
     assert judge.departure("harmonic").to_hz == np.inf
     assert judge.departure("rigid/harmonic").mode in judge.names[7:]
 
 
-def test_lumped_shafts_whose_bearings_are_condensed_to_ground_are_refused(shop):
+def test_lumped_shafts_whose_bearings_are_condensed_to_ground_are_refused(assembly):
     with pytest.raises(SolidgearError, match="lumped shaft .* stand in a housing; use one of"):
-        shop.system("lumped")
+        assembly.system("lumped")
 
 
 @pytest.mark.parametrize(

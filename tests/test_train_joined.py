@@ -8,8 +8,8 @@ import pytest
 import solidgear as sg
 from solidgear.core.errors import SceneError
 from solidgear.strength.deflection.train import deflection
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.housing import BOX, mount_rows
-from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.load.operation import Operating
 from tests.test_train_housing import carried
@@ -66,7 +66,7 @@ def geared(flank="left", more=""):
 def test_a_stage_and_a_mesh_pass_what_two_loads_take_of_the_power(tmp_path, torque, flank):
     train = built(tmp_path, geared(flank))
     point = OperatingPoint(torque=torque, of="sun")
-    state = Operating(Workshop(train), RIGID).at(point)
+    state = Operating(Assembly(train), RIGID).at(point)
     teeth = train.stages[0].teeth
     lever = teeth.base_radii[0] * cos(teeth.base_helix)
     assert state.mesh_forces == pytest.approx(
@@ -90,9 +90,9 @@ def test_a_stage_and_a_mesh_pass_what_two_loads_take_of_the_power(tmp_path, torq
 
 
 def test_loads_told_of_any_shaft_are_one_state(tmp_path):
-    shop = Workshop(built(tmp_path, geared()))
-    one = Operating(shop, RIGID).at(OperatingPoint(torque=50.0, of="sun"))
-    other = Operating(shop, RIGID).at(OperatingPoint(torque=90.0, of="output"))
+    assembly = Assembly(built(tmp_path, geared()))
+    one = Operating(assembly, RIGID).at(OperatingPoint(torque=50.0, of="sun"))
+    other = Operating(assembly, RIGID).at(OperatingPoint(torque=90.0, of="output"))
     np.testing.assert_allclose(other.coordinates, one.coordinates, atol=1e-12)
 
 
@@ -107,14 +107,14 @@ def test_a_stage_in_a_housing_on_rigid_mounts_is_the_same_on_ground(tmp_path, ri
     """Mounts of 1e15 give by 1e-6 of what the ring's springs do, and of all else by less."""
     text = train_text(0.3, ring=ring)
     bare, housed = (
-        Workshop(built(tmp_path, text + more)) for more in ("", BOX_TEXT + mounted(1e15))
+        Assembly(built(tmp_path, text + more)) for more in ("", BOX_TEXT + mounted(1e15))
     )
     hz = bare.system(RIGID).modes().frequency_hz[1:]
     np.testing.assert_allclose(
         housed.system(RIGID).modes().frequency_hz[1 : 1 + len(hz)], hz, rtol=1e-6
     )
     point = OperatingPoint(torque=50.0, of="sun", force=({"at": "sun.sun", "x": 800.0},))
-    one, other = (Operating(shop, RIGID).at(point) for shop in (bare, housed))
+    one, other = (Operating(assembly, RIGID).at(point) for assembly in (bare, housed))
     np.testing.assert_allclose(planet_forces(other), planet_forces(one), rtol=1e-6)
     told = deflection(housed, point, RIGID)
     assert not told.turns and any("over a turn" in note for note in told.notes)
@@ -125,14 +125,14 @@ def test_a_stage_in_a_housing_on_rigid_mounts_is_the_same_on_ground(tmp_path, ri
 def test_a_ring_stands_in_the_housing_whose_mounts_carry_its_torque(tmp_path, ring, torque):
     text = train_text(0.3, ring=ring) + BOX_TEXT
     train = built(tmp_path, text + mounted(1e6))
-    state = Operating(Workshop(train), RIGID).at(OperatingPoint(torque=torque, of="sun"))
+    state = Operating(Assembly(train), RIGID).at(OperatingPoint(torque=torque, of="sun"))
     (rows,) = mount_rows(train, state.system).values()
     six = rows @ state.coordinates
     # about the axis of the sun, by the force of the mount at z = -0.2
     about = six[4] - 0.2 * six[0]
     assert about == pytest.approx(torque * (1 - 6), rel=1e-9)
     # without mounts nothing joins the ring to ground: the train moves as one body
-    free = Workshop(built(tmp_path, text)).on_flank(torque < 0).system(RIGID)
+    free = Assembly(built(tmp_path, text)).on_flank(torque < 0).system(RIGID)
     assert free.modes(8).rigid == 7 and np.linalg.matrix_rank(free.motion(BOX) @ free.free) == 6
 
 
@@ -160,7 +160,7 @@ def test_an_elastic_housing_holds_the_ring_at_a_point_of_its_own(tmp_path, lacki
         with pytest.raises(SceneError, match="has no point 'stage.ring'.*where that ring stands"):
             built(tmp_path, text)
         return
-    system = Workshop(built(tmp_path, text)).system(RIGID)
+    system = Assembly(built(tmp_path, text)).system(RIGID)
     assert system.modes(9).rigid == 7
     assert system.links["mesh stage ring 1"].ends[1] == "stage planet 1.centre"
     assert system.links["mesh stage ring 1"].ends[0] == "housing.stage.ring"
@@ -187,7 +187,7 @@ def test_flanks_on_both_sides_of_a_stage_that_turn_against_each_other_are_refuse
         )
         train = built(tmp_path, text)
         try:
-            state = Operating(Workshop(train), RIGID).at(OperatingPoint(torque=50.0, of="first"))
+            state = Operating(Assembly(train), RIGID).at(OperatingPoint(torque=50.0, of="first"))
             assert in_balance(state, train.shafts) and planet_forces(state).min() > 0
             told.append("")
         except SceneError as error:

@@ -8,8 +8,8 @@ from typer.testing import CliRunner
 
 import solidgear as sg
 from solidgear.app import app
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.meshes import mesh_bars
-from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.assembly.shaft import LUMPED
 from solidgear.trains.file.train import SIDES
 from solidgear.trains.judge import judge as judging
@@ -23,8 +23,8 @@ COARSE = {"harmonic": {"order": 2, "layers": 1}}
 
 @pytest.fixture(scope="module")
 def verdict():
-    shop = Workshop(TRAIN, kept=12, settings=COARSE)
-    return shop, judge_train(shop, 3000.0)
+    assembly = Assembly(TRAIN, kept=12, settings=COARSE)
+    return assembly, judge_train(assembly, 3000.0)
 
 
 @pytest.mark.long
@@ -42,9 +42,9 @@ def test_the_ring_gear_decides_and_not_the_pinion(verdict):
 
 
 def test_the_departures_are_where_the_numbers_say(verdict):
-    shop, found = verdict
+    assembly, found = verdict
     mix = found.departure(JUDGE, "timoshenko")
-    mine, own = Drive(shop, JUDGE, "timoshenko"), Drive(shop, JUDGE, JUDGE)
+    mine, own = Drive(assembly, JUDGE, "timoshenko"), Drive(assembly, JUDGE, JUDGE)
     hz = np.linspace(5, 3000, 60_001)
     ratio = np.abs(mine.mesh(hz)[1] / own.mesh(hz)[1])
     off = np.abs(20 * np.log10(ratio)) > 3
@@ -88,12 +88,12 @@ def test_the_judge_tells_how_sure_its_own_meshes_are(verdict):
     and is no more than three times as wide. Measured: 1.4 to 2.1.
     """
     found = verdict[1]
-    shop = Workshop(TRAIN, kept=12, settings={"harmonic": {"order": 3, "layers": 1}})
-    fine = Workshop(TRAIN, kept=12, settings={"harmonic": {"order": 4, "layers": 2}})
+    assembly = Assembly(TRAIN, kept=12, settings={"harmonic": {"order": 3, "layers": 1}})
+    fine = Assembly(TRAIN, kept=12, settings={"harmonic": {"order": 4, "layers": 2}})
     n = 8
-    one, two = (w.system(JUDGE, JUDGE).modes(n) for w in (shop, fine))
+    one, two = (w.system(JUDGE, JUDGE).modes(n) for w in (assembly, fine))
     error = 1 - two.frequency_hz[two.rigid :] / one.frequency_hz[one.rigid :]
-    bars = mesh_bars(shop, shop.system(JUDGE, JUDGE), dict.fromkeys(SIDES, JUDGE), n)
+    bars = mesh_bars(assembly, assembly.system(JUDGE, JUDGE), dict.fromkeys(SIDES, JUDGE), n)
     assert (0 < error).all() and (error <= bars).all()
     assert (bars < 3 * error).all()
     # the coarser meshes of the verdict are told as such
@@ -102,12 +102,12 @@ def test_the_judge_tells_how_sure_its_own_meshes_are(verdict):
 
 def test_a_mode_above_the_list_that_may_lie_in_it_is_told(verdict):
     """Its lower end is what counts: 1/4 of its bar above the limit is within, twice the bar is not."""
-    shop, n = verdict[0], 8
-    system = shop.system(JUDGE, JUDGE)
-    bars = mesh_bars(shop, system, dict.fromkeys(SIDES, JUDGE), n)
+    assembly, n = verdict[0], 8
+    system = assembly.system(JUDGE, JUDGE)
+    bars = mesh_bars(assembly, system, dict.fromkeys(SIDES, JUDGE), n)
     hz, bar = system.elastic[0][n - 1] / (2 * np.pi), bars[-1]
     within, without = (
-        train_modes(shop, JUDGE, JUDGE, max_frequency=hz * (1 - share * bar)).hidden
+        train_modes(assembly, JUDGE, JUDGE, max_frequency=hz * (1 - share * bar)).hidden
         for share in (0.25, 2.0)
     )
     assert f"it is at {hz:.2f} Hz" in within and without == ""
@@ -115,9 +115,9 @@ def test_a_mode_above_the_list_that_may_lie_in_it_is_told(verdict):
 
 @pytest.mark.slow
 def test_the_command_writes_the_verdict(tmp_path, monkeypatch):
-    from solidgear.trains.assembly import models
+    from solidgear.trains.assembly import assembly as train_assembly
 
-    monkeypatch.setattr(models, "MESH", COARSE)
+    monkeypatch.setattr(train_assembly, "MESH", COARSE)
     args = ["judge-system", "geometry/axle_overhung.toml", "--kept", "12", "--max-frequency", "900"]
     done = CliRunner().invoke(app, [*args, "--json", "--out", str(tmp_path)])
     assert done.exit_code == 0, done.output

@@ -10,7 +10,7 @@ from command import command
 
 import solidgear as sg
 from solidgear.core.errors import SolidgearError
-from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.load.life_command import train_lives
 from solidgear.trains.load.operation import Operating
 
@@ -32,7 +32,7 @@ def test_lives_belong_to_the_loads_of_the_equilibrium(train):
     one = operated(train, {"torque": 115.0})
     found = {bearing.end: bearing for bearing in train_lives(one)}
     assert list(found) == ["pinion.A", "pinion.B", "gear.C", "gear.D"]
-    carried = Operating(Workshop(one)).at(one.operation[0]).equilibrium.load
+    carried = Operating(Assembly(one)).at(one.operation[0]).equilibrium.load
     for end, bearing in found.items():
         (own,) = bearing.lives
         six = carried[end]

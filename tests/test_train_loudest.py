@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.modes.modes import train_modes
 from solidgear.trains.response.drive import Drive
 from solidgear.trains.response.loudest import loudest
@@ -19,9 +19,9 @@ GEARBOX = sg.load_train("geometry/gearbox_train.toml")
 
 
 def top_of(train, highest_hz=None, mix=BEAMS):
-    shop = Workshop(train)
-    modes = train_modes(shop, *mix, max_frequency=highest_hz).modes
-    return loudest(respond(shop, *mix, highest_hz=highest_hz), modes, train, shop.scenes)
+    assembly = Assembly(train)
+    modes = train_modes(assembly, *mix, max_frequency=highest_hz).modes
+    return loudest(respond(assembly, *mix, highest_hz=highest_hz), modes, train, assembly.scenes)
 
 
 def at_speed(hz, orders=("1 um",)):
@@ -57,7 +57,7 @@ def test_where_the_highest_speed_stands_on_a_flank_the_curve_there_is_the_larges
     limit = 0.98 * largest.frequency_hz
     train = at_speed(limit)
     found = top_of(train)
-    there = abs(Drive(Workshop(train), *BEAMS).mesh(np.array([limit]))[1][0])
+    there = abs(Drive(Assembly(train), *BEAMS).mesh(np.array([limit]))[1][0])
     # one point of the grid stands at the very speed
     assert found.top.frequency_hz == pytest.approx(limit, rel=1e-9)
     assert found.top.force == pytest.approx(there, rel=1e-9)

@@ -9,7 +9,7 @@ import scipy.linalg as sla
 
 import solidgear as sg
 from solidgear.core.errors import SolidgearError
-from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.judge.judge import JUDGE, MIXED, mixes_of
 from solidgear.trains.load.operation import Operating
 from solidgear.trains.modes.modes import train_modes
@@ -94,8 +94,8 @@ def train(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def shop(train):
-    return Workshop(train)
+def assembly(train):
+    return Assembly(train)
 
 
 def by_hand(stiff_bearing=BEARING, teeth_loss=0.0):
@@ -154,14 +154,16 @@ def lumped_matrices(part, bearings):
     return stiffness, part.mass
 
 
-def test_a_shaft_with_two_gears_is_lumped_at_both(shop):
+def test_a_shaft_with_two_gears_is_lumped_at_both(assembly):
     """Against one solve of all unknowns under unit loads of both points; and in torsion, where nothing
     holds it, against the rod between them, with what lies outside of it turning along.
     """
-    body = shop.shaft_model("middle", "euler").body
+    body = assembly.shaft_model("middle", "euler").body
     names = [port.name for port in body.ports]
     points = [names.index(port) for port in SHAFTS["middle"][2]]
-    stiffness, mass = lumped_matrices(shop.shaft_model("middle", "lumped/euler").part, ("b0", "b1"))
+    stiffness, mass = lumped_matrices(
+        assembly.shaft_model("middle", "lumped/euler").part, ("b0", "b1")
+    )
     for block in body.blocks:
         components, rows = list(block.components), block.ports.toarray()
         at = [6 * k + c for k in (0, 1) for c in components]
@@ -192,27 +194,27 @@ def test_a_shaft_with_two_gears_is_lumped_at_both(shop):
     assert own.sum() == pytest.approx(whole, rel=1e-6)
 
 
-def test_lumped_shafts_are_stiffer_than_their_bodies_and_true_below_their_first_bending(shop):
+def test_lumped_shafts_are_stiffer_than_their_bodies_and_true_below_their_first_bending(assembly):
     """Guyan's shapes are fewer (Rayleigh and Ritz): no frequency is lower.  Those of the chain of
     inertias lack what twists between a gear and the seat of a rotor's spring: of the input 4e3 of
     2.5e5 N m/rad.
     """
     lumped, whole = (
-        shop.system(model).modes(8).frequency_hz[1:]
+        assembly.system(model).modes(8).frequency_hz[1:]
         for model in ("lumped/timoshenko", "timoshenko")
     )
     assert (lumped >= whole * (1 - 1e-9)).all()
     assert lumped[:2] == pytest.approx(whole[:2], rel=2e-2)
     with pytest.raises(SolidgearError, match="the middle carries several gears.*use lumped"):
-        shop.system("lumped-old/timoshenko")
+        assembly.system("lumped-old/timoshenko")
 
 
 def hertz(k, m):
     return np.sqrt(np.abs(sla.eigh(k.real, m, eigvals_only=True))) / (2 * pi)
 
 
-def test_rigid_shafts_move_like_matrices_written_by_hand(shop):
-    found = shop.system("rigid/timoshenko").modes(19)
+def test_rigid_shafts_move_like_matrices_written_by_hand(assembly):
+    found = assembly.system("rigid/timoshenko").modes(19)
     exact = hertz(*by_hand()[:2])
     assert found.rigid == 1 and exact[0] < 1e-3
     assert found.frequency_hz[1:] == pytest.approx(exact[1:], rel=1e-9)
@@ -221,7 +223,7 @@ def test_rigid_shafts_move_like_matrices_written_by_hand(shop):
 def test_held_shafts_turn_like_a_chain_of_five_inertias(tmp_path):
     """Torsion alone: lateral motions take a share of bearing over mesh stiffness, 1e-6, at most."""
     held = [1e15, 1e15, 1e15, 1e11, 0.0, 1e11]
-    shop = Workshop(sg.load_train(written(tmp_path, bearing=held)))
+    assembly = Assembly(sg.load_train(written(tmp_path, bearing=held)))
     polar = [
         sum(DENSITY * pi / 32 * length * d**4 for length, d in SHAFTS[name][0]) for name in SHAFTS
     ]
@@ -233,7 +235,7 @@ def test_held_shafts_turn_like_a_chain_of_five_inertias(tmp_path):
         row = radius * cos(PRESSURE) * cos(helix) * np.array([1, teeth[1] / teeth[0]])
         k[a : a + 2, a : a + 2] += stiffness * np.outer(row, row)
     chain = hertz(k, inertia)[1:]
-    found = train_modes(shop, "rigid/timoshenko", max_frequency=1.01 * chain[-1]).modes
+    found = train_modes(assembly, "rigid/timoshenko", max_frequency=1.01 * chain[-1]).modes
     near = [min((m.frequency_hz for m in found), key=lambda hz: abs(hz - one)) for one in chain]
     assert near == pytest.approx(chain, rel=1e-5)
     assert [m.name for m in found if "torsion" in m.name][0] == "load torsion 1"
@@ -246,12 +248,12 @@ def test_a_rigid_mesh_is_the_limit_of_a_stiff_one(train):
     exact = hertz(free.T @ k @ free, free.T @ m @ free)[1:8]
     first, second = train.meshes
     stiff = train.with_changes(meshes=(first, second.with_changes(stiffness=1e14)))
-    found = Workshop(stiff).system("rigid/timoshenko").modes(7).frequency_hz[1:]
+    found = Assembly(stiff).system("rigid/timoshenko").modes(7).frequency_hz[1:]
     assert found == pytest.approx(exact, rel=1e-5)
 
 
 def test_neither_the_sequence_of_shafts_nor_the_side_a_mesh_is_told_from_changes_a_frequency(
-    train, shop
+    train, assembly
 ):
     k, m, _ = by_hand()
     first, second = train.meshes
@@ -267,15 +269,17 @@ def test_neither_the_sequence_of_shafts_nor_the_side_a_mesh_is_told_from_changes
         },
         meshes=(turned, first),
     )
-    found = Workshop(other).system("timoshenko").modes(12).frequency_hz[1:]
-    assert found == pytest.approx(shop.system("timoshenko").modes(12).frequency_hz[1:], rel=1e-7)
+    found = Assembly(other).system("timoshenko").modes(12).frequency_hz[1:]
+    assert found == pytest.approx(
+        assembly.system("timoshenko").modes(12).frequency_hz[1:], rel=1e-7
+    )
     assert other.turns == pytest.approx(train.turns, rel=1e-14)
 
 
-def test_an_error_of_either_mesh_drives_what_the_dense_matrices_give(shop):
+def test_an_error_of_either_mesh_drives_what_the_dense_matrices_give(assembly):
     hz = np.array([40.0, 300.0, 900.0, 2100.0])
-    losses = shop.train.losses.with_changes(shafts=0, bearings=0, springs=0)
-    lossy = Workshop(shop.train.with_changes(losses=losses))
+    losses = assembly.train.losses.with_changes(shafts=0, bearings=0, springs=0)
+    lossy = Assembly(assembly.train.with_changes(losses=losses))
     k, m, rows = by_hand(teeth_loss=losses.mesh)
     for n, pair in enumerate(lossy.train.pairs):
         drive = Drive(lossy, "rigid/timoshenko", mesh=pair.name)
@@ -292,7 +296,7 @@ def test_an_error_of_either_mesh_drives_what_the_dense_matrices_give(shop):
 
 def test_forces_at_rest_are_in_balance_on_every_shaft_and_torque_leaves_by_the_teeth(train):
     loaded = train.with_changes(operation=({"torque": 100.0},))
-    state = Operating(Workshop(loaded), "timoshenko").at(loaded.operation[0])
+    state = Operating(Assembly(loaded), "timoshenko").at(loaded.operation[0])
     assert loaded.operation[0].of == "input"
     ratio = 57 / 20 * 55 / 18
     assert state.outside["load"][4] == pytest.approx(100.0 * ratio, rel=1e-10)
@@ -335,7 +339,7 @@ def test_an_idler_between_two_wheels_is_pushed_across_by_both(tmp_path, told):
         text += f'[{name}.spring]\nstiffness = 4e3\nat = "b1"\n'
     (tmp_path / "train.toml").write_text(text + "[operation]\ntorque = 90\n")
     train = sg.load_train(tmp_path / "train.toml")
-    state = Operating(Workshop(train), "timoshenko").at(train.operation[0])
+    state = Operating(Assembly(train), "timoshenko").at(train.operation[0])
     push = sum(state.forces()[f"idler.{b}"][:3] for b in ("b0", "b1"))  # of the bearings
     assert np.abs(push) == pytest.approx([0, 0, 2 * 90 / 0.03], abs=1e-6)
     assert state.outside["load"][4] == pytest.approx(90.0 * 40 / 20, rel=1e-10)
@@ -417,7 +421,7 @@ BAD = {
 @pytest.mark.parametrize(("changes", "reason"), BAD.values(), ids=BAD)
 def test_what_is_no_train_is_refused_in_one_sentence(tmp_path, changes, reason):
     with pytest.raises(SolidgearError, match=reason) as caught:
-        Workshop(sg.load_train(written(tmp_path, *changes)))
+        Assembly(sg.load_train(written(tmp_path, *changes)))
     assert "\n" not in str(caught.value).replace("problems in", "") or caught.value.problems
 
 

@@ -5,7 +5,7 @@ import pytest
 from solidgear.backlash.train import teeth_of
 from solidgear.core.errors import SceneError, SolidgearError
 from solidgear.core.scene.file import load
-from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.file.reading import load_train
 from solidgear.trains.modes.modes import train_modes
 from solidgear.trains.response.respond import respond
@@ -59,17 +59,19 @@ def pair(tmp_path):
 
 
 def frequencies(path):
-    shop = Workshop(load_train(path))
-    return [mode.frequency_hz for mode in train_modes(shop, "euler", max_frequency=2500.0).modes]
+    assembly = Assembly(load_train(path))
+    return [
+        mode.frequency_hz for mode in train_modes(assembly, "euler", max_frequency=2500.0).modes
+    ]
 
 
 def test_frequencies_need_teeth_and_a_mesh_alone(pair):
     """No engine, load, transmission error, hand, face width or flank; with the flank they are the same."""
     bare, told = frequencies(pair()), frequencies(pair(pinion='loaded_side = "left"'))
     assert bare == pytest.approx(told, rel=1e-12) and len(bare) > 5
-    (text,) = Workshop(load_train(pair())).cautions
+    (text,) = Assembly(load_train(pair())).cautions
     assert "the left flank of the pinion is taken" in text
-    assert Workshop(load_train(pair(gear='loaded_side = "right"'))).cautions == ()
+    assert Assembly(load_train(pair(gear='loaded_side = "right"'))).cautions == ()
 
 
 def test_the_flank_of_the_gear_is_that_of_the_pinion(pair):
@@ -78,23 +80,23 @@ def test_the_flank_of_the_gear_is_that_of_the_pinion(pair):
 
 
 def test_a_command_that_is_driven_asks_for_the_error(pair):
-    shop = Workshop(load_train(pair()))
+    assembly = Assembly(load_train(pair()))
     with pytest.raises(SceneError, match="it is what drives the teeth") as error:
-        respond(shop, "euler", highest_hz=500.0)
+        respond(assembly, "euler", highest_hz=500.0)
     assert error.value.problems[0].path == ("mesh", "transmission_error")
     force = {"gear.wheel": [0, 0, 100.0, 0, 0, 0]}
-    assert len(respond(shop, "euler", highest_hz=500.0, forces=force).frequency_hz) > 10
+    assert len(respond(assembly, "euler", highest_hz=500.0, forces=force).frequency_hz) > 10
 
 
 def test_a_torque_asks_for_where_it_comes_in_and_goes_out(pair):
     with pytest.raises(SceneError, match=r"write \[engine\] and \[load\]") as error:
         load_train(pair(more="[operation]\ntorque = 10"))
     assert error.value.problems[0].path == ("operation",)
-    shop = Workshop(load_train(pair(mesh='transmission_error = "1 um"\nbacklash = "50 um"')))
+    assembly = Assembly(load_train(pair(mesh='transmission_error = "1 um"\nbacklash = "50 um"')))
     with pytest.raises(
         SolidgearError, match=r"no torque passes the pinion: it comes in at \[engine\]"
     ):
-        teeth_of(shop, mean_force=1000.0)
+        teeth_of(assembly, mean_force=1000.0)
     whole = pair(
         more=ROTORS.format(at="A") + "[operation]\ntorque = 10", pinion='loaded_side = "left"'
     )
@@ -103,19 +105,19 @@ def test_a_torque_asks_for_where_it_comes_in_and_goes_out(pair):
 
 def test_helical_teeth_are_asked_for_their_hand(pair):
     with pytest.raises(SceneError, match="hand: is missing"):
-        Workshop(load_train(pair(pinion="helix_angle = 0.2")))
+        Assembly(load_train(pair(pinion="helix_angle = 0.2")))
 
 
 def test_as_many_modes_are_listed_as_are_asked_for(pair):
     """Without a frequency, so many; with one, at most so many."""
     file = pair(more="[ask]\nmodes = 8")
     train = load_train(file)
-    found = train_modes(Workshop(train), "euler", at_most=train.ask.modes)
+    found = train_modes(Assembly(train), "euler", at_most=train.ask.modes)
     assert len(found.modes) == 8 + found.rigid
     done = command("system-modes", file, "--pinion", "euler", "--gear", "euler")
     assert done.exit_code == 0 and "\n 9 │" in done.output and "\n10 │" not in done.output
     low = found.modes[3].frequency_hz * 1.0001
-    assert len(train_modes(Workshop(train), "euler", max_frequency=low, at_most=8).modes) < 8
+    assert len(train_modes(Assembly(train), "euler", max_frequency=low, at_most=8).modes) < 8
 
 
 CHAIN = """[shaft.{a}]
@@ -149,7 +151,7 @@ def test_flanks_of_a_chain_follow_from_the_first(pair):
     path.write_text(CHAIN.format(a="one", b="two", c="three"))
     train = load_train(path)
     assert [one.pinion.flank for one in train.pairs] == ["left", "right"]
-    assert Workshop(train).system("euler").free.shape[1] == 1
+    assert Assembly(train).system("euler").free.shape[1] == 1
 
 
 def masses_of(tmp_path, *masses):

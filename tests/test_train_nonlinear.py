@@ -16,7 +16,7 @@ from solidgear.backlash.solver.model import remainder
 from solidgear.backlash.solver.motion import sweep
 from solidgear.backlash.train import backlash_model, over_force, parting, teeth_of, with_backlash
 from solidgear.core.errors import SceneError
-from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.response.drive import Drive
 
 OVERHUNG = Path(__file__).parent.parent / "geometry" / "axle_overhung.toml"
@@ -25,20 +25,20 @@ SOLIDS = "harmonic", "harmonic"
 
 
 @pytest.fixture(scope="module")
-def shop():
+def assembly():
     train = sg.load_train(OVERHUNG)
     mesh = train.mesh.with_changes(backlash="100 um", transmission_error="10 um")
-    return Workshop(train.with_changes(mesh=mesh))
+    return Assembly(train.with_changes(mesh=mesh))
 
 
 @pytest.fixture(scope="module")
-def teeth(shop):
-    return teeth_of(shop, 5000.0)
+def teeth(assembly):
+    return teeth_of(assembly, 5000.0)
 
 
 @pytest.fixture(scope="module")
-def solids(shop, teeth):
-    return with_backlash(shop, SOLIDS, teeth, 1100.0, 300.0)
+def solids(assembly, teeth):
+    return with_backlash(assembly, SOLIDS, teeth, 1100.0, 300.0)
 
 
 @pytest.mark.long
@@ -57,9 +57,9 @@ def test_the_linear_peak_hides_where_teeth_part_and_jump(solids):
 
 
 @pytest.mark.long
-def test_lumped_shafts_are_enough_for_jumps_and_beams_are_not(shop, teeth, solids):
-    others = [with_backlash(shop, [m], teeth, 1100.0, 300.0) for m in ("lumped", "timoshenko")]
-    lumped, beams = BacklashStudy(shop.train, (solids, *others), 0.044).sufficiency()
+def test_lumped_shafts_are_enough_for_jumps_and_beams_are_not(assembly, teeth, solids):
+    others = [with_backlash(assembly, [m], teeth, 1100.0, 300.0) for m in ("lumped", "timoshenko")]
+    lumped, beams = BacklashStudy(assembly.train, (solids, *others), 0.044).sufficiency()
     assert lumped.enough and lumped.jumps < 0.01 and abs(lumped.force) < 0.015
     assert not beams.enough and beams.force == pytest.approx(0.30, abs=0.01)
 
@@ -90,9 +90,9 @@ def test_no_motion_jumps_at_a_torque_above_the_linear_peak(solids):
     assert low.largest > low.mean_force
 
 
-def test_a_branch_takes_up_harmonics_beside_its_turning_point(shop):
+def test_a_branch_takes_up_harmonics_beside_its_turning_point(assembly):
     # with more of them the branch turns a little sooner, and has no motion at the speed it is at
-    own = backlash_model(shop, ["lumped"], teeth_of(shop, 8017.8), 4000.0)
+    own = backlash_model(assembly, ["lumped"], teeth_of(assembly, 8017.8), 4000.0)
     branch = follow(own, 2 * np.pi * 150.0, 2 * np.pi * 2000.0, step=0.02)
     up, down = (branch.points[k].omega / (2 * np.pi) for k in branch.turning)
     # both lie between those at 6.4 and 9.6 kN
@@ -100,12 +100,12 @@ def test_a_branch_takes_up_harmonics_beside_its_turning_point(shop):
 
 
 @pytest.mark.parametrize("highest", [np.inf, 4000.0])
-def test_without_backlash_the_answer_is_the_linear_one(shop, teeth, highest):
-    drive = Drive(shop, *BEAMS, damping="viscous", matched_hz=800.0)
+def test_without_backlash_the_answer_is_the_linear_one(assembly, teeth, highest):
+    drive = Drive(assembly, *BEAMS, damping="viscous", matched_hz=800.0)
     system = parting(drive.system, replace(teeth, half_gap=0.0))
     own = remainder(
         system,
-        loss=shop.loss_factors(),
+        loss=assembly.loss_factors(),
         kind="viscous",
         matched_hz=800.0,
         errors={"mesh": teeth.errors},
@@ -164,23 +164,23 @@ def test_teeth_that_cannot_be_are_refused(run, more, says):
 PITCH = 2 * np.pi / 14
 
 
-def cycle(shop, depth=0.1, **changes):
+def cycle(assembly, depth=0.1, **changes):
     """The train with a stiffness that is largest at both ends of a tooth pitch of the pinion."""
     at = np.linspace(0.0, PITCH, 41)
     table = {"angle": at, "stiffness": 2.5e8 * (1 + depth * np.cos(14 * at))} | changes
     table = {key: np.asarray(values).tolist() for key, values in table.items()}
-    mesh = shop.train.mesh.with_changes(stiffness_cycle=table)
-    return shop.with_train(shop.train.with_changes(mesh=mesh))
+    mesh = assembly.train.mesh.with_changes(stiffness_cycle=table)
+    return assembly.with_train(assembly.train.with_changes(mesh=mesh))
 
 
-def test_a_stiffness_that_varies_drives_the_train_as_its_mean_deflection_does(shop, teeth):
-    varied = cycle(shop, 1e-3)
+def test_a_stiffness_that_varies_drives_the_train_as_its_mean_deflection_does(assembly, teeth):
+    varied = cycle(assembly, 1e-3)
     found = teeth_of(varied, 5000.0)
     assert found.cycle[0] == pytest.approx((1e-3, 0.0), rel=5e-3, abs=1e-12)
     # a small share c of k under the force F acts as a transmission error c F / k
     system = parting(varied.system(*BEAMS), found)
     own = backlash_model(varied, BEAMS, replace(found, errors=(0.0,)), 4000.0)
-    other = backlash_model(shop, BEAMS, replace(teeth, errors=(1e-3 * 5000.0 / 2.5e8,)), 4000.0)
+    other = backlash_model(assembly, BEAMS, replace(teeth, errors=(1e-3 * 5000.0 / 2.5e8,)), 4000.0)
     assert system.links["mesh"].stiffness == 2.5e8
     for hz in (400.0, 1000.0):
         w = 2 * np.pi * hz
@@ -202,26 +202,27 @@ def test_a_stiffness_that_varies_drives_the_train_as_its_mean_deflection_does(sh
         ({"stiffness": [2.5e8, 2.5e8]}, "2 stiffnesses for 41 angles"),
     ],
 )
-def test_a_stiffness_over_the_cycle_that_cannot_be_is_refused(shop, changes, says):
+def test_a_stiffness_over_the_cycle_that_cannot_be_is_refused(assembly, changes, says):
     with pytest.raises(SceneError, match=says):
-        cycle(shop, **changes)
+        cycle(assembly, **changes)
 
 
-def lines(shop, turn=0.0, **changes):
+def lines(assembly, turn=0.0, **changes):
     """The train with its own mesh point and line of action over the cycle, turned about z."""
-    at, met = np.linspace(0.0, PITCH, 41), shop.contact.pinion
+    at, met = np.linspace(0.0, PITCH, 41), assembly.contact.pinion
     c, s = np.cos(turn * np.cos(14 * at)), np.sin(turn * np.cos(14 * at))
     nx, ny, nz = met.normal
     normal = np.column_stack([c * nx - s * ny, s * nx + c * ny, np.full(41, nz)])
     table = {"angle": at, "point": np.tile(met.point, (41, 1)), "normal": normal} | changes
     table = {key: np.asarray(values).tolist() for key, values in table.items()}
-    mesh = shop.train.mesh.with_changes(line_cycle=table)
-    return shop.with_train(shop.train.with_changes(mesh=mesh))
+    mesh = assembly.train.mesh.with_changes(line_cycle=table)
+    return assembly.with_train(assembly.train.with_changes(mesh=mesh))
 
 
-def test_a_line_of_action_that_stays_where_it_is_changes_nothing(shop, teeth):
+def test_a_line_of_action_that_stays_where_it_is_changes_nothing(assembly, teeth):
     first, other = (
-        backlash_model(one, BEAMS, teeth_of(one, 5000.0), 4000.0) for one in (shop, lines(shop))
+        backlash_model(one, BEAMS, teeth_of(one, 5000.0), 4000.0)
+        for one in (assembly, lines(assembly))
     )
     assert other.sway is None
     for name in ("omega", "shapes", "mean", "losses", "flexible", "stiffness", "error"):
@@ -229,13 +230,13 @@ def test_a_line_of_action_that_stays_where_it_is_changes_nothing(shop, teeth):
         np.testing.assert_allclose(np.abs(b), np.abs(a), rtol=1e-10, atol=1e-10 * np.abs(a).max())
 
 
-def test_a_line_of_action_that_turns_moves_the_train_alike_by_balance_and_in_time(shop):
-    turned = lines(shop, 0.15)
+def test_a_line_of_action_that_turns_moves_the_train_alike_by_balance_and_in_time(assembly):
+    turned = lines(assembly, 0.15)
     found = teeth_of(turned, 5000.0)
     own = backlash_model(turned, ["lumped/timoshenko"], found, 2000.0)
     assert own.rows > 1 and found.turns
     point = follow(own, 2 * np.pi * 690.0, 2 * np.pi * 670.0, step=0.2).points[-1]
-    still = backlash_model(shop, ["lumped/timoshenko"], found, 2000.0)
+    still = backlash_model(assembly, ["lumped/timoshenko"], found, 2000.0)
     other = follow(still, 2 * np.pi * 690.0, 2 * np.pi * 670.0, step=0.2).points[-1]
     force, straight = (np.ptp(one.forces()[:, 0]) for one in (point, other))
     assert abs(force / straight - 1) > 0.01, "the line is to matter"
@@ -257,25 +258,25 @@ def test_a_line_of_action_that_turns_moves_the_train_alike_by_balance_and_in_tim
         ({"angle": np.linspace(0.0, 0.3, 41)}, "one of its 14 teeth takes"),
     ],
 )
-def test_a_line_of_action_over_the_cycle_that_cannot_be_is_refused(shop, changes, says):
+def test_a_line_of_action_over_the_cycle_that_cannot_be_is_refused(assembly, changes, says):
     with pytest.raises(SceneError, match=says):
-        lines(shop, **changes)
+        lines(assembly, **changes)
 
 
-def test_tables_over_the_cycle_that_begin_apart_or_push_elsewhere_are_refused(shop):
+def test_tables_over_the_cycle_that_begin_apart_or_push_elsewhere_are_refused(assembly):
     with pytest.raises(SceneError, match="let both begin at one angle"):
-        lines(cycle(shop), angle=np.linspace(0.1, 0.1 + PITCH, 41))
-    met = shop.contact.pinion
-    moved = lines(shop, point=np.tile(met.point * [0.5, 1.0, 1.0], (41, 1)))
+        lines(cycle(assembly), angle=np.linspace(0.1, 0.1 + PITCH, 41))
+    met = assembly.contact.pinion
+    moved = lines(assembly, point=np.tile(met.point * [0.5, 1.0, 1.0], (41, 1)))
     with pytest.raises(SceneError, match="has lever arms of"):
         backlash_model(moved, BEAMS, teeth_of(moved, 5000.0), 4000.0)
 
 
-def test_phases_of_the_transmission_error_shift_it_in_time_or_change_its_force(shop):
+def test_phases_of_the_transmission_error_shift_it_in_time_or_change_its_force(assembly):
     def force(phases):
         error = {"orders": ("10 um", "5 um"), "phases": phases}
-        mesh = shop.train.mesh.with_changes(transmission_error=error)
-        one = shop.with_train(shop.train.with_changes(mesh=mesh))
+        mesh = assembly.train.mesh.with_changes(transmission_error=error)
+        one = assembly.with_train(assembly.train.with_changes(mesh=mesh))
         own = backlash_model(one, BEAMS, teeth_of(one, 5e5), 4000.0)
         balance = Balance(own, 3)
         motion = balance.linear(2 * np.pi * 300.0)

@@ -13,7 +13,7 @@ from solidgear.backlash.solver.model import remainder
 from solidgear.backlash.solver.motion import steady_motion
 from solidgear.backlash.train import backlash_model, parting, teeth_of, with_backlash
 from solidgear.core.errors import SolidgearError
-from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.load.contact import axes_of
 from solidgear.trains.response.drive import Drive
 
@@ -22,15 +22,15 @@ BEAMS = ["timoshenko"]
 
 
 @pytest.fixture(scope="module")
-def shop():
-    return Workshop(sg.load_train(GEOMETRY / "gearbox_two_stage.toml"))
+def assembly():
+    return Assembly(sg.load_train(GEOMETRY / "gearbox_two_stage.toml"))
 
 
-def toothed(shop, first=None, second=None):
+def toothed(assembly, first=None, second=None):
     """The gearbox with other teeth."""
-    meshes = zip(shop.train.meshes, (first or {}, second or {}))
+    meshes = zip(assembly.train.meshes, (first or {}, second or {}))
     changed = tuple(mesh.with_changes(**changes) for mesh, changes in meshes)
-    return shop.with_train(shop.train.with_changes(meshes=changed))
+    return assembly.with_train(assembly.train.with_changes(meshes=changed))
 
 
 def test_shafts_of_any_names_part_like_pinion_and_gear(run, tmp_path):
@@ -52,22 +52,22 @@ def test_shafts_of_any_names_part_like_pinion_and_gear(run, tmp_path):
     assert "N m on the small" in out
 
 
-def test_each_mesh_carries_its_own_mean_force(shop):
+def test_each_mesh_carries_its_own_mean_force(assembly):
     gap = {"backlash": "20 um"}
-    teeth = teeth_of(toothed(shop, gap, gap), mesh="middle-output")
-    levers = {name: abs(met.pinion.lever) for name, met in shop.contacts.items()}
+    teeth = teeth_of(toothed(assembly, gap, gap), mesh="middle-output")
+    levers = {name: abs(met.pinion.lever) for name, met in assembly.contacts.items()}
     # 115 N m on the input, 57 over 20 times as much on the middle
     assert teeth.mean_force == pytest.approx(115 * 57 / 20 / levers["mesh middle-output"])
     assert teeth.others[0].mean_force == pytest.approx(115 / levers["mesh input-middle"])
-    own = backlash_model(toothed(shop, gap, gap), BEAMS, teeth, 3000.0)
+    own = backlash_model(toothed(assembly, gap, gap), BEAMS, teeth, 3000.0)
     # that the torques of engine and load bring about at rest
     carried = own.mean * np.diag(own.stiffness)
     np.testing.assert_allclose(carried, [one.mean_force for one in teeth.meshes], rtol=1e-9)
 
 
 @pytest.mark.parametrize("driver", ["input-middle", "middle-output"])
-def test_without_backlash_every_mesh_answers_as_the_response_does(shop, driver):
-    own = toothed(shop, {"backlash": 0.0}, {"backlash": 0.0})
+def test_without_backlash_every_mesh_answers_as_the_response_does(assembly, driver):
+    own = toothed(assembly, {"backlash": 0.0}, {"backlash": 0.0})
     teeth = teeth_of(own, mesh=driver)
     drive = Drive(own, *BEAMS, damping="viscous", matched_hz=800.0, mesh=driver)
     made = remainder(
@@ -96,9 +96,9 @@ def test_without_backlash_every_mesh_answers_as_the_response_does(shop, driver):
         (("20 um", "30 um"), 4223.0, (1572.0, 1580.0), (True, False)),
     ],
 )
-def test_balance_of_two_laws_is_motion_in_time(shop, gaps, force, hz, parts):
+def test_balance_of_two_laws_is_motion_in_time(assembly, gaps, force, hz, parts):
     first, second = ({"backlash": gap} for gap in gaps)
-    own = toothed(shop, {**first, "transmission_error": "15 um"}, second)
+    own = toothed(assembly, {**first, "transmission_error": "15 um"}, second)
     made = backlash_model(own, BEAMS, teeth_of(own, force), 3000.0)
     half = [law.half_gap for law, _ in made.laws]
     ends = 2 * np.pi * (hz[0] - 30), 2 * np.pi * (hz[1] + 10)
@@ -114,8 +114,8 @@ def test_balance_of_two_laws_is_motion_in_time(shop, gaps, force, hz, parts):
         )
 
 
-def test_what_parts_is_told_of_each_mesh(shop):
-    own = toothed(shop, {"transmission_error": "15 um"}, {"backlash": "30 um"})
+def test_what_parts_is_told_of_each_mesh(assembly):
+    own = toothed(assembly, {"transmission_error": "15 um"}, {"backlash": "30 um"})
     found = with_backlash(own, BEAMS, teeth_of(own, 500.0), 1600.0, 1520.0)
     told = BacklashStudy(own.train, (found,), abs(own.contacts[found.teeth.mesh].pinion.lever))
     lines = told.sentences()
@@ -136,28 +136,28 @@ def test_what_parts_is_told_of_each_mesh(shop):
     assert found.holding[1].max() == pytest.approx(500.0 * share)
 
 
-def test_a_line_of_action_of_the_second_stage_that_stays_changes_nothing(shop):
-    pair = shop.train.named_mesh("middle-output")
-    met, turn = shop.contacts[pair.name].pinion, axes_of(pair, "pinion")
+def test_a_line_of_action_of_the_second_stage_that_stays_changes_nothing(assembly):
+    pair = assembly.train.named_mesh("middle-output")
+    met, turn = assembly.contacts[pair.name].pinion, axes_of(pair, "pinion")
     at = np.linspace(0.0, 2 * np.pi / 18, 5)
     table = {"angle": at.tolist(), "normal": [(turn.T @ met.normal).tolist()] * 5}
     table["point"] = [(turn.T @ met.point).tolist()] * 5
     gap = {"backlash": "20 um"}
     made = []
     for more in ({}, {"line_cycle": table}):
-        own = toothed(shop, {}, {**gap, **more})
+        own = toothed(assembly, {}, {**gap, **more})
         made.append(backlash_model(own, BEAMS, teeth_of(own, mesh="middle-output"), 3000.0))
     for name in ("omega", "shapes", "mean", "losses", "error"):
         a, b = (getattr(one, name) for one in made)
         np.testing.assert_allclose(np.abs(b), np.abs(a), rtol=1e-9, atol=1e-9 * np.abs(a).max())
 
 
-def test_what_several_meshes_cannot_have_is_refused(shop):
+def test_what_several_meshes_cannot_have_is_refused(assembly):
     at = np.linspace(0.0, 2 * np.pi / 18, 5)
     table = {"angle": at.tolist(), "stiffness": [4.5e8] * 5}
-    varied = toothed(shop, {"backlash": "20 um"}, {"stiffness_cycle": table})
+    varied = toothed(assembly, {"backlash": "20 um"}, {"stiffness_cycle": table})
     with pytest.raises(SolidgearError, match="give --mesh middle-output, or leave its table out"):
         teeth_of(varied)
     assert teeth_of(varied, mesh="middle-output").half_gap == 0.0
     with pytest.raises(SolidgearError, match="no backlash is given"):
-        teeth_of(shop)
+        teeth_of(assembly)

@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 
 import solidgear as sg
+from solidgear.core import as_written
 from solidgear.core.errors import SceneError, SolidgearError
 from solidgear.strength.deflection.misalignment import misalignment
 from solidgear.strength.deflection.shaft import deflect_scene
 from solidgear.strength.deflection.train import deflect_train, deflection
-from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.file.operation import GRAVITY, OperatingPoint
 from solidgear.trains.load.operation import Operating, at_point
 from solidgear.trains.modes.modes import train_modes
@@ -114,11 +115,11 @@ def helical(folder):
 
 @pytest.fixture(scope="module")
 def gearbox():
-    return Workshop(sg.load_train(GEARBOX))
+    return Assembly(sg.load_train(GEARBOX))
 
 
 def settled_at(train, torque, **more):
-    return Operating(Workshop(train)).at(OperatingPoint(torque=torque, **more))
+    return Operating(Assembly(train)).at(OperatingPoint(torque=torque, **more))
 
 
 # ----------------------------------------------------------------------- equilibrium
@@ -181,8 +182,8 @@ def test_a_negative_torque_is_carried_by_the_other_flank(helical):
 def test_bevel_flanks_mirror_at_the_pitch_cone():
     train = sg.load_train(GEOMETRY / "axle_overhung.toml")
     convex = train.with_changes(pinion=train.pinion.with_changes(loaded_side="convex"))
-    coast = Workshop(train).on_flank(True).contact.pinion.normal
-    assert coast == pytest.approx(Workshop(convex).contact.pinion.normal, abs=1e-15)
+    coast = Assembly(train).on_flank(True).contact.pinion.normal
+    assert coast == pytest.approx(Assembly(convex).contact.pinion.normal, abs=1e-15)
 
 
 def test_without_torque_clearance_is_told_and_no_stiffness_is_made_up(gearbox):
@@ -192,7 +193,7 @@ def test_without_torque_clearance_is_told_and_no_stiffness_is_made_up(gearbox):
     assert any("pinion.A carries no load" in note for note in state.notes)
     resting = at_point(gearbox.train.with_changes(operation=({"torque": 0.0},)))
     assert resting.unloaded == ("pinion.A", "gear.D")
-    assert any("pinion.A carries no load" in c for c in Workshop(resting).cautions)
+    assert any("pinion.A carries no load" in c for c in Assembly(resting).cautions)
 
 
 def test_weight_is_carried_by_the_bearings(helical):
@@ -231,7 +232,7 @@ def test_modes_are_those_of_the_point():
     train = sg.load_train(GEARBOX)
     found = {
         torque: train_modes(
-            Workshop(at_point(train.with_changes(operation=({"torque": torque},)))),
+            Assembly(at_point(train.with_changes(operation=({"torque": torque},)))),
             "timoshenko",
             "timoshenko",
             max_frequency=2000.0,
@@ -325,11 +326,11 @@ def test_with_one_shaft_rigid_the_misalignment_is_the_slope_of_the_other(helical
         b.with_changes(matrix=np.array(b.stiffness) * 1e6) for b in helical.gear.scene.bearings
     ]
     gear = helical.gear.with_changes(scene=helical.gear.scene.with_changes(bearings=tuple(stiff)))
-    shop = Workshop(helical.with_changes(gear=gear))
-    found = deflection(shop, OperatingPoint(torque=100.0), "timoshenko", "rigid/euler")
+    assembly = Assembly(helical.with_changes(gear=gear))
+    found = deflection(assembly, OperatingPoint(torque=100.0), "timoshenko", "rigid/euler")
     tilt = np.array([m.value for m in found.displacement["pinion"]])[3:]
     slope = np.cross(tilt, [0.0, 1.0, 0.0])
-    normal = shop.contact.pinion.normal * [1, 0, 1]
+    normal = assembly.contact.pinion.normal * [1, 0, 1]
     normal = normal / np.linalg.norm(normal)
     told = {m.name: m.value for m in found.misalignment}
     # bearings of the gear give by a millionth of what those of the pinion do
@@ -338,18 +339,18 @@ def test_with_one_shaft_rigid_the_misalignment_is_the_slope_of_the_other(helical
 
 
 def test_misalignment_of_parallel_shafts_is_that_of_both(helical):
-    shop = Workshop(helical)
-    found = deflection(shop, OperatingPoint(torque=100.0), "timoshenko", "timoshenko")
+    assembly = Assembly(helical)
+    found = deflection(assembly, OperatingPoint(torque=100.0), "timoshenko", "timoshenko")
     tilt = [np.array([m.value for m in found.displacement[s]])[3:] for s in ("pinion", "gear")]
     slope = np.cross(tilt[0] - tilt[1], [0.0, 1.0, 0.0])
-    normal = shop.contact.pinion.normal * [1, 0, 1]
+    normal = assembly.contact.pinion.normal * [1, 0, 1]
     told = {m.name: m.value for m in found.misalignment}
     assert told["in plane"] == pytest.approx(slope @ normal / np.linalg.norm(normal), rel=1e-9)
 
 
 @pytest.fixture(scope="module")
 def bevel():
-    return Workshop(sg.load_train(GEOMETRY / "axle_overhung.toml"))
+    return Assembly(sg.load_train(GEOMETRY / "axle_overhung.toml"))
 
 
 @pytest.mark.parametrize(
@@ -383,8 +384,8 @@ def test_misalignment_of_bevel_gears_by_rigid_motions(bevel, motion, told):
 @pytest.mark.long
 def test_bars_hold_what_a_finer_mesh_changes(helical):
     point = OperatingPoint(torque=100.0)
-    coarse = Workshop(helical, settings={"harmonic": {"order": 2, "layers": 1}})
-    finer = Workshop(helical, settings={"harmonic": {"order": 3, "layers": 1}})
+    coarse = Assembly(helical, settings={"harmonic": {"order": 2, "layers": 1}})
+    finer = Assembly(helical, settings={"harmonic": {"order": 3, "layers": 1}})
     here, there = (deflection(w, point, "harmonic", "harmonic") for w in (coarse, finer))
     pairs = [*zip(here.misalignment, there.misalignment)]
     pairs += zip(here.displacement["pinion"][:4], there.displacement["pinion"][:4])
@@ -396,8 +397,8 @@ def test_bars_hold_what_a_finer_mesh_changes(helical):
 @pytest.mark.long
 def test_verdict_names_the_cheapest_model_that_holds(helical):
     loose = helical.with_changes(ask=helical.ask.with_changes(tolerance=0.5))
-    shop = Workshop(loose, settings={"harmonic": {"order": 2}})
-    found = deflect_train(shop, OperatingPoint(torque=100.0))
+    assembly = Assembly(loose, settings={"harmonic": {"order": 2}})
+    found = deflect_train(assembly, OperatingPoint(torque=100.0))
     standing = {one.model: one.verdict for one in found.standings}
     assert standing["timoshenko"] == "within" and found.cheapest is not None
     assert found.cheapest.model in found.verdict()
@@ -465,7 +466,7 @@ def test_a_load_that_is_not_the_mesh_force_is_refused_with_both(folder):
     assert "scene_load" in str(error.value)
     path.write_text(text.replace("[pinion]\n", '[pinion]\nscene_load = "added"\n'))
     train = sg.load_train(path)
-    state = Operating(Workshop(train)).at(train.operation[0])
+    state = Operating(Assembly(train)).at(train.operation[0])
     assert any("added" in note for note in state.notes)
     carried = sum(v[0] for end, v in state.equilibrium.load.items() if end.startswith("pinion"))
     alone = settled_at(sg.load_train(folder / "train.toml"), 100.0).equilibrium.load
@@ -481,13 +482,13 @@ def test_a_load_that_pulls_the_teeth_apart_is_refused(tmp_path):
         (tmp_path / name).write_text((GEOMETRY / name).read_text())
     wheel = tmp_path / "gearbox_wheel.toml"
     push = sg.load_train(GEARBOX)
-    push = Workshop(push).contact.gear.normal  # the teeth push the wheel against it
+    push = Assembly(push).contact.gear.normal  # the teeth push the wheel against it
     pull = "\n".join(f"{d} = {1000 * v}" for d, v in zip("xyz", push))
     unloaded, _, _ = wheel.read_text().partition("[load]")
     wheel.write_text(f"{unloaded}[load]\n{pull}\n")
     (tmp_path / "train.toml").write_text(text)
     with pytest.raises(SceneError, match="pulls the teeth apart"):
-        Workshop(sg.load_train(tmp_path / "train.toml"))
+        Assembly(sg.load_train(tmp_path / "train.toml"))
 
 
 def test_a_new_load_drops_the_stiffness_of_the_old_one():
@@ -513,7 +514,7 @@ def test_deflect_writes_what_it_says(tmp_path, run):
     model = data["models"]["timoshenko"]
     six = model["displacement"]["pinion"]
     assert list(six) == ["x", "y", "z", "thx", "thy", "thz"]
-    state = Operating(Workshop(sg.load_train(GEARBOX))).at(sg.load_train(GEARBOX).operation[0])
+    state = Operating(Assembly(sg.load_train(GEARBOX))).at(sg.load_train(GEARBOX).operation[0])
     assert six["z"]["value"] == pytest.approx(state.motion("pinion.pinion")[2], rel=1e-9)
     assert len(model["shafts"]["pinion"]["bearings"][0]["rows"][0]["element_load"]) == 13
     assert "f_sh" in said and "Mesh force 4223.3 N" in said
@@ -542,3 +543,14 @@ def test_a_motion_that_is_none_is_no_small_number(run):
     told = run("deflect", GEARBOX, "-f", "timoshenko", "--point", "coast")[1]
     rows = map(str.split, told.partition("Displacements")[2].splitlines())
     assert next(row for row in rows if row[:1] == ["pinion.B"])[5] == "0"
+
+
+def test_a_shaft_as_a_train_of_one_deflects_as_the_shaft_alone():
+    scene = as_written("geometry/gearbox_catalogue.toml")
+    by_itself = deflect_scene(scene, ["timoshenko", "harmonic"]).shafts
+    rest = OperatingPoint(torque=0.0, of="shaft")
+    for alone in by_itself:
+        (in_train,) = deflection(Assembly.of(scene), rest, alone.model).shafts
+        # the same body with its statics exact at the ports: only rounding differs
+        scale = np.abs(alone.line[:, :3]).max()
+        assert np.allclose(in_train.line[:, :3], alone.line[:, :3], rtol=0, atol=1e-9 * scale)

@@ -5,7 +5,7 @@ import pytest
 from test_train_models import COARSE, OVERHUNG
 
 import solidgear as sg
-from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.orders import order_map
 from solidgear.trains.modes.modes import train_modes
 from solidgear.trains.response.drive import Drive
@@ -16,15 +16,15 @@ MIX = ("timoshenko", "timoshenko")
 
 
 @pytest.fixture(scope="module")
-def shop():
+def assembly():
     error = {"orders": ("2 um", "1 um")}
     mesh = TRAIN.mesh.with_changes(transmission_error=error)
-    return Workshop(TRAIN.with_changes(mesh=mesh), settings=COARSE)
+    return Assembly(TRAIN.with_changes(mesh=mesh), settings=COARSE)
 
 
 @pytest.fixture(scope="module")
-def found(shop):
-    return order_map(shop, *MIX, highest_hz=3000.0)
+def found(assembly):
+    return order_map(assembly, *MIX, highest_hz=3000.0)
 
 
 def test_an_order_meets_a_mode_where_teeth_and_speed_say(found):
@@ -35,10 +35,10 @@ def test_an_order_meets_a_mode_where_teeth_and_speed_say(found):
         assert int(order) * turns[kind] * c.rpm / 60 == pytest.approx(c.frequency_hz, rel=1e-12)
 
 
-def test_every_mode_is_met_by_every_order_that_reaches_it(shop, found):
+def test_every_mode_is_met_by_every_order_that_reaches_it(assembly, found):
     hz = [
         m.frequency_hz
-        for m in train_modes(shop, *MIX, max_frequency=3000.0).modes
+        for m in train_modes(assembly, *MIX, max_frequency=3000.0).modes
         if m.frequency_hz > 0
     ]
     for order in (1, 2, 3):
@@ -48,8 +48,8 @@ def test_every_mode_is_met_by_every_order_that_reaches_it(shop, found):
     assert shaft == [f for f in hz if 60 * f <= found.highest_rpm]
 
 
-def test_the_force_on_a_crossing_is_that_of_the_order(shop, found):
-    drive = Drive(shop, *MIX)
+def test_the_force_on_a_crossing_is_that_of_the_order(assembly, found):
+    drive = Drive(assembly, *MIX)
     by = {(c.line, c.mode): c for c in found.crossings}
     for (line, mode), c in by.items():
         if line == "mesh 1":
@@ -62,17 +62,17 @@ def test_the_force_on_a_crossing_is_that_of_the_order(shop, found):
             assert by["mesh 3", mode].force is None  # the transmission error has no third order
 
 
-def test_the_line_carries_the_response(found, shop):
+def test_the_line_carries_the_response(found, assembly):
     line = found.lines[1]
     hz = line.rpm * 28 / 60
-    assert np.allclose(line.force, np.abs(Drive(shop, *MIX).mesh(hz, 2)[1]), rtol=1e-9)
+    assert np.allclose(line.force, np.abs(Drive(assembly, *MIX).mesh(hz, 2)[1]), rtol=1e-9)
 
 
-def test_orders_of_the_mesh_can_be_asked_for(shop):
-    five = order_map(shop, *MIX, highest_hz=1000.0, mesh_orders=5)
+def test_orders_of_the_mesh_can_be_asked_for(assembly):
+    five = order_map(assembly, *MIX, highest_hz=1000.0, mesh_orders=5)
     assert [line.name for line in five.lines if line.name.startswith("mesh")][-1] == "mesh 5"
     with pytest.raises(sg.SolidgearError, match="ask for 1 to 20"):
-        order_map(shop, *MIX, highest_hz=1000.0, mesh_orders=0)
+        order_map(assembly, *MIX, highest_hz=1000.0, mesh_orders=0)
 
 
 def test_names_are_moved_apart_and_stay_in_order():

@@ -5,7 +5,7 @@ import pytest
 
 import solidgear as sg
 from solidgear.backlash.train import teeth_of, with_backlash
-from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.load.operation import Operating, with_settled_bearings
 from solidgear.trains.modes.parting import largest_relief, parting_frequency, teeth_relief
 from solidgear.trains.response.drive import Drive
@@ -37,10 +37,10 @@ def test_teeth_part_between_the_points_where_the_force_passes_the_mean_one():
 
 
 def test_the_linear_motion_of_backlash_takes_off_the_same_by_orders_and_phases():
-    shop = Workshop(axle("1 MN*m", ("10 um", "6 um"), (0.3, 1.7)))
-    found = with_backlash(shop, BEAMS, teeth_of(shop), highest_hz=330.0, lowest_hz=300.0)
+    assembly = Assembly(axle("1 MN*m", ("10 um", "6 um"), (0.3, 1.7)))
+    found = with_backlash(assembly, BEAMS, teeth_of(assembly), highest_hz=330.0, lowest_hz=300.0)
     hz, least = found.holding
-    drive = Drive(shop, *BEAMS)
+    drive = Drive(assembly, *BEAMS)
     taken = teeth_relief(drive, drive.over_cycle(hz, 1e4))
     # modes above the range give way like springs there: the second order runs twice as fast
     np.testing.assert_allclose(taken, least, rtol=0.03)
@@ -49,23 +49,23 @@ def test_the_linear_motion_of_backlash_takes_off_the_same_by_orders_and_phases()
 
 
 def test_a_response_tells_where_its_force_passes_the_mean_one():
-    shop = Workshop(axle("100 N*m"))
-    found = respond(shop, *BEAMS, highest_hz=1000.0)
+    assembly = Assembly(axle("100 N*m"))
+    found = respond(assembly, *BEAMS, highest_hz=1000.0)
     (line,) = found.parting
     low = float(line.split("from ")[1].split(" Hz")[0])
-    mean = 100.0 / abs(shop.contact.pinion.lever)
-    drive = Drive(shop, *BEAMS)
+    mean = 100.0 / abs(assembly.contact.pinion.lever)
+    drive = Drive(assembly, *BEAMS)
     below, above = np.abs(drive.mesh(np.array([0.98, 1.02]) * low)[1])
     assert below < mean < above
     assert f"({60 * low / 14:.0f} rpm of the pinion)" in line and f"{mean:.0f} N" in line
     # ten times the torque holds them as far as the force is less than that
-    quiet = respond(Workshop(axle("2 kN*m")), *BEAMS, highest_hz=0.9 * low)
+    quiet = respond(Assembly(axle("2 kN*m")), *BEAMS, highest_hz=0.9 * low)
     assert not quiet.parting and np.abs(quiet.force).max() < 20 * mean
 
 
 def test_without_an_operating_point_no_mean_force_is_known_and_nothing_is_told():
     train = axle("100 N*m").with_changes(operation=())
-    assert not respond(Workshop(train), *BEAMS, highest_hz=1000.0).parting
+    assert not respond(Assembly(train), *BEAMS, highest_hz=1000.0).parting
 
 
 def test_rows_of_a_sweep_tell_where_teeth_part_and_how_many_do(tmp_path):
@@ -77,9 +77,9 @@ def test_rows_of_a_sweep_tell_where_teeth_part_and_how_many_do(tmp_path):
     light, heavy = numbers(out)
     train = sg.load_train("geometry/gearbox_train.toml")
     point = train.operation[0].with_changes(torque=0.5)
-    there = with_settled_bearings(train, Operating(Workshop(train)).at(point))
+    there = with_settled_bearings(train, Operating(Assembly(train)).at(point))
     hz = np.array([light["parts_from_hz"]])
-    force = np.abs(Drive(Workshop(there), *BEAMS).mesh(hz)[1][0])
+    force = np.abs(Drive(Assembly(there), *BEAMS).mesh(hz)[1][0])
     # straight between points of a grid whose middles are foretold within 0.25 dB
     assert force == pytest.approx(light["mesh_force"], rel=0.03)
     assert heavy["parts_from_hz"] == ""

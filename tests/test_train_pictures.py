@@ -9,7 +9,7 @@ from test_train_models import COARSE, OVERHUNG
 import solidgear as sg
 from solidgear.show.folder import clear
 from solidgear.show.turning import sections
-from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.modes.naming import mode_names
 from solidgear.trains.modes.pictures import draw_modes, system_surface, turning_modes, turning_pair
 from tests.command import command
@@ -19,8 +19,8 @@ FINE = {**COARSE, "harmonic": {"order": 2, "layers": 1}}
 
 
 @pytest.fixture(scope="module")
-def shop():
-    return Workshop(TRAIN, settings=FINE)
+def assembly():
+    return Assembly(TRAIN, settings=FINE)
 
 
 def rigid_motion(points, moved):
@@ -34,9 +34,9 @@ def rigid_motion(points, moved):
     return found, np.abs(left).max() / np.abs(moved).max()
 
 
-def halves(shop, system, rungs, shape):
-    drawn = system_surface(shop, system, rungs, shape)
-    first = len(shop.shaft_model("pinion", rungs[0]).body.surface({}).points)
+def halves(assembly, system, rungs, shape):
+    drawn = system_surface(assembly, system, rungs, shape)
+    first = len(assembly.shaft_model("pinion", rungs[0]).body.surface({}).points)
     return (
         (drawn.points[:first], drawn.displacement[:first]),
         (drawn.points[first:], drawn.displacement[first:]),
@@ -44,13 +44,13 @@ def halves(shop, system, rungs, shape):
 
 
 @pytest.mark.parametrize("rungs", [("timoshenko", "timoshenko"), ("harmonic", "harmonic")])
-def test_as_the_train_turns_its_teeth_stay_together(shop, rungs):
+def test_as_the_train_turns_its_teeth_stay_together(assembly, rungs):
     """Points on both surfaces, carried to the mesh point, move alike along the line of action:
     place, axes and signs of the gear are all in it.
     """
-    system = shop.system(*rungs)
-    pinion, gear = halves(shop, system, rungs, system.free[:, 0])
-    scene, met = shop.scenes["pinion"], shop.contact.pinion
+    system = assembly.system(*rungs)
+    pinion, gear = halves(assembly, system, rungs, system.free[:, 0])
+    scene, met = assembly.scenes["pinion"], assembly.contact.pinion
     mesh = np.array([0.0, scene.port.y, 0.0]) + met.point
     along = []
     for points, moved in (pinion, gear):
@@ -61,12 +61,12 @@ def test_as_the_train_turns_its_teeth_stay_together(shop, rungs):
     assert abs(along[0]) > 0
 
 
-def test_shafts_cross_at_right_angles_and_the_mesh_point_is_on_both_heads(shop):
+def test_shafts_cross_at_right_angles_and_the_mesh_point_is_on_both_heads(assembly):
     rungs = ("timoshenko", "timoshenko")
-    system = shop.system(*rungs)
-    pinion, gear = halves(shop, system, rungs, system.elastic[1][:, 0])
-    scene = shop.scenes["pinion"]
-    mesh = np.array([0.0, scene.port.y, 0.0]) + shop.contact.pinion.point
+    system = assembly.system(*rungs)
+    pinion, gear = halves(assembly, system, rungs, system.elastic[1][:, 0])
+    scene = assembly.scenes["pinion"]
+    mesh = np.array([0.0, scene.port.y, 0.0]) + assembly.contact.pinion.point
     for points, _ in (pinion, gear):
         assert np.linalg.norm(points - mesh, axis=1).min() < 0.03  # a face is 63 mm wide
     across = [np.ptp(points, axis=0) for points, _ in (pinion, gear)]
@@ -75,13 +75,13 @@ def test_shafts_cross_at_right_angles_and_the_mesh_point_is_on_both_heads(shop):
     assert across[1][1] == pytest.approx(across[1][2], rel=0.01) and across[1][0] < across[1][2]
 
 
-def test_the_surface_moves_as_the_ports_do(shop):
+def test_the_surface_moves_as_the_ports_do(assembly):
     """The mean motion of the gear's lumped seat in the picture is that of its port."""
     rungs = ("timoshenko", "timoshenko")
-    system = shop.system(*rungs)
+    system = assembly.system(*rungs)
     shape = system.elastic[1][:, 3]
-    gear = halves(shop, system, rungs, shape)[1]
-    part, port = system.parts["gear"], shop.scenes["gear"].port
+    gear = halves(assembly, system, rungs, shape)[1]
+    part, port = system.parts["gear"], assembly.scenes["gear"].port
     own = (gear[0] - part.origin) @ part.rotation
     near = np.abs(own[:, 1] - port.y) < 0.02
     motion, _ = rigid_motion(own[near] - [0, port.y, 0], gear[1][near] @ part.rotation)
@@ -90,17 +90,17 @@ def test_the_surface_moves_as_the_ports_do(shop):
     assert np.allclose(motion, told, atol=0.02 * np.abs(told).max())
 
 
-def test_a_model_without_a_shape_says_so(shop, tmp_path):
+def test_a_model_without_a_shape_says_so(assembly, tmp_path):
     with pytest.raises(sg.SolidgearError, match="lumped of the gear has no shape to draw"):
-        draw_modes(shop, "timoshenko", "lumped", folder=tmp_path / "out", numbers=[2])
+        draw_modes(assembly, "timoshenko", "lumped", folder=tmp_path / "out", numbers=[2])
     assert not (tmp_path / "out").exists()
 
 
 @pytest.mark.long
-def test_modes_are_drawn_with_four_phases(shop, tmp_path):
+def test_modes_are_drawn_with_four_phases(assembly, tmp_path):
     from matplotlib.image import imread
 
-    done = draw_modes(shop, "timoshenko", "timoshenko", folder=tmp_path, numbers=[4])
+    done = draw_modes(assembly, "timoshenko", "timoshenko", folder=tmp_path, numbers=[4])
     ((told, one),) = done.items()
     if "OpenGL" in one.reason:
         pytest.skip(one.reason)
@@ -148,20 +148,20 @@ def test_files_of_an_earlier_run_of_a_train_or_a_shaft_are_cleared(tmp_path):
 
 
 @pytest.mark.parametrize("rungs", [("timoshenko", "timoshenko"), ("harmonic", "euler")])
-def test_what_is_turned_stands_and_moves_as_in_the_pictures(shop, rungs):
+def test_what_is_turned_stands_and_moves_as_in_the_pictures(assembly, rungs):
     """Both shafts put in their places are the surface of the picture, in rest and in motion, with
     one scale for both: the largest displacement of the two is 1.
     """
-    model = turning_modes(shop, *rungs, highest_hz=900.0)
-    system = shop.system(*rungs)
+    model = turning_modes(assembly, *rungs, highest_hz=900.0)
+    system = assembly.system(*rungs)
     found = system.modes(len(model.shapes))
     assert (
         len(model.shapes) > 3
-        and [s.name for s in model.shapes] == mode_names(shop, system, found)[1:]
+        and [s.name for s in model.shapes] == mode_names(assembly, system, found)[1:]
     )
     for k, shape in enumerate(model.shapes):
         assert shape.frequency_hz == found.frequency_hz[k + 1] > 0
-        drawn = halves(shop, system, rungs, found.shapes[:, k + 1])
+        drawn = halves(assembly, system, rungs, found.shapes[:, k + 1])
         both = [(one, one.shapes[k].displacement) for one in (model, *model.along)]
         moved = []
         for (one, motion), (points, displacement) in zip(both, drawn):
@@ -175,9 +175,9 @@ def test_what_is_turned_stands_and_moves_as_in_the_pictures(shop, rungs):
         assert np.linalg.norm(ours, axis=1).max() == pytest.approx(1.0)
 
 
-def test_only_a_shaft_that_turns_is_drawn_as_turning(shop):
+def test_only_a_shaft_that_turns_is_drawn_as_turning(assembly):
     """Enlarged along the tangent a turning section would swell; one that bends must not be turned."""
-    model = turning_modes(shop, "timoshenko", "timoshenko", highest_hz=1000.0)
+    model = turning_modes(assembly, "timoshenko", "timoshenko", highest_hz=1000.0)
     by = {s.name: (s.twists, model.along[0].shapes[k].twists) for k, s in enumerate(model.shapes)}
     # the shafts wind up against engine and load, nearly rigid themselves
     assert by["load torsion 1"] == (True, True)
@@ -204,9 +204,9 @@ def test_the_page_of_system_modes_has_modes_to_turn_and_units(tmp_path):
     assert not (tmp_path / "no.html").exists()
 
 
-def test_two_mixes_side_by_side_show_partners_under_one_name(shop):
+def test_two_mixes_side_by_side_show_partners_under_one_name(assembly):
     """Paired by what the ports do, with one sign; what has no partner says so."""
-    one, other = turning_pair(shop, ("harmonic", "harmonic"), ("euler", "euler"), 900.0)
+    one, other = turning_pair(assembly, ("harmonic", "harmonic"), ("euler", "euler"), 900.0)
     assert [t.title for t in (one, other)] == ["both shafts harmonic", "both shafts euler"]
     shared = {s.name for s in one.shapes} & {s.name for s in other.shapes}
     assert {"load torsion 1", "gear torsion 1", "gear bending 1"} <= shared

@@ -12,9 +12,9 @@ import scipy.linalg as sla
 import solidgear as sg
 from solidgear.core.errors import SceneError
 from solidgear.strength.deflection.train import deflection
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.kinematics import train_orders
 from solidgear.trains.assembly.layout import mesh_forces
-from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.assembly.stages import mesh_row
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.planetary import MATES
@@ -165,7 +165,7 @@ def test_a_stage_on_rigid_shafts_has_the_frequencies_of_matrices_written_by_hand
 ):
     train = sg.load_train(written(train_text(helix, planets, ring, position)))
     azimuths = np.array(train.stages[0].teeth.azimuths) + position
-    found = Workshop(train).system(RIGID).modes()
+    found = Assembly(train).system(RIGID).modes()
     assert found.rigid == 1
     known = by_hand(helix, azimuths, ring)
     np.testing.assert_allclose(found.frequency_hz[1:], known, rtol=ROUNDING)
@@ -174,7 +174,7 @@ def test_a_stage_on_rigid_shafts_has_the_frequencies_of_matrices_written_by_hand
 def test_teeth_of_planets_push_by_the_other_flank_where_the_sun_is_driven_back(written):
     train = sg.load_train(written(train_text(0.3, UNEQUAL)))
     azimuths = train.stages[0].teeth.azimuths
-    found = Workshop(train).on_flank(True).system(RIGID).modes().frequency_hz[1:]
+    found = Assembly(train).on_flank(True).system(RIGID).modes().frequency_hz[1:]
     known = by_hand(0.3, azimuths, False, way=-1.0)
     np.testing.assert_allclose(found, known, rtol=ROUNDING)
     assert abs(found / by_hand(0.3, azimuths, False) - 1).max() > 1e-3  # not the drive flank's
@@ -190,7 +190,7 @@ def test_speeds_ratio_and_mean_forces_are_those_of_the_teeth():
     assert hertz["mesh stage 1"] == pytest.approx(85 * carrier, rel=1e-14)
     assert hertz["stage planets 1"] == pytest.approx(3 * carrier, rel=1e-14)
     assert hertz["stage planet 1"] == pytest.approx(85 / 34 * carrier, rel=1e-14)
-    forces = mesh_forces(train, Workshop(train).contacts, point)
+    forces = mesh_forces(train, Assembly(train).contacts, point)
     base = 1.25e-3 * 17 * cos(radians(20)) / 2
     assert forces["mesh stage"] == pytest.approx(4 * 25 / 15 / (3 * base), rel=1e-10)
 
@@ -205,7 +205,7 @@ def planet_forces(state, planets=3):
 def test_equal_planets_on_a_train_that_holds_the_sun_share_equally_and_torques_balance(written):
     point = OperatingPoint(torque=50.0, of="sun")
     train = sg.load_train(written(train_text(0.3)), point)
-    state = Operating(Workshop(train), RIGID).at(point)
+    state = Operating(Assembly(train), RIGID).at(point)
     base = train.stages[0].teeth.base_radii[0] * cos(train.stages[0].teeth.base_helix)
     np.testing.assert_allclose(planet_forces(state), 50 / (3 * base), rtol=1e-10)
     assert state.outside["engine"][4] == pytest.approx(50, rel=1e-10)
@@ -220,7 +220,7 @@ def test_a_force_on_the_sun_modulates_every_mesh_by_the_closed_form(written):
     force = {"at": "sun.sun", "x": load}
     point = OperatingPoint(torque=300.0, of="sun", force=(force,))
     train = sg.load_train(written(train_text(), sun, carrier), point)
-    (turn,) = deflection(Workshop(train), point, RIGID).turns
+    (turn,) = deflection(Assembly(train), point, RIGID).turns
     shift, path = load / springs, path_stiffness()
     once = path * shift * springs / (springs + 3 / 2 * path)
     assert [planet.once for planet in turn.planets] == pytest.approx([once] * 3, rel=1e-5)
@@ -230,12 +230,12 @@ def test_a_force_on_the_sun_modulates_every_mesh_by_the_closed_form(written):
 
 def test_over_a_turn_of_its_carrier_the_reducer_is_what_it_is_at_rest_at_every_position():
     train = sg.load_train(REDUCER)
-    shop = Workshop(train)
-    (turn,) = deflection(shop, train.point, "timoshenko").turns
+    assembly = Assembly(train)
+    (turn,) = deflection(assembly, train.point, "timoshenko").turns
     assert turn.planets[0].once > 0.03 * turn.planets[0].mean  # the sun hangs on a cantilever
     assert turn.planets[0].once == pytest.approx(turn.planets[2].once, rel=1e-6)
     for k in (0, 25):  # bearings settle anew, and carry the same
-        there = shop.with_train(with_carrier_turned(train, "stage", turn.angle[k]))
+        there = assembly.with_train(with_carrier_turned(train, "stage", turn.angle[k]))
         state = Operating(there, "timoshenko").at(train.point)
         np.testing.assert_allclose(planet_forces(state), [turn.force[k]] * 2, rtol=1e-7)
 
@@ -255,7 +255,7 @@ def test_the_weight_of_a_planet_presses_its_teeth_by_what_its_pin_gives(written)
     # (W + 2 F cos a) / k_pin there, so that F (1 / k_e) = 2 cos a W / k_pin
     train = sg.load_train(written(train_text(ring=False), STILL, STILL))
     point = OperatingPoint(torque=300.0, of="sun", weight="-z")
-    (turn,) = deflection(Workshop(train), point, RIGID).turns
+    (turn,) = deflection(Assembly(train), point, RIGID).turns
     pressed = 2 * cos(PRESSURE) * PLANET["mass"] * 9.80665 / PIN["radial"]
     once = path_stiffness() * pressed
     assert [planet.once for planet in turn.planets] == pytest.approx([once] * 3, rel=1e-5)
@@ -265,7 +265,7 @@ def test_the_carrier_bears_what_flings_planets_at_unequal_angles(written):
     train = sg.load_train(written(train_text(planets=UNEQUAL), STILL, STILL))
     azimuths = np.array(train.stages[0].teeth.azimuths)
     at_rest, turning = (
-        Operating(Workshop(train), RIGID).at(OperatingPoint(torque=300.0, of="sun", speed=speed))
+        Operating(Assembly(train), RIGID).at(OperatingPoint(torque=300.0, of="sun", speed=speed))
         for speed in (None, 600.0)
     )
     more = turning.equilibrium.load["carrier.b"] - at_rest.equilibrium.load["carrier.b"]
@@ -281,10 +281,10 @@ def test_with_weight_and_at_speed_a_turn_of_the_carrier_is_what_is_at_rest_at_ev
 ):
     train = sg.load_train(written(train_text(0.3, planets, ring=True)))
     point = OperatingPoint(torque=50.0, of="sun", weight="-z", speed=2000.0)
-    (turn,) = deflection(Workshop(train), point, RIGID).turns
+    (turn,) = deflection(Assembly(train), point, RIGID).turns
     assert turn.planets[0].once > 5.0
     for k in (0, 25):
-        there = Workshop(with_carrier_turned(train, "stage", turn.angle[k]))
+        there = Assembly(with_carrier_turned(train, "stage", turn.angle[k]))
         found = planet_forces(Operating(there, RIGID).at(point))
         np.testing.assert_allclose(found, [turn.force[k]] * 2, rtol=1e-9)
 
@@ -293,30 +293,30 @@ def test_with_weight_and_at_speed_a_turn_of_the_carrier_is_what_is_at_rest_at_ev
 def test_frequencies_hang_on_the_position_of_unequal_planets_alone(written):
     train = sg.load_train(written(train_text(0.3)))
     at = [
-        Workshop(with_carrier_turned(train, "stage", by)).system(RIGID).modes().frequency_hz
+        Assembly(with_carrier_turned(train, "stage", by)).system(RIGID).modes().frequency_hz
         for by in (0.0, 0.7)
     ]
     np.testing.assert_allclose(at[1][1:], at[0][1:], rtol=ROUNDING)
-    assert "do not depend on the position" in train_modes(Workshop(train), RIGID).turn
+    assert "do not depend on the position" in train_modes(Assembly(train), RIGID).turn
     pair = sg.load_train(written(train_text(planets="planets = 2")))
-    told = train_modes(Workshop(pair), RIGID).turn
+    told = train_modes(Assembly(pair), RIGID).turn
     assert "solved at 6 positions" in told
     share = float(told.split(" up to ")[1].split(" %")[0]) / 100
     hz = [
-        Workshop(with_carrier_turned(pair, "stage", k * pi / 3))
+        Assembly(with_carrier_turned(pair, "stage", k * pi / 3))
         .system(RIGID)
         .modes()
         .frequency_hz[1:]
         for k in range(6)
     ]
-    count = len(train_modes(Workshop(pair), RIGID).modes) - 1
+    count = len(train_modes(Assembly(pair), RIGID).modes) - 1
     assert share == pytest.approx((np.ptp(hz, axis=0) / hz[0])[:count].max(), rel=0.05)
     assert share > 1e-3
 
 
 def test_modes_of_planets_are_named_as_the_theory_does(written):
     train = sg.load_train(written(train_text(planets="planets = 6", teeth=(30, 18, 66)) + ASK))
-    modes = train_modes(Workshop(train), RIGID).modes
+    modes = train_modes(Assembly(train), RIGID).modes
     words = {"train", "sun", "carrier", "stage", "load", "engine"}
     assert {mode.name.split()[0] for mode in modes} <= words
     own = [mode for mode in modes if mode.name.startswith("stage planet ")]
@@ -373,10 +373,10 @@ def test_a_carrier_may_drive_and_stages_follow_one_another(written, tmp_path):
     train = sg.load_train(written(text.replace('at = "x"', 'at = "flange"')))
     for torque in (60.0, -60.0):  # the engine turns about +y, and so do sun and carrier
         point = OperatingPoint(torque=torque, of="carrier", force=({"at": "sun.sun", "x": 5e3},))
-        state = Operating(Workshop(train), RIGID).at(point)
+        state = Operating(Assembly(train), RIGID).at(point)
         assert state.outside["load"][4] == pytest.approx(-torque / 6, rel=1e-10)
-        (turn,) = deflection(Workshop(train), point, RIGID).turns
-        there = Workshop(with_carrier_turned(train, "stage", turn.angle[20]))
+        (turn,) = deflection(Assembly(train), point, RIGID).turns
+        there = Assembly(with_carrier_turned(train, "stage", turn.angle[20]))
         found = planet_forces(Operating(there, RIGID).at(point))
         np.testing.assert_allclose(found, [turn.force[20]] * 2, rtol=1e-7)
         assert np.ptp(turn.force[20]) > 100 and turn.force.mean() > 0  # teeth press either way
@@ -394,7 +394,7 @@ def test_a_carrier_may_drive_and_stages_follow_one_another(written, tmp_path):
     text = text.replace("[engine]", f"[planetary.last]{last}[engine]")
     train = sg.load_train(written(text))
     assert train.ratio == pytest.approx(36, rel=1e-14)
-    state = Operating(Workshop(train), RIGID).at(OperatingPoint(torque=10.0, of="sun"))
+    state = Operating(Assembly(train), RIGID).at(OperatingPoint(torque=10.0, of="sun"))
     assert state.outside["load"][4] == pytest.approx(-360, rel=1e-10)
     row, stiffness = mesh_row(state.system, "mesh last ring 2")
     base = train.stages[1].teeth.base_radii[0]
@@ -407,7 +407,7 @@ def test_phases_of_planets_let_a_mesh_turn_the_shafts_or_shift_them(written, tee
     (Parker, Journal of Sound and Vibration 236, 2000).
     """
     train = sg.load_train(written(train_text(teeth=teeth)))
-    found = respond(Workshop(train), RIGID, mesh="stage sun", frequency_hz=np.array([150.0, 900.0]))
+    found = respond(Assembly(train), RIGID, mesh="stage sun", frequency_hz=np.array([150.0, 900.0]))
     across = {dof: found.columns[f"sun {dof} [m]"] for dof in ("x", "z")}
     about = found.columns["sun thy [rad]"] * MODULE * teeth[0] / 2
     size = {"xz": np.hypot(*map(abs, across.values())), "thy": np.abs(about)}
@@ -415,15 +415,15 @@ def test_phases_of_planets_let_a_mesh_turn_the_shafts_or_shift_them(written, tee
 
 
 def test_a_planet_alone_drives_as_a_part_of_all_together(written):
-    shop = Workshop(sg.load_train(written(train_text())))
+    assembly = Assembly(sg.load_train(written(train_text())))
     hz = np.array([400.0])
-    alone = [respond(shop, RIGID, mesh=f"stage ring {k}", frequency_hz=hz) for k in (1, 2, 3)]
-    every = respond(shop, RIGID, mesh="stage ring", frequency_hz=hz)
+    alone = [respond(assembly, RIGID, mesh=f"stage ring {k}", frequency_hz=hz) for k in (1, 2, 3)]
+    every = respond(assembly, RIGID, mesh="stage ring", frequency_hz=hz)
     behind = np.exp(-1j * TEETH[0] * 2 * pi / 3 * np.arange(3))
     for name in ("sun x [m]", "carrier z [m]", "mesh force stage sun 2 [N]"):
         parts = [turn * one.columns[name] for turn, one in zip(behind, alone)]
         np.testing.assert_allclose(every.columns[name], np.sum(parts, axis=0), rtol=1e-9)
-    drive = Drive(shop, RIGID, mesh="stage ring")
+    drive = Drive(assembly, RIGID, mesh="stage ring")
     own = np.sum([turn * one.columns["mesh force stage ring 3 [N]"] for turn, one in
                   zip(behind[:2], alone[:2])], axis=0) + behind[2] * alone[2].force  # fmt: skip
     np.testing.assert_allclose(drive.columns(hz)["mesh force stage ring 3 [N]"], own, rtol=1e-9)
@@ -448,7 +448,7 @@ def test_a_reducer_put_together_by_hand_modulates_as_that_of_the_file():
         output=output.with_changes(scene=output.scene.with_changes(bearings=tuple(held))),
     )
     models = "rigid/timoshenko", "timoshenko", "rigid/timoshenko"
-    (turn,) = deflection(Workshop(train), train.point, *models).turns
+    (turn,) = deflection(Assembly(train), train.point, *models).turns
     # the design's shaft goes on to a third seat, so that its beam has other elements
     assert turn.planets[1].once == pytest.approx(design.modulation(third=False), rel=1e-4)
     assert turn.planets[1].mean == pytest.approx(design.mean_force, rel=1e-10)
@@ -458,11 +458,11 @@ def test_a_carrier_without_gears_is_lumped_at_its_main_point():
     """Guyan's shapes are fewer (Rayleigh and Ritz): no frequency is lower than with the body, and a
     rigid body on its bearings below the first bending leaves little to them.
     """
-    shop = Workshop(sg.load_train(REDUCER))
+    assembly = Assembly(sg.load_train(REDUCER))
     lumped, whole = (
-        shop.system("timoshenko", "timoshenko", model).modes(6).frequency_hz[1:]
+        assembly.system("timoshenko", "timoshenko", model).modes(6).frequency_hz[1:]
         for model in ("lumped/timoshenko", "timoshenko")
     )
     assert (lumped >= whole * (1 - ROUNDING)).all()
     assert lumped == pytest.approx(whole, rel=5e-2)
-    assert shop.shaft_model("output", "lumped/timoshenko").part.mass.shape == (6, 6)
+    assert assembly.shaft_model("output", "lumped/timoshenko").part.mass.shape == (6, 6)

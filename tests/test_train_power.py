@@ -10,7 +10,7 @@ from solidgear.backlash.solver.continuation import follow
 from solidgear.backlash.solver.motion import steady_motion
 from solidgear.backlash.train import backlash_model, teeth_of
 from solidgear.core.errors import SceneError
-from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.load.contact import axes_of
 from solidgear.trains.load.operation import Operating
 from tests.test_train_many import BEARING, PRESSURE, SHAFTS, scene_text, written
@@ -63,7 +63,7 @@ def test_a_torque_divides_by_the_shares_of_the_power(tmp_path, tables, of, whole
     loads = tables is TWO_LOADS
     sign = -1.0 if of == "middle" and not loads else 1.0
     point = train.with_changes(operation=({"torque": sign * 100.0, "of": of},)).operation[0]
-    state = Operating(Workshop(train), "timoshenko").at(point)
+    state = Operating(Assembly(train), "timoshenko").at(point)
     first, second = (1.0, 0.6) if loads else (0.3, 1.0)
     teeth = (
         first * whole / (0.03 * cos(PRESSURE) * cos(radians(15))),
@@ -126,7 +126,7 @@ def test_a_loop_of_meshes_divides_the_torque_by_its_stiffness(tmp_path):
     """
     train = looped(tmp_path, [1e15, 1e15, 1e15, 1e11, 0.0, 1e11])
     point = train.with_changes(operation=({"torque": 100.0},)).operation[0]
-    state = Operating(Workshop(train), "rigid/timoshenko").at(point)
+    state = Operating(Assembly(train), "rigid/timoshenko").at(point)
     paths = [
         1 / (1 / STIFF[f"input-{side}"] + 1 / STIFF[f"{side}-output"]) for side in ("left", "right")
     ]
@@ -137,14 +137,14 @@ def test_a_loop_of_meshes_divides_the_torque_by_its_stiffness(tmp_path):
     assert forces == pytest.approx(by_hand, rel=1e-6)
     # driven by the load's torque and told of its shaft it is the same
     other = point.with_changes(torque=200.0, of="output")
-    assert Operating(Workshop(train), "rigid/timoshenko").at(other).mesh_forces == pytest.approx(
+    assert Operating(Assembly(train), "rigid/timoshenko").at(other).mesh_forces == pytest.approx(
         state.mesh_forces, rel=1e-9
     )
 
 
 def test_shafts_of_a_loop_are_in_balance_on_their_own_bearings(tmp_path):
     train = looped(tmp_path, BEARING)
-    state = Operating(Workshop(train), "timoshenko").at(
+    state = Operating(Assembly(train), "timoshenko").at(
         train.with_changes(operation=({"torque": 100.0},)).operation[0]
     )
     assert in_balance(state, TEETH) and any("divide the torque" in note for note in state.notes)
@@ -168,13 +168,13 @@ def test_a_triangle_of_wheels_is_refused_for_it_cannot_turn(tmp_path):
     ]
     shafts = {s: train.shafts[s] for s in ("input", "left", "output")}
     with pytest.raises(SceneError, match="turn the .* the other way: the loop cannot turn"):
-        Workshop(train.with_changes(shafts=shafts, meshes=tuple(meshes)))
+        Assembly(train.with_changes(shafts=shafts, meshes=tuple(meshes)))
 
 
 def test_a_line_of_action_that_locks_a_loop_is_refused(tmp_path):
     """A point typed to a millimetre; in a tree such lever arms turn."""
     train = looped(tmp_path, BEARING)
-    last, contact = train.pairs[3], [*Workshop(train).contacts.values()][3]
+    last, contact = train.pairs[3], [*Assembly(train).contacts.values()][3]
     met = contact.pinion
     turn = axes_of(last, "pinion").T
     given = {"line_of_action": turn @ met.normal, "point": (turn @ met.point).round(3)}
@@ -183,8 +183,8 @@ def test_a_line_of_action_that_locks_a_loop_is_refused(tmp_path):
     with pytest.raises(
         SceneError, match="turn the output by .* % more or less than the other meshes do"
     ):
-        Workshop(train.with_changes(meshes=(*train.meshes[:3], typed)))
-    Workshop(train.with_changes(meshes=(*train.meshes[:2], typed)))
+        Assembly(train.with_changes(meshes=(*train.meshes[:3], typed)))
+    Assembly(train.with_changes(meshes=(*train.meshes[:2], typed)))
 
 
 BAD = {
@@ -232,9 +232,9 @@ def test_teeth_of_a_loop_part_as_in_motion_in_time(tmp_path):
     integrates.  Harmonics are followed to 1e-4 of the largest stretch, which is more of a small force.
     """
     gap = ("transmission_error = 1e-6\n", 'transmission_error = 1e-5\nbacklash = "40 um"\n')
-    shop = Workshop(looped(tmp_path, BEARING, gap))
-    teeth = teeth_of(shop, 300.0)
-    made = backlash_model(shop, ["timoshenko"], teeth, 2500.0)
+    assembly = Assembly(looped(tmp_path, BEARING, gap))
+    teeth = teeth_of(assembly, 300.0)
+    made = backlash_model(assembly, ["timoshenko"], teeth, 2500.0)
     carried = made.mean * np.diag(made.stiffness)
     np.testing.assert_allclose(carried, [one.mean_force for one in teeth.meshes], rtol=1e-9)
     branch = follow(made, 2 * np.pi * 835, 2 * np.pi * 880, step=0.05)

@@ -9,7 +9,7 @@ from test_train_models import COARSE, OVERHUNG, assembled
 import solidgear as sg
 from solidgear.core.frames import DOF_NAMES
 from solidgear.core.system.steady import peaks
-from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.modes.naming import mode_names
 from solidgear.trains.response.drive import NO_MODE, Drive
 from solidgear.trains.response.receptance import receptance
@@ -27,8 +27,8 @@ HZ = np.array([40.0, 300.0, 661.0, 1458.0, 2500.0, 3900.0])
 
 
 @pytest.fixture(scope="module")
-def shop():
-    return Workshop(TRAIN, settings=COARSE)
+def assembly():
+    return Assembly(TRAIN, settings=COARSE)
 
 
 def own_row(system, end):
@@ -37,11 +37,11 @@ def own_row(system, end):
 
 @pytest.mark.parametrize(("damping", "at"), [("hysteretic", 0.0), ("viscous", 700.0)])
 @pytest.mark.parametrize(("here", "there"), PAIRS)
-def test_modal_and_direct_agree(shop, here, there, damping, at):
+def test_modal_and_direct_agree(assembly, here, there, damping, at):
     found = receptance(
-        shop, *MIX, from_=here, to=there, damping=damping, matched_hz=at, frequency_hz=HZ
+        assembly, *MIX, from_=here, to=there, damping=damping, matched_hz=at, frequency_hz=HZ
     ).value
-    drive = Drive(shop, *MIX, damping=damping, matched_hz=at)
+    drive = Drive(assembly, *MIX, damping=damping, matched_hz=at)
     load, row = (own_row(drive.system, end) for end in (here, there))
     modal = drive.steady.motion(HZ, load, row[None])[:, 0]
     # engine to load is 1e-14 of the terms of its modal sum at 4 kHz: judged where digits are left
@@ -54,9 +54,9 @@ def test_the_reduced_receptance_is_that_of_the_full_matrices(here, there):
     """Nothing of reduction/ or system/ is in the reference."""
     # bearings that lose more than the rest: sums over complex modes leave two digits at 4 kHz
     losses = TRAIN.losses.with_changes(bearings=0.1)
-    shop = Workshop(TRAIN.with_changes(losses=losses), settings=COARSE)
-    found = receptance(shop, *MIX, from_=here, to=there, frequency_hz=HZ).value
-    k, m, motion, _ = assembled(shop, dict(zip(("pinion", "gear"), MIX)), losses)
+    assembly = Assembly(TRAIN.with_changes(losses=losses), settings=COARSE)
+    found = receptance(assembly, *MIX, from_=here, to=there, frequency_hz=HZ).value
+    k, m, motion, _ = assembled(assembly, dict(zip(("pinion", "gear"), MIX)), losses)
     force = motion(here[0])[DOF_NAMES.index(here[1])]
     row = motion(there[0])[DOF_NAMES.index(there[1])]
     for f, value in zip(HZ, found):
@@ -68,9 +68,9 @@ def test_the_reduced_receptance_is_that_of_the_full_matrices(here, there):
 
 @pytest.mark.parametrize("damping", ["hysteretic", "modal"])
 @pytest.mark.parametrize(("here", "there"), PAIRS)
-def test_ends_may_change_places(shop, here, there, damping):
-    forth = receptance(shop, *MIX, from_=here, to=there, damping=damping, frequency_hz=HZ).value
-    back = receptance(shop, *MIX, from_=there, to=here, damping=damping, frequency_hz=HZ).value
+def test_ends_may_change_places(assembly, here, there, damping):
+    forth = receptance(assembly, *MIX, from_=here, to=there, damping=damping, frequency_hz=HZ).value
+    back = receptance(assembly, *MIX, from_=there, to=here, damping=damping, frequency_hz=HZ).value
     # modal losses are told in modes alone, whose sums cancel from the engine to the load
     slack = 1e-10 * np.abs(forth).max() if damping == "modal" else 0.0
     assert np.allclose(forth, back, rtol=1e-10, atol=slack)
@@ -85,7 +85,7 @@ def test_a_clamped_shaft_is_one_whose_seat_does_not_move(end, damping, at):
     wall = sg.Bearing(name=wall.name, y=wall.y, seat_width=wall.seat_width, hold="clamped")
     scene = scene.with_changes(bearings=(*scene.bearings[:-1], wall))
     train = TRAIN.with_changes(pinion=TRAIN.pinion.with_changes(scene=scene))
-    drive = Drive(Workshop(train, settings=COARSE), *MIX, damping=damping, matched_hz=at)
+    drive = Drive(Assembly(train, settings=COARSE), *MIX, damping=damping, matched_hz=at)
     system = drive.system
     load, row = own_row(system, ("gear.gear", "z")), own_row(system, end)
     found = drive.steady.solved(HZ, load, row[None])[:, 0]
@@ -105,12 +105,12 @@ def test_a_clamped_shaft_is_one_whose_seat_does_not_move(end, damping, at):
         assert abs(value / whole - 1) < 1e-9
 
 
-def test_no_peak_is_missed(shop):
+def test_no_peak_is_missed(assembly):
     here, there = PAIRS[0]
-    found = receptance(shop, *MIX, from_=here, to=there)
+    found = receptance(assembly, *MIX, from_=here, to=there)
     tops = found.frequency_hz[peaks(np.abs(found.value))]
     fine = np.linspace(4, 4000, 80_001)
-    drive = Drive(shop, *MIX)
+    drive = Drive(assembly, *MIX)
     load, row = (own_row(drive.system, end) for end in (here, there))
     size = np.abs(drive.steady.motion(fine, load, row[None])[:, 0])
     for top in peaks(size):
@@ -119,14 +119,14 @@ def test_no_peak_is_missed(shop):
     assert len(found.peaks) >= 5 and found.peaks[0][2] == "load torsion 1"
 
 
-def test_a_top_far_from_all_natural_frequencies_has_the_name_of_none(shop):
+def test_a_top_far_from_all_natural_frequencies_has_the_name_of_none(assembly):
     """A resonance lies within its own width of the frequency it is called after; the rise between
     two is of neither.
     """
-    drive = Drive(shop, *MIX)
+    drive = Drive(assembly, *MIX)
     omega, shapes = drive.system.elastic
     found = drive.system.modes(12)
-    names = mode_names(shop, drive.system, found)[found.rigid :]
+    names = mode_names(assembly, drive.system, found)[found.rigid :]
     load, row = (own_row(drive.system, end) for end in PAIRS[3])
     drive.load = load
     hertz = omega[:2] / (2 * np.pi)

@@ -6,7 +6,7 @@ from test_train_models import COARSE, OVERHUNG, assembled
 
 import solidgear as sg
 from solidgear.core.system.steady import SteadyState, peaks
-from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.file.tables import ErrorTable
 from solidgear.trains.response.drive import Drive
 from solidgear.trains.response.respond import respond
@@ -17,29 +17,29 @@ MIX = ("timoshenko", "timoshenko")
 
 
 @pytest.fixture(scope="module")
-def shop():
-    return Workshop(TRAIN, settings=COARSE)
+def assembly():
+    return Assembly(TRAIN, settings=COARSE)
 
 
 @pytest.fixture(scope="module")
-def drive(shop):
-    return Drive(shop, *MIX)
+def drive(assembly):
+    return Drive(assembly, *MIX)
 
 
-def test_the_reduced_response_is_that_of_the_full_matrices(shop, drive):
-    k, m, motion, row = assembled(shop, dict(zip(("pinion", "gear"), MIX)), TRAIN.losses)
+def test_the_reduced_response_is_that_of_the_full_matrices(assembly, drive):
+    k, m, motion, row = assembled(assembly, dict(zip(("pinion", "gear"), MIX)), TRAIN.losses)
     eta = 1 + 1j * TRAIN.losses.mesh
     error = 2e-6
     hz = np.array([40.0, 300.0, 661.0, 1458.0, 2500.0, 3900.0])
     dte, force = drive.mesh(hz)
     reactions = drive.reactions(hz)
-    scene = shop.scenes["pinion"]
+    scene = assembly.scenes["pinion"]
     for i, f in enumerate(hz):
-        load = eta * shop.contact.stiffness * error * row
+        load = eta * assembly.contact.stiffness * error * row
         u = np.linalg.solve(k - (2 * np.pi * f) ** 2 * m, load)
         # 1e-6: what a reduction to 4 kHz with residuals leaves, and rounding of the full matrices
         assert dte[i] == pytest.approx(row @ u, rel=1e-6)
-        whole = eta * shop.contact.stiffness * (row @ u - error)
+        whole = eta * assembly.contact.stiffness * (row @ u - error)
         assert abs(force[i] / whole - 1) < 1e-5
         for bearing in scene.bearings:
             seat = motion(f"pinion.{bearing.name}") @ u
@@ -49,8 +49,8 @@ def test_the_reduced_response_is_that_of_the_full_matrices(shop, drive):
 
 
 @pytest.mark.parametrize(("damping", "at"), [("hysteretic", 0.0), ("viscous", 700.0)])
-def test_power_that_goes_in_is_lost_in_parts_and_links(shop, damping, at):
-    drive = Drive(shop, *MIX, damping=damping, matched_hz=at)
+def test_power_that_goes_in_is_lost_in_parts_and_links(assembly, damping, at):
+    drive = Drive(assembly, *MIX, damping=damping, matched_hz=at)
     g, where = drive.system.strains
     hz = np.array([16.3, 55.0, 400.0, 661.0, 879.0, 3100.0])
     error = drive.amplitude(hz)
@@ -66,17 +66,17 @@ def test_power_that_goes_in_is_lost_in_parts_and_links(shop, damping, at):
     assert np.allclose(entering, left, rtol=1e-8)
 
 
-def test_viscous_losses_are_hysteretic_where_they_are_matched(shop, drive):
+def test_viscous_losses_are_hysteretic_where_they_are_matched(assembly, drive):
     hz = np.array([661.0])
-    viscous = Drive(shop, *MIX, damping="viscous", matched_hz=661.0)
+    viscous = Drive(assembly, *MIX, damping="viscous", matched_hz=661.0)
     assert abs(viscous.mesh(hz)[1] / drive.mesh(hz)[1] - 1)[0] < 1e-9
     assert abs(viscous.mesh(hz / 2)[1] / drive.mesh(hz / 2)[1] - 1)[0] > 1e-4
 
 
 @pytest.mark.parametrize("scale", [1.0, 1e-3])
-def test_no_peak_is_missed_between_two_grid_points(shop, scale):
+def test_no_peak_is_missed_between_two_grid_points(assembly, scale):
     """With a thousandth of the losses a peak is a hertz wide at most, down to milliherz."""
-    drive = Drive(shop, *MIX)
+    drive = Drive(assembly, *MIX)
     loss = {name: scale * eta for name, eta in drive.steady.loss.items()}
     drive.steady = SteadyState(drive.system, loss)
     grid = drive.grid(4000.0, 4.0)
@@ -98,26 +98,26 @@ def test_no_peak_is_missed_between_two_grid_points(shop, scale):
         assert lower < 0.8 * size.max()
 
 
-def test_the_literal_reading_has_no_peak_and_says_why(shop):
-    assert len(respond(shop, *MIX).peaks) >= 8
-    found = respond(shop, *MIX, damping="literal")
+def test_the_literal_reading_has_no_peak_and_says_why(assembly):
+    assert len(respond(assembly, *MIX).peaks) >= 8
+    found = respond(assembly, *MIX, damping="literal")
     assert found.peaks == ()
     assert any("seconds" in text for text in found.cautions)
 
 
-def test_peaks_are_named_after_the_mode_that_makes_them(shop):
-    names = [peak.mode for peak in respond(shop, *MIX).peaks]
+def test_peaks_are_named_after_the_mode_that_makes_them(assembly):
+    names = [peak.mode for peak in respond(assembly, *MIX).peaks]
     assert names[0] == "load torsion 1"
     assert any(name.startswith("pinion bending") for name in names[-2:])
 
 
-def test_a_table_and_harmonics_of_the_transmission_error(shop):
+def test_a_table_and_harmonics_of_the_transmission_error(assembly):
     def with_error(error):
         mesh = TRAIN.mesh.with_changes(transmission_error=error)
-        return Workshop(TRAIN.with_changes(mesh=mesh), settings=COARSE)
+        return Assembly(TRAIN.with_changes(mesh=mesh), settings=COARSE)
 
     hz = np.array([100.0, 150.0, 200.0, 2500.0])
-    usual = Drive(shop, *MIX).mesh(hz)[1]
+    usual = Drive(assembly, *MIX).mesh(hz)[1]
     table = ErrorTable(frequency=(100, 200), amplitude=(2e-6, 4e-6))
     slope = Drive(with_error(table), *MIX).mesh(hz)[1]
     assert np.allclose(slope / usual, [1, 1.5, 2, 2])
@@ -128,11 +128,11 @@ def test_a_table_and_harmonics_of_the_transmission_error(shop):
     assert np.isnan(second[3])  # 5 kHz is beyond what was asked
 
 
-def test_a_force_on_a_port_instead_of_the_transmission_error(shop):
+def test_a_force_on_a_port_instead_of_the_transmission_error(assembly):
     load = {"gear.gear": np.array([0, 0, 100.0, 0, 0, 0])}
-    drive = Drive(shop, *MIX, forces=load)
+    drive = Drive(assembly, *MIX, forces=load)
     moved = drive.motion(np.array([300.0]), drive.system.motion("gear.gear"))[0, 2]
-    k, m, motion, _ = assembled(shop, dict(zip(("pinion", "gear"), MIX)), TRAIN.losses)
+    k, m, motion, _ = assembled(assembly, dict(zip(("pinion", "gear"), MIX)), TRAIN.losses)
     row = motion("gear.gear")[2]
     u = np.linalg.solve(k - (2 * np.pi * 300.0) ** 2 * m, 100.0 * row)
     assert moved == pytest.approx(row @ u, rel=1e-5)
@@ -141,14 +141,14 @@ def test_a_force_on_a_port_instead_of_the_transmission_error(shop):
 @pytest.mark.long
 def test_a_force_of_rounding_alone_is_refused():
     mesh = TRAIN.mesh.with_changes(stiffness=1e24)
-    stiff = Workshop(TRAIN.with_changes(mesh=mesh), kept=4, settings=COARSE)
+    stiff = Assembly(TRAIN.with_changes(mesh=mesh), kept=4, settings=COARSE)
     with pytest.raises(sg.SolidgearError, match="check their units"):
         respond(stiff, *MIX, damping="viscous", matched_hz=500.0)
 
 
 def test_without_any_loss_a_peak_has_no_height():
     none = TRAIN.losses.with_changes(shafts=0, bearings=0, mesh=0, springs=0)
-    bare = Workshop(TRAIN.with_changes(losses=none), settings=COARSE)
+    bare = Assembly(TRAIN.with_changes(losses=none), settings=COARSE)
     with pytest.raises(sg.SolidgearError, match="give damping or a loss"):
         respond(bare, *MIX)
 

@@ -9,8 +9,8 @@ import solidgear as sg
 from solidgear.core.frames import cross_matrix
 from solidgear.core.system.contact_cells import contact_wrench
 from solidgear.core.system.gear_mesh import to_gear_frame
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.layout import contacts
-from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.file.reading import load_train
 from solidgear.trains.modes.modes import wrench_lines
 
@@ -339,11 +339,11 @@ def test_parallel_shafts_are_a_train_too():
     from validation.manual.cases.spur_train import GENERATOR, TURBINE, spur_train
 
     train = spur_train()
-    shop = Workshop(train, settings={"timoshenko": {"elements": 20}})
-    met = shop.contact
+    assembly = Assembly(train, settings={"timoshenko": {"elements": 20}})
+    met = assembly.contact
     assert abs(met.pinion.lever) == pytest.approx(TURBINE["base_radius"], rel=1e-12)
     assert abs(met.gear.lever) == pytest.approx(GENERATOR["base_radius"], rel=1e-12)
-    system = shop.system("timoshenko", "timoshenko")
+    system = assembly.system("timoshenko", "timoshenko")
     turn = np.array([system.motion(name)[4] for name in ("engine", "load")]) @ system.free
     ratio = turn[0] @ turn[0] / (turn[1] @ turn[0])  # of the one free motion that turns
     # external gears turn against each other
@@ -358,7 +358,7 @@ def test_a_wheel_that_is_a_rigid_mass_needs_its_pitch_radius():
     train = spur_train()
     bare = train.with_changes(gear=train.gear.with_changes(pitch_radius=None))
     with pytest.raises(sg.SceneError, match="gear.pitch_radius: is missing.* a rigid head"):
-        Workshop(bare)
+        Assembly(bare)
 
 
 def test_catalogue_bearings_of_a_shaft_get_their_stiffness(tmp_path):
@@ -371,7 +371,7 @@ def test_catalogue_bearings_of_a_shaft_get_their_stiffness(tmp_path):
     alone = sg.load(GEOMETRY / "gearbox_catalogue.toml")
     for mine, its in zip(train.pinion.scene.bearings, alone.bearings, strict=True):
         assert np.array_equal(mine.stiffness, its.stiffness)
-    assert Workshop(train).system("euler", "euler").modes(3).frequency_hz[0] == 0.0
+    assert Assembly(train).system("euler", "euler").modes(3).frequency_hz[0] == 0.0
 
 
 def test_an_apex_that_contradicts_its_scene_is_told(tmp_path):

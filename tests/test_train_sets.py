@@ -7,7 +7,7 @@ from test_train_models import COARSE, OVERHUNG
 import solidgear as sg
 from solidgear.core.system.common_loss import common_loss
 from solidgear.core.system.steady import SteadyState
-from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.response.drive import Drive
 
 TRAIN = sg.load_train(OVERHUNG)
@@ -20,10 +20,10 @@ NEW = {
 
 
 @pytest.fixture(scope="module")
-def shop():
-    shop = Workshop(TRAIN, settings=COARSE)
-    Drive(shop, *MIX)
-    return shop
+def assembly():
+    assembly = Assembly(TRAIN, settings=COARSE)
+    Drive(assembly, *MIX)
+    return assembly
 
 
 def afresh(bearings):
@@ -39,16 +39,16 @@ def afresh(bearings):
         ]
         scene = scene.with_changes(bearings=tuple(own))
         members[side] = TRAIN.member(side).with_changes(scene=scene)
-    return Workshop(TRAIN.with_changes(**members), settings=COARSE)
+    return Assembly(TRAIN.with_changes(**members), settings=COARSE)
 
 
-def test_other_bearings_on_the_same_shafts_are_those_of_a_new_train(shop):
-    other = shop.with_bearings(NEW)
-    assert other.shaft_model("gear", MIX[1]) is shop.shaft_model(
+def test_other_bearings_on_the_same_shafts_are_those_of_a_new_train(assembly):
+    other = assembly.with_bearings(NEW)
+    assert other.shaft_model("gear", MIX[1]) is assembly.shaft_model(
         "gear", MIX[1]
     )  # nothing was built again
     found, whole = Drive(other, *MIX).columns(HZ), Drive(afresh(NEW), *MIX).columns(HZ)
-    usual = Drive(shop, *MIX).columns(HZ)
+    usual = Drive(assembly, *MIX).columns(HZ)
     assert list(found) == list(whole)
     for name, value in whole.items():
         size = np.abs(value).max()
@@ -56,16 +56,16 @@ def test_other_bearings_on_the_same_shafts_are_those_of_a_new_train(shop):
     assert np.abs(found["mesh force [N]"] / usual["mesh force [N]"] - 1).max() > 0.1
 
 
-def test_lumped_models_are_condensed_on_the_new_bearings(shop):
+def test_lumped_models_are_condensed_on_the_new_bearings(assembly):
     lumped = ("lumped/timoshenko",) * 2
-    Drive(shop, *lumped)
-    found = Drive(shop.with_bearings(NEW), *lumped).mesh(HZ)[1]
+    Drive(assembly, *lumped)
+    found = Drive(assembly.with_bearings(NEW), *lumped).mesh(HZ)[1]
     assert np.allclose(found, Drive(afresh(NEW), *lumped).mesh(HZ)[1], rtol=1e-9)
 
 
-def test_unknown_bearings_are_told(shop):
+def test_unknown_bearings_are_told(assembly):
     with pytest.raises(sg.SolidgearError, match=r"no bearing .*there are .*pinion\.1"):
-        shop.with_bearings({"pinion.7": np.eye(6)})
+        assembly.with_bearings({"pinion.7": np.eye(6)})
 
 
 @pytest.mark.parametrize(
@@ -77,8 +77,8 @@ def test_unknown_bearings_are_told(shop):
         ({"pinion": 0.01}, None),  # a whole shaft differs: complex modes
     ],
 )
-def test_losses_in_real_modes_are_those_of_the_full_matrices(shop, changes, rows):
-    drive = Drive(shop, *MIX)
+def test_losses_in_real_modes_are_those_of_the_full_matrices(assembly, changes, rows):
+    drive = Drive(assembly, *MIX)
     loss = drive.steady.loss | changes
     found = common_loss(drive.system, loss)
     assert (None if found is None else len(found.difference)) == rows
@@ -91,9 +91,9 @@ def test_losses_in_real_modes_are_those_of_the_full_matrices(shop, changes, rows
         assert np.all(np.abs(modal - direct) <= 1e-9 * largest + 1e-30)
 
 
-def test_the_series_of_far_modes_leaves_nothing(shop):
+def test_the_series_of_far_modes_leaves_nothing(assembly):
     """Asked for alone, a low frequency has more far modes than among high ones."""
-    drive = Drive(shop, *MIX)
+    drive = Drive(assembly, *MIX)
     together = drive.mesh(np.r_[HZ, 12_000.0])[0][:-1]
     alone = np.concatenate([drive.mesh(np.array([hz]))[0] for hz in HZ])
     assert np.allclose(together, alone, rtol=1e-10)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.space import Piece, angled_overlap, overlaps, parallel_overlap
 from tests.test_train_many import written
 from tests.test_train_power import looped
@@ -17,9 +17,11 @@ TRAINS = sorted(p for p in GEOMETRY.glob("*.toml") if "[mesh]" in p.read_text(en
 
 
 def found(train):
-    shop = Workshop(train)
-    told = overlaps(shop.train, shop.scenes, shop.places)
-    assert [str(one) for one in told] == [line for line in shop.cautions if "same space" in line]
+    assembly = Assembly(train)
+    told = overlaps(assembly.train, assembly.scenes, assembly.places)
+    assert [str(one) for one in told] == [
+        line for line in assembly.cautions if "same space" in line
+    ]
     return told
 
 
@@ -85,7 +87,7 @@ def test_a_pilot_that_reaches_under_the_ring_is_told(tmp_path):
         (tmp_path / f"{name}.toml").write_text(text, encoding="utf-8")
     train = sg.load_train(tmp_path / "axle_straddle.toml")
     (one,) = found(train)
-    place = Workshop(train).places["gear"][1]
+    place = Assembly(train).places["gear"][1]
     assert {*one.pieces} <= {'"pilot"', '"ring"', 'the gear at "gear"'} and '"pilot"' in one.pieces
     # its teeth stand 3 mm before the ring
     assert one.depth == pytest.approx(0.06 + place[0] + 0.003, abs=1e-3)

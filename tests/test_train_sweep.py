@@ -15,8 +15,8 @@ from solidgear.core.scene.paths import keys_of, label_of, with_entry
 from solidgear.core.scene.toml_file import parse
 from solidgear.strength.deflection.misalignment import measured_names
 from solidgear.strength.deflection.train import deflection
-from solidgear.trains.assembly import models
-from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly import assembly as train_assembly
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.load.operation import at_point
 from solidgear.trains.modes.modes import train_modes
 from solidgear.trains.response.respond import respond
@@ -78,20 +78,20 @@ def test_a_row_is_what_the_same_files_edited_by_hand_give(tmp_path):
         ("gearbox_wheel.toml", 'diameter = "52 mm"', 'diameter = "50 mm"'),
     )
     train = sg.load_train(path)
-    shop = Workshop(train)
-    modes = [mode for mode in train_modes(shop, *BEAMS.values()).modes if mode.frequency_hz > 0]
+    assembly = Assembly(train)
+    modes = [mode for mode in train_modes(assembly, *BEAMS.values()).modes if mode.frequency_hz > 0]
     assert row["modes"] == len(modes) and row["rigid_modes"] == 1
     # the same operations on the same numbers; the tangents of bearings are found to 1e-9
     swept_hz = [row[f"f{k}_hz"] for k in range(1, len(modes) + 1)]
     np.testing.assert_allclose(swept_hz, [mode.frequency_hz for mode in modes], rtol=1e-8)
     assert [row[f"mode{k}"] for k in range(1, len(modes) + 1)] == [mode.name for mode in modes]
     assert row[f"f{len(modes) + 1}_hz"] == ""
-    tops = sorted(respond(shop, *BEAMS.values()).peaks, key=lambda top: -top.force)
+    tops = sorted(respond(assembly, *BEAMS.values()).peaks, key=lambda top: -top.force)
     for k, top in enumerate(tops[:3], start=1):
         assert row[f"peak{k}_hz"] == pytest.approx(top.frequency_hz, rel=1e-8)
         assert row[f"peak{k}_force"] == pytest.approx(top.force, rel=1e-6)
         assert row[f"peak{k}_mode"] == top.mode
-    still = deflection(shop, train.operation[0], *BEAMS.values())
+    still = deflection(assembly, train.operation[0], *BEAMS.values())
     assert row["mesh_force"] == pytest.approx(still.mesh_force, rel=1e-12)
     assert [one.name for one in still.misalignment] == list(measured_names(train))
     for one in still.misalignment:
@@ -126,16 +126,16 @@ def test_a_row_of_three_shafts_is_what_the_same_files_edited_by_hand_give(tmp_pa
         ("gearbox_middle.toml", 'position = "15 mm"', 'position = "18 mm"'),
     )
     train = sg.load_train(path)
-    shop = Workshop(train)
-    modes = train_modes(shop, *mix.values(), max_frequency=700.0).modes[1:]
+    assembly = Assembly(train)
+    modes = train_modes(assembly, *mix.values(), max_frequency=700.0).modes[1:]
     assert row["modes"] == len(modes) and row["mode3"] == modes[2].name
     hz = [row[f"f{k}_hz"] for k in range(1, len(modes) + 1)]
     np.testing.assert_allclose(hz, [mode.frequency_hz for mode in modes], rtol=1e-8)
-    tops = respond(shop, *mix.values(), mesh="middle-output", highest_hz=700.0).peaks
+    tops = respond(assembly, *mix.values(), mesh="middle-output", highest_hz=700.0).peaks
     top = max(tops, key=lambda one: one.force)
     assert row["peak1_force"] == pytest.approx(top.force, rel=1e-6)
     assert row["peak1_mode"] == top.mode
-    still = deflection(shop, train.operation[0], "euler", "timoshenko", "euler")
+    still = deflection(assembly, train.operation[0], "euler", "timoshenko", "euler")
     for name, force in still.mesh_forces.items():
         assert row[f"mesh_force_{name.partition(' ')[2]}"] == pytest.approx(force, rel=1e-12)
     for one in still.misalignment:
@@ -156,7 +156,7 @@ def test_a_row_of_three_shafts_is_what_the_same_files_edited_by_hand_give(tmp_pa
 def test_the_bound_of_a_row_is_the_largest_of_its_frequencies(tmp_path):
     how = {"reduction": "craig_bampton", "kept": 8, "n": 9, "ask": MODES, "max_frequency": None}
     _, (row,) = swept(AXLE, ["mesh.stiffness=2.5e8 N/m"], tmp_path / "rows.csv", **how)
-    modes = train_modes(Workshop(sg.load_train(AXLE), "craig_bampton", 8), *BEAMS.values()).modes[
+    modes = train_modes(Assembly(sg.load_train(AXLE), "craig_bampton", 8), *BEAMS.values()).modes[
         1:
     ]
     largest = max(mode.bound for mode in modes[:9])
@@ -168,14 +168,14 @@ def test_every_operating_point_has_a_row_that_is_the_train_at_that_point(tmp_pat
     _, rows = swept(GEARBOX, [], tmp_path / "rows.csv", every_point=True, ask=MODES + AT_REST)
     assert [(row["point"], row["torque"]) for row in rows] == [("full", 115.0), ("coast", -30.0)]
     train = at_point(sg.load_train(GEARBOX), "coast")
-    shop = Workshop(train)
-    modes = train_modes(shop, *BEAMS.values(), max_frequency=1500.0).modes
+    assembly = Assembly(train)
+    modes = train_modes(assembly, *BEAMS.values(), max_frequency=1500.0).modes
     own = [mode.frequency_hz for mode in modes if mode.frequency_hz > 0]
     np.testing.assert_allclose(
         [rows[1][f"f{k}_hz"] for k in range(1, len(own) + 1)], own, rtol=1e-8
     )
     assert rows[0]["f3_hz"] != pytest.approx(rows[1]["f3_hz"], rel=1e-3)
-    in_plane = deflection(shop, train.operation[0], *BEAMS.values()).misalignment[0].value
+    in_plane = deflection(assembly, train.operation[0], *BEAMS.values()).misalignment[0].value
     assert rows[1]["misalignment_in_plane"] == pytest.approx(in_plane, rel=1e-6)
 
 
@@ -270,22 +270,22 @@ def test_torques_make_a_body_of_each_shaft_for_each_model_of_it(tmp_path):
 
 
 def test_harmonics_at_the_teeth_are_found_once_for_a_mesh_point(tmp_path, monkeypatch):
-    made, teeth = [], models.local_teeth
-    monkeypatch.setattr(models, "local_teeth", lambda *of: made.append(of[0]) or teeth(*of))
+    made, teeth = [], train_assembly.local_teeth
+    monkeypatch.setattr(train_assembly, "local_teeth", lambda *of: made.append(of[0]) or teeth(*of))
     coarse = {(side, "harmonic"): {"order": 2, "layers": 0} for side in ("pinion", "gear")}
     how = {"pinion": "harmonic", "gear": "harmonic", "settings": coarse, "local_harmonics": (2,)}
     vary = ["pinion.pitch_radius=67 mm,66 mm", "mesh.stiffness=2e8 N/m,3e8 N/m"]
     _, rows = swept(AXLE, vary, tmp_path / "rows.csv", ask=MODES, **how)
     assert made == 2 * ["pinion", "gear"]
-    # and they are those of the point: the second radius as in a workshop of its own
+    # and they are those of the point: the second radius as in a assembly of its own
     path = by_hand(
         tmp_path, AXLE, ("axle_overhung.toml", 'pitch_radius = "67 mm"', 'pitch_radius = "66 mm"')
     )
     train = sg.load_train(path)
     mesh = train.mesh.with_changes(local_harmonics=(2,), stiffness=3e8)
-    shop = Workshop(train.with_changes(mesh=mesh), settings=coarse)
+    assembly = Assembly(train.with_changes(mesh=mesh), settings=coarse)
     (first, *_) = [
-        hz for hz in shop.system("harmonic", "harmonic").modes(4).frequency_hz if hz > 60
+        hz for hz in assembly.system("harmonic", "harmonic").modes(4).frequency_hz if hz > 60
     ]
     assert rows[3]["f3_hz"] == pytest.approx(first, rel=1e-9)
     assert rows[1]["f3_hz"] != pytest.approx(first, rel=1e-6)

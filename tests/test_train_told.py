@@ -11,8 +11,8 @@ from solidgear.show.command import say
 from solidgear.show.units import ENGINEERING
 from solidgear.strength.deflection.sheet import meanings
 from solidgear.strength.deflection.train import Measured, deflect_train
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.layout import senses
-from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.load.operation import Operating
 from solidgear.trains.response.speed_command import Coincidence
@@ -22,24 +22,24 @@ GEARBOX, REDUCER = "geometry/gearbox_train.toml", "geometry/reducer.toml"
 
 
 @pytest.fixture(scope="module")
-def shop():
-    return Workshop(sg.load_train("geometry/gearbox_two_stage.toml"))
+def assembly():
+    return Assembly(sg.load_train("geometry/gearbox_two_stage.toml"))
 
 
-def test_the_engine_turns_its_shaft_the_way_of_its_torque_and_against_it_on_coast(shop):
+def test_the_engine_turns_its_shaft_the_way_of_its_torque_and_against_it_on_coast(assembly):
     for torque in (100.0, -100.0):
-        point = OperatingPoint(torque=torque, of=shop.train.reference)
-        found = senses(shop.train, shop.on_flank(point.coast).contacts, point.coast)
-        state = Operating(shop, "timoshenko").at(point)
+        point = OperatingPoint(torque=torque, of=assembly.train.reference)
+        found = senses(assembly.train, assembly.on_flank(point.coast).contacts, point.coast)
+        state = Operating(assembly, "timoshenko").at(point)
         driven = np.sign(torque) * state.outside["engine"][4]
-        assert found[shop.train.reference] == ("+y" if driven > 0 else "-y")
+        assert found[assembly.train.reference] == ("+y" if driven > 0 else "-y")
     # shafts that mesh outside, scenes of one sense along their axes
     assert found["input"] == found["output"] != found["middle"]
 
 
 def test_a_carrier_turns_with_its_sun():
     train = sg.load_train(REDUCER)
-    found = senses(train, Workshop(train).contacts)
+    found = senses(train, Assembly(train).contacts)
     (stage,) = train.stages
     assert len({found[side] for side in stage.shafts}) == 1
 
@@ -80,7 +80,7 @@ def test_ten_near_orders_are_shown_and_a_file_has_all():
     assert not speed_tables.coincidences(found).note
 
 
-def test_a_deflection_tells_the_sense_of_every_shaft(shop):
+def test_a_deflection_tells_the_sense_of_every_shaft(assembly):
     point = OperatingPoint(torque=100.0, of="input")
-    found = deflect_train(shop, point, ("timoshenko",))
+    found = deflect_train(assembly, point, ("timoshenko",))
     assert set(found.as_dict()["senses"]) == {"input", "middle", "output"}

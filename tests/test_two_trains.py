@@ -16,8 +16,8 @@ from solidgear.comparison.two.two_trains import two_trains
 from solidgear.comparison.two.two_trains_page import others, reactions
 from solidgear.core.body import as_supports
 from solidgear.core.errors import SolidgearError
-from solidgear.trains.assembly import models
-from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly import assembly as train_assembly
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.load.strain import strain_shares
 from solidgear.trains.modes.modes import train_modes
@@ -51,17 +51,17 @@ def stiffer(tmp_path_factory):
     folder = tmp_path_factory.mktemp("two")
     other = copied(folder, stiffness=('"2.5e8 N/m"', '"5e8 N/m"'))
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(models, "MESH", COARSE)
+        patch.setattr(train_assembly, "MESH", COARSE)
         words = ("--pinion", "timoshenko", "--out", folder / "out", "--json")
         done = command("compare", OVERHUNG, other, *words)
-        alone = respond(Workshop(sg.load_train(other)), "timoshenko", "harmonic")
+        alone = respond(Assembly(sg.load_train(other)), "timoshenko", "harmonic")
     assert done.exit_code == 0, done.output
     return json.loads(done.stdout), folder / "out", alone
 
 
 @pytest.fixture(scope="module")
 def mountings():
-    shops = [Workshop(sg.load_train(file)) for file in (OVERHUNG, STRADDLE)]
+    shops = [Assembly(sg.load_train(file)) for file in (OVERHUNG, STRADDLE)]
     return two_trains(shops, ("overhung", "straddle"), (), *EULER)
 
 
@@ -142,10 +142,10 @@ def test_modes_that_both_share_are_pairs_and_what_the_mesh_strains_rises(stiffer
 
 
 def test_a_train_beside_itself_differs_nowhere_and_nothing_is_resolved(monkeypatch):
-    monkeypatch.setattr(models, "MESH", COARSE)
-    shop = Workshop(sg.load_train(OVERHUNG))
+    monkeypatch.setattr(train_assembly, "MESH", COARSE)
+    assembly = Assembly(sg.load_train(OVERHUNG))
     found = two_trains(
-        (shop, shop), ("one", "same"), (), "harmonic", "timoshenko", highest_hz=1000.0
+        (assembly, assembly), ("one", "same"), (), "harmonic", "timoshenko", highest_hz=1000.0
     )
     assert found.modes and found.peaks
     for pair in found.modes:
@@ -169,7 +169,7 @@ def test_a_mirrored_train_has_the_same_frequencies_found_by_name(tmp_path):
         gear=('hand = "right"', 'hand = "left"'),
         back=('hand = "other"', 'hand = "right"'),
     )
-    shops = [Workshop(sg.load_train(file)) for file in (OVERHUNG, mirrored)]
+    shops = [Assembly(sg.load_train(file)) for file in (OVERHUNG, mirrored)]
     found = two_trains(shops, ("left", "right"), (), *EULER, highest_hz=2500.0)
     assert "by the motion that names them" in found.pairing
     for pair in found.modes:
@@ -191,8 +191,8 @@ def test_what_one_train_has_alone_is_told_so(mountings):
 
 
 def test_strain_energies_add_up_to_one_and_are_those_of_each_spring():
-    shop = Workshop(sg.load_train(STRADDLE))
-    system = shop.system("timoshenko", "timoshenko")
+    assembly = Assembly(sg.load_train(STRADDLE))
+    system = assembly.system("timoshenko", "timoshenko")
     found = system.modes(10)
     shares = strain_shares(found.energy)
     assert list(shares) == [
@@ -210,17 +210,17 @@ def test_strain_energies_add_up_to_one_and_are_those_of_each_spring():
     assert sum(own.values()) == pytest.approx(np.ones(10))
 
     for side, rotor in (("pinion", "engine"), ("gear", "load")):
-        supports = as_supports(shop.scenes[side])
+        supports = as_supports(assembly.scenes[side])
         seats = np.vstack([system.motion(f"{side}.{name}") for name in supports.ports]) @ elastic
         energy = np.einsum("ik,ij,jk->k", seats, np.array(supports.stiffness), seats)
         assert own[f"{side} bearings"] == pytest.approx(energy / squared, abs=1e-9)
-        at = f"{side}.{shop.train.spring_port(rotor)}"
+        at = f"{side}.{assembly.train.spring_port(rotor)}"
         twist = (system.motion(at)[4] - system.motion(rotor)[4]) @ elastic
-        stiffness = shop.train.rotors[rotor].spring.stiffness
+        stiffness = assembly.train.rotors[rotor].spring.stiffness
         assert own[f"{rotor} spring"] == pytest.approx(stiffness * twist**2 / squared, abs=1e-9)
-    vectors = [(f"{side}.{shop.scenes[side].port.name}", side) for side in ("pinion", "gear")]
-    stretch = [getattr(shop.contact, s).vector @ system.motion(port) for port, s in vectors]
-    energy = shop.contact.stiffness * ((stretch[0] - stretch[1]) @ elastic) ** 2
+    vectors = [(f"{side}.{assembly.scenes[side].port.name}", side) for side in ("pinion", "gear")]
+    stretch = [getattr(assembly.contact, s).vector @ system.motion(port) for port, s in vectors]
+    energy = assembly.contact.stiffness * ((stretch[0] - stretch[1]) @ elastic) ** 2
     assert own["mesh"] == pytest.approx(energy / squared, abs=1e-9)
 
 
@@ -228,7 +228,7 @@ def test_twice_the_torque_and_transmission_error_double_all_and_move_no_frequenc
     # bearings of these files are of constant stiffness: everything is linear
     train = sg.load_train(OVERHUNG)
     shops = [
-        Workshop(
+        Assembly(
             train.with_changes(
                 operation=(OperatingPoint(torque=100.0 * twice),),
                 mesh=train.mesh.with_changes(transmission_error=2e-6 * twice),
@@ -258,7 +258,7 @@ def three():
     train = sg.load_train(TWO_STAGE)
     first, second = train.meshes
     stiffer = second.with_changes(stiffness=2 * second.stiffness)
-    return Workshop(train), Workshop(train.with_changes(meshes=(first, stiffer)))
+    return Assembly(train), Assembly(train.with_changes(meshes=(first, stiffer)))
 
 
 @pytest.mark.long
@@ -268,14 +268,16 @@ def test_numbers_of_three_shafts_are_those_of_each_train_alone(three):
     found = two_trains(three, ("usual", "stiffer"), (), *mix, **how)
     told = found.results
     assert told["models"] == dict(zip(("input", "middle", "output"), mix))
-    for key, shop in zip("ab", three):
-        alone = respond(shop, *mix, **how)
+    for key, assembly in zip("ab", three):
+        alone = respond(assembly, *mix, **how)
         assert [p[key] for p in told["peaks"] if p[key]] == [vars(p) for p in alone.peaks]
         for column in (*MESHES, "middle bearing E z [N]", "output thx [rad]"):
             own = np.abs(alone.columns[column])
             assert told["responses"][key]["amplitude"][column] == own.tolist()
             assert told["largest"][column][key]["size"] == own.max()
-        modes = {m.name: m.frequency_hz for m in train_modes(shop, *mix, max_frequency=700).modes}
+        modes = {
+            m.name: m.frequency_hz for m in train_modes(assembly, *mix, max_frequency=700).modes
+        }
         del modes["train rotation"]
         seen = {p[key]["name"]: p[key]["frequency_hz"] for p in told["modes"] if p[key]}
         assert {name: seen[name] for name in modes} == pytest.approx(modes, rel=1e-12)
@@ -296,7 +298,7 @@ def test_numbers_of_three_shafts_are_those_of_each_train_alone(three):
 
 
 def test_shafts_and_meshes_that_one_train_does_not_have_are_refused(three):
-    pair = Workshop(sg.load_train(OVERHUNG))
+    pair = Assembly(sg.load_train(OVERHUNG))
     with pytest.raises(SolidgearError, match="pinion, gear and b has the shafts input, middle"):
         two_trains((pair, three[0]), ("a", "b"))
     with pytest.raises(SolidgearError, match="no mesh 'third'; it has input-middle, middle-out"):

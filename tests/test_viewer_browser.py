@@ -13,7 +13,7 @@ from test_train_models import COARSE, OVERHUNG
 
 import solidgear as sg
 from solidgear.show.viewer import Turning, turn, viewer_page
-from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.modes.pictures import turning_modes
 
 ROOT = Path(__file__).parents[1]
@@ -116,8 +116,8 @@ def models():
 @pytest.fixture(scope="module")
 def train():
     """A pinion and its ring gear in their places."""
-    shop = Workshop(sg.load_train(OVERHUNG), settings=COARSE)
-    return turning_modes(shop, "timoshenko", "euler", highest_hz=900.0)
+    assembly = Assembly(sg.load_train(OVERHUNG), settings=COARSE)
+    return turning_modes(assembly, "timoshenko", "euler", highest_hz=900.0)
 
 
 @pytest.fixture(scope="module")

@@ -126,8 +126,8 @@ def check_train(train: Path, as_json: bool, options: dict[str, bool]) -> None:
 
     instead = "for other models and meshes run check on the file of a shaft"
     refuse(options, f"one shaft, and {train} is a train: {instead}")
-    shop = Reduced().workshop(train)
-    report = checked(shop)
+    assembly = Reduced().assembly(train)
+    report = checked(assembly)
     if as_json:
         print(json.dumps(report, default=float))
     else:
@@ -139,8 +139,8 @@ def check_train(train: Path, as_json: bool, options: dict[str, bool]) -> None:
             }
         )
         _print_sentences(report["faults"], report["cautions"], report["facts"])
-        for side in shop.train.shafts:
+        for side in assembly.train.shafts:
             print(f"== {side}")
             print_check(report[side])
-    if report["faults"] or any(report[side]["faults"] for side in shop.train.shafts):
+    if report["faults"] or any(report[side]["faults"] for side in assembly.train.shafts):
         raise typer.Exit(1)

@@ -219,7 +219,7 @@ def _say_same(a: str, b: str, kind: str, run: Shown) -> None:
 
 def _two_trains(a: str, b: str, mix: Pair, mesh: str | None) -> Callable[..., TwoTrains]:
     """Return the comparison of two train files, to be run."""
-    shops = [Reduced().workshop(Path(path)) for path in (a, b)]
+    shops = [Reduced().assembly(Path(path)) for path in (a, b)]
     models = mix.by_shaft(shops[0].train)
     for model in models.values():
         checked_model(model)

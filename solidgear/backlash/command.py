@@ -26,7 +26,7 @@ from solidgear.show.command import caution, command, say
 from solidgear.show.folder import held
 from solidgear.show.options import Shown
 from solidgear.show.units import units_named
-from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.slips import unit_slips
 from solidgear.trains.file.layout import PerTurn
 from solidgear.trains.file.pairs import Pair
@@ -126,46 +126,51 @@ def nonlinear(
     reduced: Reduced,
     run: Shown,
 ) -> None:
-    shop = models.workshop(reduced, train)
-    first, driver = tuple(models.by_shaft(shop.train).values()), named_pair(shop.train, mesh)
-    further_mixes = _usual(shop)
+    assembly = models.assembly(reduced, train)
+    first, driver = (
+        tuple(models.by_shaft(assembly.train).values()),
+        named_pair(assembly.train, mesh),
+    )
+    further_mixes = _usual(assembly)
     if against is not None:
-        further_mixes = [tuple(shop.models_by_shaft(read_mix(text)).values()) for text in against]
-    shop = _with_teeth(shop, driver, backlash, error)
+        further_mixes = [
+            tuple(assembly.models_by_shaft(read_mix(text)).values()) for text in against
+        ]
+    assembly = _with_teeth(assembly, driver, backlash, error)
     if contact_loss is not None and not contact_loss > 0:
         raise SolidgearError(f"--contact-loss {contact_loss:g}: give a frequency above 0 Hz")
     teeth = study.teeth_of(
-        shop, _read("--mean-force", mean_force, "load"), contact_loss, driver.name
+        assembly, _read("--mean-force", mean_force, "load"), contact_loss, driver.name
     )
     for option, count in (("--apart", apart), ("--in-time", in_time), ("--forces", forces)):
         if not 0 <= count <= MOST_RUNS:
             raise SolidgearError(f"{option} {count}: give 0 to {MOST_RUNS}")
-    low, high = study.ends(shop, reduced.max_frequency, min_frequency)
-    passing = shop.train.per_turn(driver)
+    low, high = study.ends(assembly, reduced.max_frequency, min_frequency)
+    passing = assembly.train.per_turn(driver)
     ramps = [ramp_of(rpm, passing, low, high) for rpm in run_up or []]
     with held(out) if out else nullcontext(), run.progress() as progress:
         judged = tuple(
             study.with_backlash(
-                shop, mix, teeth, reduced.max_frequency, min_frequency, progress, apart
+                assembly, mix, teeth, reduced.max_frequency, min_frequency, progress, apart
             )
             for mix in [first, *(mix for mix in further_mixes if mix != first)]
         )
         swept = study.in_time(judged[0], in_time, progress) if in_time else ()
         mapped = study.over_force(judged[0], forces, progress) if forces else ()
         runs = tuple(speed_run(judged[0], rate, progress) for rate in ramps)
-        lever = study.torque_of(shop, driver.name, 1.0).torque
-        backlash_study = BacklashStudy(shop.train, judged, lever, swept, mapped, runs)
-        title = f"{shop.train.called}: teeth with backlash"
+        lever = study.torque_of(assembly, driver.name, 1.0).torque
+        backlash_study = BacklashStudy(assembly.train, judged, lever, swept, mapped, runs)
+        title = f"{assembly.train.called}: teeth with backlash"
         if teeth.others:
             title += f", driven by the {driver.name}"
-        cautions = [*unit_slips(shop), *shop.cautions]
-        if shop.train.planetary:
+        cautions = [*unit_slips(assembly), *assembly.cautions]
+        if assembly.train.planetary:
             cautions.append("teeth of planets are springs that never part")
-        cautions += _beside_torque(shop, mean_force)
+        cautions += _beside_torque(assembly, mean_force)
         files = []
         if out:
             files = write_nonlinear(
-                out, backlash_study, title, train_data(shop), run.units, cautions
+                out, backlash_study, title, train_data(assembly), run.units, cautions
             )
     if run.as_json:
         print(json.dumps(backlash_study.as_dict() | {"cautions": cautions}, allow_nan=False))
@@ -178,16 +183,16 @@ def nonlinear(
         *map(caution, cautions),
     )
     say(mixes(backlash_study, units), soft_wrap=False)
-    say(*unpublished_lines(shop.train.unpublished()))
+    say(*unpublished_lines(assembly.train.unpublished()))
     if mapped:
         say(over_force(backlash_study, units), soft_wrap=False)
     if files:
         say(f"Written: {', '.join(map(str, files))}")
 
 
-def _beside_torque(shop: Workshop, mean_force: str | None) -> list[str]:
+def _beside_torque(assembly: Assembly, mean_force: str | None) -> list[str]:
     """Return cautions on further loads in a loop of meshes, which divide the torque differently."""
-    point, looped = shop.train.point, None in shop.train.flows.values()
+    point, looped = assembly.train.point, None in assembly.train.flows.values()
     if not looped or mean_force is not None or point is None or not (point.weight or point.force):
         return []
     return [
@@ -196,17 +201,19 @@ def _beside_torque(shop: Workshop, mean_force: str | None) -> list[str]:
     ]
 
 
-def _usual(shop: Workshop) -> list[tuple[str, ...]]:
+def _usual(assembly: Assembly) -> list[tuple[str, ...]]:
     """Return the models compared by default; shafts in a housing cannot be lumped."""
-    usual = ("timoshenko",) if shop.train.housed else ("lumped", "timoshenko")
-    return [(model,) * len(shop.train.shafts) for model in usual]
+    usual = ("timoshenko",) if assembly.train.housed else ("lumped", "timoshenko")
+    return [(model,) * len(assembly.train.shafts) for model in usual]
 
 
-def _with_teeth(shop: Workshop, driver: Pair, backlash: str | None, error: str | None) -> Workshop:
+def _with_teeth(
+    assembly: Assembly, driver: Pair, backlash: str | None, error: str | None
+) -> Assembly:
     """Return the same train with the given teeth of one mesh."""
     width, size = _read("--backlash", backlash, "length"), _read("--error", error, "length")
     if width is None and size is None:
-        return shop
+        return assembly
     for option, value, text in (("--backlash", width, backlash), ("--error", size, error)):
         if value is not None and value < 0:
             raise SolidgearError(f"{option} {show(text, 40)}: it must not be negative")
@@ -215,9 +222,9 @@ def _with_teeth(shop: Workshop, driver: Pair, backlash: str | None, error: str |
         changes["transmission_error"] = size
     meshes = [
         pair.mesh.with_changes(**changes) if pair.name == driver.name else pair.mesh
-        for pair in shop.train.pairs
+        for pair in assembly.train.pairs
     ]
-    return shop.with_train(shop.train.with_changes(meshes=tuple(meshes)))
+    return assembly.with_train(assembly.train.with_changes(meshes=tuple(meshes)))
 
 
 def _read(option: str, text: str | None, dimension: str) -> float | None:

@@ -32,8 +32,8 @@ from solidgear.core import SceneError, SolidgearError, System
 from solidgear.core.system.gear_mesh import MeshVector, to_gear_frame
 from solidgear.core.system.law import Gap
 from solidgear.core.system.links import RowSpring
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.layout import mesh_forces
-from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.planetary import error_of
@@ -58,7 +58,7 @@ AXIAL = 4
 
 
 def teeth_of(
-    workshop: Workshop,
+    assembly: Assembly,
     mean_force: float | None = None,
     contact_loss_hz: float | None = None,
     mesh: str | None = None,
@@ -70,13 +70,13 @@ def teeth_of(
     with an error table over frequency, with teeth of a loop that would have to pull, and with
     another mesh that varies over another cycle.
     """
-    train = workshop.train
+    train = assembly.train
     pair, point = named_pair(train, mesh), train.point
     if not any(driven.mesh.backlash is not None for driven in train.pairs):
         raise SolidgearError(
             'no backlash is given; write backlash = "100 um" under [mesh], or give --backlash'
         )
-    _refuse_several(workshop, pair)
+    _refuse_several(assembly, pair)
     source = "given"
     if mean_force is None:
         if point is None:
@@ -84,9 +84,9 @@ def teeth_of(
                 'no mean force is given; write [[operation]] with torque = "115 N*m", or give '
                 '--mean-force, such as "5 kN"'
             )
-        forces, source = _by_torque(workshop, point), point.label
+        forces, source = _by_torque(assembly, point), point.label
     else:
-        unit = _by_torque(workshop, torque_of(workshop, pair.name, 1.0))
+        unit = _by_torque(assembly, torque_of(assembly, pair.name, 1.0))
         forces = {name: mean_force * force for name, force in unit.items()}
     gaps = {driven.name: driven.mesh.backlash for driven in train.pairs if driven.mesh.backlash}
     for name in (pair.name, *gaps):
@@ -108,7 +108,7 @@ def teeth_of(
     others = [
         Teeth(gaps.get(name, 0.0) / 2, float(force), (), source, mesh=name)
         for name, force in forces.items()
-        if name != pair.name and name in workshop.contacts
+        if name != pair.name and name in assembly.contacts
     ]
     return Teeth(
         half_gap=(pair.mesh.backlash or 0.0) / 2,
@@ -124,9 +124,9 @@ def teeth_of(
     )
 
 
-def _refuse_several(workshop: Workshop, driver: Pair) -> None:
+def _refuse_several(assembly: Assembly, driver: Pair) -> None:
     """Refuse cycles of two meshes at once."""
-    for pair in workshop.train.pairs:
+    for pair in assembly.train.pairs:
         varies = pair.mesh.stiffness_cycle or pair.mesh.line_cycle
         if varies is not None and pair.name != driver.name:
             raise SolidgearError(
@@ -153,23 +153,23 @@ def parting(system: System, teeth: Teeth, loss: float = 0.0) -> System:
 
 
 def backlash_model(
-    workshop: Workshop, models: Sequence[str], teeth: Teeth, highest_hz: float
+    assembly: Assembly, models: Sequence[str], teeth: Teeth, highest_hz: float
 ) -> Remainder:
     """Return the remainder of a train with backlash, by models of the shafts; modes above the
     highest frequency give way like springs.
     """
-    pair, loss, damped = named_pair(workshop.train, teeth.mesh), workshop.loss_factors(), 0.0
+    pair, loss, damped = named_pair(assembly.train, teeth.mesh), assembly.loss_factors(), 0.0
     if teeth.contact_loss_hz:
         damped = [loss.pop(meshed.mesh) for meshed in teeth.meshes][0]
-    system, turning, name = workshop.system(*models), turning_line(workshop, pair), pair.name
+    system, turning, name = assembly.system(*models), turning_line(assembly, pair), pair.name
     force = teeth.mean_force
     if turning is not None:
         links = {**system.links, name: turning.mean_of(mesh_of(system, name))}
         system = System(system.parts, links)
-        force *= float(turning.mean[AXIAL] / workshop.contacts[name].pinion.vector[AXIAL])
-    load = rotor_loads(workshop, torque_of(workshop, name, force))
+        force *= float(turning.mean[AXIAL] / assembly.contacts[name].pinion.vector[AXIAL])
+    load = rotor_loads(assembly, torque_of(assembly, name, force))
     system = parting(system, teeth, damped)
-    refuse_unresolved(workshop, system, highest_hz)
+    refuse_unresolved(assembly, system, highest_hz)
     sways = {}
     if turning is not None and len(turning.further):
         # both rows turned as that of the mean line is
@@ -185,22 +185,22 @@ def backlash_model(
     )
 
 
-def _by_torque(workshop: Workshop, point: OperatingPoint) -> dict[str, float]:
+def _by_torque(assembly: Assembly, point: OperatingPoint) -> dict[str, float]:
     """Return the forces of all meshes by a torque alone, N; those of a loop as Timoshenko shafts
     divide them.
     """
-    forces = mesh_forces(workshop.train, workshop.contacts, point)
-    if None in workshop.train.flows.values():
-        system = workshop.system(SHAFT)
-        motion = system.static(system.load(rotor_loads(workshop, point)))
-        forces |= loop_forces(workshop, system, motion, point.label)
-    return {pair.name: forces[pair.name] for pair in workshop.train.pairs}
+    forces = mesh_forces(assembly.train, assembly.contacts, point)
+    if None in assembly.train.flows.values():
+        system = assembly.system(SHAFT)
+        motion = system.static(system.load(rotor_loads(assembly, point)))
+        forces |= loop_forces(assembly, system, motion, point.label)
+    return {pair.name: forces[pair.name] for pair in assembly.train.pairs}
 
 
-def torque_of(workshop: Workshop, mesh: str, force: float) -> OperatingPoint:
+def torque_of(assembly: Assembly, mesh: str, force: float) -> OperatingPoint:
     """Return the torque of the engine's shaft that brings a force to a mesh, N."""
-    unit = OperatingPoint(torque=1.0, of=workshop.train.reference)
-    unit_force = _by_torque(workshop, unit)[mesh]
+    unit = OperatingPoint(torque=1.0, of=assembly.train.reference)
+    unit_force = _by_torque(assembly, unit)[mesh]
     if not unit_force:
         raise SolidgearError(f"no torque passes the {mesh} between engine and load")
     return unit.with_changes(torque=force / unit_force)
@@ -214,12 +214,12 @@ def mesh_of(system: System, name: str) -> RowSpring:
 
 
 def ends(
-    workshop: Workshop, highest_hz: float | None, lowest_hz: float | None
+    assembly: Assembly, highest_hz: float | None, lowest_hz: float | None
 ) -> tuple[float, float]:
     """Return the lowest and the highest frequency of the mesh, those of the file where they are not
     given; a range that holds zero is refused.
     """
-    highest = highest_hz or workshop.train.ask.max_frequency
+    highest = highest_hz or assembly.train.ask.max_frequency
     lowest = BEGIN * highest if lowest_hz is None else lowest_hz
     if not 0 < lowest < highest:
         raise SolidgearError(
@@ -229,7 +229,7 @@ def ends(
 
 
 def with_backlash(
-    workshop: Workshop,
+    assembly: Assembly,
     models: Sequence[str],
     teeth: Teeth,
     highest_hz: float | None = None,
@@ -246,17 +246,17 @@ def with_backlash(
     >>> import solidgear as sg
     >>> train = sg.load_train("geometry/axle_overhung.toml")
     >>> mesh = train.mesh.with_changes(backlash="100 um", transmission_error="10 um")
-    >>> shop = Workshop(train.with_changes(mesh=mesh))
-    >>> teeth = teeth_of(shop, mean_force=5000.0)
-    >>> found = with_backlash(shop, ["lumped/timoshenko"], teeth, 1000.0, 500.0)
+    >>> assembly = Assembly(train.with_changes(mesh=mesh))
+    >>> teeth = teeth_of(assembly, mean_force=5000.0)
+    >>> found = with_backlash(assembly, ["lumped/timoshenko"], teeth, 1000.0, 500.0)
     >>> [jump.rising for jump in found.jumps][:2]
     [True, False]
     """
-    lowest, highest = ends(workshop, highest_hz, lowest_hz)
+    lowest, highest = ends(assembly, highest_hz, lowest_hz)
     begin = process_time()
-    most = max(workshop.train.ask.max_frequency, highest)
-    mix = workshop.models_by_shaft(models)
-    model = backlash_model(workshop, models, teeth, most)
+    most = max(assembly.train.ask.max_frequency, highest)
+    mix = assembly.models_by_shaft(models)
+    model = backlash_model(assembly, models, teeth, most)
     if progress:
         progress(f"branch of {' + '.join(mix.values())}")
     branch = follow(model, 2 * np.pi * lowest, 2 * np.pi * highest, step=STEP)
@@ -373,7 +373,7 @@ def orders_of(angle: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.nda
     return parts[0].real, 2 * parts[1 : CYCLE_ORDERS + 1]
 
 
-def turning_line(workshop: Workshop, pair: Pair) -> TurningLine | None:
+def turning_line(assembly: Assembly, pair: Pair) -> TurningLine | None:
     """Return the mean row of the teeth of a mesh, and how it turns; None where the line stays.
     Refused for teeth that hold their mesh point or act on the other flank, and for lever arms
     that are not in the ratio of the teeth.
@@ -393,7 +393,7 @@ def turning_line(workshop: Workshop, pair: Pair) -> TurningLine | None:
             path=path,
         )
     rows = [
-        _row(workshop, pair, np.array(normal), np.array(point), path)
+        _row(assembly, pair, np.array(normal), np.array(point), path)
         for normal, point in zip(table.normal, table.point)
     ]
     mean, orders = orders_of(np.array(table.angle), np.array(rows))
@@ -408,10 +408,10 @@ def turning_line(workshop: Workshop, pair: Pair) -> TurningLine | None:
 
 
 def _row(
-    workshop: Workshop, pair: Pair, normal: np.ndarray, point: np.ndarray, path: tuple
+    assembly: Assembly, pair: Pair, normal: np.ndarray, point: np.ndarray, path: tuple
 ) -> np.ndarray:
     """Return the (12,) row of the teeth on both shafts while they touch at a point."""
-    contact = workshop.contacts[pair.name]
+    contact = assembly.contacts[pair.name]
     normal = normal / np.linalg.norm(normal)
     angle = pair.mesh.shaft_angle
     vectors = (

@@ -50,21 +50,21 @@ def system_modes(
     reduced: Reduced,
     run: Shown,
 ) -> None:
-    shop = models.workshop(reduced, train)
+    assembly = models.assembly(reduced, train)
     if mode and pictures is None:
         raise SolidgearError("--mode says which mode to draw; add --pictures and a folder")
-    warnings = unit_slips(shop)
-    mix = tuple(models.by_shaft(shop.train).values())
-    count = shop.train.ask.modes
-    system = train_modes(shop, *mix, max_frequency=reduced.max_frequency, at_most=count)
+    warnings = unit_slips(assembly)
+    mix = tuple(models.by_shaft(assembly.train).values())
+    count = assembly.train.ask.modes
+    system = train_modes(assembly, *mix, max_frequency=reduced.max_frequency, at_most=count)
     if run.units != UNITS and turn is None:
         raise SolidgearError(
             f"--units {run.units}: the table has Hz and rpm only; add --turn model.html for a "
             "page in these units"
         )
-    drawn = _drawn(shop, pictures, mode, system) if pictures else []
+    drawn = _drawn(assembly, pictures, mode, system) if pictures else []
     if turn is not None:
-        drawn += _turned(shop, system, turn, reduced.max_frequency, run.units, warnings)
+        drawn += _turned(assembly, system, turn, reduced.max_frequency, run.units, warnings)
     if run.as_json:
         cautions = {"cautions": [*warnings, *system.cautions]}
         print(json.dumps(system.as_dict() | cautions, allow_nan=False))
@@ -73,33 +73,33 @@ def system_modes(
     say(modes(system.as_dict(), numbered=True), *system.remarks(), *drawn)
 
 
-def _drawn(shop, folder: Path, numbers: list[int] | None, system):
+def _drawn(assembly, folder: Path, numbers: list[int] | None, system):
     """Draw pictures of modes and return the lines to print."""
     listed = [n for n, mode in enumerate(system.modes, start=1) if mode.frequency_hz > 0]
     mix = system.models.values()
-    pictures = draw_modes(shop, *mix, folder=folder, numbers=numbers or listed).values()
+    pictures = draw_modes(assembly, *mix, folder=folder, numbers=numbers or listed).values()
     written = [str(picture.path) for picture in pictures if picture.ok]
     lines = [f"Written: {', '.join(written)}"] if written else []
     return lines + sorted({picture.reason for picture in pictures if not picture.ok})
 
 
 def _turned(
-    shop, system, path: Path, max_frequency: float | None, units: str, slips: tuple[str, ...]
+    assembly, system, path: Path, max_frequency: float | None, units: str, slips: tuple[str, ...]
 ) -> list[str]:
     """Write the page of modes to turn and return the line to print."""
     mix = system.models.values()
-    models = turning_modes(shop, *mix, highest_hz=max_frequency)
+    models = turning_modes(assembly, *mix, highest_hz=max_frequency)
     names = [mode.name for mode in system.modes]
     elastic = [shape.name for shape in models.shapes]
     first = next((name for name in elastic if "bending" in name), elastic[0])
-    still, sentence = still_picture(shop, *mix, number=names.index(first) + 1)
+    still, sentence = still_picture(assembly, *mix, number=names.index(first) + 1)
     write_sheet(
         path,
         system.train,
         f"Natural frequencies and mode shapes: {mix_label(system.models)}.",
         [
             train_tables.modes(system.as_dict(), "Natural frequencies"),
-            train_tables.facts(train_data(shop), units_named(units)),
+            train_tables.facts(train_data(assembly), units_named(units)),
         ],
         viewer=viewer_fragment([models], still=still, first=first),
         notes=system.notes(),
@@ -133,28 +133,30 @@ def response(
     reduced: Reduced,
     run: Shown,
 ) -> None:
-    shop = driven.workshop(reduced, train)
-    orders_asked = at.asked(shop.train)
-    mixes, driver = driven.mixes(shop.train), shop.train.named_mesh(driven.mesh)
+    assembly = driven.assembly(reduced, train)
+    orders_asked = at.asked(assembly.train)
+    mixes, driver = driven.mixes(assembly.train), assembly.train.named_mesh(driven.mesh)
     how = {"highest_hz": reduced.max_frequency, "mesh": driver.name, **driven.losses}
     forces = _forces(force)
     with held(out):
         turns = orders_asked.turns or None
-        responses = [respond(shop, *mix, forces=forces, turns=turns, **how) for mix in mixes]
-        unpublished = shop.train.unpublished()
-        warnings = unit_slips(shop)
+        responses = [respond(assembly, *mix, forces=forces, turns=turns, **how) for mix in mixes]
+        unpublished = assembly.train.unpublished()
+        warnings = unit_slips(assembly)
         cautions = [*warnings, *responses[0].cautions]
         notes: dict = {"damping": driven.damping, "unpublished": unpublished, "cautions": cautions}
-        title, band = shop.train.called, shop.train.ask.decibels
+        title, band = assembly.train.called, assembly.train.ask.decibels
         if driver.label and not forces:
             title += f", driven by the {driver.name}"
-        teeth = shop.train.per_turn(driver)
+        teeth = assembly.train.per_turn(driver)
         # a force on a port has no order of the mesh
-        lines = None if forces else order_map(shop, *mixes[0], mesh_orders=orders, **how)
+        lines = None if forces else order_map(assembly, *mixes[0], mesh_orders=orders, **how)
         limit = reduced.max_frequency
-        modes = lines.modes if lines else train_modes(shop, *mixes[0], max_frequency=limit).modes
-        at_speed, description = orders_asked.found(modes), train_data(shop)
-        top = loudest(responses[0], modes, shop.train, shop.scenes, not forces, driver.name)
+        modes = (
+            lines.modes if lines else train_modes(assembly, *mixes[0], max_frequency=limit).modes
+        )
+        at_speed, description = orders_asked.found(modes), train_data(assembly)
+        top = loudest(responses[0], modes, assembly.train, assembly.scenes, not forces, driver.name)
         notes |= {"loudest": top.as_dict()}
         files = write_response(
             out, responses, title, teeth, band, notes, lines, description, run.units, at_speed

@@ -12,7 +12,7 @@ import typer
 from solidgear.core import LADDER, SceneError, SolidgearError, listed, parse, show
 from solidgear.show.command import Group
 from solidgear.show.options import MODEL, options_by_name
-from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.shaft import checked_model
 from solidgear.trains.file.reading import as_written
 from solidgear.trains.file.tables import FIRST_HARMONIC, LAST_HARMONIC
@@ -89,10 +89,10 @@ class Reduced(Group):
         """Harmonics of ``--local-harmonics``; none where the file decides."""
         return () if self.local_harmonics is None else _harmonics(self.local_harmonics)
 
-    def workshop(
+    def assembly(
         self, path: Path, settings: Mapping[str | tuple[str, str], Mapping] | None = None
-    ) -> Workshop:
-        """Return the workshop of a train, once these options are sound, with builder options by
+    ) -> Assembly:
+        """Return the assembly of a train, once these options are sound, with builder options by
         side and model.
         """
         self.checked()
@@ -105,7 +105,7 @@ class Reduced(Group):
                 meshes=tuple(m.with_changes(**extra) for m in loaded.meshes)
             )
         try:
-            return Workshop(loaded, self.reduction, self.kept, settings or {})
+            return Assembly(loaded, self.reduction, self.kept, settings or {})
         except SceneError as error:  # what the mesh of a sound file cannot be
             raw = parse(str(path))
             raise as_written(error, raw).located(raw, where=str(path)) from None
@@ -155,11 +155,11 @@ class Mix(Pair):
 
     settings: ShaftSettings = None
 
-    def workshop(self, reduced: Reduced, path: Path) -> Workshop:
-        """Return the workshop of a train with these builder options."""
-        shop = reduced.workshop(path)
-        shop.settings = of_shafts(self.settings, self.by_shaft(shop.train))
-        return shop
+    def assembly(self, reduced: Reduced, path: Path) -> Assembly:
+        """Return the assembly of a train with these builder options."""
+        assembly = reduced.assembly(path)
+        assembly.settings = of_shafts(self.settings, self.by_shaft(assembly.train))
+        return assembly
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from solidgear.backlash.solver.motion import steady_motion
 from solidgear.backlash.torque import Backlash
 from solidgear.backlash.train import FADED, teeth_of, with_backlash
 from solidgear.core.errors import SolidgearError
-from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.assembly import Assembly
 from validation.common import ROOT
 
 AXLES = ("axle_overhung", "axle_thesis")
@@ -41,16 +41,16 @@ GRID = 0.1
 SPEEDS = 96
 
 
-def workshop(name: str) -> Workshop:
+def assembly(name: str) -> Assembly:
     """A shipped axle with teeth that can part."""
     train = sg.load_train(ROOT / "geometry" / f"{name}.toml")
     mesh = train.mesh.with_changes(backlash=BACKLASH, transmission_error=ERROR)
-    return Workshop(train.with_changes(mesh=mesh))
+    return Assembly(train.with_changes(mesh=mesh))
 
 
 def models(name: str, told: Callable[[str], None]) -> list[dict[str, Any]]:
     """A row of every mix of models at one mean force, each beside the solid one."""
-    shop = workshop(name)
+    shop = assembly(name)
     teeth = teeth_of(shop, FORCE)
     found = []
     for mix in MIXES:
@@ -65,7 +65,7 @@ def models(name: str, told: Callable[[str], None]) -> list[dict[str, Any]]:
     return out
 
 
-def lever(shop: Workshop) -> float:
+def lever(shop: Assembly) -> float:
     """Torque of the pinion over mesh force, m."""
     return abs(shop.contact.pinion.lever)
 
@@ -90,7 +90,7 @@ def of(one: Backlash) -> dict[str, Any]:
 
 def over_torque(name: str, told: Callable[[str], None]) -> list[dict[str, Any]]:
     """Rows of models and mean forces: where the linear force exceeds the mean, and where teeth part."""
-    shop = workshop(name)
+    shop = assembly(name)
     teeth, out = teeth_of(shop, FORCE), []
     peak = with_backlash(shop, MIXES[0], teeth, HIGHEST, LOWEST).linear_loudest[1]
     for mix in MAPPED:
@@ -126,7 +126,7 @@ def apart(name: str, model: str, force: float) -> list[dict[str, Any]]:
     """Branches apart of an axle at a mean force: where they live and are stable, Hz, the largest dynamic
     mesh force there, N, and the same in time, after periods of the mesh.
     """
-    shop = workshop(name)
+    shop = assembly(name)
     teeth = replace(teeth_of(shop, FORCE), mean_force=force)
     found = with_backlash(shop, [model], teeth, HIGHEST, LOWEST, search_speeds=SPEEDS)
     out = []

@@ -20,7 +20,7 @@ from solidgear.backlash.solver.motion import sweep
 from solidgear.backlash.train import STEP, backlash_model, teeth_of
 from solidgear.core.system import Inertia, RowSpring, System
 from solidgear.core.system.law import Gap
-from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.assembly import Assembly
 from validation.common import ROOT
 from validation.race import pyharm_peer
 from validation.race.heat import Check, Heat, Sample
@@ -60,8 +60,8 @@ def axle(model: str, highest_hz: float = WHOLE[1]) -> Remainder:
     """The overhung axle by one model of both shafts."""
     train = sg.load_train(ROOT / "geometry" / "axle_overhung.toml")
     mesh = train.mesh.with_changes(backlash="100 um", transmission_error="10 um")
-    shop = Workshop(train.with_changes(mesh=mesh))
-    return backlash_model(shop, [model], teeth_of(shop, 5000.0), highest_hz)
+    assembly = Assembly(train.with_changes(mesh=mesh))
+    return backlash_model(assembly, [model], teeth_of(assembly, 5000.0), highest_hz)
 
 
 def branched(own: Remainder, begin: float, end: float, **more) -> Sample:

@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 
 import solidgear as sg
-from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.shaft import JUDGE
 from solidgear.trains.response.drive import Drive
 from validation.common import ROOT
@@ -43,7 +43,7 @@ def one_by_one(drive: Drive, hz: np.ndarray) -> np.ndarray:
 def bearing_sets(drive: Drive, count: int) -> list[dict[str, np.ndarray]]:
     """Sets of all bearings of a train, each scaled by a factor of its own from a half to two."""
     draw = np.random.default_rng(1)
-    scenes = drive.workshop.scenes
+    scenes = drive.assembly.scenes
     own = {f"{s}.{b.name}": np.array(b.stiffness) for s in scenes for b in scenes[s].bearings}
     return [
         {name: 2 ** draw.uniform(-1, 1) * matrix for name, matrix in own.items()}
@@ -53,23 +53,23 @@ def bearing_sets(drive: Drive, count: int) -> list[dict[str, np.ndarray]]:
 
 def another_set(drive: Drive, bearings: dict[str, np.ndarray]) -> Drive:
     """The same reduced shafts on other bearings."""
-    return Drive(drive.workshop.with_bearings(bearings), *drive.rungs)
+    return Drive(drive.assembly.with_bearings(bearings), *drive.rungs)
 
 
 def response(heat: Heat) -> None:
     """One lane a pair of models."""
     hz = frequencies(heat)
-    finest = Workshop(sg.load_train(AXLE), settings={"harmonic": {"order": 5}})
+    finest = Assembly(sg.load_train(AXLE), settings={"harmonic": {"order": 5}})
     exact = finest.system("harmonic", "harmonic").modes(8).frequency_hz[1:]
 
     def clocked(model: str, mesh: dict) -> Sample:
         clock = Clock()
         drive = clock.stage(
             "file to system",
-            lambda: Drive(Workshop(sg.load_train(AXLE), settings=mesh), model, model),
+            lambda: Drive(Assembly(sg.load_train(AXLE), settings=mesh), model, model),
         )
         modes = drive.system.modes(8).frequency_hz[1:]
-        again = Drive(drive.workshop, *drive.rungs)
+        again = Drive(drive.assembly, *drive.rungs)
         clock.stage(f"{len(hz)} frequencies, all reactions", lambda: again.columns(hz))
         chosen = bearing_sets(drive, 1)[0]
         clock.stage("a further set of bearings", lambda: another_set(drive, chosen).columns(hz))
@@ -83,7 +83,7 @@ def response(heat: Heat) -> None:
 def thousand(heat: Heat) -> None:
     """Many sets of bearings, both shafts solid, every one with all reactions."""
     hz, count = frequencies(heat), SETS[heat.quick]
-    drive = Drive(Workshop(sg.load_train(AXLE)), JUDGE, JUDGE)
+    drive = Drive(Assembly(sg.load_train(AXLE)), JUDGE, JUDGE)
     sets = bearing_sets(drive, count)
 
     def clocked() -> Sample:

@@ -27,7 +27,7 @@ from solidgear.core.system.steady import peaks
 from solidgear.show.plot import Make
 from solidgear.show.sheet import Section, write_sheet
 from solidgear.show.words import capital
-from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.file.train import Train
 from solidgear.trains.modes.pairing import mac, modes_and_motions
 from solidgear.trains.response.drive import Drive
@@ -92,16 +92,16 @@ def fourteen(mounting: str, way: str) -> Drive:
     """The thesis's fourteen degrees of freedom; seats follow the lumped points statically."""
     mass, bending, stiffness = WAYS[way]
     own = mounted(mounting)
-    shop = Workshop(own.with_changes(mesh=own.mesh.with_changes(stiffness=stiffness)))
+    assembly = Assembly(own.with_changes(mesh=own.mesh.with_changes(stiffness=stiffness)))
     inertia = DATA["inertia"]
     lumped = {
         "pinion": diagonal_mass(mass, inertia["pinion"]["torsional"], bending),
         "gear": diagonal_mass(**inertia["gear"]),
     }
     for side, matrix in lumped.items():
-        part = shop.shaft_model(side, "lumped/euler").part
-        shop.add_part(side, "thesis", part.with_mass(matrix), like="euler")
-    return Drive(shop, "thesis", "thesis")
+        part = assembly.shaft_model(side, "lumped/euler").part
+        assembly.add_part(side, "thesis", part.with_mass(matrix), like="euler")
+    return Drive(assembly, "thesis", "thesis")
 
 
 def simply_supported(scene: Scene) -> Scene:
@@ -133,9 +133,9 @@ def bending(scene: Scene) -> tuple[float, dict]:
 
 def deviations(case: Train, rung: str, highest: float) -> list[tuple[float, float]]:
     """(Hz, relative error) of the elastic modes of the whole rotor, Euler beams as reference."""
-    shop = Workshop(case)
-    found, seen = modes_and_motions(shop, shop.system("euler", "euler"), highest)
-    other, motions = modes_and_motions(shop, shop.system(rung, rung), 3 * highest)
+    assembly = Assembly(case)
+    found, seen = modes_and_motions(assembly, assembly.system("euler", "euler"), highest)
+    other, motions = modes_and_motions(assembly, assembly.system(rung, rung), 3 * highest)
     alike = mac(seen, motions)
     mine, its = linear_sum_assignment(-alike)
     hz = found.frequency_hz[found.rigid :]
@@ -190,9 +190,9 @@ def new_synthesis() -> Claim:
 def damping() -> Claim:
     """Equations 8 and 19."""
     drive = fourteen(CASES[0], "identified")
-    shop = drive.workshop
+    assembly = drive.assembly
     count = {
-        kind: len(respond(shop, "thesis", "thesis", highest_hz=4000.0, damping=kind).peaks)
+        kind: len(respond(assembly, "thesis", "thesis", highest_hz=4000.0, damping=kind).peaks)
         for kind in ("literal", "hysteretic")
     }
     found = (
@@ -265,7 +265,7 @@ def moments() -> Claim:
             drive = fourteen(case, way)
             scale = ERROR / drive.amplitude(hz)[0]
             row = drive.reactions(hz)["pinion bearing 1"][0, 5]
-            bearing = next(b for b in drive.workshop.scenes["pinion"].bearings if b.name == "1")
+            bearing = next(b for b in drive.assembly.scenes["pinion"].bearings if b.name == "1")
             tilt = drive.motion(hz, drive.system.motion("pinion.1"))[0, 5]
             numbers[f"{way} {case} row"] = float(abs(row) * scale)
             numbers[f"{way} {case} alone"] = float(abs(bearing.stiffness[5, 5] * tilt) * scale)
@@ -323,15 +323,17 @@ def amplitude() -> Claim:
     return Claim("3.7, 3.10", says, OPEN, f"the axes of the figures allow at most {words}", numbers)
 
 
-def softer() -> Workshop:
+def softer() -> Assembly:
     """The 2-bearing rotor with half the mesh stiffness."""
     drive = fourteen(CASES[0], "identified")
-    whole = drive.workshop.train
+    whole = drive.assembly.train
     mesh = whole.mesh.with_changes(stiffness=0.5 * drive.stiffness)
-    shop = Workshop(whole.with_changes(mesh=mesh))
+    assembly = Assembly(whole.with_changes(mesh=mesh))
     for side in ("pinion", "gear"):
-        shop.add_part(side, "thesis", drive.workshop.shaft_model(side, "thesis").part, like="euler")
-    return shop
+        assembly.add_part(
+            side, "thesis", drive.assembly.shaft_model(side, "thesis").part, like="euler"
+        )
+    return assembly
 
 
 def mesh_stiffness() -> Claim:

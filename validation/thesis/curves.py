@@ -12,7 +12,7 @@ import numpy as np
 from solidgear.comparison.two.two_trains import TwoTrains, two_trains
 from solidgear.comparison.two.two_trains_page import Bar, motions, shares_chart
 from solidgear.show.plot import Chart
-from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.page.chart import columns_chart, response_chart
 from solidgear.trains.response.respond import respond
 from solidgear.trains.response.response import TrainResponse
@@ -27,7 +27,7 @@ TEETH = DATA["gears"]["teeth"][0]
 @cache
 def mountings(way: str) -> TwoTrains:
     """Both mountings of the pinion beside each other."""
-    shops = [fourteen(case, way).workshop for case in CASES]
+    shops = [fourteen(case, way).assembly for case in CASES]
     return two_trains(shops, CASES, (), "thesis", highest_hz=HIGHEST)
 
 
@@ -44,7 +44,7 @@ def over(width: float, **named: TrainResponse) -> Chart:
 
 def rotor(rung: str, highest: float = HIGHEST) -> TrainResponse:
     """The overhung rotor by one model of both shafts."""
-    return respond(Workshop(mounted(CASES[0])), rung, highest_hz=highest)
+    return respond(Assembly(mounted(CASES[0])), rung, highest_hz=highest)
 
 
 def old_synthesis(width: float) -> Chart:
@@ -58,9 +58,9 @@ def new_synthesis(width: float) -> Chart:
 
 
 def damping(width: float) -> Chart:
-    shop = fourteen(CASES[0], "identified").workshop
+    assembly = fourteen(CASES[0], "identified").assembly
     loss, literal = (
-        respond(shop, "thesis", "thesis", highest_hz=HIGHEST, damping=kind)
+        respond(assembly, "thesis", "thesis", highest_hz=HIGHEST, damping=kind)
         for kind in ("hysteretic", "literal")
     )
     return over(width, loss_factor_2_zeta=loss, to_the_letter=literal)
@@ -73,7 +73,7 @@ def peak_at_800(width: float) -> Chart | None:
     for k, case in enumerate(CASES):
         columns = {
             f"{way} [N]": respond(
-                fourteen(case, way).workshop, "thesis", "thesis", frequency_hz=grid
+                fourteen(case, way).assembly, "thesis", "thesis", frequency_hz=grid
             ).force
             for way in WAYS
         }
@@ -101,7 +101,7 @@ def moments(width: float) -> Chart | None:
     for case, one in zip(CASES, responses("identified")):
         drive = fourteen(case, "identified")
         tilt = drive.motion(one.frequency_hz, drive.system.motion("pinion.1"))[:, 5]
-        bearing = next(b for b in drive.workshop.scenes["pinion"].bearings if b.name == "1")
+        bearing = next(b for b in drive.assembly.scenes["pinion"].bearings if b.name == "1")
         alone = {"k_thz thz alone [N m]": bearing.stiffness[5, 5] * tilt}
         told.append(replace(one, columns=one.columns | alone))
     whole = "pinion bearing 1 thz [N m]"
@@ -122,7 +122,7 @@ def amplitude(width: float) -> Chart | None:
     for k, case in enumerate(CASES):
         columns = {}
         for way in WAYS:
-            found = respond(fourteen(case, way).workshop, "thesis", "thesis", frequency_hz=hz)
+            found = respond(fourteen(case, way).assembly, "thesis", "thesis", frequency_hz=hz)
             error = fourteen(case, way).amplitude(hz)
             sizes = {"mesh force": found.force} | {
                 name: found.columns[f"pinion {name} [{'m' if len(name) == 1 else 'rad'}]"]

@@ -14,8 +14,8 @@ import numpy as np
 
 import solidgear as sg
 from solidgear.core.scene import Scene
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.local_give import local_give
-from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.assembly.shaft import JUDGE
 from solidgear.trains.file.train import SIDES, Train
 from solidgear.trains.response.drive import Drive
@@ -63,9 +63,9 @@ def with_local(train: Train, *harmonics: int) -> Train:
 def with_local_held(train: Train, *harmonics: int) -> Train:
     """The same, the teeth as much stiffer as those harmonics give way: the modes alone."""
     local = with_local(train, *harmonics)
-    shop = Workshop(local)
-    give = sum(local_give(shop, shop.system(JUDGE, JUDGE)).values())
-    stiffness = 1 / (1 / shop.contact.stiffness - give)
+    assembly = Assembly(local)
+    give = sum(local_give(assembly, assembly.system(JUDGE, JUDGE)).values())
+    stiffness = 1 / (1 / assembly.contact.stiffness - give)
     return local.with_changes(mesh=local.mesh.with_changes(stiffness=stiffness))
 
 
@@ -105,12 +105,12 @@ def ranking(
         Hz.
     """
     hz = np.linspace(LOWEST, highest, POINTS)
-    usual = Workshop(train, settings=settings or {})
+    usual = Assembly(train, settings=settings or {})
     base = np.abs(Drive(usual, JUDGE, JUDGE).mesh(hz)[1])
     rows = []
     for name, (changed, pinion, gear) in variants(train).items():
-        shop = usual if changed is train else Workshop(changed, settings=settings or {})
-        size = np.abs(Drive(shop, pinion, gear).mesh(hz)[1])
+        assembly = usual if changed is train else Assembly(changed, settings=settings or {})
+        size = np.abs(Drive(assembly, pinion, gear).mesh(hz)[1])
         decibels = 20 * np.log10(size / base)
         low = hz <= MIDDLE
         rows.append(

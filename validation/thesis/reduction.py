@@ -14,7 +14,7 @@ import numpy as np
 
 import solidgear as sg
 from solidgear.core.reduction.superelement import Superelement, Truncation, assemble
-from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.shaft import JUDGE
 from solidgear.trains.file.train import SIDES, Train
 from validation.common import ROOT, results_folder, show, write_rows
@@ -55,21 +55,23 @@ def measured(train: Train, kinds=KINDS, reference: int = REFERENCE, mesh=MESH) -
     mesh : mapping
         Builder options.
     """
-    finest = Workshop(train, kept=reference, settings=mesh)
+    finest = Assembly(train, kept=reference, settings=mesh)
     system = finest.system(JUDGE, JUDGE)
     count = int((system.elastic[0] <= 2 * np.pi * HIGHEST).sum())
     exact = system.modes(count).frequency_hz[1:]
     rows = []
     for kind, numbers in kinds.items():
         for kept in numbers:
-            shop = Workshop(train, kind if kind != "no residuals" else "rubin", kept, mesh)
+            assembly = Assembly(train, kind if kind != "no residuals" else "rubin", kept, mesh)
             for side in SIDES:
-                shop.set_body(side, JUDGE, finest.shaft_model(side, JUDGE).body)
+                assembly.set_body(side, JUDGE, finest.shaft_model(side, JUDGE).body)
                 if kind == "no residuals":
-                    own = shop.shaft_model(side, JUDGE)
-                    shop.add_part(side, kind, without_residuals(own.part, own.body, kept), JUDGE)
+                    own = assembly.shaft_model(side, JUDGE)
+                    assembly.add_part(
+                        side, kind, without_residuals(own.part, own.body, kept), JUDGE
+                    )
             rung = kind if kind == "no residuals" else JUDGE
-            small = shop.system(rung, rung)
+            small = assembly.system(rung, rung)
             found = small.modes(count)
             rows.append(
                 {

@@ -26,7 +26,7 @@ from solidgear.core.plain import plain
 from solidgear.show.units import ENGINEERING, Units, units_named
 from solidgear.show.words import hertz, percent
 from solidgear.strength.deflection.train import TrainDeflection, deflection, with_ranges
-from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.shaft import JUDGE, LUMPED, mix_label
 from solidgear.trains.assembly.slips import unit_slips
 from solidgear.trains.file.pairs import Pair
@@ -56,7 +56,7 @@ LOUDEST = 3
 class OneTrain(Side):
     """One of the two trains, by one model of each shaft."""
 
-    workshop: Workshop
+    assembly: Assembly
     response: TrainResponse  #: named by the label
     #: elastic ones, also some above the highest frequency, where partners may lie
     modes: tuple[SeenMode, ...]
@@ -65,7 +65,7 @@ class OneTrain(Side):
     @property
     def title(self) -> str:
         """Title of the file."""
-        return self.workshop.train.called
+        return self.assembly.train.called
 
     def largest(self, column: str) -> tuple[float, float] | None:
         """Return frequency, Hz, and size of the largest amplitude of a column of the response; None
@@ -123,8 +123,8 @@ class TwoTrains(Beside[OneTrain, SeenMode]):
         """Columns of mesh forces that both have, that of the mesh which drives first, and their
         names.
         """
-        pairs = self.a.workshop.train.teeth
-        out = {FORCE: _force_of(self.a.workshop.train.named_mesh(self.mesh))}
+        pairs = self.a.assembly.train.teeth
+        out = {FORCE: _force_of(self.a.assembly.train.named_mesh(self.mesh))}
         out |= {f"mesh force{p.label} [N]": _force_of(p) for p in pairs if p.name != self.mesh}
         return {c: name for c, name in out.items() if c in self.b.response.columns}
 
@@ -143,7 +143,7 @@ class TwoTrains(Beside[OneTrain, SeenMode]):
     @property
     def unpublished(self) -> dict[str, str]:
         """Values that no source gives, in either train; where they differ, assumed ones."""
-        first, second = (train.workshop.train.unpublished() for train in self.both)
+        first, second = (train.assembly.train.unpublished() for train in self.both)
         return {**first, **{k: s for k, s in second.items() if s == "assumed" or k not in first}}
 
     def misalignment(self) -> list[tuple[str, str, str, Change]]:
@@ -166,7 +166,7 @@ def _force_of(pair: Pair | PlanetMesh) -> str:
 
 @pinned
 def two_trains(
-    workshops: Sequence[Workshop],
+    assemblies: Sequence[Assembly],
     names: Sequence[str],
     inputs: Sequence[Difference] = (),
     *models: str,
@@ -182,16 +182,17 @@ def two_trains(
     --------
     >>> import solidgear as sg
     >>> files = "geometry/axle_overhung.toml", "geometry/axle_straddle.toml"
-    >>> shops = [Workshop(sg.load_train(file)) for file in files]
+    >>> shops = [Assembly(sg.load_train(file)) for file in files]
     >>> found = two_trains(shops, ("overhung", "straddle"), (), "euler", highest_hz=1000.0)
     >>> [pair.a.name for pair in found.modes][:2], found.modes[0].change.verdict
     (['load torsion 1', 'gear torsion 1'], 'no band')
     """
     start = perf_counter()
-    first, second = workshops
+    first, second = assemblies
     if [*first.scenes] != [*second.scenes]:
         shafts = [
-            f"{name} has the shafts {listed(shop.scenes)}" for name, shop in zip(names, workshops)
+            f"{name} has the shafts {listed(assembly.scenes)}"
+            for name, assembly in zip(names, assemblies)
         ]
         raise SolidgearError(
             f"{' and '.join(shafts)}: to compare two trains, give their shafts the same names in the "
@@ -200,12 +201,14 @@ def two_trains(
     mix = first.models_by_shaft(models or (JUDGE,))
     driver = first.train.named_mesh(mesh).name
     second.train.named_mesh(driver)
-    highest = highest_hz or min(shop.train.ask.max_frequency for shop in workshops)
+    highest = highest_hz or min(assembly.train.ask.max_frequency for assembly in assemblies)
     ends = shared_ports(first, second)
     trains, motions_of = [], []
-    for letter, name, shop, train_ends in zip("AB", names, workshops, ends):
+    for letter, name, assembly, train_ends in zip("AB", names, assemblies, ends):
         progress(f"{letter}: {mix_label(mix)}")
-        train, motions = _one_train(letter, name, shop, mix, driver, highest, train_ends, progress)
+        train, motions = _one_train(
+            letter, name, assembly, mix, driver, highest, train_ends, progress
+        )
         trains.append(train)
         motions_of.append(motions)
     mirrored = _mirrored(first, second)
@@ -231,7 +234,7 @@ def two_trains(
     )
 
 
-def _mirrored(a: Workshop, b: Workshop) -> bool:
+def _mirrored(a: Assembly, b: Assembly) -> bool:
     """Check whether the shafts of two trains are not in the same axes."""
     members_b = {pair.name: pair.members for pair in b.train.pairs}
     return any(
@@ -246,7 +249,7 @@ def _mirrored(a: Workshop, b: Workshop) -> bool:
 def _one_train(
     letter: str,
     name: str,
-    shop: Workshop,
+    assembly: Assembly,
     mix: dict[str, str],
     mesh: str,
     highest: float,
@@ -255,24 +258,24 @@ def _one_train(
 ) -> tuple[OneTrain, np.ndarray]:
     """Return one of the trains, and the motions of some ports in the modes."""
     models = tuple(mix.values())
-    response = respond(shop, *models, highest_hz=highest, mesh=mesh)
+    response = respond(assembly, *models, highest_hz=highest, mesh=mesh)
     response = replace(response, name=f"{letter}: {name}")
-    system = shop.system(*models)
-    system_modes, motions = modes_and_motions(shop, system, highest * BEYOND, ends)
+    system = assembly.system(*models)
+    system_modes, motions = modes_and_motions(assembly, system, highest * BEYOND, ends)
     progress(f"{letter}: error bars of its frequencies")
-    modes = barred_modes(shop, system, system_modes, mix)
+    modes = barred_modes(assembly, system, system_modes, mix)
     loaded = None
     settles = all(model.partition("/")[0] not in LUMPED for model in models)
-    if shop.train.point is not None and settles:
-        progress(f"{letter}: at {shop.train.point.label}")
-        loaded = with_ranges(shop, deflection(shop, shop.train.point, *models))
-    cautions = (*response.parting, *unit_slips(shop), *response.cautions)
+    if assembly.train.point is not None and settles:
+        progress(f"{letter}: at {assembly.train.point.label}")
+        loaded = with_ranges(assembly, deflection(assembly, assembly.train.point, *models))
+    cautions = (*response.parting, *unit_slips(assembly), *response.cautions)
     distinct = tuple(dict.fromkeys(cautions))
     return OneTrain(
         letter=letter,
         name=name,
         cautions=distinct,
-        workshop=shop,
+        assembly=assembly,
         response=response,
         modes=modes,
         loaded=loaded,
@@ -314,13 +317,13 @@ def _models(trains: TwoTrains) -> str:
     titles = {s: LADDER[m].title if m in LADDER.bodies else m for s, m in trains.models.items()}
     words = mix_label(titles)
     if len({*trains.models.values()}) == 1:
-        count_word, (title, *_) = trains.a.workshop.train.every, titles.values()
+        count_word, (title, *_) = trains.a.assembly.train.every, titles.values()
         of_bodies = {*trains.models.values()} <= {*LADDER.bodies}
         words = f"{count_word} shafts as {title}s" if of_bodies else f"{count_word} {title}"
-    driver = trains.a.workshop.train.named_mesh(trains.mesh)
+    driver = trains.a.assembly.train.named_mesh(trains.mesh)
     words += f", driven by the {driver.name}" if driver.label else ""
     damping = trains.a.response.damping
-    limits = {train.workshop.train.ask.max_frequency for train in trains.both}
+    limits = {train.assembly.train.ask.max_frequency for train in trains.both}
     lower = " (the lower of what both files ask for)" if len(limits) > 1 else ""
     return (
         f"Models of both trains: {words}, {damping} losses, up to {trains.highest_hz:g} Hz{lower}."
@@ -394,7 +397,7 @@ def _largest_reactions(trains: TwoTrains, units: Units) -> Iterator[str]:
 
 
 def _at_rest(trains: TwoTrains, units: Units) -> Iterator[str]:
-    points = [train.workshop.train.point for train in trains.both]
+    points = [train.assembly.train.point for train in trains.both]
     if points[0] is None and points[1] is None:
         return
     if points[0] is None or points[1] is None:
@@ -439,7 +442,7 @@ def _sure(trains: TwoTrains) -> str:
             f"{reason}."
         )
     stations = [
-        b for train in trains.both for s in train.workshop.scenes.values() for b in s.bearings
+        b for train in trains.both for s in train.assembly.scenes.values() for b in s.bearings
     ]
     catalogued = any(getattr(b, "catalogue", None) is not None for b in stations)
     left_out = ", not open data of catalogue bearings" if catalogued else ""
@@ -458,7 +461,7 @@ def _results(trains: TwoTrains) -> dict[str, Any]:
     return {
         "kind": "two trains",
         "trains": {
-            key: {"file": train.name, **train_data(train.workshop)}
+            key: {"file": train.name, **train_data(train.assembly)}
             for key, train in by_letter.items()
         },
         "models": trains.models,

@@ -93,7 +93,7 @@ def charts_of(pair: Any, units: Units) -> dict[str, Make]:
 
 
 def _teeth(pair: Any, side: Any) -> Any:
-    train = side.workshop.train
+    train = side.assembly.train
     return train.per_turn(train.named_mesh(pair.mesh))
 
 

@@ -1,6 +1,6 @@
 """Ends of seats: moved onto a face or step that they miss by a hair, and away from steps under masses.
 
-Positions that are rounded in the last digit leave gaps of nanometres, which no workshop makes: a
+Positions that are rounded in the last digit leave gaps of nanometres, which no assembly makes: a
 cell in such a gap is 1e7 times shorter than its neighbours, drowns soft modes in rounding, and is no
 line to a CAD kernel.  A hub has one bore: the seat of a mass that a step divides is its longest
 piece, and the mass stays in place.

@@ -15,7 +15,7 @@ from solidgear.show.units import units_named
 from solidgear.strength.acting import Acting, AtRestFile
 from solidgear.strength.deflection import shaft, train
 from solidgear.strength.deflection.sheet import scene_sheet, train_sheet
-from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.assembly import Assembly
 
 
 @command
@@ -46,7 +46,7 @@ def deflect(
                 acting.torque is None and acting.point is None and len(loaded_train.operation) > 1
             )
             deflected = train.deflect_train(
-                Workshop(loaded_train), point, models or train.MODELS, progress, every_point
+                Assembly(loaded_train), point, models or train.MODELS, progress, every_point
             )
             return train_sheet(deflected, units)
         with explained(file):

@@ -33,7 +33,7 @@ import numpy as np
 from solidgear.core import System
 from solidgear.core.frames import cross_matrix
 from solidgear.core.reduction.superelement import PortMotion
-from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.file.gears import Member
 from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.train import Train
@@ -74,7 +74,7 @@ def _names(pair: Pair) -> tuple[str, ...]:
     return PARALLELS if any(_widths(pair)) else PARALLELS[:-1]
 
 
-def misalignment(workshop: Workshop, system: System) -> list[Measure]:
+def misalignment(assembly: Assembly, system: System) -> list[Measure]:
     """Return the misalignment of the gears of a train, mesh by mesh: of bevel pairs E, P, G and the
     shaft angle, of parallel ones the slopes in and across the plane of action and, with a known
     face width, f_sh.
@@ -82,16 +82,16 @@ def misalignment(workshop: Workshop, system: System) -> list[Measure]:
     Examples
     --------
     >>> import solidgear as sg
-    >>> shop = Workshop(sg.load_train("geometry/axle_straddle.toml"))
-    >>> [m.name for m in misalignment(shop, shop.system("euler", "euler"))]
+    >>> assembly = Assembly(sg.load_train("geometry/axle_straddle.toml"))
+    >>> [m.name for m in misalignment(assembly, assembly.system("euler", "euler"))]
     ['E', 'P', 'G', 'shaft angle']
     """
     out = []
-    for pair in workshop.train.pairs:
+    for pair in assembly.train.pairs:
         ports = [system.port(f"{side}.{port}") for side, port in zip(pair.shafts, pair.ports)]
         along = [_from_apex(member, port) for member, port in zip(pair.members.values(), ports)]
         if np.linalg.norm(np.cross(along[0], along[1])) < PARALLEL:
-            measures = _parallel(workshop, pair, ports)
+            measures = _parallel(assembly, pair, ports)
         else:
             measures = _bevel(ports, along)
         out += [
@@ -137,9 +137,9 @@ def _bevel(ports: list[PortMotion], along: list[np.ndarray]) -> list[Measure]:
     ]
 
 
-def _parallel(workshop: Workshop, pair: Pair, ports: list[PortMotion]) -> list[Measure]:
+def _parallel(assembly: Assembly, pair: Pair, ports: list[PortMotion]) -> list[Measure]:
     axis = ports[0].axes[:, 1]
-    normal = ports[0].axes @ (workshop.contacts[pair.name].pinion.normal * [1.0, 0.0, 1.0])
+    normal = ports[0].axes @ (assembly.contacts[pair.name].pinion.normal * [1.0, 0.0, 1.0])
     normal = normal / np.linalg.norm(normal)
     pinion, gear = (_carried_motion(port, ports[0].point) for port in ports)
     slope = -cross_matrix(axis) @ (pinion[3:] - gear[3:])

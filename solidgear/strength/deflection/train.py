@@ -28,10 +28,10 @@ from solidgear.core.judge.deviations import WITHIN, gap_verdict
 from solidgear.core.system.system import port_forces
 from solidgear.strength.deflection.misalignment import misalignment
 from solidgear.strength.deflection.shaft import ShaftDeflection, shaft_deflection
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.components import FORCE_UNITS
 from solidgear.trains.assembly.housing import BOX, housing_motion, mount_rows
 from solidgear.trains.assembly.layout import senses
-from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.assembly.shaft import JUDGE, LUMPED, RIGID, mix_label
 from solidgear.trains.assembly.turn import StageTurn, over_a_turn
 from solidgear.trains.file.housing import HOUSING
@@ -184,7 +184,7 @@ class Deflections:
 
 
 def deflect_train(
-    workshop: Workshop,
+    assembly: Assembly,
     point: OperatingPoint,
     models: Sequence[str] = MODELS,
     progress: Callable[[str], None] = lambda text: None,
@@ -197,77 +197,77 @@ def deflect_train(
     Examples
     --------
     >>> import solidgear as sg
-    >>> shop = Workshop(sg.load_train("geometry/axle_straddle.toml"))
-    >>> found = deflect_train(shop, OperatingPoint(torque=200.0), ("euler", "timoshenko"))
+    >>> assembly = Assembly(sg.load_train("geometry/axle_straddle.toml"))
+    >>> found = deflect_train(assembly, OperatingPoint(torque=200.0), ("euler", "timoshenko"))
     >>> [m.name for m in found.judge.misalignment], len(found.judge.shafts[0].bearings)
     (['E', 'P', 'G', 'shaft angle'], 3)
     """
     solutions = []
     for model in models:
         progress(model)
-        solutions.append(deflection(workshop, point, model))
+        solutions.append(deflection(assembly, point, model))
     progress("what the data of bearings leave open")
-    solutions[-1] = with_ranges(workshop, solutions[-1])
+    solutions[-1] = with_ranges(assembly, solutions[-1])
     standings = tuple(
-        _against_judge(solution, solutions[-1], workshop.train.ask.tolerance)
+        _against_judge(solution, solutions[-1], assembly.train.ask.tolerance)
         for solution in solutions[:-1]
     )
     points: list[TrainDeflection] = []
     if every:
-        progress(f"{len(workshop.train.operation)} operating points")
-        points = deflections(workshop, workshop.train.operation, models[-1])
-    title = workshop.train.title or workshop.train.name
+        progress(f"{len(assembly.train.operation)} operating points")
+        points = deflections(assembly, assembly.train.operation, models[-1])
+    title = assembly.train.title or assembly.train.name
     return Deflections(
         title=title,
-        tolerance=workshop.train.ask.tolerance,
+        tolerance=assembly.train.ask.tolerance,
         solutions=tuple(solutions),
         standings=standings,
-        cautions=workshop.data_cautions,
-        senses=senses(workshop.train, workshop.on_flank(point.coast).contacts, point.coast),
+        cautions=assembly.data_cautions,
+        senses=senses(assembly.train, assembly.on_flank(point.coast).contacts, point.coast),
         points=tuple(points),
-        planets=tuple(stage.name for stage in workshop.train.stages),
+        planets=tuple(stage.name for stage in assembly.train.stages),
     )
 
 
-def deflection(workshop: Workshop, point: OperatingPoint, *models: str) -> TrainDeflection:
+def deflection(assembly: Assembly, point: OperatingPoint, *models: str) -> TrainDeflection:
     """Compute the deflection of a train at an operating point by one model of each shaft, as
     :func:`deflections`.
     """
-    return deflections(workshop, [point], *models)[0]
+    return deflections(assembly, [point], *models)[0]
 
 
 @pinned
 def deflections(
-    workshop: Workshop, points: Sequence[OperatingPoint], *models: str
+    assembly: Assembly, points: Sequence[OperatingPoint], *models: str
 ) -> list[TrainDeflection]:
     """Compute the deflection of a train at several operating points, each begun at the one before,
     by one model of each shaft.
     """
-    by_shaft = workshop.models_by_shaft(models)
+    by_shaft = assembly.models_by_shaft(models)
     for model in by_shaft.values():
         if model.partition("/")[0] in LUMPED:
             raise SolidgearError(
                 f"a {model} shaft has its bearings condensed into it; use one of {', '.join(MODELS)}"
             )
     for side, model in by_shaft.items():
-        workshop.shaft_model(side, model)  # no settling to be timed
-    operating = Operating(workshop, *models)
+        assembly.shaft_model(side, model)  # no settling to be timed
+    operating = Operating(assembly, *models)
     state: OperatingState | None = None
     out = []
     for point in points:
         start = perf_counter()
         state = operating.at(point, state)
-        out.append(_solution(workshop, state, by_shaft, perf_counter() - start))
+        out.append(_solution(assembly, state, by_shaft, perf_counter() - start))
     return out
 
 
 def _solution(
-    workshop: Workshop, state: OperatingState, by_shaft: dict[str, str], seconds: float
+    assembly: Assembly, state: OperatingState, by_shaft: dict[str, str], seconds: float
 ) -> TrainDeflection:
     """Return the deflection of a train at rest."""
     point, system = state.point, state.system
-    bars = StaticBars(workshop, state, by_shaft)
-    measures = misalignment(workshop.on_flank(point.coast), system)
+    bars = StaticBars(assembly, state, by_shaft)
+    measures = misalignment(assembly.on_flank(point.coast), system)
     measured = tuple(
         Measured(
             m.name,
@@ -281,17 +281,17 @@ def _solution(
         for m in measures
     )
     housed = {
-        side: housing_motion(system, workshop.places[side], state.coordinates)
-        for side in workshop.train.housed
+        side: housing_motion(system, assembly.places[side], state.coordinates)
+        for side in assembly.train.housed
     }
     shafts = tuple(
         shaft_deflection(
             side,
             model,
-            workshop.scenes[side],
+            assembly.scenes[side],
             system,
             state.equilibrium,
-            None if model.partition("/")[0] == RIGID else workshop.shaft_model(side, model).body,
+            None if model.partition("/")[0] == RIGID else assembly.shaft_model(side, model).body,
             state.bearings,
             housed.get(side),
         )
@@ -301,20 +301,20 @@ def _solution(
     if housed:
         notes.append(f"deflection lines of {listed(housed)} are relative to the housing")
     displacement = {}
-    for side, shaft in workshop.train.shafts.items():
+    for side, shaft in assembly.train.shafts.items():
         for port in shaft.gears:
             end = f"{side}.{port}"
             name = side if len(shaft.gears) == 1 else end
             displacement[name] = _six_measures(f"of {end}", MOVED, system.motion(end), state, bars)
-    if workshop.train.housing is not None:
+    if assembly.train.housing is not None:
         displacement[HOUSING] = _six_measures(
             "of its centre", MOVED, system.motion(BOX), state, bars
         )
-        if workshop.train.stages:
+        if assembly.train.stages:
             notes.append("forces over a turn of a carrier are not computed with a housing")
     mounts = {
         name: _six_measures("on it", FORCE_UNITS, rows, state, bars)
-        for name, rows in mount_rows(workshop.train, system).items()
+        for name, rows in mount_rows(assembly.train, system).items()
     }
     return TrainDeflection(
         point=point,
@@ -326,20 +326,20 @@ def _solution(
         notes=tuple(notes),
         seconds=seconds,
         mounts=mounts,
-        turns=over_a_turn(workshop, state, by_shaft),
+        turns=over_a_turn(assembly, state, by_shaft),
     )
 
 
-def with_ranges(workshop: Workshop, solution: TrainDeflection) -> TrainDeflection:
+def with_ranges(assembly: Assembly, solution: TrainDeflection) -> TrainDeflection:
     """Return the same with the ranges of the misalignment over estimated insides and clearance
     classes.
     """
     values = [[m.value for m in solution.misalignment]]
-    _, choices = left_open(shaft.scene for shaft in workshop.train.shafts.values())
+    _, choices = left_open(shaft.scene for shaft in assembly.train.shafts.values())
     for choice in choices:
-        operating = Operating(workshop, *solution.models.values(), choice=choice)
+        operating = Operating(assembly, *solution.models.values(), choice=choice)
         state = operating.at(solution.point)
-        measures = misalignment(workshop.on_flank(solution.point.coast), state.system)
+        measures = misalignment(assembly.on_flank(solution.point.coast), state.system)
         values.append([float(m.row @ state.coordinates) for m in measures])
     if len(values) == 1:
         return solution
@@ -380,17 +380,17 @@ def _against_judge(solution: TrainDeflection, judge: TrainDeflection, tolerance:
 class StaticBars:
     """Error bars that meshes of harmonic shafts leave in linear numbers of a state at rest."""
 
-    def __init__(self, workshop: Workshop, state: OperatingState, models: dict[str, str]):
-        self.workshop, self.state = workshop, state
+    def __init__(self, assembly: Assembly, state: OperatingState, models: dict[str, str]):
+        self.assembly, self.state = assembly, state
         self.sides = [side for side, model in models.items() if model == JUDGE]
         self.bounds: dict[str, HarmonicBounds] = {}
-        if not self.sides or any(mesh.local_harmonics for mesh in workshop.train.meshes):
+        if not self.sides or any(mesh.local_harmonics for mesh in assembly.train.meshes):
             return
-        shop = workshop.with_train(with_settled_bearings(workshop.train, state))
-        self.tangent: System = shop.system(*models.values())
+        settled = assembly.with_train(with_settled_bearings(assembly.train, state))
+        self.tangent: System = settled.system(*models.values())
         for side in self.sides:
-            body = workshop.shaft_model(side, JUDGE).body
-            self.bounds[side] = harmonic_bounds(coned(workshop.scenes[side]), body, statics=True)
+            body = assembly.shaft_model(side, JUDGE).body
+            self.bounds[side] = harmonic_bounds(coned(assembly.scenes[side]), body, statics=True)
         self.rest = self._ports(state.forces())
 
     def _ports(self, forces: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
@@ -415,8 +415,8 @@ class StaticBars:
         if turns > 1e-9 * np.linalg.norm(row):
             return None
         adjoint = port_forces(self.tangent, self.tangent.static(row))
-        parts = [*self.workshop.scenes]
-        if self.workshop.train.housing is not None:
+        parts = [*self.assembly.scenes]
+        if self.assembly.train.housing is not None:
             parts.append(HOUSING)
         unit_forces = self._ports(_add_unit_load(adjoint, self.tangent, row, parts))
         total = 0.0

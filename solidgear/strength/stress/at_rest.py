@@ -25,7 +25,7 @@ from solidgear.strength.stress.notch import ENOUGH
 from solidgear.strength.stress.rating import Conditions
 from solidgear.strength.stress.section_forces import COMPONENTS, SectionForces, forces_of
 from solidgear.strength.stress.shaft import ShaftStress, check_tolerance, local_stress, shaft_stress
-from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.train import Train
 from solidgear.trains.load.operation import Operating, OperatingState
@@ -210,13 +210,13 @@ def stress_of_train(
         for side, shaft in train.shafts.items()
     }
     train = train.with_changes(shafts=round_parts)
-    shop = Workshop(_settling_train(train, model))
-    usual = Operating(shop, model).at(point)
+    assembly = Assembly(_settling_train(train, model))
+    usual = Operating(assembly, model).at(point)
 
     def acting(choice: Choice) -> dict[str, ShaftLoads]:
         as_stated = choice == AS_STATED
         return _on_shafts(
-            shop, usual if as_stated else Operating(shop, model, choice=choice).at(point)
+            assembly, usual if as_stated else Operating(assembly, model, choice=choice).at(point)
         )
 
     under = AtPoint(point, usual.mesh_force)
@@ -224,18 +224,18 @@ def stress_of_train(
         {side: train.shaft(side) for side in train.shafts}, acting, asked, progress
     )
     left_out = [text for k in files for text in _file_cautions(files[k], train.shafts[k].scene)]
-    cautions = (*left_out, *usual.notes, *shop.data_cautions, *_torque_cautions(train))
+    cautions = (*left_out, *usual.notes, *assembly.data_cautions, *_torque_cautions(train))
     return StressAtRest(train.title or train.name, model, under, asked, shafts, open_by, cautions)
 
 
-def _on_shafts(shop: Workshop, state: OperatingState) -> dict[str, ShaftLoads]:
+def _on_shafts(assembly: Assembly, state: OperatingState) -> dict[str, ShaftLoads]:
     """Return all loads that act on the shafts of a train at rest."""
     out = {}
-    for side, scene in shop.scenes.items():
+    for side, scene in assembly.scenes.items():
         turned = state.system.port(f"{side}.{scene.port.name}").axes.T
         gravity = turned @ np.array(state.point.gravity)
         out[side] = ShaftLoads({}, gravity if state.point.weight else None)
-        for end, head in shop.train.heads(side).values():
+        for end, head in assembly.train.heads(side).values():
             out[side].add(end.partition(".")[2], head.mass * np.r_[gravity, np.zeros(3)])
     for end, six in state.forces().items():
         side, _, port = end.partition(".")

@@ -176,6 +176,8 @@ def mesh_forces(
     planetary stage the mean over the planets; zero where no torque passes. Meshes of a loop are
     left out, for the teeth alone do not define their forces.
     """
+    if train.is_one_shaft:
+        return {}
     turns, _ = _turns_and_signs(train, mesh_contacts)
     forces, power = {}, _power(train, turns, point)
     for joint in train.joints:
@@ -201,6 +203,8 @@ def rotor_torques(
     train: Train, mesh_contacts: Mapping[str, Contact], point: OperatingPoint
 ) -> dict[str, float]:
     """Return the torques of engines and loads about the axes of their shafts' scenes, N m."""
+    if train.is_one_shaft:
+        return {}
     turns, signs = _turns_and_signs(train, mesh_contacts)
     power = _power(train, turns, point) * _engine_sign(train, signs, point.coast)
     shares = shares_of(train).items()

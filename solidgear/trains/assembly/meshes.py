@@ -16,7 +16,7 @@ from solidgear.core.body import FURTHER
 from solidgear.core.bounds.harmonic import lower_ends, vibration_energies, with_tail
 from solidgear.core.bounds.safety import LOCAL
 from solidgear.core.system.parts import Part, Placed
-from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.shaft import JUDGE
 
 #: modes above those asked for that are looked at: the gap to the highest one counts, and near modes
@@ -28,7 +28,7 @@ RESOLVED = 1e-3
 
 @pinned
 def mesh_bars(
-    workshop: Workshop, system: System, models: Mapping[str, str], n: int
+    assembly: Assembly, system: System, models: Mapping[str, str], n: int
 ) -> np.ndarray | None:
     """Return the (n,) largest relative errors that meshes of harmonic shafts leave in the first
     elastic frequencies of a train, which lie below by no more than that where beams are exact;
@@ -38,15 +38,15 @@ def mesh_bars(
     --------
     >>> import solidgear as sg
     >>> coarse = {"harmonic": {"order": 2, "layers": 1}}
-    >>> shop = Workshop(sg.load_train("geometry/axle_overhung.toml"), kept=8, settings=coarse)
+    >>> assembly = Assembly(sg.load_train("geometry/axle_overhung.toml"), kept=8, settings=coarse)
     >>> both = {"pinion": "harmonic", "gear": "timoshenko"}
-    >>> bool(mesh_bars(shop, shop.system(*both.values()), both, 4).max() < 1e-2)
+    >>> bool(mesh_bars(assembly, assembly.system(*both.values()), both, 4).max() < 1e-2)
     True
     """
     sides = [side for side, model in models.items() if model == JUDGE]
     if not sides:
         return None
-    stored = workshop.bars.get(tuple(models.values()))
+    stored = assembly.bars.get(tuple(models.values()))
     if stored is not None and len(stored) >= n:
         return stored[:n]
     modes = system.modes(n + ABOVE)
@@ -59,17 +59,17 @@ def mesh_bars(
         fields = system.expand(side, shapes)
         if max(fields) >= FURTHER:
             return None
-        body = workshop.shaft_model(side, JUDGE).body
-        energies = vibration_energies(coned(workshop.scenes[side]), body, fields, value)
+        body = assembly.shaft_model(side, JUDGE).body
+        energies = vibration_energies(coned(assembly.scenes[side]), body, fields, value)
         double_energy, single_energy = double_energy + energies[0], single_energy + energies[1]
     energy = LOCAL * np.array([with_tail(a, b) for a, b in zip(double_energy, single_energy)])
     least = np.maximum(lower_ends(value, energy, value[-1]), 0.0)
     bars = (1 - np.sqrt(least / value))[:n]
-    workshop.bars[tuple(models.values())] = bars
+    assembly.bars[tuple(models.values())] = bars
     return bars
 
 
-def mesh_limit(workshop: Workshop, side: str, part: Part) -> float:
+def mesh_limit(assembly: Assembly, side: str, part: Part) -> float:
     """Return the frequency up to which the mesh under a part follows shear waves, Hz; infinite
     without cells.
 
@@ -78,12 +78,12 @@ def mesh_limit(workshop: Workshop, side: str, part: Part) -> float:
     order 2.
     """
     reduced = part.part if isinstance(part, Placed) else part
-    model = workshop._models.get((side, getattr(reduced, "fidelity", "")))
+    model = assembly._models.get((side, getattr(reduced, "fidelity", "")))
     cell = model.body.mesh.get("representative_size") if model is not None else None
     if model is None or not cell:
         return np.inf
     facts = model.body.mesh
     order = facts.get("order") or ELEMENTS[facts["element"]].order
-    materials = {segment.material for segment in workshop.scenes[side].segments}
+    materials = {segment.material for segment in assembly.scenes[side].segments}
     shear = min(np.sqrt(m.shear_modulus / m.density) for m in materials)
     return float(order * shear / (8 * np.pi * cell))

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from solidgear.core import SolidgearError
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.kinematics import MESH_ORDERS, mesh_harmonics, shaft_harmonics
-from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.file.planetary import PlanetMesh
 from solidgear.trains.file.train import PerTurn
 from solidgear.trains.modes.modes import TrainMode, train_modes
@@ -62,7 +62,7 @@ class OrderMap:
 
 
 def order_map(
-    workshop: Workshop,
+    assembly: Assembly,
     *models: str,
     highest_hz: float | None = None,
     damping: str = "hysteretic",
@@ -79,14 +79,14 @@ def order_map(
     Examples
     --------
     >>> import solidgear as sg
-    >>> shop = Workshop(sg.load_train("geometry/axle_overhung.toml"))
-    >>> found = order_map(shop, "timoshenko", "timoshenko", highest_hz=1000.0)
+    >>> assembly = Assembly(sg.load_train("geometry/axle_overhung.toml"))
+    >>> found = order_map(assembly, "timoshenko", "timoshenko", highest_hz=1000.0)
     >>> first = found.crossings[0]
     >>> first.line, first.mode, round(first.rpm)  # 16.28 Hz and 14 teeth
     ('mesh 1', 'load torsion 1', 70)
     """
-    drive = Drive(workshop, *models, damping=damping, matched_hz=matched_hz, mesh=mesh)
-    train, driven = workshop.train, drive.pair
+    drive = Drive(assembly, *models, damping=damping, matched_hz=matched_hz, mesh=mesh)
+    train, driven = assembly.train, drive.pair
     highest = highest_hz or train.ask.max_frequency
     error_orders = len(drive.error.orders) or 1
     count = max(*MESH_ORDERS, error_orders) if mesh_orders is None else mesh_orders
@@ -111,7 +111,7 @@ def order_map(
         lines += [OrderLine(o.name, o.per_turn) for o in orders]
     for side, turns in train.turns.items():
         lines += [OrderLine(o.name, o.per_turn) for o in shaft_harmonics(side, turns, shaft_orders)]
-    modes = train_modes(workshop, *models, max_frequency=highest).modes
+    modes = train_modes(assembly, *models, max_frequency=highest).modes
     elastic = tuple(m for m in modes if 0 < m.frequency_hz <= highest)
     crossings = []
     for k, line in enumerate(lines):

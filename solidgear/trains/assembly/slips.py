@@ -6,7 +6,7 @@ from solidgear.core import build
 from solidgear.core.loading import SHAFT
 from solidgear.guards import Probe, data
 from solidgear.guards.notice import slip_in_units
-from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.file.planetary import PlanetMesh
 
 #: ranges that a slip of 1000 in the data of a mesh leaves: ISO 6336 puts some 20 N/(mm um) into a steel
@@ -18,39 +18,39 @@ SOUND = {
 }
 
 
-def unit_slips(workshop: Workshop) -> tuple[str, ...]:
+def unit_slips(assembly: Assembly) -> tuple[str, ...]:
     """Return sentences on meshes and shafts; none where every number can be true.
 
     Examples
     --------
     >>> import solidgear as sg
     >>> train = sg.load_train("geometry/axle_overhung.toml")
-    >>> unit_slips(Workshop(train))
+    >>> unit_slips(Assembly(train))
     ()
     >>> soft = train.with_changes(mesh=train.mesh.with_changes(stiffness=2.5e5))
-    >>> unit_slips(Workshop(soft))[0][:59]
+    >>> unit_slips(Assembly(soft))[0][:59]
     'probably a wrong unit: mesh stiffness over E r is 2.73e-05,'
     """
-    out = mesh_unit_slips(workshop)
-    for side in workshop.scenes:
-        scene = workshop.scenes[side].plain
+    out = mesh_unit_slips(assembly)
+    for side in assembly.scenes:
+        scene = assembly.scenes[side].plain
         probe = Probe(scene, build(scene, SHAFT))
         out += [f"{side}: {notice.sentence}" for notice in data.units(probe)]
     return tuple(out)
 
 
-def mesh_unit_slips(workshop: Workshop) -> list[str]:
+def mesh_unit_slips(assembly: Assembly) -> list[str]:
     """Return sentences on the stiffness and the transmission error of meshes; none where all are
     sound.
     """
     out = []
-    stiff = max(s.material.E for scene in workshop.scenes.values() for s in scene.segments)
-    for pair in workshop.train.drivers:
+    stiff = max(s.material.E for scene in assembly.scenes.values() for s in scene.segments)
+    for pair in assembly.train.drivers:
         if isinstance(pair, PlanetMesh):
             lever, teeth = pair.stage.teeth.base_radii[0], pair.stage.teeth.sun
             stiffness = pair.stiffness
         else:
-            contact, teeth = workshop.contacts[pair.name], pair.pinion.teeth
+            contact, teeth = assembly.contacts[pair.name], pair.pinion.teeth
             lever, stiffness = abs(contact.pinion.lever), contact.stiffness
         table = pair.mesh.transmission_error
         error = max((*table.orders, *table.amplitude), default=0.0) if table else 0.0

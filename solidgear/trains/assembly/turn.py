@@ -17,7 +17,7 @@ import numpy as np
 from solidgear.core import System, pinned
 from solidgear.core.plain import plain
 from solidgear.core.system.system import port_forces
-from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.stages import StageAtWork
 from solidgear.trains.file.planetary import Stage
 from solidgear.trains.file.train import Train, with_carrier_turned
@@ -99,17 +99,17 @@ def stages_over_a_turn(train: Train) -> tuple[Stage, ...]:
 
 @pinned
 def over_a_turn(
-    workshop: Workshop, state: OperatingState, models: Mapping[str, str]
+    assembly: Assembly, state: OperatingState, models: Mapping[str, str]
 ) -> tuple[StageTurn, ...]:
     """Return the mesh forces of all planetary stages that carry torque, over a turn of the carrier;
     bearings keep their stiffness at the state, which is that of these models.
     """
-    flank = workshop.on_flank(state.point.coast)
-    stages = [flank.stages[stage.name] for stage in stages_over_a_turn(workshop.train)]
+    flank = assembly.on_flank(state.point.coast)
+    stages = [flank.stages[stage.name] for stage in stages_over_a_turn(assembly.train)]
     carrying = [stage for stage in stages if state.mesh_forces[stage.stage.name]]
     if not carrying:
         return ()
-    train_system = workshop.with_train(with_settled_bearings(workshop.train, state)).system(
+    train_system = assembly.with_train(with_settled_bearings(assembly.train, state)).system(
         *models.values()
     )
     out = []
@@ -129,8 +129,8 @@ def over_a_turn(
             torque,
             supports,
             positions=POSITIONS,
-            weights=weights(workshop, stage, state.point),
-            carried=centrifugal(workshop, stage, state.point),
+            weights=weights(assembly, stage, state.point),
+            carried=centrifugal(assembly, stage, state.point),
         )
         force = solved.sun_mesh
         if stage.turns != stage.way:  # it turns the other way than the stage is described
@@ -155,12 +155,12 @@ def _support(
     return FixedSupport(turn.T @ stiffness @ turn, turn.T @ shift)
 
 
-def frequencies_over_a_turn(workshop: Workshop, models: Mapping[str, str], names: list[str]) -> str:
+def frequencies_over_a_turn(assembly: Assembly, models: Mapping[str, str], names: list[str]) -> str:
     """Return a sentence on how far natural frequencies move over a turn of a carrier; empty without
     planets. Names are those of the modes by ascending frequency, the free ones first.
     """
     lines = []
-    for stage in workshop.train.stages:
+    for stage in assembly.train.stages:
         count = len(stage.teeth.azimuths)
         if stage.table.planets is not None and count >= ALIKE:
             lines.append(
@@ -169,14 +169,14 @@ def frequencies_over_a_turn(workshop: Workshop, models: Mapping[str, str], names
             )
             continue
         omegas = [
-            workshop.with_train(
-                with_carrier_turned(workshop.train, stage.called, 2 * np.pi * k / LOOKED_AT)
+            assembly.with_train(
+                with_carrier_turned(assembly.train, stage.called, 2 * np.pi * k / LOOKED_AT)
             )
             .system(*models.values())
             .elastic[0]
             for k in range(LOOKED_AT)
         ]
-        free = workshop.system(*models.values()).free.shape[1]
+        free = assembly.system(*models.values()).free.shape[1]
         elastic = np.array(omegas)[:, : len(names) - free]
         moved = np.ptp(elastic, axis=0) / elastic[0]
         most = int(moved.argmax())

@@ -24,6 +24,7 @@ from solidgear.core.scene.typed import Problems
 from solidgear.core.scene.units import TYPED
 from solidgear.trains.file.gears import Member, Shaft
 from solidgear.trains.file.housing import HOUSING, TrainHousing
+from solidgear.trains.file.layout import layout_problems
 from solidgear.trains.file.operation import Operation
 from solidgear.trains.file.planetary import Planetary
 from solidgear.trains.file.tables import Losses, Mesh, Rotor, TrainAsk
@@ -83,7 +84,10 @@ class _Tables(Model):
                     raise SceneError(reason, path=(kind, name))
                 all_rotors[name] = rotor
         more |= {"engines": tuple(self.engine), "loads": tuple(self.load)}
-        return Train(shafts=shafts, meshes=meshes, rotors=all_rotors, **more, **fields)
+        train = Train(shafts=shafts, meshes=meshes, rotors=all_rotors, **more, **fields)
+        if train.is_one_shaft:
+            raise SceneError.of([*layout_problems(train)])
+        return train
 
 
 class ShortFile(_Tables):

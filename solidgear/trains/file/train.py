@@ -38,6 +38,8 @@ from solidgear.trains.file.tables import Losses, Mesh, Rotor, TrainAsk
 #: names of the shafts, and of what turns with them, in a file of the short form
 SHORT = {"engine": "pinion", "load": "gear"}
 SIDES = tuple(SHORT.values())
+#: name of the shaft in a train of one
+ALONE = "shaft"
 
 
 class Train(Model):
@@ -94,8 +96,47 @@ class Train(Model):
     operation: Operation = ()
     ask: TrainAsk = TrainAsk()
 
+    @classmethod
+    def of(cls, scene: Scene) -> Train:
+        """A shaft as a train of one: no teeth, no engine, and the [load] of the scene.
+
+        Parameters
+        ----------
+        scene : Scene
+
+        Returns
+        -------
+        Train
+            With one shaft, called ``shaft``.
+
+        Examples
+        --------
+        >>> import solidgear as sg
+        >>> train = sg.Train.of(sg.load("geometry/pinion_overhung.toml"))
+        >>> list(train.shafts), train.pairs, train.is_one_shaft
+        (['shaft'], (), True)
+        """
+        return cls(
+            title=scene.title,
+            name=scene.name,
+            source=scene.source,
+            shafts={ALONE: Shaft(scene=scene, scene_load="added")},
+            meshes=(),
+            rotors={},
+            engines=(),
+            loads=(),
+            ask=TrainAsk(tolerance=scene.ask.tolerance),
+        )
+
+    @property
+    def is_one_shaft(self) -> bool:
+        """True for a shaft alone, without teeth or rotors."""
+        return len(self.shafts) == 1 and not (self.meshes or self.planetary or self.rotors)
+
     @model_validator(mode="after")
     def _hangs_together(self) -> Train:
+        if self.is_one_shaft:
+            return self
         if problems := list(layout_problems(self)):
             raise SceneError.of(problems)
         object.__setattr__(self, "operation", tuple(map(self.told, self.operation)))

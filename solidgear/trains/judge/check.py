@@ -14,10 +14,10 @@ import numpy as np
 from solidgear.core import HARMONIC, SolidgearError, build, pinned
 from solidgear.guards import Probe
 from solidgear.guards.check import check_scene
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.housing import housing_facts
 from solidgear.trains.assembly.layout import senses, senses_sentence
 from solidgear.trains.assembly.local import undriven
-from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.assembly.shaft import JUDGE
 from solidgear.trains.assembly.slips import mesh_unit_slips
 from solidgear.trains.file.pairs import Pair
@@ -43,7 +43,7 @@ WORST = ("will not hold", "uncertain", "holds with caution", "holds")
 
 
 @pinned
-def check_train(workshop: Workshop, max_frequency: float | None = None) -> dict:
+def check_train(assembly: Assembly, max_frequency: float | None = None) -> dict:
     """Return ``facts``, ``cautions`` and ``faults`` (sentences) of a train up to a frequency, Hz,
     the checks of each shaft under its name as of :func:`solidgear.guards.check.check_scene`,
     and ``verdicts`` by model, the worst of all shafts.
@@ -51,26 +51,26 @@ def check_train(workshop: Workshop, max_frequency: float | None = None) -> dict:
     Examples
     --------
     >>> import solidgear as sg
-    >>> found = check_train(Workshop(sg.load_train("geometry/axle_overhung.toml")))
+    >>> found = check_train(Assembly(sg.load_train("geometry/axle_overhung.toml")))
     >>> found["pinion"]["verdicts"]["timoshenko"]["verdict"], found["faults"]
     ('will not hold', [])
     """
-    train = workshop.train
+    train = assembly.train
     limit = max_frequency or train.ask.max_frequency
     by_shaft: dict = {}
-    light = Workshop(train, workshop.reduction, workshop.kept)
+    light = Assembly(train, assembly.reduction, assembly.kept)
     for side in train.shafts:
-        scene = workshop.scenes[side]
+        scene = assembly.scenes[side]
         ask = scene.ask.with_changes(max_frequency=limit, tolerance=train.ask.tolerance)
         scene = scene.with_changes(ask=ask)
         probe = Probe(scene.plain, build(scene.plain, JUDGE, **HARMONIC), whole=scene)
         by_shaft[side] = check_scene(scene, probe.body, probe)
         light.set_body(side, JUDGE, probe.solution(JUDGE).body)
     faults: list[str] = []
-    facts = [*_facts(workshop, limit), *housing_facts(train)]
-    facts += [line for contact in workshop.contacts.values() for line in wrench_lines(contact)]
+    facts = [*_facts(assembly, limit), *housing_facts(train)]
+    facts += [line for contact in assembly.contacts.values() for line in wrench_lines(contact)]
     # those of the shafts stand with their guards
-    cautions = [*workshop.cautions, *mesh_unit_slips(workshop), *_loss_cautions(train)]
+    cautions = [*assembly.cautions, *mesh_unit_slips(assembly), *_loss_cautions(train)]
     for pair in train.drivers:
         if isinstance(pair, PlanetMesh) and pair.mate == "ring":
             continue  # it has the table of the sun
@@ -88,10 +88,10 @@ def check_train(workshop: Workshop, max_frequency: float | None = None) -> dict:
     }
 
 
-def _facts(workshop: Workshop, limit: float) -> Iterator[str]:
-    train = workshop.train
+def _facts(assembly: Assembly, limit: float) -> Iterator[str]:
+    train = assembly.train
     for pair in train.pairs:
-        contact, prefix = workshop.contacts[pair.name], f"{pair.name}: " if pair.label else ""
+        contact, prefix = assembly.contacts[pair.name], f"{pair.name}: " if pair.label else ""
         levers = [1e3 * abs(vector.lever) for vector in (contact.pinion, contact.gear)]
         yield (
             f"{prefix}{pair.pinion.teeth} and {pair.gear.teeth} teeth, lever arms {levers[0]:.2f} and "
@@ -113,7 +113,7 @@ def _facts(workshop: Workshop, limit: float) -> Iterator[str]:
             f"{stage.shafts[0]}; pins at {1e3 * teeth_of_stage.pin_radius:.6g} mm, meshes "
             f"{mesh.sun_stiffness:.4g} N/m with the sun and {mesh.ring_stiffness:.4g} N/m with the ring"
         )
-    yield senses_sentence(senses(train, workshop.contacts))
+    yield senses_sentence(senses(train, assembly.contacts))
     loss = train.losses
     yield (
         f"losses are loss factors, twice a damping ratio: shafts {loss.shafts:g}, bearings "
@@ -148,10 +148,10 @@ def _error_cautions(pair: Pair | PlanetMesh, limit: float) -> Iterator[str]:
         yield "the transmission error is zero, so that there is no response; drive by --force"
 
 
-def _system_facts(shop: Workshop, limit: float) -> Iterator[str]:
+def _system_facts(assembly: Assembly, limit: float) -> Iterator[str]:
     """Yield facts of the light solids coupled."""
-    system = shop.system(JUDGE)
-    refuse_unresolved(shop, system, limit)
+    system = assembly.system(JUDGE)
+    refuse_unresolved(assembly, system, limit)
     omega, _ = system.elastic
     count = int((omega <= 2 * np.pi * limit).sum())
     modes = system.modes(max(1, count))
@@ -159,18 +159,18 @@ def _system_facts(shop: Workshop, limit: float) -> Iterator[str]:
     worst = float(modes.error_bound.max())
     word = "within" if worst < RESOLVED else "NOT within"
     yield (
-        f"{count} elastic modes up to {limit:g} Hz on light solids; {shop.reduction}, {shop.kept} "
+        f"{count} elastic modes up to {limit:g} Hz on light solids; {assembly.reduction}, {assembly.kept} "
         f"modes per shaft and the first left out at {cut:.0f} Hz: errors up to {worst:.0e} in "
         f"frequency, {word} {RESOLVED:g}"
     )
-    yield from free_motions(shop, system) or ("the whole train turns freely, at exactly 0 Hz",)
+    yield from free_motions(assembly, system) or ("the whole train turns freely, at exactly 0 Hz",)
 
 
-def _undriven_caution(shop: Workshop, side: str, limit: float) -> Iterator[str]:
+def _undriven_caution(assembly: Assembly, side: str, limit: float) -> Iterator[str]:
     """Yield a caution on modes of a light solid that averaged ports cannot drive."""
-    pairs = [pair for pair in shop.train.pairs if side in pair.shafts]
+    pairs = [pair for pair in assembly.train.pairs if side in pair.shafts]
     driven = {n for pair in pairs for n in pair.mesh.local_harmonics}
-    frequencies = undriven(shop.shaft_model(side, JUDGE).body, limit, tuple(driven))
+    frequencies = undriven(assembly.shaft_model(side, JUDGE).body, limit, tuple(driven))
     if frequencies:
         families = ", ".join(f"n = {n} at {hz[0]:.0f} Hz" for n, hz in frequencies.items())
         yield (

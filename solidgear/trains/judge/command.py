@@ -68,9 +68,9 @@ def _judged(
     *,
     renders: bool,
 ) -> None:
-    shop = reduced.workshop(train)
+    assembly = reduced.assembly(train)
     with held(out) if out else nullcontext(), run.progress() as progress:
-        comparison = compared(shop, reduced.max_frequency, more, progress)
+        comparison = compared(assembly, reduced.max_frequency, more, progress)
         results = comparison.results()
         if out:
             progress("report")

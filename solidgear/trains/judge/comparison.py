@@ -14,9 +14,9 @@ from solidgear.core.machine.environment import environment
 from solidgear.core.plain import plain
 from solidgear.core.scene.bearing_stiffness import stiffness_entries
 from solidgear.show.turning import Turned
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.housing import housing_hz
 from solidgear.trains.assembly.layout import senses
-from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.assembly.orders import OrderMap, order_map
 from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.planetary import Stage
@@ -35,7 +35,7 @@ PICTURES = 4
 class TrainComparison:
     """Findings about a train."""
 
-    workshop: Workshop
+    assembly: Assembly
     verdict: Verdict
     modes: TrainModes  #: of the judge
     orders: OrderMap  #: of the judge
@@ -44,8 +44,8 @@ class TrainComparison:
     @property
     def top(self) -> Loudest:
         """Largest dynamic mesh force by the judge."""
-        shop = self.workshop
-        return loudest(self.verdict.responses[0], self.modes.modes, shop.train, shop.scenes)
+        assembly = self.assembly
+        return loudest(self.verdict.responses[0], self.modes.modes, assembly.train, assembly.scenes)
 
     @property
     def drawn(self) -> list[TrainResponse]:
@@ -77,7 +77,7 @@ class TrainComparison:
         pictures left out.
         """
         renders = (
-            draw_modes(self.workshop, JUDGE, folder=folder, numbers=self.loudest)
+            draw_modes(self.assembly, JUDGE, folder=folder, numbers=self.loudest)
             if self.loudest
             else {}
         )
@@ -89,13 +89,13 @@ class TrainComparison:
         """Return the judge's modes and those of all shafts as the best beams, to be turned side by
         side.
         """
-        return turning_pair(self.workshop, (JUDGE,), (MIXED[-2],), self.verdict.highest_hz)
+        return turning_pair(self.assembly, (JUDGE,), (MIXED[-2],), self.verdict.highest_hz)
 
     def results(self) -> dict[str, Any]:
         """Return plain data for JSON: all numbers of the page."""
         return {
             "kind": "train",
-            "train": train_data(self.workshop),
+            "train": train_data(self.assembly),
             "verdict": self.verdict.as_dict() | {"sentences": self.verdict.sentences()},
             "loudest": self.top.as_dict(),
             "modes": self.modes.as_dict() | {"notes": self.modes.notes()},
@@ -107,7 +107,7 @@ class TrainComparison:
 
 
 def compare_train(
-    workshop: Workshop,
+    assembly: Assembly,
     highest_hz: float | None = None,
     more: Sequence[tuple[str, ...]] = (),
     progress: Callable[[str], None] = lambda text: None,
@@ -116,25 +116,25 @@ def compare_train(
     :func:`solidgear.trains.judge.judge.judge_train`.
     """
     start = perf_counter()
-    verdict = judge_train(workshop, highest_hz, more, progress)
-    modes = train_modes(workshop, JUDGE, max_frequency=verdict.highest_hz)
+    verdict = judge_train(assembly, highest_hz, more, progress)
+    modes = train_modes(assembly, JUDGE, max_frequency=verdict.highest_hz)
     progress("order lines")
-    orders = order_map(workshop, JUDGE, highest_hz=verdict.highest_hz)
-    return TrainComparison(workshop, verdict, modes, orders, perf_counter() - start)
+    orders = order_map(assembly, JUDGE, highest_hz=verdict.highest_hz)
+    return TrainComparison(assembly, verdict, modes, orders, perf_counter() - start)
 
 
-def train_data(workshop: Workshop) -> dict[str, Any]:
+def train_data(assembly: Assembly) -> dict[str, Any]:
     """Return a train as plain data: the file, and the meshes as they come out of it."""
-    train = workshop.train
+    train = assembly.train
     out: dict[str, Any] = {
         "title": train.called,
         "name": train.name,
         "source": train.source,
         "ratio": train.ratio,
         "shafts": [*train.shafts],
-        "meshes": [_mesh(workshop, pair) for pair in train.pairs],
+        "meshes": [_mesh(assembly, pair) for pair in train.pairs],
         "stages": [_stage(stage) for stage in train.stages],
-        "senses": senses(train, workshop.contacts),
+        "senses": senses(train, assembly.contacts),
         "rotors": [*train.rotors],
         "losses": train.losses.model_dump(mode="json", exclude={"status"}),
         "statuses": train.statuses(),
@@ -193,14 +193,14 @@ def _stage(stage: Stage) -> dict[str, Any]:
     }
 
 
-def _mesh(workshop: Workshop, pair: Pair) -> dict[str, Any]:
+def _mesh(assembly: Assembly, pair: Pair) -> dict[str, Any]:
     """Return a mesh as plain data, the pinion first in pairs of values."""
-    contact = workshop.contacts[pair.name]
+    contact = assembly.contacts[pair.name]
     vectors, error = (contact.pinion, contact.gear), pair.mesh.transmission_error
     return {
         "name": pair.name,
         "between": [f"{side}.{port}" for side, port in zip(pair.shafts, pair.ports)],
-        "per_turn": workshop.train.per_turn(pair),
+        "per_turn": assembly.train.per_turn(pair),
         "teeth": [member.teeth for member in pair.members.values()],
         "shaft_angle": pair.mesh.shaft_angle,
         "stiffness": contact.stiffness,

@@ -21,8 +21,8 @@ import numpy as np
 
 from solidgear.core import BEAM, LADDER, SolidgearError
 from solidgear.core.plain import plain
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.meshes import mesh_bars
-from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.assembly.shaft import JUDGE, LUMPED, checked_model, ladder_place, mix_label
 from solidgear.trains.assembly.slips import unit_slips
 from solidgear.trains.file.planetary import error_of
@@ -195,7 +195,7 @@ class Verdict:
 
 
 def judge_train(
-    workshop: Workshop,
+    assembly: Assembly,
     highest_hz: float | None = None,
     more: Sequence[tuple[str, ...]] = (),
     progress: Callable[[str], None] = lambda text: None,
@@ -203,26 +203,26 @@ def judge_train(
     """Judge mixes of beams and solids, the lumped models and further mixes against all shafts
     solid, up to a frequency, Hz, by default that of the file.
     """
-    ask = workshop.train.ask
+    ask = assembly.train.ask
     highest = highest_hz or ask.max_frequency
-    sides = [*workshop.train.shafts]
+    sides = [*assembly.train.shafts]
     mixes = mixes_of(len(sides))
-    mixes += [(name,) * len(sides) for name in LUMPED if _can_be_made(workshop, name)]
-    further = [tuple(workshop.models_by_shaft(mix).values()) for mix in more]
+    mixes += [(name,) * len(sides) for name in LUMPED if _can_be_made(assembly, name)]
+    further = [tuple(assembly.models_by_shaft(mix).values()) for mix in more]
     mixes += [mix for mix in dict.fromkeys(further) if mix not in mixes]
     for mix in mixes:
         for model in mix:
             checked_model(model)
-    for driver in workshop.train.drivers:
+    for driver in assembly.train.drivers:
         error_of(driver)  # refused before anything is solved
-    progress(f"judge: {workshop.train.every} shafts {JUDGE}")
-    judge = _Judge(workshop, highest)
+    progress(f"judge: {assembly.train.every} shafts {JUDGE}")
+    judge = _Judge(assembly, highest)
     departures: dict[tuple[str, ...], Departure] = {}
     all_solid = (JUDGE,) * len(sides)
 
     def add(mix: tuple[str, ...]) -> None:
         if mix not in departures and mix != all_solid:
-            progress(mix_label(workshop.models_by_shaft(mix)))
+            progress(mix_label(assembly.models_by_shaft(mix)))
             departures[mix] = judge.departure(*mix)
 
     for mix in mixes:
@@ -234,26 +234,26 @@ def judge_train(
     # wall seconds would order by noise where bodies are the same
     ordered = sorted(judged, key=lambda m: (m.unknowns, [*map(ladder_place, m.mix)]))
     return Verdict(
-        train=workshop.train.called,
+        train=assembly.train.called,
         highest_hz=highest,
         tolerance=ask.tolerance,
         decibels=ask.decibels,
         mixes=(*ordered, reference),
         judge_bar=judge.bar(),
         responses=tuple(judge.responses.values()),
-        unpublished=workshop.train.unpublished(),
+        unpublished=assembly.train.unpublished(),
         cautions=(
-            *unit_slips(workshop),
+            *unit_slips(assembly),
             *judge.responses[all_solid].cautions,
         ),
     )
 
 
-def _can_be_made(workshop: Workshop, name: str) -> bool:
+def _can_be_made(assembly: Assembly, name: str) -> bool:
     """Check whether a model exists of every shaft: mode-matched masses need not."""
     try:
-        for side in workshop.scenes:
-            workshop.shaft_model(side, name)
+        for side in assembly.scenes:
+            assembly.shaft_model(side, name)
     except SolidgearError:
         return False
     return True
@@ -308,23 +308,23 @@ def _further(a: Departure, b: Departure) -> bool:
 class _Judge:
     """The reference of a train, and the departures of mixes from it."""
 
-    def __init__(self, workshop: Workshop, highest: float):
-        self.workshop, self.highest = workshop, highest
-        self.system = workshop.system(JUDGE)
-        self.found, self.seen = modes_and_motions(workshop, self.system, highest)
-        self.names = mode_names(workshop, self.system, self.found)
+    def __init__(self, assembly: Assembly, highest: float):
+        self.assembly, self.highest = assembly, highest
+        self.system = assembly.system(JUDGE)
+        self.found, self.seen = modes_and_motions(assembly, self.system, highest)
+        self.names = mode_names(assembly, self.system, self.found)
         self.driven = driven(self.system, self.found)[self.found.rigid :]
-        drives = [Drive(workshop, JUDGE, mesh=mesh.name) for mesh in workshop.train.drivers]
+        drives = [Drive(assembly, JUDGE, mesh=mesh.name) for mesh in assembly.train.drivers]
         self.drives = [(drive, drive.grid(highest)) for drive in drives]
-        solid, grid = (JUDGE,) * len(workshop.scenes), self.drives[0][1]
-        self.responses = {solid: respond(workshop, *solid, highest_hz=highest, frequency_hz=grid)}
+        solid, grid = (JUDGE,) * len(assembly.scenes), self.drives[0][1]
+        self.responses = {solid: respond(assembly, *solid, highest_hz=highest, frequency_hz=grid)}
 
     def departure(self, *models: str) -> Departure:
         """Return the departure of a mix."""
         modes_to, mode, error = self._first_mode(*models)
-        by_shaft = self.workshop.models_by_shaft(models)
-        unknowns = sum(self.workshop.shaft_model(*shaft).unknowns for shaft in by_shaft.items())
-        seconds = self.workshop.build_seconds(*models)
+        by_shaft = self.assembly.models_by_shaft(models)
+        unknowns = sum(self.assembly.shaft_model(*shaft).unknowns for shaft in by_shaft.items())
+        seconds = self.assembly.build_seconds(*models)
         force_to, close_to = self._force(*models)
         return Departure(
             models=by_shaft,
@@ -339,8 +339,8 @@ class _Judge:
         )
 
     def _first_mode(self, *models: str):
-        system = self.workshop.system(*models)
-        modes, motions = modes_and_motions(self.workshop, system, self.highest * BEYOND)
+        system = self.assembly.system(*models)
+        modes, motions = modes_and_motions(self.assembly, system, self.highest * BEYOND)
         mix_hz, judge_hz = (solved.frequency_hz[solved.rigid :] for solved in (modes, self.found))
         partner = partners(judge_hz, self.seen, mix_hz, motions)
         for k, hz in enumerate(judge_hz):
@@ -350,7 +350,7 @@ class _Judge:
             if k not in partner:
                 return float(hz), name, None
             error = float(mix_hz[partner[k]] / hz - 1)
-            if abs(error) > self.workshop.train.ask.tolerance:
+            if abs(error) > self.assembly.train.ask.tolerance:
                 return float(hz), name, error
         return None, "", None
 
@@ -359,14 +359,14 @@ class _Judge:
         the lowest over the errors of all meshes.
         """
         ends: tuple[list[float], list[float]] = ([], [])
-        ask = self.workshop.train.ask
+        ask = self.assembly.train.ask
         for judge, judge_grid in self.drives:
-            drive = Drive(self.workshop, *models, mesh=judge.pair.name)
+            drive = Drive(self.assembly, *models, mesh=judge.pair.name)
             grid = np.union1d(judge_grid, drive.grid(self.highest))
             force = np.abs(drive.mesh(grid)[1])
             if models not in self.responses:
                 self.responses[models] = respond(
-                    self.workshop, *models, highest_hz=self.highest, frequency_hz=grid
+                    self.assembly, *models, highest_hz=self.highest, frequency_hz=grid
                 )
             ratio = force / np.abs(judge.mesh(grid)[1])
             too_far = np.abs(20 * np.log10(ratio)) > ask.decibels
@@ -379,6 +379,6 @@ class _Judge:
         """Return the largest relative error that the judge's meshes may leave in the frequencies."""
         count = len(self.found.frequency_hz) - self.found.rigid
         bars = mesh_bars(
-            self.workshop, self.system, dict.fromkeys(self.workshop.scenes, JUDGE), count
+            self.assembly, self.system, dict.fromkeys(self.assembly.scenes, JUDGE), count
         )
         return None if bars is None else float(bars.max())

@@ -19,7 +19,7 @@ from solidgear.core.plain import plain
 from solidgear.show.command import say
 from solidgear.show.table import Column, Table
 from solidgear.show.words import engineering, percent
-from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.train import Train
 from solidgear.trains.load.operation import Operating, OperatingState
@@ -176,8 +176,10 @@ def train_lives(train: Train) -> list[TrainBearingLife]:
         )
     scenes = {side: shaft.scene for side, shaft in train.shafts.items()}
     open_data, choices = left_open(scenes.values())
-    shop = Workshop(train)
-    settled = [_states(Operating(shop, choice=choice), train) for choice in (AS_STATED, *choices)]
+    assembly = Assembly(train)
+    settled = [
+        _states(Operating(assembly, choice=choice), train) for choice in (AS_STATED, *choices)
+    ]
     lives_by_bearing = []
     for side, scene in scenes.items():
         for bearing in scene.bearings:

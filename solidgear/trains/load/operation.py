@@ -24,9 +24,9 @@ from solidgear.bearings.catalogued import Catalogued
 from solidgear.bearings.solved import AS_STATED, Choice, catalogued_bearings
 from solidgear.core import SceneError, SolidgearError, System, listed
 from solidgear.core.system.system import port_forces
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.housing import housing_port
 from solidgear.trains.assembly.layout import force_on, mesh_forces, rotor_torques
-from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.assembly.stages import mesh_row
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.train import Train
@@ -104,23 +104,25 @@ class Operating:
     --------
     >>> import solidgear as sg
     >>> from solidgear.trains.file.operation import OperatingPoint
-    >>> shop = Workshop(sg.load_train("geometry/axle_straddle.toml"))
-    >>> found = Operating(shop).at(OperatingPoint(torque=100.0))
-    >>> lever = shop.contact.pinion.lever
+    >>> assembly = Assembly(sg.load_train("geometry/axle_straddle.toml"))
+    >>> found = Operating(assembly).at(OperatingPoint(torque=100.0))
+    >>> lever = assembly.contact.pinion.lever
     >>> round(found.mesh_force * abs(lever), 9)
     100.0
     """
 
-    def __init__(self, workshop: Workshop, *models: str, choice: Choice = AS_STATED):
-        self.workshop, self.models, self.choice = workshop, models or (SHAFT,), choice
-        for side in workshop.train.shafts:
-            refuse_own_loads(workshop.train, side)
+    def __init__(self, assembly: Assembly, *models: str, choice: Choice = AS_STATED):
+        self.assembly, self.models, self.choice = assembly, models or (SHAFT,), choice
+        if assembly.train.is_one_shaft:
+            return
+        for side in assembly.train.shafts:
+            refuse_own_loads(assembly.train, side)
 
     @cached_property
     def bearings(self) -> dict[str, Catalogued]:
         """Bearings of catalogue data, by ``side.name``."""
         out: dict[str, Catalogued] = {}
-        train = self.workshop.train
+        train = self.assembly.train
         for side, shaft in train.shafts.items():
             try:
                 shaft_bearings = catalogued_bearings(shaft.scene, self.choice)
@@ -131,8 +133,8 @@ class Operating:
 
     @cached_property
     def _seats(self) -> tuple[Seats, ...]:
-        scenes = self.workshop.scenes.items()
-        train, out = self.workshop.train, []
+        scenes = self.assembly.scenes.items()
+        train, out = self.assembly.train, []
         for side, scene in scenes:
             seats = seats_of(side, scene, self.bearings)
             ports = (housing_port(train, side, seat.port) for seat in seats.bearings)
@@ -143,15 +145,15 @@ class Operating:
     def _flanks(self) -> dict[bool, OnBearings]:
         return {}
 
-    def _on_flank(self, coast: bool) -> tuple[Workshop, OnBearings]:
+    def _on_flank(self, coast: bool) -> tuple[Assembly, OnBearings]:
         """Return the train with the flank that carries, without the bearings, and the seats that it
         rests on.
         """
-        shop = self.workshop.on_flank(coast)
+        assembly = self.assembly.on_flank(coast)
         if coast not in self._flanks:
-            system = shop.system(*self.models, bearings=False)
+            system = assembly.system(*self.models, bearings=False)
             self._flanks[coast] = OnBearings(system, self._seats)
-        return shop, self._flanks[coast]
+        return assembly, self._flanks[coast]
 
     def with_points(self, train: Train) -> Operating:
         """Return the same bearings on the same shafts, in a train that differs in operating points
@@ -159,18 +161,18 @@ class Operating:
         """
         _ = self._seats, self._flanks  # found once for all of them
         out = copy(self)
-        out.workshop = self.workshop.with_train(train)
+        out.assembly = self.assembly.with_train(train)
         return out
 
     def at(self, point: OperatingPoint, start: OperatingState | None = None) -> OperatingState:
         """Settle the train at an operating point, from the state `start` of the same train if it is
         on the same flank; refused where nothing holds a shaft under the loads.
         """
-        point = self.workshop.train.told(point)
-        shop, seated = self._on_flank(point.coast)
-        forces = mesh_forces(shop.train, shop.contacts, point)
-        loads, notes = self._loads(shop, point, forces)
-        total = seated.system.load(loads) + centrifugal_load(shop, seated.system, point)
+        point = self.assembly.train.told(point)
+        assembly, seated = self._on_flank(point.coast)
+        forces = mesh_forces(assembly.train, assembly.contacts, point)
+        loads, notes = self._loads(assembly, point, forces)
+        total = seated.system.load(loads) + centrifugal_load(assembly, seated.system, point)
         if point.weight is not None:
             total = total + weight(seated.system, point.gravity)
         begin = None
@@ -180,9 +182,9 @@ class Operating:
             solved = seated.equilibrium(total, begin)
         except SolidgearError as error:
             raise SolidgearError(f"at {point.label}: {error}") from None
-        solved = _engine_still(solved, seated.system, shop.train)
-        if loop_shares := loop_forces(shop, seated.system, solved.coordinates, point.label):
-            forces = {name: {**forces, **loop_shares}[name] for name in shop.contacts}
+        solved = _engine_still(solved, seated.system, assembly.train)
+        if loop_shares := loop_forces(assembly, seated.system, solved.coordinates, point.label):
+            forces = {name: {**forces, **loop_shares}[name] for name in assembly.contacts}
             notes.append(LOOP)
         notes += [
             f"at {point.label} bearing {end} carries no load within its clearance, so it has no "
@@ -191,7 +193,7 @@ class Operating:
         ]
         return OperatingState(
             point=point,
-            models=shop.models_by_shaft(self.models),
+            models=assembly.models_by_shaft(self.models),
             mesh_forces=forces,
             equilibrium=solved,
             system=seated.system,
@@ -201,22 +203,22 @@ class Operating:
         )
 
     def _loads(
-        self, shop: Workshop, point: OperatingPoint, forces: dict[str, float]
+        self, assembly: Assembly, point: OperatingPoint, forces: dict[str, float]
     ) -> tuple[dict[str, np.ndarray], list[str]]:
         """Return loads at ports in addition to the mesh forces, which the torques of engine and load bring
         about, and notes on them.
         """
-        loads, notes = rotor_loads(shop, point), []
+        loads, notes = rotor_loads(assembly, point), []
         for force in point.force:
             loads[force.at] = loads.get(force.at, np.zeros(6)) + force.six
-        for end, torque in carrier_torques(shop, point).items():
+        for end, torque in carrier_torques(assembly, point).items():
             loads[end] = loads.get(end, np.zeros(6)) + torque * np.eye(6)[4]
             notes.append(
                 f"at {point.label} the weight of planets turns {end} by {abs(torque):.4g} N m, "
                 "which is balanced there and carried by no shaft"
             )
-        for side, scene in shop.scenes.items():
-            added, sentences = scene_load(shop, side, forces)
+        for side, scene in assembly.scenes.items():
+            added, sentences = scene_load(assembly, side, forces)
             notes += sentences
             if added is not None:
                 end = f"{side}.{scene.port.name}"
@@ -240,15 +242,17 @@ def refuse_own_loads(train: Train, side: str) -> None:
 
 
 def scene_load(
-    workshop: Workshop, side: str, forces: Mapping[str, float]
+    assembly: Assembly, side: str, forces: Mapping[str, float]
 ) -> tuple[np.ndarray | None, list[str]]:
     """Return the load (6,) that the [load] of a shaft's scene adds to the mesh force, and notes;
     refused if it is neither the mesh force nor declared as added or replaced.
     """
-    train, scene = workshop.train, workshop.scenes[side]
+    train, scene = assembly.train, assembly.scenes[side]
     if scene.load is None:
         return None, []
     load, word = np.array(scene.load.six), train.shafts[side].scene_load
+    if train.is_one_shaft:
+        return load, []
     if word == "added":
         return load, [f"the [load] of the {side}'s scene is added to the mesh force"]
     if word == "replaced":
@@ -259,9 +263,9 @@ def scene_load(
             '"replaced", or "added" where it acts besides the teeth',
             path=(*train.shaft_path(side), "scene_load"),
         )
-    flanks = [(workshop.on_flank(p.coast), p) for p in train.operation]
+    flanks = [(assembly.on_flank(p.coast), p) for p in train.operation]
     mesh_loads = [_force_on(s, side, mesh_forces(train, s.contacts, p)) for s, p in flanks]
-    mesh_loads.append(_force_on(workshop, side, forces))
+    mesh_loads.append(_force_on(assembly, side, forces))
     if any(np.linalg.norm(load[:3] - f) <= SAME_LOAD * np.linalg.norm(f) for f in mesh_loads):
         return None, [f"the [load] of the {side}'s scene equals its mesh force, and is not added"]
     raise SceneError(
@@ -273,13 +277,13 @@ def scene_load(
     )
 
 
-def _force_on(workshop: Workshop, side: str, forces: Mapping[str, float]) -> np.ndarray:
+def _force_on(assembly: Assembly, side: str, forces: Mapping[str, float]) -> np.ndarray:
     """Return the (3,) force of all teeth on a shaft, in the axes of the scene, N; equal planets
     have none.
     """
     forces_on = [
-        forces[pair.name] * force_on(pair, side, workshop.contacts[pair.name])[:3]
-        for pair in workshop.train.pairs
+        forces[pair.name] * force_on(pair, side, assembly.contacts[pair.name])[:3]
+        for pair in assembly.train.pairs
         if side in pair.shafts
     ]
     return np.sum([np.zeros(3), *forces_on], axis=0)
@@ -289,31 +293,31 @@ def _newtons(force: np.ndarray) -> str:
     return ", ".join(f"{v:.0f}" for v in force)
 
 
-def rotor_loads(workshop: Workshop, point: OperatingPoint) -> dict[str, np.ndarray]:
+def rotor_loads(assembly: Assembly, point: OperatingPoint) -> dict[str, np.ndarray]:
     """Return (6,) torques of engines and loads, by rotor."""
-    by_rotor = rotor_torques(workshop.train, workshop.contacts, point)
+    by_rotor = rotor_torques(assembly.train, assembly.contacts, point)
     return {name: torque * np.eye(6)[4] for name, torque in by_rotor.items()}
 
 
-def mean_forces(workshop: Workshop, point: OperatingPoint) -> dict[str, float]:
+def mean_forces(assembly: Assembly, point: OperatingPoint) -> dict[str, float]:
     """Return the forces of all meshes at an operating point, N, of a planetary stage those of each
     planet; those of a loop as Timoshenko shafts divide them under all that loads the train
     there.
     """
-    if None in workshop.train.flows.values():
-        return Operating(workshop).at(point).mesh_forces
-    return mesh_forces(workshop.train, workshop.contacts, point)
+    if None in assembly.train.flows.values():
+        return Operating(assembly).at(point).mesh_forces
+    return mesh_forces(assembly.train, assembly.contacts, point)
 
 
 def loop_forces(
-    workshop: Workshop, system: System, coordinates: np.ndarray, place: str
+    assembly: Assembly, system: System, coordinates: np.ndarray, place: str
 ) -> dict[str, float]:
     """Return the forces of meshes that a loop makes share the torque by their stiffness, N, by
     mesh; their teeth all touch where nothing is loaded, and teeth that would have to pull are
     refused.
     """
     out = {}
-    for name in (name for name, flow in workshop.train.flows.items() if flow is None):
+    for name in (name for name, flow in assembly.train.flows.items() if flow is None):
         row, stiffness = mesh_row(system, name)
         out[name] = -stiffness * float(row @ coordinates)
         if not out[name] > 0:
@@ -327,6 +331,8 @@ def loop_forces(
 
 def _engine_still(solved: SystemEquilibrium, system: System, train: Train) -> SystemEquilibrium:
     """Return the same with the train turned until the port of the engine's spring has no rotation."""
+    if not train.engines:
+        return solved
     turning = _rotation(system, [*train.shafts])
     row = system.motion(f"{train.reference}.{train.spring_port(train.engines[0])}")[4]
     turned = float(row @ turning)
@@ -382,7 +388,7 @@ def at_point(train: Train, word: str | int | None = None) -> Train:
     -30.0
     """
     point = train.operation[0] if word is None and train.operation else named_point(train, word)
-    settled_train = with_settled_bearings(train, Operating(Workshop(train)).at(point))
+    settled_train = with_settled_bearings(train, Operating(Assembly(train)).at(point))
     return (
         settled_train if word is not None else settled_train.with_changes(operation=train.operation)
     )

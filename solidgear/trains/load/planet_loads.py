@@ -9,7 +9,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from solidgear.core import System
-from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.stages import StageAtWork
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.system.planetary_members import Planet
@@ -18,9 +18,9 @@ from solidgear.trains.system.planetary_members import Planet
 ROUNDING = 1e-9
 
 
-def weights(workshop: Workshop, stage: StageAtWork, point: OperatingPoint) -> dict[str, np.ndarray]:
+def weights(assembly: Assembly, stage: StageAtWork, point: OperatingPoint) -> dict[str, np.ndarray]:
     """Return the weight (6,) of planets, and of a supported ring, N."""
-    turn, _ = workshop.places[stage.stage.shafts[0]]
+    turn, _ = assembly.places[stage.stage.shafts[0]]
     falling = np.r_[(turn @ stage.axes).T @ point.gravity, np.zeros(3)]
     table = stage.stage.table
     out = {name: table.planet.mass * falling for name in stage.planets}
@@ -30,33 +30,33 @@ def weights(workshop: Workshop, stage: StageAtWork, point: OperatingPoint) -> di
 
 
 def centrifugal(
-    workshop: Workshop, stage: StageAtWork, point: OperatingPoint
+    assembly: Assembly, stage: StageAtWork, point: OperatingPoint
 ) -> dict[str, np.ndarray]:
     """Return the centrifugal force (6,) of every planet, N; zero at a point without a speed."""
-    speed = point.speed_of(stage.stage.shafts[1], workshop.train.turns) or 0.0
+    speed = point.speed_of(stage.stage.shafts[1], assembly.train.turns) or 0.0
     size = stage.stage.table.planet.mass * speed**2 * stage.stage.teeth.pin_radius
     return {name: size * np.r_[p.axes[:, 0], np.zeros(3)] for name, p in _members(stage)}
 
 
-def centrifugal_load(workshop: Workshop, system: System, point: OperatingPoint) -> np.ndarray:
+def centrifugal_load(assembly: Assembly, system: System, point: OperatingPoint) -> np.ndarray:
     """Return the (N,) load of the centrifugal forces of all planets on a system of the train."""
     out = np.zeros(system.size)
-    for stage in workshop.stages.values():
-        for name, force in centrifugal(workshop, stage, point).items():
+    for stage in assembly.stages.values():
+        for name, force in centrifugal(assembly, stage, point).items():
             along = stage.model.parts[name].ports["centre"].axes
             end = f"{stage.planets[name]}.centre"
             out += system.load({end: np.kron(np.eye(2), along.T) @ force})
     return out
 
 
-def carrier_torques(workshop: Workshop, point: OperatingPoint) -> dict[str, float]:
+def carrier_torques(assembly: Assembly, point: OperatingPoint) -> dict[str, float]:
     """Return the torque about the axis of the scene, N m, that keeps each carrier from turning by
     the weight of planets at unequal angles, by the port that carries the pins.
     """
     out = {}
-    for stage in workshop.stages.values():
+    for stage in assembly.stages.values():
         pins = {name: stage.model.carrier.radius * p.axes[:, 0] for name, p in _members(stage)}
-        falling = weights(workshop, stage, point)
+        falling = weights(assembly, stage, point)
         moments = [np.cross(pin, falling[name][:3])[1] for name, pin in pins.items()]
         largest = sum(np.linalg.norm(falling[name]) for name in pins) * stage.model.carrier.radius
         if abs(sum(moments)) > ROUNDING * largest:

@@ -8,11 +8,11 @@ import numpy as np
 
 from solidgear.core import DOF_NAMES, SolidgearError, System
 from solidgear.core.plain import plain
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.housing import free_directions, seat_motion
 from solidgear.trains.assembly.local import undriven, waves_of
 from solidgear.trains.assembly.local_give import local_lines
 from solidgear.trains.assembly.meshes import mesh_bars, mesh_limit
-from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.assembly.shaft import JUDGE, mix_label
 from solidgear.trains.assembly.spin import spin_cautions
 from solidgear.trains.assembly.turn import frequencies_over_a_turn
@@ -168,7 +168,7 @@ def wrench_lines(contact: Contact) -> tuple[str, ...]:
 
 
 def train_modes(
-    workshop: Workshop, *models: str, max_frequency: float | None = None, at_most: int | None = None
+    assembly: Assembly, *models: str, max_frequency: float | None = None, at_most: int | None = None
 ) -> TrainModes:
     """Return the modes of a train with the shafts by models, up to a frequency, Hz, by default that
     of the file, or so many elastic ones; refused beyond the frequencies that the reduction
@@ -177,14 +177,14 @@ def train_modes(
     Examples
     --------
     >>> import solidgear as sg
-    >>> shop = Workshop(sg.load_train("geometry/axle_overhung.toml"))
-    >>> found = train_modes(shop, "timoshenko", "timoshenko", max_frequency=1000.0)
+    >>> assembly = Assembly(sg.load_train("geometry/axle_overhung.toml"))
+    >>> found = train_modes(assembly, "timoshenko", "timoshenko", max_frequency=1000.0)
     >>> [mode.name for mode in found.modes][:2], found.modes[0].frequency_hz
     (['train rotation', 'load torsion 1'], 0.0)
     """
-    train, by_shaft = workshop.train, workshop.models_by_shaft(models)
+    train, by_shaft = assembly.train, assembly.models_by_shaft(models)
     limit = max_frequency or train.ask.max_frequency
-    system = workshop.system(*models)
+    system = assembly.system(*models)
     omega, _ = system.elastic
     count = int((omega <= 2 * np.pi * limit).sum())
     if at_most is not None:
@@ -192,14 +192,14 @@ def train_modes(
         count = min(at_most, len(omega) if open_ended else count)
         limit = float(omega[count - 1]) / (2 * np.pi) if open_ended else limit
     solved = system.modes(max(1, count))
-    refuse_unresolved(workshop, system, limit)
-    names, is_driven = mode_names(workshop, system, solved), driven(system, solved)
+    refuse_unresolved(assembly, system, limit)
+    names, is_driven = mode_names(assembly, system, solved), driven(system, solved)
     solved = replace(solved, energy=mounts_together(solved.energy))
-    for stage in workshop.stages.values():
+    for stage in assembly.stages.values():
         solved = replace(solved, energy=stage.strained(solved.energy))
     most = solved.dominant()
     elastic = len(solved.frequency_hz) - solved.rigid
-    bars = mesh_bars(workshop, system, by_shaft, elastic + 1)
+    bars = mesh_bars(assembly, system, by_shaft, elastic + 1)
     mesh_errors: list[float | None] = [None] * len(names)
     if bars is not None:
         mesh_errors[solved.rigid :] = bars[:elastic].tolist()
@@ -224,30 +224,30 @@ def train_modes(
         if model == JUDGE:
             driven_waves = tuple(waves_of(system.parts[side]))
             undriven_modes[side] = undriven(
-                workshop.shaft_model(side, model).body, limit, driven_waves
+                assembly.shaft_model(side, model).body, limit, driven_waves
             )
     return TrainModes(
         train=train.called,
         models=by_shaft,
-        reduction=workshop.reduction,
+        reduction=assembly.reduction,
         coordinates=system.size,
         kept={side: system.parts[side].mass.shape[0] for side in by_shaft},
         unknowns={
-            side: workshop.shaft_model(side, model).unknowns for side, model in by_shaft.items()
+            side: assembly.shaft_model(side, model).unknowns for side, model in by_shaft.items()
         },
-        seconds=workshop.build_seconds(*models),
+        seconds=assembly.build_seconds(*models),
         modes=tuple(modes),
         rigid=solved.rigid,
-        free=free_motions(workshop, system),
+        free=free_motions(assembly, system),
         contact=tuple(
-            line for contact in workshop.contacts.values() for line in wrench_lines(contact)
+            line for contact in assembly.contacts.values() for line in wrench_lines(contact)
         ),
         unpublished=train.unpublished(),
-        cautions=(*workshop.cautions, *spin_cautions(workshop, system, by_shaft, limit)),
+        cautions=(*assembly.cautions, *spin_cautions(assembly, system, by_shaft, limit)),
         undriven={side: families for side, families in undriven_modes.items() if families},
-        local=local_lines(workshop, system),
+        local=local_lines(assembly, system),
         speeds=train.reference,
-        turn=frequencies_over_a_turn(workshop, by_shaft, names),
+        turn=frequencies_over_a_turn(assembly, by_shaft, names),
         hidden=""
         if bars is None
         else _mode_below_limit(omega[elastic : elastic + 1], bars[elastic:], limit),
@@ -267,7 +267,7 @@ def _mode_below_limit(omega: np.ndarray, bars: np.ndarray, limit: float) -> str:
     return ""
 
 
-def refuse_unresolved(workshop: Workshop, system: System, limit: float) -> None:
+def refuse_unresolved(assembly: Assembly, system: System, limit: float) -> None:
     """Refuse a frequency at which the reduction promises nothing, or the mesh of a shaft."""
     cut = float(np.sqrt(system.truncation.cut) / (2 * np.pi))
     if limit >= 0.9 * cut:
@@ -275,8 +275,8 @@ def refuse_unresolved(workshop: Workshop, system: System, limit: float) -> None:
             f"{limit:g} Hz is beyond the reduction, which leaves out modes from {cut:.0f} Hz on; "
             f"keep more modes (--kept), or ask for less than {0.9 * cut:.0f} Hz"
         )
-    for side in workshop.scenes:
-        highest = mesh_limit(workshop, side, system.parts[side])
+    for side in assembly.scenes:
+        highest = mesh_limit(assembly, side, system.parts[side])
         if limit > highest:
             raise SolidgearError(
                 f"{limit:g} Hz is beyond the mesh of the {side}, which resolves about "
@@ -284,20 +284,20 @@ def refuse_unresolved(workshop: Workshop, system: System, limit: float) -> None:
             )
 
 
-def free_motions(workshop: Workshop, system: System) -> tuple[str, ...]:
+def free_motions(assembly: Assembly, system: System) -> tuple[str, ...]:
     """Return free motions in words, unless there is but the rotation of the whole train."""
     count = system.free.shape[1]
     if count == 0:
         return ("The train does not turn freely: a bearing resists the rotation of a shaft.",)
     turning = [part for part in system.parts if np.abs(system.free[system.place(part)]).max() > 0]
-    moving = {*turning, HOUSING, *(stage.ring for stage in workshop.stages.values())}
+    moving = {*turning, HOUSING, *(stage.ring for stage in assembly.stages.values())}
     still = [part for part in system.parts if part not in moving]
     if count == 1 and not still:
         return ()
     if count == 1:
         return (f"Only {', '.join(turning)} turn freely; {', '.join(still)} do not turn along.",)
     loose = [
-        words for side in workshop.scenes for words in _unheld_directions(workshop, system, side)
+        words for side in assembly.scenes for words in _unheld_directions(assembly, system, side)
     ]
     if HOUSING in turning:
         ways = " ".join(free_directions(system))
@@ -306,12 +306,12 @@ def free_motions(workshop: Workshop, system: System) -> tuple[str, ...]:
     return (f"{count} motions are free, where a train should have one: {places}.",)
 
 
-def _unheld_directions(workshop: Workshop, system: System, side: str) -> list[str]:
+def _unheld_directions(assembly: Assembly, system: System, side: str) -> list[str]:
     """Return the directions in which the bearings do not hold a shaft, in words, without the
     rotation.
     """
-    port = workshop.scenes[side].port.name
-    rows = seat_motion(workshop.train, system, side, port)
+    port = assembly.scenes[side].port.name
+    rows = seat_motion(assembly.train, system, side, port)
     size = np.abs(rows @ system.free).max(axis=1)
     names = [d for d, s in zip(DOF_NAMES, size) if d != "thy" and s > 1e-6 * size.max()]
     if not names:

@@ -20,9 +20,9 @@ from solidgear.core.frames import shift
 from solidgear.core.solve.circumference import circumference_of
 from solidgear.core.solve.families import FAMILIES
 from solidgear.core.system.modes import SystemModes
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.housing import housing_energy
 from solidgear.trains.assembly.local import waves_of
-from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.file.housing import HOUSING
 
 #: a share of the kinetic energy that names a mode alone
@@ -36,11 +36,11 @@ UNDRIVEN = 1e-4
 OVALISING = "ovalising"
 
 
-def shares(workshop: Workshop, system: System, shapes: np.ndarray) -> dict[str, np.ndarray]:
+def shares(assembly: Assembly, system: System, shapes: np.ndarray) -> dict[str, np.ndarray]:
     """Return fractions (k,) of the kinetic energy of every mode, by part and kind of motion."""
     by_motion: dict[str, np.ndarray] = {}
     momentum = system.mass @ shapes
-    for stage in workshop.stages.values():
+    for stage in assembly.stages.values():
         by_motion |= stage.kinetic(system, shapes)
     for part in system.parts:
         place = system.place(part)
@@ -49,9 +49,9 @@ def shares(workshop: Workshop, system: System, shapes: np.ndarray) -> dict[str, 
         if part == HOUSING:
             by_motion |= housing_energy(system, energy_of_part, shapes)
             continue
-        if part not in workshop.scenes:  # bodies of planetary stages are named together
+        if part not in assembly.scenes:  # bodies of planetary stages are named together
             by_motion |= (
-                {f"{part} torsion": energy_of_part} if part in workshop.train.rotors else {}
+                {f"{part} torsion": energy_of_part} if part in assembly.train.rotors else {}
             )
             continue
         for n, places in waves_of(system.parts[part]).items():
@@ -59,15 +59,15 @@ def shares(workshop: Workshop, system: System, shapes: np.ndarray) -> dict[str, 
                 products[places].sum(axis=0), 0.0
             )
             energy_of_part = np.maximum(energy_of_part - wave_energy, 0.0)
-        port = workshop.scenes[part].port
+        port = assembly.scenes[part].port
         # rigid masses of all models are equal
-        built = next(model for side, model in workshop._models if side == part)
-        model = workshop.shaft_model(part, built)
+        built = next(model for side, model in assembly._models if side == part)
+        model = assembly.shaft_model(part, built)
         to_port = shift([0.0, -port.y, 0.0])
         mass = np.diag(to_port.T @ model.rigid_mass @ to_port)
         energy = mass[:, None] * (system.motion(f"{part}.{port.name}") @ shapes) ** 2
         total_energy = energy.sum(axis=0)
-        still = _still(workshop, system, part, mass, energy_of_part, shapes)
+        still = _still(assembly, system, part, mass, energy_of_part, shapes)
         diameters = _diameters(model.body, system, part, shapes, still)
         for n in sorted({*diameters[still]}):
             by_motion[f"{part} {OVALISING} n={n}"] = np.where(
@@ -81,13 +81,13 @@ def shares(workshop: Workshop, system: System, shapes: np.ndarray) -> dict[str, 
 
 
 def _still(
-    workshop: Workshop, system: System, part: str, mass, energy_of_part, shapes
+    assembly: Assembly, system: System, part: str, mass, energy_of_part, shapes
 ) -> np.ndarray:
     """Return a mask of the modes that move no port of a shaft by any notable part of the shaft's
     energy.
     """
     port_energy = np.zeros(shapes.shape[1])
-    for station in workshop.scenes[part].stations:
+    for station in assembly.scenes[part].stations:
         motion = system.motion(f"{part}.{station.name}") @ shapes
         port_energy = np.maximum(port_energy, mass @ motion**2)
     total = (shapes * (system.mass @ shapes)).sum(axis=0)
@@ -115,9 +115,9 @@ def driven(system: System, modes: SystemModes) -> np.ndarray:
     return (modes.frequency_hz == 0) | (np.sum(links, axis=0) > UNDRIVEN)
 
 
-def mode_names(workshop: Workshop, system: System, modes: SystemModes) -> list[str]:
+def mode_names(assembly: Assembly, system: System, modes: SystemModes) -> list[str]:
     """Return a name for each mode, each once."""
-    parts = shares(workshop, system, modes.shapes)
+    parts = shares(assembly, system, modes.shapes)
     labels, table = list(parts), np.array(list(parts.values()))
     count: dict[str, int] = {}
     out = []

@@ -19,9 +19,9 @@ from solidgear.core import BarredMode, System
 from solidgear.core.judge.change import ModePair, all_pairs
 from solidgear.core.solve.neighbours import best_assignment
 from solidgear.core.system.modes import SystemModes
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.housing import BOX
 from solidgear.trains.assembly.meshes import mesh_bars
-from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.file.housing import HOUSING
 from solidgear.trains.load.strain import strain_shares
 from solidgear.trains.modes.naming import driven, mode_names
@@ -37,7 +37,7 @@ ROUNDING = 1e-9
 
 
 def modes_and_motions(
-    workshop: Workshop, system: System, highest: float, ends: Sequence[str] | None = None
+    assembly: Assembly, system: System, highest: float, ends: Sequence[str] | None = None
 ):
     """Return the modes of a system up to a frequency, Hz, and motions (m, n) of ports in the n
     elastic ones, at least one: rotations times the length of the shaft, and rotations of engine
@@ -46,28 +46,28 @@ def modes_and_motions(
     count = max(1, int((system.elastic[0] <= 2 * np.pi * highest).sum()))
     modes = system.modes(count)
     elastic = modes.shapes[:, modes.rigid :]
-    lengths = {side: scene.length for side, scene in workshop.scenes.items()}
+    lengths = {side: scene.length for side, scene in assembly.scenes.items()}
     lengths[HOUSING] = max(lengths.values())
-    for stage in workshop.stages.values():
+    for stage in assembly.stages.values():
         lengths |= dict.fromkeys(stage.bodies, stage.stage.teeth.pin_radius)
     scale = {part: np.array([1.0] * 3 + [length] * 3)[:, None] for part, length in lengths.items()}
-    ends = ports_of(workshop) if ends is None else ends
+    ends = ports_of(assembly) if ends is None else ends
     rows = [scale[end.partition(".")[0]] * (system.motion(end) @ elastic) for end in ends]
     rows += [
-        workshop.scenes[side].length * (system.motion(name)[4:5] @ elastic)
-        for name, side in ((name, rotor.shaft) for name, rotor in workshop.train.rotors.items())
+        assembly.scenes[side].length * (system.motion(name)[4:5] @ elastic)
+        for name, side in ((name, rotor.shaft) for name, rotor in assembly.train.rotors.items())
     ]
     return modes, np.vstack(rows)
 
 
-def ports_of(workshop: Workshop) -> list[str]:
+def ports_of(assembly: Assembly) -> list[str]:
     """Return the ports of all shafts, the lumped point of each shaft first, centres of
     planets and that of the housing.
     """
-    scenes = workshop.scenes.items()
+    scenes = assembly.scenes.items()
     ports = [f"{side}.{s.name}" for side, scene in scenes for s in scene.stations]
-    ports += [f"{name}.centre" for stage in workshop.stages.values() for name in stage.bodies]
-    if workshop.train.housing is not None:
+    ports += [f"{name}.centre" for stage in assembly.stages.values() for name in stage.bodies]
+    if assembly.train.housing is not None:
         ports.append(BOX)
     return ports
 
@@ -110,26 +110,28 @@ class SeenMode(BarredMode):
 SeenPair = ModePair[SeenMode]
 
 
-def shared_ports(a: Workshop, b: Workshop) -> tuple[list[str], list[str]]:
+def shared_ports(a: Assembly, b: Assembly) -> tuple[list[str], list[str]]:
     """Return ports of both trains that stand for each other, in the same order: the lumped points,
     and those with the same name.
     """
-    mains = [[f"{s}.{shop.scenes[s].port.name}" for s in shop.scenes] for shop in (a, b)]
+    mains = [
+        [f"{s}.{assembly.scenes[s].port.name}" for s in assembly.scenes] for assembly in (a, b)
+    ]
     ports_b = ports_of(b)
     shared = [end for end in ports_of(a) if end in ports_b and end not in (*mains[0], *mains[1])]
     return [*mains[0], *shared], [*mains[1], *shared]
 
 
 def barred_modes(
-    shop: Workshop, system: System, modes: SystemModes, models: dict[str, str]
+    assembly: Assembly, system: System, modes: SystemModes, models: dict[str, str]
 ) -> tuple[SeenMode, ...]:
     """Return the elastic modes with their names, error bars and strain energies; `models` gives the
     model of each side.
     """
-    names, is_driven = mode_names(shop, system, modes), driven(system, modes)
-    shares = strain_shares(modes.energy, [*shop.scenes])
+    names, is_driven = mode_names(assembly, system, modes), driven(system, modes)
+    shares = strain_shares(modes.energy, [*assembly.scenes])
     elastic = range(modes.rigid, len(modes.frequency_hz))
-    bars = mesh_bars(shop, system, models, len(elastic))
+    bars = mesh_bars(assembly, system, models, len(elastic))
     return tuple(
         SeenMode(
             names[k],

@@ -69,11 +69,11 @@ def parting_lines(
     """Yield sentences on meshes whose teeth part at the operating point of a train, from the
     columns of the response.
     """
-    shop, train = drive.workshop, drive.workshop.train
+    assembly, train = drive.assembly, drive.assembly.train
     if (point := train.point) is None:
         return
     try:
-        mean = mean_forces(shop, point)
+        mean = mean_forces(assembly, point)
     except SolidgearError as error:
         yield f"Whether teeth part is not known: {error}."
         return
@@ -106,7 +106,7 @@ def _lowest(
 ) -> dict[str, float]:
     """Return the lowest frequency at which teeth part, Hz, by joint."""
     driven = [name for name in columns if name.startswith(("mesh force [", "mesh force, order"))]
-    teeth = drive.workshop.train.teeth
+    teeth = drive.assembly.train.teeth
     reliefs = [(joint_name(drive.pair), teeth_relief(drive, [columns[n] for n in driven]))]
     reliefs += [
         (joint_name(mesh), np.abs(columns[f"mesh force{mesh.label} [N]"]))

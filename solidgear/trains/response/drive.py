@@ -16,9 +16,9 @@ import numpy as np
 from solidgear.core import DOF_NAMES, SolidgearError, System, as_supports, show
 from solidgear.core.system.modes import SystemModes
 from solidgear.core.system.steady import SteadyState, peaks, stands_out
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.components import FORCE_UNITS, MOTION_UNITS, six_columns
 from solidgear.trains.assembly.housing import mount_rows, seat_motion
-from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.assembly.stages import mesh_row, phases_of
 from solidgear.trains.file.housing import HOUSING
 from solidgear.trains.file.planetary import error_of
@@ -52,7 +52,7 @@ class Drive:
 
     def __init__(
         self,
-        workshop: Workshop,
+        assembly: Assembly,
         *models: str,
         damping: str = "hysteretic",
         matched_hz: float = 0.0,
@@ -63,21 +63,21 @@ class Drive:
             raise SolidgearError(
                 f"damping {show(damping, 30)} is unknown; use one of {', '.join(DAMPING)}"
             )
-        self.workshop, self.rungs, self.damping = workshop, models, damping
-        self.system: System = workshop.system(*models)
-        self.pair = workshop.train.named_mesh(mesh)
+        self.assembly, self.rungs, self.damping = assembly, models, damping
+        self.system: System = assembly.system(*models)
+        self.pair = assembly.train.named_mesh(mesh)
         self._named: dict[int, tuple[SystemModes, list[str]]] = {}
-        loss = workshop.loss_factors()
+        loss = assembly.loss_factors()
         kind = damping
         if damping == "literal":
             loss = {name: eta / 2 for name, eta in loss.items()}
             kind, matched_hz = "viscous", 1 / (2 * np.pi)
         self.steady = SteadyState(self.system, loss, kind, matched_hz)
         self.meshes = {
-            teeth.name: mesh_row(self.system, teeth.name) for teeth in workshop.train.teeth
+            teeth.name: mesh_row(self.system, teeth.name) for teeth in assembly.train.teeth
         }
         self.rows = {name: row for name, (row, _) in self.meshes.items()}
-        self.phases = phases_of(self.pair, workshop.stages)
+        self.phases = phases_of(self.pair, assembly.stages)
         self.first = next(iter(self.phases))
         self.row, self.stiffness = self.meshes[self.first]
         self.forces = dict(forces or {})
@@ -139,9 +139,9 @@ class Drive:
     def _reaction_rows(self) -> dict[str, tuple[str, np.ndarray]]:
         """Return link and rows (6, N) of the elastic force of every bearing, by ``side bearing``."""
         out = {}
-        for side in self.workshop.scenes:
-            supports = as_supports(self.workshop.scenes[side])
-            train, system = self.workshop.train, self.system
+        for side in self.assembly.scenes:
+            supports = as_supports(self.assembly.scenes[side])
+            train, system = self.assembly.train, self.system
             seats = np.vstack([seat_motion(train, system, side, name) for name in supports.ports])
             link = next(n for n in self.system.links if n.startswith(f"{side}."))
             force = -np.array(supports.stiffness) @ seats
@@ -162,11 +162,11 @@ class Drive:
         of every bearing, motions of all main lumped points, forces of other meshes, and
         amplitudes of the housing.
         """
-        reactions, scenes = self._reaction_rows(), self.workshop.scenes
+        reactions, scenes = self._reaction_rows(), self.assembly.scenes
         ports = {side: f"{side}.{scene.port.name}" for side, scene in scenes.items()}
         rows = [self.row[None], *(force for _, force in reactions.values())]
         rows += [self.system.motion(port) for port in ports.values()]
-        other_meshes = [teeth for teeth in self.workshop.train.teeth if teeth.name != self.first]
+        other_meshes = [teeth for teeth in self.assembly.train.teeth if teeth.name != self.first]
         rows += [self.rows[pair.name][None] for pair in other_meshes]
         motions = self.motion(frequency_hz, np.vstack(rows))
         dte, force = self._teeth(frequency_hz, motions[:, 0])
@@ -193,7 +193,7 @@ class Drive:
         """Return frequencies on which no peak of the last of some motions (f, q) is missed; by
         default dynamic transmission error and mesh force.
         """
-        refuse_unresolved(self.workshop, self.system, highest_hz)
+        refuse_unresolved(self.assembly, self.system, highest_hz)
         first = float(self.system.elastic[0][0] / (2 * np.pi))
         lowest = lowest_hz or min(BEGIN * first, highest_hz / 100)
 
@@ -219,8 +219,8 @@ class Drive:
 
     def _highest_orders(self) -> list[float]:
         """Return frequencies of all orders at the highest speed in the files, Hz."""
-        speed = None if self.forces else highest_speed(self.workshop.train, self.workshop.scenes)
-        first = 0.0 if speed is None else speed.rpm * self.workshop.train.per_turn(self.pair) / 60
+        speed = None if self.forces else highest_speed(self.assembly.train, self.assembly.scenes)
+        first = 0.0 if speed is None else speed.rpm * self.assembly.train.per_turn(self.pair) / 60
         return [order * first for order in range(1, self.orders + 1)]
 
     @property
@@ -254,7 +254,7 @@ class Drive:
         """
         if n not in self._named:
             modes = self.system.modes(n, bounded=bounded)
-            self._named[n] = modes, mode_names(self.workshop, self.system, modes)
+            self._named[n] = modes, mode_names(self.assembly, self.system, modes)
         return self._named[n]
 
     def reach(self, highest_hz: float) -> int:
@@ -302,7 +302,7 @@ def housing_columns(drive: Drive, frequency_hz: np.ndarray) -> dict[str, np.ndar
     a housing. Magnitudes are the root of the sum of squares of the amplitudes in all three
     directions.
     """
-    train, system = drive.workshop.train, drive.system
+    train, system = drive.assembly.train, drive.system
     out: dict[str, np.ndarray] = {}
     if train.housing is None:
         return out

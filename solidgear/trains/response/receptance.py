@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from solidgear.core import DOF_NAMES, SolidgearError, show
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.components import FORCE_UNITS, MOTION_UNITS
-from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.assembly.shaft import mix_label
 from solidgear.trains.response.drive import Drive
 
@@ -46,7 +46,7 @@ class TrainReceptance:
 
 
 def receptance(
-    workshop: Workshop,
+    assembly: Assembly,
     *models: str,
     from_: End,
     to: End,
@@ -63,15 +63,15 @@ def receptance(
     Examples
     --------
     >>> import solidgear as sg
-    >>> shop = Workshop(sg.load_train("geometry/axle_overhung.toml"))
+    >>> assembly = Assembly(sg.load_train("geometry/axle_overhung.toml"))
     >>> ends = {"from_": ("gear.gear", "z"), "to": ("pinion.pinion", "x")}
-    >>> found = receptance(shop, "timoshenko", "timoshenko", **ends, highest_hz=1000.0)
+    >>> found = receptance(assembly, "timoshenko", "timoshenko", **ends, highest_hz=1000.0)
     >>> found.unit, [mode for _, _, mode in found.peaks][:2]
     ('m/N', ['load torsion 1', 'gear torsion 1'])
     """
     force = np.eye(6)[_component(from_)]
     load = {from_[0]: force}
-    drive = Drive(workshop, *models, damping=damping, matched_hz=matched_hz, forces=load)
+    drive = Drive(assembly, *models, damping=damping, matched_hz=matched_hz, forces=load)
     row = drive.system.motion(to[0])[_component(to)]
     for end, row_of_end in ((from_, drive.load), (to, row)):
         if not row_of_end.any():
@@ -82,7 +82,7 @@ def receptance(
         return drive.motion(hz, row[None])
 
     _refuse_unrelated(drive, row)
-    highest = highest_hz or workshop.train.ask.max_frequency
+    highest = highest_hz or assembly.train.ask.max_frequency
     is_given = frequency_hz is not None
     hz = np.asarray(frequency_hz, float) if is_given else drive.grid(highest, motions_of=response)
     value = drive.steady.solved(hz, drive.load, row[None])[:, 0]
@@ -90,7 +90,7 @@ def receptance(
     force_unit = FORCE_UNITS[_component(from_)]
     if " " in force_unit:
         force_unit = f"({force_unit})"
-    rungs = workshop.models_by_shaft(models)
+    rungs = assembly.models_by_shaft(models)
     return TrainReceptance(
         models=rungs,
         damping=damping,

@@ -34,18 +34,20 @@ def receptance(
     reduced: Reduced,
     run: Shown,
 ) -> None:
-    shop = driven.workshop(reduced, train)
+    assembly = driven.assembly(reduced, train)
     ends = end_of("--from", from_), end_of("--to", to)
-    unpublished, warnings = shop.train.unpublished(), unit_slips(shop)
-    cautions = [*warnings, *shop.cautions]
-    title = f"{shop.train.called}: {to} for a unit force on {from_}"
+    unpublished, warnings = assembly.train.unpublished(), unit_slips(assembly)
+    cautions = [*warnings, *assembly.cautions]
+    title = f"{assembly.train.called}: {to} for a unit force on {from_}"
     with held(out):
         how: dict[str, Any] = {"highest_hz": reduced.max_frequency, **driven.losses}
-        mixes = driven.mixes(shop.train)
-        receptances = [between(shop, *mix, from_=ends[0], to=ends[1], **how) for mix in mixes]
+        mixes = driven.mixes(assembly.train)
+        receptances = [between(assembly, *mix, from_=ends[0], to=ends[1], **how) for mix in mixes]
         notes = {"from": from_, "to": to, "unpublished": unpublished, "cautions": cautions}
-        teeth = shop.train.per_turn(shop.train.named_mesh(driven.mesh))
-        files = write_receptance(out, receptances, title, teeth, notes, train_data(shop), run.units)
+        teeth = assembly.train.per_turn(assembly.train.named_mesh(driven.mesh))
+        files = write_receptance(
+            out, receptances, title, teeth, notes, train_data(assembly), run.units
+        )
     if run.as_json:
         print((out / "receptance.json").read_text(encoding="utf-8"))
         return
@@ -54,5 +56,5 @@ def receptance(
         *map(caution, warnings),
     )
     print_peaks(receptances[0].peaks, "receptance", receptances[0].unit, teeth, run.units)
-    say(*unpublished_lines(unpublished), *map(caution, shop.cautions))
+    say(*unpublished_lines(unpublished), *map(caution, assembly.cautions))
     say(f"Written: {', '.join(map(str, files))}")

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from solidgear.core import pinned
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.local_give import local_lines
-from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.assembly.spin import spin_cautions
 from solidgear.trains.modes.parting import parting_lines
 from solidgear.trains.response.drive import Drive
@@ -22,7 +22,7 @@ LITERAL = (
 
 @pinned
 def respond(
-    workshop: Workshop,
+    assembly: Assembly,
     *models: str,
     highest_hz: float | None = None,
     damping: str = "hysteretic",
@@ -40,15 +40,15 @@ def respond(
     Examples
     --------
     >>> import solidgear as sg
-    >>> shop = Workshop(sg.load_train("geometry/axle_overhung.toml"))
-    >>> found = respond(shop, "timoshenko", "timoshenko", highest_hz=1000.0)
+    >>> assembly = Assembly(sg.load_train("geometry/axle_overhung.toml"))
+    >>> found = respond(assembly, "timoshenko", "timoshenko", highest_hz=1000.0)
     >>> found.peaks[0].mode, round(found.peaks[0].frequency_hz)
     ('load torsion 1', 16)
     """
     drive = Drive(
-        workshop, *models, damping=damping, matched_hz=matched_hz, forces=forces, mesh=mesh
+        assembly, *models, damping=damping, matched_hz=matched_hz, forces=forces, mesh=mesh
     )
-    highest = highest_hz or workshop.train.ask.max_frequency
+    highest = highest_hz or assembly.train.ask.max_frequency
     hz = drive.grid(highest) if frequency_hz is None else np.asarray(frequency_hz, float)
     by_name = drive.columns(hz)
     driven = list(by_name)[:2]  # columns of the mesh that drives stand before its orders
@@ -56,15 +56,15 @@ def respond(
     for order, force in enumerate(drive.over_cycle(hz, highest)[1:], start=2):
         columns[f"mesh force, order {order} [N]"] = force
     columns |= by_name
-    by_shaft = workshop.models_by_shaft(models)
-    cautions = [*workshop.cautions, *local_lines(workshop, drive.system)]
-    cautions += spin_cautions(workshop, drive.system, by_shaft, highest, turns)
+    by_shaft = assembly.models_by_shaft(models)
+    cautions = [*assembly.cautions, *local_lines(assembly, drive.system)]
+    cautions += spin_cautions(assembly, drive.system, by_shaft, highest, turns)
     if damping == "literal":
         limit_hz = float(highest)
-        cautions.append(LITERAL.format(limit_hz, np.pi * limit_hz * workshop.train.losses.mesh))
+        cautions.append(LITERAL.format(limit_hz, np.pi * limit_hz * assembly.train.losses.mesh))
     parting = tuple(parting_lines(drive, hz, columns))
     curves = tuple(drive.curve(hz, order) for order in range(1, drive.orders + 1))
-    seconds = workshop.build_seconds(*models)
+    seconds = assembly.build_seconds(*models)
     return TrainResponse(
         models=by_shaft,
         damping=damping,

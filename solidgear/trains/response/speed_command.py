@@ -17,8 +17,8 @@ from solidgear.core.plain import plain
 from solidgear.core.scene.units import quantity
 from solidgear.show import speed_tables
 from solidgear.show.command import Group, say
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.kinematics import SLIP, angles_of, settled_angles, train_orders
-from solidgear.trains.assembly.models import Workshop
 from solidgear.trains.file.train import PerTurn, Train
 from solidgear.trains.load.operation import Operating
 from solidgear.trains.modes.modes import TrainMode
@@ -298,11 +298,11 @@ def at_speed(
     Examples
     --------
     >>> import solidgear as sg
-    >>> from solidgear.trains.assembly.models import Workshop
+    >>> from solidgear.trains.assembly.assembly import Assembly
     >>> from solidgear.trains.modes.modes import train_modes
-    >>> shop = Workshop(sg.load_train("geometry/axle_overhung.toml"))
-    >>> modes = train_modes(shop, "timoshenko", max_frequency=1000.0).modes
-    >>> found = at_speed(shop.train, modes, 3210 / 60, "3210 rpm of the pinion")
+    >>> assembly = Assembly(sg.load_train("geometry/axle_overhung.toml"))
+    >>> modes = train_modes(assembly, "timoshenko", max_frequency=1000.0).modes
+    >>> found = at_speed(assembly.train, modes, 3210 / 60, "3210 rpm of the pinion")
     >>> first = found.coincidences[0]
     >>> first.line, first.mode, round(100 * first.off, 1)
     ('mesh 1', 'gear bending 2', 4.6)
@@ -337,7 +337,7 @@ def _angles(train: Train) -> dict[str, tuple[float, ...]]:
     the operating point of the train, or without one at the loads of the scenes.
     """
     if train.point is not None:
-        state = Operating(Workshop(train)).at(train.point)
+        state = Operating(Assembly(train)).at(train.point)
         return angles_of(state.bearings, state.equilibrium.relative)
     return {
         f"{side}.{name}": angles

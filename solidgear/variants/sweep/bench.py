@@ -7,7 +7,7 @@ from collections.abc import Hashable, Mapping
 from typing import Any
 
 from solidgear.core import Scene
-from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.shaft import ShaftModel, checked_model
 from solidgear.trains.file.train import Train
 from solidgear.trains.load.operation import Operating
@@ -19,7 +19,7 @@ TRAINS = 2
 
 
 class Bench:
-    """Models of shafts and trains at rest, kept from variant to variant; parameters as of a workshop."""
+    """Models of shafts and trains at rest, kept from variant to variant; parameters as of an assembly."""
 
     def __init__(self, reduction: str, kept: int, settings: Mapping[Any, Mapping]):
         self._reduction = reduction, kept, settings
@@ -27,13 +27,13 @@ class Bench:
         self._trains: OrderedDict[Hashable, Operating] = OrderedDict()
         self.made = 0  #: shafts that were meshed and reduced
 
-    def workshop(self, train: Train, *models: str) -> Workshop:
-        """Return a workshop of a train with the bodies of all shafts by these models."""
-        shop = Workshop(train, *self._reduction)
-        for side, model in shop.models_by_shaft(models).items():
+    def assembly(self, train: Train, *models: str) -> Assembly:
+        """Return an assembly of a train with the bodies of all shafts by these models."""
+        assembly = Assembly(train, *self._reduction)
+        for side, model in assembly.models_by_shaft(models).items():
             kind, base = checked_model(model)
-            shop.add_model(self._shaft(shop, side, base or kind))
-        return shop
+            assembly.add_model(self._shaft(assembly, side, base or kind))
+        return assembly
 
     def operating(self, key: Hashable, train: Train, *models: str) -> Operating:
         """Return a train to be put at rest, with shafts by these models; the key is the same for
@@ -43,16 +43,16 @@ class Bench:
         if key not in self._trains:
             if len(self._trains) >= TRAINS:
                 self._trains.popitem(last=False)
-            self._trains[key] = Operating(self.workshop(train, *models), *models)
+            self._trains[key] = Operating(self.assembly(train, *models), *models)
         self._trains.move_to_end(key)
         return self._trains[key].with_points(train)
 
-    def _shaft(self, shop: Workshop, side: str, model: str) -> ShaftModel:
-        key = side, model, surface(shop.scenes[side])
+    def _shaft(self, assembly: Assembly, side: str, model: str) -> ShaftModel:
+        key = side, model, surface(assembly.scenes[side])
         if key not in self._models:
             self._make_room(side, model)
             self.made += 1
-            shaft = shop.shaft_model(side, model)
+            shaft = assembly.shaft_model(side, model)
             shaft.body.cache.clear()  # factors, which nothing asks for again
             self._models[key] = shaft
         self._models.move_to_end(key)

@@ -13,8 +13,8 @@ import numpy as np
 from solidgear.core import Scene, SolidgearError, nearest, show
 from solidgear.core.models.limits import number
 from solidgear.strength.deflection.misalignment import measured_names, misalignment
+from solidgear.trains.assembly.assembly import KEPT
 from solidgear.trains.assembly.layout import contacts
-from solidgear.trains.assembly.models import KEPT
 from solidgear.trains.assembly.shaft import JUDGE, LUMPED, checked_model
 from solidgear.trains.assembly.turn import over_a_turn, stages_over_a_turn
 from solidgear.trains.file.operation import OperatingPoint
@@ -162,10 +162,10 @@ class TrainTask(FileTask):
             models = tuple(map(statics_of, self.models.values()))
             operating = self.bench.operating(key, train, *models)
             deflected = state if models == on_shafts else operating.at(point)
-            shop = operating.workshop.on_flank(point.coast)
-            for measure in misalignment(shop, deflected.system):
+            assembly = operating.assembly.on_flank(point.coast)
+            for measure in misalignment(assembly, deflected.system):
                 out[misaligned(measure.name)] = float(measure.row @ deflected.coordinates)
-            for turn in over_a_turn(operating.workshop, deflected, deflected.models):
+            for turn in over_a_turn(operating.assembly, deflected, deflected.models):
                 out[once(turn.stage)] = max(planet.once for planet in turn.planets)
             out |= _bearing_loads(deflected)
         return at_rest, out
@@ -175,10 +175,10 @@ class TrainTask(FileTask):
         """Return natural frequencies, peaks of the mesh force, and the frequency from which the teeth
         part under their load at rest.
         """
-        shop = self.bench.workshop(train, *self.models.values())
-        drive = Drive(shop, *self.models.values(), mesh=self.mesh)
+        assembly = self.bench.assembly(train, *self.models.values())
+        drive = Drive(assembly, *self.models.values(), mesh=self.mesh)
         limit = self.max_frequency or train.ask.max_frequency
-        refuse_unresolved(shop, drive.system, limit)
+        refuse_unresolved(assembly, drive.system, limit)
         out: dict[str, Any] = {}
         if MODES in self.ask:
             below = int((drive.system.elastic[0] <= 2 * np.pi * limit).sum())
@@ -253,7 +253,7 @@ def train_task(
     every_point : bool
         A row for each operating point of the file.
     reduction, kept, settings
-        As for :class:`solidgear.trains.assembly.models.Workshop`.
+        As for :class:`solidgear.trains.assembly.assembly.Assembly`.
     local_harmonics : sequence of int
         Of every mesh, in place of those of the file.
 

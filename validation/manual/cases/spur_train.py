@@ -11,7 +11,7 @@ import scipy.linalg as sla
 
 from solidgear.core.scene import Bearing, Material, Port, Scene, Segment
 from solidgear.core.scene.point_mass import PointMass
-from solidgear.trains.assembly.models import Workshop
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.file.reading import ShortFile
 from solidgear.trains.file.train import Train
 from validation.manual.case import Answer, Case, Model, Reference, references
@@ -189,12 +189,12 @@ _MEMBERS = {"turbine": TURBINE, "generator": GENERATOR}
 
 def _of_train(rung: str) -> Answer:
     # Cowper's shear coefficient, as ROSS and the elements beside
-    shop = Workshop(spur_train(), settings={rung: {"kappa": "cowper", "elements": 60}})
-    found = shop.system(rung, rung).modes(COUNT)
+    assembly = Assembly(spur_train(), settings={rung: {"kappa": "cowper", "elements": 60}})
+    found = assembly.system(rung, rung).modes(COUNT)
     omega = 2 * pi * found.frequency_hz
     values = {_name(i): float(w) for i, w in enumerate(omega[found.rigid :], start=1)}
     values["free motions"] = float(found.rigid)
-    unknowns = sum(shop.shaft_model(side, rung).unknowns for side in ("pinion", "gear"))
+    unknowns = sum(assembly.shaft_model(side, rung).unknowns for side in ("pinion", "gear"))
     return Answer(values, unknowns)
 
 

@@ -55,15 +55,15 @@ MESH: dict[str, dict] = {JUDGE: {"order": 4}}
 
 
 @dataclass(eq=False)
-class Workshop:
+class Assembly:
     """Models of the shafts of a train, each built once, and all that studies read of the train
     with them: scenes, mesh contacts, places, planetary stages, on the flanks that carry.
 
     Examples
     --------
     >>> import solidgear as sg
-    >>> shop = Workshop(sg.load_train("geometry/axle_overhung.toml"))
-    >>> system = shop.system("timoshenko", "euler")
+    >>> assembly = Assembly(sg.load_train("geometry/axle_overhung.toml"))
+    >>> system = assembly.system("timoshenko", "euler")
     >>> list(system.parts), system.modes(3).frequency_hz.round(1)
     (['engine', 'pinion', 'gear', 'load'], array([  0. ,  16.3,  55.4, 732.4]))
     """
@@ -73,6 +73,19 @@ class Workshop:
     kept: int = KEPT  #: modes of each shaft
     #: builder options of models, by their names; of one shaft by (side, model), before those
     settings: Mapping[str | tuple[str, str], Mapping] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, scene: Scene) -> Assembly:
+        """Return the assembly of one shaft, whose models have the meshes of the shaft alone.
+
+        Examples
+        --------
+        >>> import solidgear as sg
+        >>> assembly = Assembly.of(sg.load("geometry/pinion_overhung.toml"))
+        >>> list(assembly.system("timoshenko").parts), list(assembly.system("timoshenko").links)
+        (['shaft'], ['shaft.1', 'shaft.2'])
+        """
+        return cls(Train.of(scene), settings=dict.fromkeys(MESH, {}))
 
     def __post_init__(self):
         if self.reduction not in REDUCTIONS:
@@ -94,7 +107,7 @@ class Workshop:
             train, self.contacts, self.scenes, self.places
         )
         point = train.point
-        self._flanks: dict[bool, Workshop] = {point is not None and point.coast: self}
+        self._flanks: dict[bool, Assembly] = {point is not None and point.coast: self}
 
     @property
     def contact(self) -> Contact:
@@ -144,7 +157,7 @@ class Workshop:
         )
 
     def add_model(self, model: ShaftModel) -> None:
-        """Add a shaft's model of another workshop, whose shafts differ in their bearings alone."""
+        """Add a shaft's model of another assembly, whose shafts differ in their bearings alone."""
         self._models[model.side, model.model] = model
 
     def add_part(self, side: str, name: str, part: Part, like: str) -> None:
@@ -161,7 +174,7 @@ class Workshop:
             seconds=source.seconds,
         )
 
-    def with_bearings(self, stiffness: Mapping[str, ArrayLike]) -> Workshop:
+    def with_bearings(self, stiffness: Mapping[str, ArrayLike]) -> Assembly:
         """Return the same train on other bearings, from stiffness matrices (6, 6) by names such as
         ``pinion.1``, series springs included, SI; bodies and reductions are kept.
 
@@ -169,9 +182,9 @@ class Workshop:
         --------
         >>> import numpy as np
         >>> import solidgear as sg
-        >>> shop = Workshop(sg.load_train("geometry/axle_overhung.toml"))
-        >>> usual = shop.system("euler", "euler").modes(3).frequency_hz[3]
-        >>> soft = shop.with_bearings({"gear.3": np.diag([1e8, 1e8, 1e8, 0, 0, 0])})
+        >>> assembly = Assembly(sg.load_train("geometry/axle_overhung.toml"))
+        >>> usual = assembly.system("euler", "euler").modes(3).frequency_hz[3]
+        >>> soft = assembly.with_bearings({"gear.3": np.diag([1e8, 1e8, 1e8, 0, 0, 0])})
         >>> bool(soft.system("euler", "euler").modes(3).frequency_hz[3] < usual)
         True
         """
@@ -182,7 +195,7 @@ class Workshop:
                 raise SolidgearError(
                     f"no bearing {show(name, 40)}{nearest(name, names)}; there are {listed(names)}"
                 )
-        workshop = self._with_free_bodies()
+        assembly = self._with_free_bodies()
         for side, scene in self.scenes.items():
             bearings = []
             for bearing in scene.bearings:
@@ -196,23 +209,23 @@ class Workshop:
                         support=None,
                     )
                 bearings.append(bearing)
-            workshop.scenes[side] = scene.with_changes(bearings=tuple(bearings))
-        return workshop
+            assembly.scenes[side] = scene.with_changes(bearings=tuple(bearings))
+        return assembly
 
-    def with_train(self, train: Train) -> Workshop:
+    def with_train(self, train: Train) -> Assembly:
         """Return the same shafts in a train that differs in bearings, housing, mesh or operating
         point; bodies and reductions are kept.
         """
-        workshop = self._with_free_bodies()
-        workshop._read_train(train)
-        return workshop
+        assembly = self._with_free_bodies()
+        assembly._read_train(train)
+        return assembly
 
-    def _with_free_bodies(self) -> Workshop:
-        workshop = copy(self)
+    def _with_free_bodies(self) -> Assembly:
+        assembly = copy(self)
         # bodies hold no bearings; lumped models, condensed on them, do
         bodies = {k: m for k, m in self._models.items() if k[1].partition("/")[0] not in LUMPED}
-        workshop._models, workshop.scenes, workshop.bars, workshop._flanks = bodies, {}, {}, {}
-        return workshop
+        assembly._models, assembly.scenes, assembly.bars, assembly._flanks = bodies, {}, {}, {}
+        return assembly
 
     @property
     def cautions(self) -> tuple[str, ...]:
@@ -238,17 +251,17 @@ class Workshop:
         sentences += map(str, overlaps(self.train, self.scenes, self.places))
         return (*sentences, *housing_cautions(self.train, self.places))
 
-    def on_flank(self, coast: bool) -> Workshop:
+    def on_flank(self, coast: bool) -> Assembly:
         """Return the same train with the teeth in contact on one flank: `coast` is True for that
         which the file does not name.
         """
         if coast not in self._flanks:
-            workshop = copy(self)
-            workshop.contacts, workshop.bars = contacts(self.train, coast), {}
-            workshop.stages = stages_at_work(
-                self.train, workshop.contacts, self.scenes, self.places, coast
+            assembly = copy(self)
+            assembly.contacts, assembly.bars = contacts(self.train, coast), {}
+            assembly.stages = stages_at_work(
+                self.train, assembly.contacts, self.scenes, self.places, coast
             )
-            self._flanks[coast] = workshop
+            self._flanks[coast] = assembly
         return self._flanks[coast]
 
     def _derived_model(self, side: str, model: str, kind: str, base: str) -> ShaftModel:
