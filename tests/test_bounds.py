@@ -16,7 +16,7 @@ from solidgear.core.body import Body, as_supports
 from solidgear.core.bounds import richer_space as meridian_pieces
 from solidgear.core.bounds.harmonic import (
     HarmonicBounds,
-    _lower_ends,
+    lower_ends_of,
     harmonic_bounds,
     richer_space,
     with_tail,
@@ -307,11 +307,11 @@ def test_the_next_mode_widens_a_bound_as_far_as_it_is_near(angle):
     eigenvalues = np.array([1.0, 1.03])
     value, energy = ritz(eigenvalues, np.array([[np.cos(angle)], [np.sin(angle)]]))
     own, above = made_up([value[0], 1.03])
-    ends = _lower_ends([own], [own, above], {own.name: energy[0]})
+    ends = lower_ends_of([own], [own, above], {own.name: energy[0]})
     assert value[0] - energy[0] > 1.0 >= ends[own.name]
 
 
-def test_modes_that_may_change_places_share_their_lower_ends():
+def test_modes_that_may_change_places_share_theirlower_ends_of():
     """The first of two is exact, and the second one in truth lies below it."""
     eigenvalues = np.array([0.95, 1.0, 2.0, 30.0])
     trial = np.zeros((4, 3))
@@ -321,7 +321,7 @@ def test_modes_that_may_change_places_share_their_lower_ends():
     assert values[0] == pytest.approx(1.0) and values[1] > 1.02 and energy[0] < 1e-20
     first, second, third = made_up(values)
     by_name = {m.name: e for m, e in zip((first, second), energy)}
-    ends = _lower_ends([first, second], [first, second, third], by_name)
+    ends = lower_ends_of([first, second], [first, second, third], by_name)
     # a millionth for what rounding makes of the exact one
     assert ends[first.name] <= 0.95 and ends[first.name] <= ends[second.name] <= 1.0 + 1e-6
 

@@ -59,6 +59,15 @@ class HarmonicBounds:
         """(6 p, 6 p) M of the flexibility."""
         return self.of_ports.sum(axis=0)
 
+    @property
+    def least(self) -> np.ndarray:
+        """(6 p, 6 p) least that the flexibility grows by: nothing is known of it."""
+        return np.zeros_like(self.less)
+
+    def energy_by_cells(self, forces: np.ndarray) -> np.ndarray:
+        """Return (ne,) energies of the local solutions under forces (6 p,) on the ports."""
+        return np.einsum("i,cij,j->c", forces, self.of_ports, forces)
+
     def softer(self, more: np.ndarray) -> Body:
         """Return the body with a larger flexibility; only ports know of it."""
         computed = flexibility(self.body)
@@ -113,9 +122,9 @@ def harmonic_bounds(
     ports_missing = statics and computed is None
     empty = np.zeros((cells if ports_missing else 0, size, size))
     of_ports = computed or _OfPorts(empty, np.zeros((size, size)))
-    chosen = _with_neighbours(modes, wanted)
+    chosen = with_neighbours(modes, wanted)
     of_modes = body.cache.get(_OfModes, _OfModes).by_id
-    new = [m for m in (*chosen, *_with_neighbours(later, wanted)) if id(m) not in of_modes]
+    new = [m for m in (*chosen, *with_neighbours(later, wanted)) if id(m) not in of_modes]
     of_modes |= {id(mode): _OfMode(mode, np.zeros(cells)) for mode in new}
     for index, block in _originals(body, new):
         parts = [_modes_on(body, k, new) for k in (index, *_twins(body, index))]
@@ -150,7 +159,7 @@ def harmonic_bounds(
         of_ports.by_cell,
         of_ports.less,
         {name: e.by_cell for name, e in by_name.items()},
-        _lower_ends(chosen, solved, energy),
+        lower_ends_of(chosen, solved, energy),
     )
 
 
@@ -186,7 +195,7 @@ class _Part:
     modes: Sequence[Mode] = ()
 
 
-def _with_neighbours(modes: ModeSet | None, wanted: Sequence[str]) -> list[Mode]:
+def with_neighbours(modes: ModeSet | None, wanted: Sequence[str]) -> list[Mode]:
     """Return the wanted modes, and of their groups those that might change places with them: one
     more.
     """
@@ -249,7 +258,7 @@ def _vibrating(body: Body, index: int, shapes: np.ndarray, value: np.ndarray) ->
     """
     block = body.block(index)
     residual = block.stiffness @ shapes - (block.mass @ shapes) * value
-    force = _on_ports(block, residual)
+    force = on_ports(block, residual)
     if block.mirror is not None:
         force = force * np.tile(block.mirror[1], len(body.ports))[:, None]
     return Loading(shapes, force, shapes * value)
@@ -284,7 +293,7 @@ def _stacked(parts: Sequence[Loading]) -> Loading:
     )
 
 
-def _on_ports(block: Block, residual: np.ndarray) -> np.ndarray:
+def on_ports(block: Block, residual: np.ndarray) -> np.ndarray:
     """Return the forces on the ports that leave a residual of the free body, in the least-squares
     sense: the effect of bearings and masses on a mode, however stiff they are.
     """
@@ -297,7 +306,7 @@ def _on_ports(block: Block, residual: np.ndarray) -> np.ndarray:
     return np.linalg.lstsq(scaled @ scaled.T, scaled @ residual, rcond=1e-12)[0] / size[:, None]
 
 
-def _lower_ends(
+def lower_ends_of(
     modes: Sequence[Mode], solved: Sequence[Mode], energy: Mapping[str, float]
 ) -> dict[str, float]:
     """Return the least eigenvalue of some modes by their names, by the gap to the highest one

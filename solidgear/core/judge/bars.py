@@ -46,15 +46,16 @@ class ErrorBar:
     solver: float  #: share of the solver in the error bar
     extrapolated: float
     method: str = "two meshes"  #: where the error bar comes from
-    #: a better value than the finest one, half of `change` away from it, where there is one
+    #: a better value than the finest one, where there is one
     middle: float | None = None
+    aside: float = 0.0  #: distance of `middle` from the finest value, relative as `width`
 
     @property
     def about_middle(self) -> float:
         """The error bar about `middle`, which is narrower; about the finest value where there is
         none.
         """
-        return self.width if self.middle is None else self.width - self.change / 2
+        return self.width if self.middle is None else self.width - self.aside
 
 
 def step_bars(

@@ -18,6 +18,7 @@ import numpy as np
 from solidgear.core.body import Body, Supports
 from solidgear.core.bounds.harmonic import HarmonicBounds, harmonic_bounds, with_tail
 from solidgear.core.bounds.safety import LOCAL
+from solidgear.core.bounds.solid import SolidBounds, solid_bounds
 from solidgear.core.judge.bars import LEAST, ErrorBar
 from solidgear.core.judge.quantities import Values, in_order, size
 from solidgear.core.judge.solving import Statics, extended_modes
@@ -58,27 +59,23 @@ def bounded(
     supports, whose error bars will be asked for.
     """
     frequencies = [q for q in names if q.is_frequency]
-    bounds = harmonic_bounds(
-        coned(scene),
-        body,
-        statics=statics is not None,
-        modes=modes,
-        wanted=list(dict.fromkeys(frequencies)),
-        safety=LOCAL,
-        later=later,
+    bounds = bounds_of(
+        scene, body, statics is not None, modes, list(dict.fromkeys(frequencies)), later
     )
     bars: dict[Quantity, ErrorBar] = {}
     scores: dict[Quantity, np.ndarray] = {}
     if statics is not None:
         stiff = statics.values()
-        two_orders, one_order = (
-            statics.repeated(bounds.softer(more), supports).values()
-            for more in (bounds.more, bounds.less)
+        two_orders, one_order, near = (
+            statics.repeated(bounds.softer(more), supports).values() if more.any() else stiff
+            for more in (bounds.more, bounds.less, bounds.least)
         )
         for name in in_order(dict.fromkeys((*stiff, *names))):
             complete = all(name in end for end in (stiff, two_orders, one_order))
             if complete and not name.is_frequency:
-                bars[name] = _between(name, stiff, two_orders, one_order, solver.get(name, 0.0))
+                bars[name] = _between(
+                    name, stiff, two_orders, one_order, near, solver.get(name, 0.0)
+                )
         static_names = [q for q in names if q in bars]
         scores |= _static_scores(body, supports, bounds, statics, static_names)
     for name in names:
@@ -90,6 +87,26 @@ def bounded(
         bars[name] = _bar(mode.frequency_hz, open_, mode.error, least)
         scores[name] = bounds.of_modes[mode.name] / bounds.of_modes[mode.name].sum()
     return Bounded(bars, scores)
+
+
+def bounds_of(
+    scene: Scene,
+    body: Body,
+    statics: bool,
+    modes: ModeSet | None,
+    wanted: Sequence[str],
+    later: ModeSet | None = None,
+) -> HarmonicBounds | SolidBounds:
+    """Compute the bounds of a solid, by local problems of a harmonic one, by one order more of a 3D
+    one.
+    """
+    if body.blocks[0].enrich is not None:
+        return solid_bounds(
+            scene, body, statics=statics, modes=modes, wanted=wanted, safety=LOCAL
+        )
+    return harmonic_bounds(
+        coned(scene), body, statics=statics, modes=modes, wanted=wanted, safety=LOCAL, later=later
+    )
 
 
 def mode_bars(
@@ -109,9 +126,7 @@ def mode_bars(
         extended = extended_modes(
             modes_listed, modes(body, supports, shapes + ABOVE, ovalising=True)
         )
-    bounds = harmonic_bounds(
-        coned(scene), body, statics=False, modes=extended, wanted=names, safety=LOCAL
-    )
+    bounds = bounds_of(scene, body, False, extended, names)
     highest = _highest(extended)
     return {
         m.name: 1 - bounds.frequency(m) / m.frequency_hz + m.error
@@ -135,10 +150,15 @@ def _all_below(mode_set: ModeSet) -> bool:
 
 
 def _between(
-    name: Quantity, stiff: Values, two_orders: Values, one_order: Values, solver: float
+    name: Quantity,
+    stiff: Values,
+    two_orders: Values,
+    one_order: Values,
+    near: Values,
+    solver: float,
 ) -> ErrorBar:
-    """Compute the error bar of a static number from both ends: the number itself, and as soft as
-    two orders more and one order more make it.
+    """Compute the error bar of a static number from both ends: the number itself, or as soft as it
+    is at least, and as soft as two orders more and one order more make it.
     """
     scale = size(stiff, name)
 
@@ -148,12 +168,14 @@ def _between(
     pair = name.diagonals
     if pair is None or not all(d in end for d in pair for end in (stiff, two_orders, one_order)):
         far_end = stiff[name] + np.copysign(move(name), two_orders[name] - stiff[name])
-        return _bar(stiff[name], move(name) / scale, solver, far_end, scale=scale)
-    half = float(np.sqrt(move(pair[0]) * move(pair[1]))) / 2
+        middle = None if near is stiff else (near[name] + far_end) / 2
+        return _bar(stiff[name], move(name) / scale, solver, far_end, middle, scale)
+    open_of = [move(q) - abs(near[q] - stiff[q]) for q in pair]
+    half = float(np.sqrt(open_of[0] * open_of[1])) / 2
     reach = float(np.sqrt(abs(np.prod([two_orders[d] - stiff[d] for d in pair]))))
     most = 2 * half / reach if reach else 1.0
     far_end = stiff[name] + np.clip(most * (two_orders[name] - stiff[name]), -2 * half, 2 * half)
-    middle = (stiff[name] + far_end) / 2
+    middle = (near[name] + far_end) / 2
     # the number itself stands aside of the middle
     open_ = (half + abs(middle - stiff[name])) / scale
     return _bar(stiff[name], open_, solver, far_end, float(middle), scale)
@@ -177,13 +199,14 @@ def _bar(
         extrapolated=float(value + (far_end - value) / LOCAL),
         method=METHOD,
         middle=middle,
+        aside=0.0 if middle is None else float(abs(middle - value) / (scale or abs(value) or 1.0)),
     )
 
 
 def _static_scores(
     body: Body,
     supports: Supports,
-    bounds: HarmonicBounds,
+    bounds: HarmonicBounds | SolidBounds,
     statics: Statics,
     names: Sequence[Quantity],
 ) -> dict[Quantity, np.ndarray]:
@@ -201,7 +224,7 @@ def _static_scores(
         attached |= dict(zip(statics.coupled.ports, statics.coupled.attachments))
     for name in names:
         point_name = name.points[0] if name.points else statics.main.port
-        total = np.zeros(len(bounds.of_ports))
+        total = np.zeros(1)
         for point, load in set(zip(name.pair or (point_name, point_name), name.loads)):
             seat = statics.main if point == statics.main.port else statics.further.get(point)
             first = 6 * ports.index((point, attached[point]))
@@ -213,7 +236,7 @@ def _static_scores(
                 if first + c not in forces:
                     forces[first + c] = _forces(body, supports, first + c)
                 f += loads[c] * forces[first + c]
-            energy = np.einsum("i,cij,j->c", f, bounds.of_ports, f)
+            energy = bounds.energy_by_cells(f)
             if energy.sum() > 0:
                 total = np.maximum(total, energy / energy.sum())
         out[name] = total / (total.sum() or 1.0)

@@ -236,6 +236,27 @@ class Sum:
             (self.data.reshape(-1, c, c), p.indices, p.indptr), shape=(p.n * c, p.n * c)
         ).tocsr()
 
+    def rows_from(self, first: int) -> tuple[sp.csr_matrix, sp.csr_matrix]:
+        """Return the rows of the nodes from one on: the part in the columns of nodes before it, and
+        the part in those from it on.
+        """
+        p, c = self.pattern, self.c
+        begin = p.indptr[first]
+        indices = p.indices[begin:]
+        data = self.data.reshape(-1, c, c)[begin:]
+        after = indices >= first
+        parts = []
+        for chosen, offset, width in ((~after, 0, first), (after, first, p.n - first)):
+            count = np.concatenate([[0], np.cumsum(chosen)])
+            indptr = count[p.indptr[first:] - begin]
+            parts.append(
+                sp.bsr_matrix(
+                    (data[chosen], indices[chosen] - offset, indptr),
+                    shape=((p.n - first) * c, width * c),
+                ).tocsr()
+            )
+        return parts[0], parts[1]
+
 
 def batches(elements: np.ndarray, bytes_each: float) -> list[np.ndarray]:
     """Cut a list of elements into pieces whose work arrays stay within ``BATCH_BYTES``."""

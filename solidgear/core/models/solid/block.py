@@ -11,6 +11,7 @@ from solidgear.core.body import Block, Body, Port, Reflection
 from solidgear.core.errors import SolidgearError
 from solidgear.core.kernel.attachment import Attached, with_ports
 from solidgear.core.meshing.edge_places import edge_places
+from solidgear.core.models.solid.enriched import Seat, enrichment
 from solidgear.core.models.solid.matrices import _matrices, _mean
 from solidgear.core.models.solid.mesh import SolidMesh
 from solidgear.core.models.spectrum import elastic_scale
@@ -139,9 +140,10 @@ def free_block(
     their seat, where integrals stop; `materials` are those that the elements name, by default those of
     the segments; `reflections` are from :func:`mirrored`.
     """
-    k, m = _matrices(mesh, materials or [segment.material for segment in scene.segments])
+    materials = materials or [segment.material for segment in scene.segments]
+    k, m = _matrices(mesh, materials)
     n = mesh.nodes.shape[1]
-    ports = []
+    ports, seats = [], []
     for station, attachment in wanted:
         facets = facets_of(station, attachment)
         if not len(facets):
@@ -150,6 +152,7 @@ def free_block(
         place, patch = point_of(station), getattr(station, "patch", None)
         cut = clipped and attachment != "section" and patch is None
         span = (station.lo, station.hi) if cut else None
+        seats.append(Seat(place, facets, attachment == "rigid", span))
         if attachment == "rigid":
             mask = np.zeros((n, 3), bool)
             mask[mesh.facet_unknowns(facets)] = True
@@ -168,6 +171,7 @@ def free_block(
         np.repeat(mesh.nodes[1], 3),
         planar=False,
         reflections=reflections,
+        enrich=lambda: enrichment(mesh, materials, seats),
     )
     return with_ports(block, ports)
 

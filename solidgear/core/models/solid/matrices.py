@@ -13,7 +13,7 @@ from skfem.refdom import RefTet
 from solidgear.core.body.mass import ScalarMass
 from solidgear.core.elements import ELEMENTS
 from solidgear.core.frames import cross_matrix, on_axis
-from solidgear.core.kernel.assembly import Pattern, Tabulation, batches, inverted, straight
+from solidgear.core.kernel.assembly import Pattern, Sum, Tabulation, batches, inverted, straight
 from solidgear.core.kernel.lobatto import gauss_box
 from solidgear.core.models.solid.mesh import SolidMesh
 
@@ -21,12 +21,27 @@ if TYPE_CHECKING:
     from solidgear.core.scene import Material
 
 
-def _matrices(m: SolidMesh, materials: Sequence[Material]):
+def _matrices(m: SolidMesh, materials: Sequence[Material]) -> tuple[sp.csr_matrix, ScalarMass]:
     """Assemble stiffness (3n, 3n) and consistent mass of a solid of isotropic materials."""
     points, weights = _cell_rule(m.name)
     basis = Tabulation(m.element, m.element, points)
+    stiffness, mass = integrals(m, materials, basis, weights, m.dofs)
+    return stiffness.matrix(), ScalarMass(mass.matrix(), 3)
+
+
+def integrals(
+    m: SolidMesh,
+    materials: Sequence[Material],
+    basis: Tabulation,
+    weights: np.ndarray,
+    numbers: np.ndarray,
+    signs: np.ndarray | None = None,
+) -> tuple[Sum, Sum]:
+    """Sum up stiffness (3n, 3n) and mass of one component (n, n) in some basis, tabulated at the
+    points of the weights, whose functions have numbers (nb, ne) and signs (nb, ne) in the cells.
+    """
     nb, nq = basis.value.shape
-    pattern = Pattern(m.dofs)
+    pattern = Pattern(numbers)
     stiffness, mass = pattern.sum(3), pattern.sum()
     # products of basis functions, and of reference gradients, of which straight elements take one
     # multiple each
@@ -43,8 +58,9 @@ def _matrices(m: SolidMesh, materials: Sequence[Material]):
             inverse, det = inverted(jac[:, :, part])
             along = (inverse * det)[:, :, None, None] * inverse  # (reference, space) twice
             tensor = _elastic(along.transpose(1, 3, 4, 0, 2).reshape(3, 3, len(part), 9), lame, mu)
-            stiffness.add(part, tensor @ slopes)
-            mass.add(part, np.outer(rho * det, weights @ products))
+            turned = 1.0 if signs is None else _products_of_signs(signs, part)
+            stiffness.add(part, tensor @ slopes * turned)
+            mass.add(part, np.outer(rho * det, weights @ products) * turned)
         for part in batches(
             np.flatnonzero(members & ~is_straight), 8 * (3 * nb * nq + 30 * nb * nb)
         ):
@@ -52,11 +68,22 @@ def _matrices(m: SolidMesh, materials: Sequence[Material]):
             # from a node of each: absolute places would round the differences in a thin cell
             t = basis.on(places - places[:, :1])
             dv = t.det * weights
-            g = t.gradient(np.sqrt(dv)).reshape(len(part), 3 * nb, nq)
+            g = t.gradient(np.sqrt(dv))
+            inertia = rho * dv @ products
+            if signs is not None:
+                g *= signs[:, part].T[:, None, :, None]
+                inertia *= _products_of_signs(signs, part)
+            g = g.reshape(len(part), 3 * nb, nq)
             gram = (g @ g.transpose(0, 2, 1)).reshape(-1, 3, nb, 3, nb).transpose(1, 3, 0, 2, 4)
             stiffness.add(part, _elastic(gram, lame, mu))
-            mass.add(part, rho * dv @ products)
-    return stiffness.matrix(), ScalarMass(mass.matrix(), 3)
+            mass.add(part, inertia)
+    return stiffness, mass
+
+
+def _products_of_signs(signs: np.ndarray, cells: np.ndarray) -> np.ndarray:
+    """Return the products (e, nb nb) of the signs of any two functions of some cells."""
+    own = signs[:, cells].T
+    return (own[:, :, None] * own[:, None, :]).reshape(len(cells), -1)
 
 
 def _elastic(gram, lame: float, mu: float):
@@ -102,7 +129,9 @@ def weighed(pieces, place: float | Sequence[float], n: int) -> tuple[np.ndarray,
         motion[..., :3] = np.eye(3)
         motion[..., 3:] = -np.einsum("abc,eqc->eqab", _CROSS, offset)
         a += np.einsum("eq,eqci,eqcj->ij", weight, motion, motion)
-        np.add.at(b, dofs.T, np.einsum("bq,eq,eqci->ebci", value, weight, motion, optimize=True))
+        index = "ebq" if value.ndim == 3 else "bq"
+        part = np.einsum(f"{index},eq,eqci->ebci", value, weight, motion, optimize=True)
+        np.add.at(b, dofs.T, part)
     return a, b.reshape(3 * n, 6)
 
 

@@ -122,7 +122,15 @@ class SolidMesh:
         return tabulate(self.element, self.nodes[:, self.dofs[:, elements]], self.element, points)
 
     def over_facets(self, facets: np.ndarray, within: tuple[float, float] | None = None):
-        """Yield quadrature on facets: values (nb, q), x (3, e, q), area weights (e, q), unknowns (nb, e).
+        """Yield quadrature on facets: values (nb, q), x (3, e, q), area weights (e, q), unknowns (nb, e);
+        parameters are those of :meth:`quadrature_on`.
+        """
+        for points, elements, x, area in self.quadrature_on(facets, within):
+            yield reference(self.element, points)[0], x, area, self.dofs[:, elements]
+
+    def quadrature_on(self, facets: np.ndarray, within: tuple[float, float] | None = None):
+        """Yield quadrature on facets: reference points (3, q), elements (e,), x (3, e, q), area weights
+        (e, q).
 
         Of facets that reach beyond the two places ``within`` along y, only the part between counts:
         they are divided into pieces, and of a piece its share between.
@@ -131,7 +139,7 @@ class SolidMesh:
             y = self.mesh.p[1, self.mesh.facets[:, facets]]
             hair = 1e-7 * (within[1] - within[0])
             across = (y.min(axis=0) < within[0] - hair) | (y.max(axis=0) > within[1] + hair)
-            yield from self.over_facets(facets[~across])
+            yield from self.quadrature_on(facets[~across])
             facets = facets[across]
         rule = _facet_rule if within is None else _pieces
         ref, weights = rule(self.mesh.refdom)
@@ -147,7 +155,7 @@ class SolidMesh:
                 area = area * (
                     np.clip((y - lo) / reach + 0.5, 0, 1) * np.clip((hi - y) / reach + 0.5, 0, 1)
                 )
-            yield tab.value, tab.x, area, self.dofs[:, elements]
+            yield points, elements, tab.x, area
 
     def over_cells(self, elements: np.ndarray):
         """Yield quadrature over elements, as of facets with volume for area."""

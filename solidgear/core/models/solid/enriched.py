@@ -1,0 +1,260 @@
+"""Functions that one order more adds to those of a volume mesh, and their matrices.
+
+Along an edge a polynomial of the next order that vanishes at both ends, times what falls to zero
+away from the edge; in a face products of such polynomials.  With those of the mesh they hold, on a
+tetrahedron, all polynomials of one order more; on a box all but products inside, which no face sees
+(Szabo and Babuska 1991, Finite Element Analysis, ch. 6 and 13).  A function that is odd along its
+edge or face has a sign in every cell, so that it is one function for all of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import reduce
+from itertools import product
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+from skfem.refdom import RefHex, RefTet
+
+from solidgear.core.body.model import Enrichment
+from solidgear.core.elements import ELEMENTS
+from solidgear.core.kernel.assembly import Tabulation, unknowns
+from solidgear.core.kernel.lobatto import gauss_box
+from solidgear.core.models.solid.matrices import _cell_rule, integrals, rigid_part, weighed
+from solidgear.core.models.solid.mesh import SolidMesh
+
+if TYPE_CHECKING:
+    from solidgear.core.scene.parts import Material
+
+#: values (q,) at some points, and slopes (3, q) along the reference coordinates
+Sample = tuple[np.ndarray, np.ndarray]
+Legendre = np.polynomial.legendre.Legendre
+
+
+@dataclass(frozen=True)
+class Further:
+    """Functions on a reference cell beyond those of an element, counted as scikit-fem does."""
+
+    edge: tuple[int, ...]  #: orders of the functions of an edge
+    face: tuple[tuple[int, int], ...]  #: orders of the functions of a face in both directions
+    refdom: Any  #: scikit-fem's reference cell
+
+    dim: ClassVar = 3
+    nodal_dofs: ClassVar = 0
+    interior_dofs: ClassVar = 0
+
+    @classmethod
+    def beyond(cls, element: str) -> Further:
+        """Return the functions of one order more than those of an element such as ``tet10``."""
+        order = ELEMENTS[element].order + 1
+        if element.startswith("tet"):
+            return cls((order,), ((2, 2),) if order > 2 else (), RefTet)
+        orders = [(a, b) for a, b in product(range(2, order + 1), repeat=2)]
+        if element == "hex27":
+            orders.remove((2, 2))
+        return cls((order,), tuple(orders), RefHex)
+
+    @property
+    def edge_dofs(self) -> int:
+        """Number of functions of an edge."""
+        return len(self.edge)
+
+    @property
+    def facet_dofs(self) -> int:
+        """Number of functions of a face."""
+        return len(self.face)
+
+    def at(self, points: np.ndarray) -> Sample:
+        """Return values (k, q) and slopes (k, 3, q) at reference points (3, q)."""
+        samples = self._in_tetrahedron(points) if self.refdom is RefTet else self._in_box(points)
+        values, slopes = zip(*samples)
+        return np.array(values), np.array(slopes)
+
+    def _in_tetrahedron(self, points: np.ndarray) -> Iterable[Sample]:
+        """Yield the functions of a tetrahedron, of barycentric coordinates."""
+        slopes = np.array([[-1.0, -1.0, -1.0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+        values = np.vstack([1 - points.sum(axis=0), points])
+        corners = [(v, np.tile(s[:, None], v.shape)) for v, s in zip(values, slopes)]
+        for i, j in RefTet.edges:
+            for order in self.edge:
+                (a, da), (b, db) = corners[i], corners[j]
+                shape = Legendre.basis(order - 2)
+                along = shape(b - a), shape.deriv()(b - a) * (db - da)
+                yield _times([corners[i], corners[j], along])
+        for face in RefTet.facets:
+            for _ in self.face:
+                yield _times([corners[k] for k in face])
+
+    def _in_box(self, points: np.ndarray) -> Iterable[Sample]:
+        """Yield the functions of a box, products of functions of one coordinate each."""
+        places = np.asarray(RefHex.p)
+        for edge in RefHex.edges:
+            axis = int(np.argmax(np.ptp(places[:, edge], axis=1)))
+            start, end = places[axis, edge]
+            for order in self.edge:
+                parts = [_towards(points, a, places[a, edge[0]]) for a in range(3) if a != axis]
+                sign = np.sign(end - start) if order % 2 else 1.0
+                value, slope = _bubble(points, axis, order)
+                yield _times([*parts, (sign * value, sign * slope)])
+        for face in RefHex.facets:
+            normal, across = _axes_of(places[:, face])
+            blend = _towards(points, normal, places[normal, face[0]])
+            for orders in self.face:
+                yield _times([blend, *(_bubble(points, a, n) for a, n in zip(across, orders))])
+
+    def numbered(self, m: SolidMesh) -> tuple[np.ndarray, np.ndarray]:
+        """Return the numbers (k, ne) of the functions in every cell of a mesh, and their signs."""
+        corners, numbers = m.mesh.t, unknowns(m.mesh, self)
+        signs = np.ones(numbers.shape)
+        row = 0
+        for i, j in self.refdom.edges:
+            for order in self.edge:
+                if order % 2:
+                    signs[row] = np.where(corners[i] < corners[j], 1.0, -1.0)
+                row += 1
+        if self.refdom is RefTet:
+            return numbers, signs
+        for face in RefHex.facets:
+            rows = slice(row, row + len(self.face))
+            numbers[rows], signs[rows] = self._turned(corners[face], face, numbers[rows])
+            row += len(self.face)
+        return numbers, signs
+
+    def _turned(
+        self, corners: np.ndarray, face: Sequence[int], numbers: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return numbers and signs of the functions of a quadrilateral, which runs from its least
+        corner, first towards the lesser one of the two next to it.
+        """
+        _, across = _axes_of(np.asarray(RefHex.p)[:, face])
+        places = np.asarray(RefHex.p)[np.ix_(across, face)]
+        cell = np.arange(corners.shape[1])
+        start = places[:, corners.argmin(axis=0)]
+
+        def next_to(axis: int) -> np.ndarray:
+            """Return the corner next to the least one along a local axis."""
+            wanted = start.copy()
+            wanted[axis] = 1 - wanted[axis]
+            return corners[np.abs(places[:, :, None] - wanted[:, None]).sum(axis=0).argmin(0), cell]
+
+        straight = next_to(0) < next_to(1)
+        place = {orders: k for k, orders in enumerate(self.face)}
+        turned, signs = np.empty_like(numbers), np.ones(numbers.shape)
+        for k, orders in enumerate(self.face):
+            swapped = place[orders[1], orders[0]]
+            turned[k] = np.where(straight, numbers[k], numbers[swapped])
+            for order, backward in zip(orders, start > 0.5):
+                if order % 2:
+                    signs[k] *= np.where(backward, -1.0, 1.0)
+        return turned, signs
+
+
+def _towards(points: np.ndarray, axis: int, end: float) -> Sample:
+    """Return the coordinate that is one at an end of an axis and zero at the other."""
+    slope = np.zeros(points.shape)
+    slope[axis] = 1.0 if end else -1.0
+    return (points[axis] if end else 1 - points[axis]), slope
+
+
+def _bubble(points: np.ndarray, axis: int, order: int) -> Sample:
+    """Return the polynomial of an order along an axis that vanishes at both ends."""
+    t, shape = points[axis], Legendre.basis(order - 2)
+    slope = np.zeros(points.shape)
+    slope[axis] = (1 - 2 * t) * shape(2 * t - 1) + 2 * t * (1 - t) * shape.deriv()(2 * t - 1)
+    return t * (1 - t) * shape(2 * t - 1), slope
+
+
+def _times(factors: Sequence[Sample]) -> Sample:
+    """Return a product of functions."""
+
+    def two(a: Sample, b: Sample) -> Sample:
+        return a[0] * b[0], a[0] * b[1] + b[0] * a[1]
+
+    return reduce(two, factors)
+
+
+def _axes_of(places: np.ndarray) -> tuple[int, list[int]]:
+    """Return the axis normal to a face with corners at these places (3, 4), and the two others."""
+    normal = int(np.argmin(np.ptp(places, axis=1)))
+    return normal, [a for a in range(3) if a != normal]
+
+
+@dataclass(frozen=True)
+class Seat:
+    """Facets of a mesh that carry a port."""
+
+    place: float | Sequence[float]  #: of the port: y on the axis, or a point, m
+    facets: np.ndarray
+    rigid: bool = False  #: whether they move as one rigid piece
+    within: tuple[float, float] | None = None  #: ends along y, m, of the part that counts
+
+
+def enrichment(
+    m: SolidMesh,
+    materials: Sequence[Material],
+    seats: Sequence[Seat],
+    components: tuple[int, ...] = tuple(range(6)),
+    held: np.ndarray | None = None,
+) -> Enrichment:
+    """Compute what one order more adds to a mesh whose ports have these seats and components;
+    `held` (k, 3) are components of its functions that do not move.
+    """
+    further = Further.beyond(m.name)
+    numbers, signs = further.numbered(m)
+    n, count = m.nodes.shape[1], int(numbers.max()) + 1
+    points, weights = _cell_rule(m.name) if m.name.startswith("tet") else gauss_box(4, 3)
+    basis = Tabulation(m.element, m.element, points)
+    value, slope = further.at(points)
+    basis.value, basis.slope = np.vstack([basis.value, value]), np.concatenate([basis.slope, slope])
+    stiffness, mass = integrals(
+        m,
+        materials,
+        basis,
+        weights,
+        np.vstack([m.dofs, n + numbers]),
+        np.vstack([np.ones(m.dofs.shape), signs]),
+    )
+    coupling, own = stiffness.rows_from(n)
+    between, _ = mass.rows_from(n)
+    moves = np.ones((count, 3)) if held is None else 1.0 - held
+    rows = []
+    for seat in seats:
+        if seat.rigid:
+            # what does not vanish on a rigid seat stands still: rigid motions are in the mesh
+            moves[_alive(m, further, numbers, seat.facets)] = 0.0
+            rows.append(np.zeros((len(components), 3 * count)))
+            continue
+        gram, _ = weighed(m.over_facets(seat.facets, seat.within), seat.place, n)
+        _, loads = weighed(_over_facets(m, further, numbers, signs, seat), seat.place, count)
+        rows.append(rigid_part(gram, loads, components).toarray())
+    return Enrichment(
+        own,
+        coupling,
+        between,
+        np.vstack([np.zeros((0, 3 * count)), *rows]),
+        moves.ravel(),
+        numbers,
+    )
+
+
+def _alive(m: SolidMesh, further: Further, numbers: np.ndarray, facets: np.ndarray) -> np.ndarray:
+    """Return the functions that do not vanish on some facets."""
+    corner = np.full((2, 1), 0.3) + np.array([[0.0, 0.2, 0.0], [0.0, 0.0, 0.1]])
+    parts = [np.zeros(0, int)]
+    for place, cells in m.local_facets(facets):
+        value, _ = further.at(m.on_facet(place, corner)[0])
+        parts.append(numbers[np.abs(value).max(axis=1) > 1e-9][:, cells].ravel())
+    return np.unique(np.concatenate(parts))
+
+
+def _over_facets(
+    m: SolidMesh, further: Further, numbers: np.ndarray, signs: np.ndarray, seat: Seat
+) -> Iterable[tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]]:
+    """Yield quadrature on the facets of a seat as :meth:`SolidMesh.over_facets`, with values (e, k,
+    q) of further functions.
+    """
+    for points, cells, x, weight in m.quadrature_on(seat.facets, seat.within):
+        value, _ = further.at(points)
+        yield value * signs[:, cells].T[:, :, None], x, weight, numbers[:, cells]
