@@ -28,7 +28,7 @@ import numpy as np
 from solidgear.core.body import Body
 from solidgear.core.body.cache import Cache
 from solidgear.core.body.model import Enrichment
-from solidgear.core.bounds.harmonic import lower_ends_of, on_ports, with_neighbours
+from solidgear.core.bounds.harmonic import lower_ends, on_ports, with_neighbours
 from solidgear.core.bounds.sharpest import sharpest_exponent
 from solidgear.core.elements import ELEMENTS
 from solidgear.core.errors import SolidgearError
@@ -141,9 +141,16 @@ def solid_bounds(
         ]
         return np.sum(by_block, axis=0)
 
-    return SolidBounds(
-        body, share, reached, lower_ends_of(chosen, solved, ends), by_cells, cells
-    )
+    lowest: dict[str, float] = {}
+    highest = max((m.frequency_hz for m in solved), default=0.0)
+    # the mesh mixes families no more than its own error, so that each keeps its order
+    for family in dict.fromkeys(mode.family for mode in chosen):
+        members = sorted((m for m in chosen if m.family == family), key=lambda m: m.frequency_hz)
+        values = (2 * np.pi * np.array([m.frequency_hz for m in members])) ** 2
+        energies = np.array([ends[m.name] for m in members])
+        family_ends = lower_ends(values, energies, (2 * np.pi * highest) ** 2)
+        lowest |= dict(zip((m.name for m in members), family_ends))
+    return SolidBounds(body, share, reached, lowest, by_cells, cells)
 
 
 def _by_cells(body: Body, index: int, errors: Errors, loads: np.ndarray) -> np.ndarray:

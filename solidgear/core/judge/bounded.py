@@ -170,11 +170,12 @@ def _between(
         far_end = stiff[name] + np.copysign(move(name), two_orders[name] - stiff[name])
         middle = None if near is stiff else (near[name] + far_end) / 2
         return _bar(stiff[name], move(name) / scale, solver, far_end, middle, scale)
-    open_of = [move(q) - abs(near[q] - stiff[q]) for q in pair]
-    half = float(np.sqrt(open_of[0] * open_of[1])) / 2
+    most = float(np.sqrt(move(pair[0]) * move(pair[1])))
     reach = float(np.sqrt(abs(np.prod([two_orders[d] - stiff[d] for d in pair]))))
-    most = 2 * half / reach if reach else 1.0
-    far_end = stiff[name] + np.clip(most * (two_orders[name] - stiff[name]), -2 * half, 2 * half)
+    far = most / reach * (two_orders[name] - stiff[name]) if reach else 0.0
+    far_end = stiff[name] + np.clip(far, -most, most)
+    left = [move(d) - abs(near[d] - stiff[d]) for d in pair]
+    half = float(np.sqrt(left[0] * left[1])) / 2
     middle = (near[name] + far_end) / 2
     # the number itself stands aside of the middle
     open_ = (half + abs(middle - stiff[name])) / scale

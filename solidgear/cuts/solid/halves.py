@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,6 +19,7 @@ from solidgear.core.body.surface import Volume
 from solidgear.core.kernel.attachment import Attached, with_ports
 from solidgear.core.models.solid.block import Facets, rigid_motions
 from solidgear.core.models.solid.drawing import copied
+from solidgear.core.models.solid.enriched import Seat, enrichment
 from solidgear.core.models.solid.matrices import _matrices, rigid_part, weighed
 from solidgear.core.models.solid.mesh import SolidMesh
 
@@ -39,7 +41,8 @@ def half_blocks(
     whose cut faces lie in the plane at right angles to an axis, 0 or 2; refuse a seat without faces
     on the half.
     """
-    k, m = _matrices(mesh, [segment.material for segment in scene.segments])
+    materials = [segment.material for segment in scene.segments]
+    k, m = _matrices(mesh, materials)
     m = m.tocsr()
     n = mesh.nodes.shape[1]
     rigid, y = rigid_motions(mesh.nodes), np.repeat(mesh.nodes[1], 3)
@@ -54,6 +57,12 @@ def half_blocks(
     ]
     across = np.zeros(3, bool)
     across[axis] = True
+    corners = mesh.mesh.p[axis, mesh.mesh.facets]
+    plane = np.flatnonzero((np.abs(corners) < 1e-9 * scene.length).all(axis=0))
+    further = [
+        Seat(station.y, faces, attachment == "rigid")
+        for (station, attachment), faces in zip(wanted, facets)
+    ]
     blocks = []
     for (name, components), fixed in zip(PARTS[axis], (across, ~across)):
         free = np.flatnonzero(~(on_plane[:, None] & fixed).ravel())
@@ -75,6 +84,7 @@ def half_blocks(
             y[free],
             planar=False,
             expand=sp.identity(3 * n, format="csc")[:, free].tocsr(),
+            enrich=partial(enrichment, mesh, materials, further, components, (plane, fixed), 2),
         )
         blocks.append(with_ports(block, ports))
     return blocks[0], blocks[1]

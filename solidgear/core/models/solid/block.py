@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -171,7 +172,7 @@ def free_block(
         np.repeat(mesh.nodes[1], 3),
         planar=False,
         reflections=reflections,
-        enrich=lambda: enrichment(mesh, materials, seats),
+        enrich=partial(enrichment, mesh, materials, seats),
     )
     return with_ports(block, ports)
 

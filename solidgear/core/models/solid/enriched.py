@@ -196,10 +196,12 @@ def enrichment(
     materials: Sequence[Material],
     seats: Sequence[Seat],
     components: tuple[int, ...] = tuple(range(6)),
-    held: np.ndarray | None = None,
+    held: tuple[np.ndarray, np.ndarray] | None = None,
+    copies: int = 1,
 ) -> Enrichment:
-    """Compute what one order more adds to a mesh whose ports have these seats and components;
-    `held` (k, 3) are components of its functions that do not move.
+    """Compute what one order more adds to a mesh of which so many copies make the body, whose ports
+    have these seats and components; `held` are facets, and the components (3,) that do not move
+    there.
     """
     further = Further.beyond(m.name)
     numbers, signs = further.numbered(m)
@@ -218,7 +220,10 @@ def enrichment(
     )
     coupling, own = stiffness.rows_from(n)
     between, _ = mass.rows_from(n)
-    moves = np.ones((count, 3)) if held is None else 1.0 - held
+    moves = np.ones((count, 3))
+    if held is not None:
+        facets, still = held
+        moves[np.ix_(_alive(m, further, numbers, facets), still)] = 0.0
     rows = []
     for seat in seats:
         if seat.rigid:
@@ -230,9 +235,9 @@ def enrichment(
         _, loads = weighed(_over_facets(m, further, numbers, signs, seat), seat.place, count)
         rows.append(rigid_part(gram, loads, components).toarray())
     return Enrichment(
-        own,
-        coupling,
-        between,
+        copies * own,
+        copies * coupling,
+        copies * between,
         np.vstack([np.zeros((0, 3 * count)), *rows]),
         moves.ravel(),
         numbers,
