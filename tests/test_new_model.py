@@ -109,7 +109,7 @@ def test_it_is_drawn_and_written(found, ladder, tmp_path):
 
 @pytest.mark.long
 def test_guards_have_a_verdict_on_it(ladder, scene):
-    verdicts = check_scene(scene, sg.build(scene, "coarse"))["verdicts"]
+    verdicts = check_scene(scene, sg.build(scene, "coarse")).verdicts
     # what is made for features alone has no verdict on a scene without
     assert set(verdicts) == {model.name for model in ladder if not model.for_features}
     # held against a solid as every beam: of more elements it is off by as much

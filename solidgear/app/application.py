@@ -39,7 +39,7 @@ GROUPS = {
             "List the scenes that come with solidgear, or copy them into a folder.",
         ),
         "check": Entry(
-            "app.check",
+            "trains.judge.check_command",
             "Say which models hold for a scene or train, which do not, and why; solves light "
             "meshes only.",
         ),

@@ -11,11 +11,11 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from solidgear.core import whole
 from solidgear.core.machine.whole_file import write_page
-from solidgear.show.command import NOT_REACHED, Progress, caution, say
+from solidgear.show.command import FAULTY, NOT_REACHED, Progress, caution, filled, say
 from solidgear.show.folder import held
 from solidgear.show.page_parts import Contents, template
 from solidgear.show.plot import WIDE, Make, page_svg
@@ -102,9 +102,11 @@ class Section:
 class Terminal:
     """Parts that a terminal shows in another way than the page; None is as on the page."""
 
-    heading: Sequence[str] | None = None  #: in place of title and lead
+    heading: Sequence[str | Table] | None = None  #: in place of title and lead
     tables: Sequence[Table] | None = None
     closing: Sequence[str] | None = None  #: in place of notes and cautions
+    #: sentences longer than a line: broken at the width, with further lines indented, or whole
+    lines: Literal["broken", "hanging", "whole"] = "broken"
 
 
 @dataclass(frozen=True)
@@ -126,11 +128,12 @@ class Sheet:
     viewer: str = ""  #: HTML of shapes, of the page alone
     reached: bool = True  #: whether every error bar is within the tolerance
     terminal: Terminal = Terminal()
+    faulty: bool = False  #: whether it shows what must not be used
 
 
 def present(study: Callable[[Progress], Sheet], run: Run, out: Path | None = None) -> None:
-    """Solve a study, write its folder if there is one, print its sheet, and exit with code 3 where
-    the tolerance is not reached.
+    """Solve a study, write its folder if there is one, print its sheet, and exit with code 1 for a
+    fault, or 3 where the tolerance is not reached.
     """
     with held(out) if out else nullcontext(), run.progress() as progress:
         sheet = study(progress)
@@ -141,10 +144,10 @@ def present(study: Callable[[Progress], Sheet], run: Run, out: Path | None = Non
         print_sheet(sheet)
         if files:
             say(f"Written: {', '.join(map(str, files))}", soft_wrap=False)
-    if not sheet.reached:
+    if sheet.faulty or not sheet.reached:
         import typer  # start-up: pages are written without a command line
 
-        raise typer.Exit(NOT_REACHED)
+        raise typer.Exit(FAULTY if sheet.faulty else NOT_REACHED)
 
 
 def print_sheet(sheet: Sheet) -> None:
@@ -158,8 +161,11 @@ def print_sheet(sheet: Sheet) -> None:
     if closing is None:
         closing = [*sheet.notes, *map(caution, sheet.cautions)]
     results = [in_ascii(sheet.headline), *sheet.verdict]
-    say(*heading, *(table for table in tables if table), soft_wrap=False)
-    say(*(sentence for sentence in results if sentence), *closing, soft_wrap=False)
+    blocks = [*heading, *(table for table in tables if table)]
+    blocks += [*(sentence for sentence in results if sentence), *closing]
+    if terminal.lines == "hanging":
+        blocks = [filled(block) if isinstance(block, str) else block for block in blocks]
+    say(*blocks, soft_wrap=terminal.lines != "broken")
 
 
 def as_json(sheet: Sheet) -> str:
