@@ -77,7 +77,7 @@ GROUPS = {
             "Draw one mode shape off-screen, or all of them in a page where they can be turned.",
         ),
         "bearing": Entry(
-            "app.bearing",
+            "trains.load.bearing_command",
             "Catalogue bearings: stiffness at load, load of every element, pressure, life; for "
             "a train with an [operation] lives over its points.",
         ),

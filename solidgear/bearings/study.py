@@ -4,18 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
+from solidgear.bearings.bearing_life import BearingLife, left_open, life_of
 from solidgear.bearings.catalogue import Catalogue, catalogue_of
 from solidgear.bearings.catalogued import Catalogued
 from solidgear.bearings.row import Contacts
-from solidgear.bearings.solved import Choice, Solved, solved
+from solidgear.bearings.solved import AS_STATED, Choice, Solved, solved
 from solidgear.core import Bearing, Body, Scene, SceneError, SolidgearError, show
+from solidgear.core.plain import plain
 from solidgear.core.scene import BearingLoad
 
 #: why one row of a pair carries nothing
 LOST = "any more: the pair has lost its preload"
+#: soft and stiff ends of the estimated dimensions
+ENDS = (Choice(end="softer"), Choice(end="stiffer"))
 #: factors on the load of the scene
 FACTORS = tuple(float(f) for f in np.geomspace(0.05, 2.0, 21))
 
@@ -27,8 +32,10 @@ class BearingFacts:
     bearing: Bearing  #: with its stiffness there
     made: Catalogued  #: rows made from its data
     motion: np.ndarray  #: (6,) motion of its inner ring
-    #: least and largest diagonal (6,) of the stiffness over the range of estimated dimensions
+    #: least and largest diagonal (6,) of the stiffness over the range of estimated dimensions; None
+    #: where all of them are given
     spread: tuple[np.ndarray, np.ndarray] | None
+    life: BearingLife
 
     @property
     def name(self) -> str:
@@ -90,18 +97,52 @@ class BearingFacts:
             for k in bare
         )
 
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain data in SI for JSON."""
+        rows = [
+            {
+                "azimuth": row.azimuth,
+                "load": row.load,
+                "contact_angle": row.angle,
+                "pressure_inner": row.inner,
+                "pressure_outer": row.outer,
+            }
+            for row in self.rows
+        ]
+        data = {
+            "name": self.name,
+            "kind": self.data.kind,
+            "designation": self.data.designation,
+            "status": self.bearing.status,
+            "support": self.bearing.support or None,
+            "inside": self.inside,
+            "estimated": self.made.estimated,
+            "clearance": self.made.clearance,
+            "load": self.load,
+            "displacement": self.motion,
+            "stiffness": self.stiffness,
+            "spread": self.spread,
+            "rows": rows,
+            "notes": self.notes,
+            "life": self.life.as_dict(),
+        }
+        return plain(data)
 
-def bearing_facts(scene: Scene, body: Body | None = None) -> list[BearingFacts]:
+
+def bearing_facts(
+    scene: Scene, body: Body | None = None, speed: float | None = None
+) -> list[BearingFacts]:
     """Compute every catalogue bearing of a scene at its load; `body` is the shaft, needed where
-    bearings settle under the load.
+    bearings settle under the load, and `speed` that of the shaft, rad/s, in place of the speeds of
+    bearings and lubrication.
 
     Examples
     --------
     >>> import solidgear as sg
     >>> scene = sg.load("geometry/gearbox_catalogue.toml")
     >>> facts = bearing_facts(scene, sg.build(scene, "timoshenko"))
-    >>> [(fact.name, fact.data.kind, len(fact.rows)) for fact in facts]
-    [('A', 'cylindrical', 1), ('B', 'angular_contact', 2)]
+    >>> [(fact.name, fact.data.kind, round(fact.life.life.basic / 1e9, 1)) for fact in facts]
+    [('A', 'cylindrical', 13.8), ('B', 'angular_contact', 23.1)]
     """
     bearings = [b for b in scene.bearings if b.catalogue is not None]
     if not bearings:
@@ -109,22 +150,26 @@ def bearing_facts(scene: Scene, body: Body | None = None) -> list[BearingFacts]:
             f"{scene.name}: no bearing is described by catalogue data; write [bearing.catalogue] "
             "in place of [bearing.stiffness], as in geometry/gearbox_catalogue.toml"
         )
-    middle = solved(scene, body)
-    ends: dict[str, Solved] = {}
-    if any(made.estimated for made in middle.made.values()):
-        ends = {end: solved(scene, body, Choice(end=end)) for end in ("softer", "stiffer")}
-    return [_facts(bearing.name, middle, ends) for bearing in bearings]
-
-
-def _facts(name: str, middle: Solved, ends: dict[str, Solved]) -> BearingFacts:
-    rows, spread = middle.made[name], None
-    if rows.estimated:
-        # an even number of elements under the load is another bearing than an odd one: the middle
-        # need not lie between
-        solutions = (middle, *ends.values())
-        diagonals = [np.diag(np.array(_named(s, name).matrix)) for s in solutions]
-        spread = (np.min(diagonals, axis=0), np.max(diagonals, axis=0))
-    return BearingFacts(_named(middle, name), rows, middle.motion[name], spread)
+    unknown, corners = left_open([scene])
+    choices = [AS_STATED, *corners]
+    if any(data.estimated for data in map(catalogue_of, bearings) if data is not None):
+        choices += [end for end in ENDS if end not in choices]
+    states = [solved(scene, body, choice) for choice in choices]
+    over_estimates = [states[choices.index(c)] for c in (AS_STATED, *ENDS) if c in choices]
+    facts = []
+    for bearing in bearings:
+        name = bearing.name
+        places = [(state.made[name], state.motion[name]) for state in states[: 1 + len(corners)]]
+        made, motion = places[0]
+        spread = None
+        if made.estimated:
+            # an even number of elements under the load is another bearing than an odd one: the
+            # middle need not lie between
+            diagonals = [np.diag(np.array(_named(s, name).matrix)) for s in over_estimates]
+            spread = (np.min(diagonals, axis=0), np.max(diagonals, axis=0))
+        life = life_of(bearing, scene.lubrication, unknown, speed, places)
+        facts.append(BearingFacts(_named(states[0], name), made, motion, spread, life))
+    return facts
 
 
 def _named(solution: Solved, name: str) -> Bearing:

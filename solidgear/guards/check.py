@@ -116,7 +116,7 @@ class Check:
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain data for JSON."""
-        parts = {side: check.as_dict() for side, check in self.shafts.items()}
+        parts: dict[str, Any] = {side: check.as_dict() for side, check in self.shafts.items()}
         reasons = "shafts" if parts else "guards"
         verdicts = {
             model: {"verdict": verdict.verdict, reasons: verdict.reasons}
