@@ -177,6 +177,9 @@ def test_the_command(tmp_path):
     done = command("bearing", SCENE, "--out", chart)
     assert done.exit_code == 0, done.output
     assert "4 of 13 elements carry" in done.output and chart.stat().st_size > 20_000
+    both = json.loads(command("bearing", SCENE, "--json").stdout)["bearings"]
+    assert [row["no_spread"] for row in both] == ["", "all inner dimensions are given"]
+    assert both[0]["spread"] and both[1]["spread"] is None
     other = command("bearing", SCENE, "--bearing", "A", "--load", "z=9 kN", "--json")
     (row,) = json.loads(other.stdout)["bearings"]
     assert row["load"][2] == pytest.approx(9e3) and row["status"] == "estimated"

@@ -19,6 +19,8 @@ from solidgear.core.scene import BearingLoad
 
 #: why one row of a pair carries nothing
 LOST = "any more: the pair has lost its preload"
+#: why a stiffness has no range
+ALL_GIVEN = "all inner dimensions are given"
 #: soft and stiff ends of the estimated dimensions
 ENDS = (Choice(end="softer"), Choice(end="stiffer"))
 #: factors on the load of the scene
@@ -33,7 +35,7 @@ class BearingFacts:
     made: Catalogued  #: rows made from its data
     motion: np.ndarray  #: (6,) motion of its inner ring
     #: least and largest diagonal (6,) of the stiffness over the range of estimated dimensions; None
-    #: where all of them are given
+    #: where all inner dimensions are given
     spread: tuple[np.ndarray, np.ndarray] | None
     life: BearingLife
 
@@ -122,6 +124,7 @@ class BearingFacts:
             "displacement": self.motion,
             "stiffness": self.stiffness,
             "spread": self.spread,
+            "no_spread": ALL_GIVEN if self.spread is None else "",
             "rows": rows,
             "notes": self.notes,
             "life": self.life.as_dict(),
