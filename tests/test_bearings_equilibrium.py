@@ -239,6 +239,8 @@ def test_a_bearing_without_load_tells_no_empty_range(tmp_path):
     path = tmp_path / "idle.toml"
     path.write_text(text + '[load]\nx = "0 N"\n')
     told = command("bearing", path, "--bearing", "A").output
+    (basic,) = [line.split() for line in told.splitlines() if "basic L10" in line]
+    assert basic == ["basic", "L10", "endless", "endless", "endless"]
     assert (
         "carries nothing" in told
         and "Range over the estimated inside, from soft to stiff" not in told

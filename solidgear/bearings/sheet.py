@@ -134,8 +134,9 @@ def _life(bearing: BearingLife) -> Iterator[str | Table]:
     rows = []
     for kind, life in bearing.lives.items():
         ends = bearing.range(kind) if bearing.unknown else ()
-        rows.append([LIVES[kind], life, *ends, *([life / to_hours] if to_hours else [])])
-    yield Table("", ["life", *map(_lives, heads)], rows)
+        numbers = [life, *ends, *([life / to_hours] if to_hours else [])]
+        rows.append([LIVES[kind], *map(_number, numbers)])
+    yield Table("", ["life", *heads], rows)
     yield from _sources(bearing.life)
     if bearing.unknown:
         yield _ranges(bearing)
@@ -146,12 +147,8 @@ def _life(bearing: BearingLife) -> Iterator[str | Table]:
     yield from (caution(f"bearing {bearing.name!r}: {note}") for note in bearing.life.notes)
 
 
-def _lives(head: str) -> Column:
-    """Return a column of lives or of other numbers without an end."""
-    return Column(head, write=_number)
-
-
 def _number(value: float) -> str:
+    """Return a life, or another number that may have no end, in words."""
     return engineering(value, 3) if math.isfinite(value) else "endless"
 
 
@@ -183,16 +180,15 @@ def _sources(life: Life) -> Iterator[str]:
 
 def _over_points(bearings: Sequence[LivesOverPoints]) -> Iterator[str | Table]:
     """Yield the life of each bearing at each operating point."""
-    heads = ("L10", "L10r", "from", "to", "Lnmr", "C0/P0")
-    columns = ["bearing", Column("at", kind="text"), *map(_lives, heads)]
+    columns = ["bearing", Column("at", kind="text"), "L10", "L10r", "from", "to", "Lnmr", "C0/P0"]
     rows = []
     for bearing in bearings:
         for point in bearing.points:
             lives = point.life.lives
-            ends = point.life.range("reference")
-            modified, safety = lives.get("modified"), point.life.life.static_safety
-            numbers = [lives["basic"], lives["reference"], *ends, modified, safety]
-            rows.append([bearing.name, point.label, *numbers])
+            numbers = [lives["basic"], lives["reference"], *point.life.range("reference")]
+            modified = _number(lives["modified"]) if "modified" in lives else None
+            safety = _number(point.life.life.static_safety)
+            rows.append([bearing.name, point.label, *map(_number, numbers), modified, safety])
     yield Table("", columns, rows)
     yield (
         "Lives in revolutions: basic L10 (ISO 281), reference L10r (ISO/TS 16281) with its range, "
@@ -214,10 +210,11 @@ def _duty(bearings: Sequence[LivesOverPoints]) -> Iterator[str | Table]:
         if duty is not None:
             worst = bearing.points[duty.worst].label
             damage = percent(duty.damage[duty.worst], signed=False)
-            rows.append([bearing.name, duty.hours, duty.revolutions, bearing.kind, worst, damage])
+            lives = map(_number, (duty.hours, duty.revolutions))
+            rows.append([bearing.name, *lives, bearing.kind, worst, damage])
     if not rows:
         yield "No life over all points: give each point its speed, and its share or hours."
         return
     words = [Column("of", kind="word"), Column("most damage at", kind="text"), "of all"]
-    yield Table("", ["bearing", *map(_lives, ("hours", "revolutions")), *words], rows)
+    yield Table("", ["bearing", "hours", "revolutions", *words], rows)
     yield "Damage of all points is added (Palmgren, Miner)."
