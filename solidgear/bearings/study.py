@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -93,9 +93,9 @@ class BearingFacts:
         bare = [k for k, row in enumerate(self.rows) if not row.load.any()]
         if len(bare) == len(self.rows):
             return ("it carries nothing: it has lost its load, and has no stiffness",)
-        why = "under this thrust" if self.data.own_rows > 1 else LOST
+        reason = "under this thrust" if self.data.own_rows > 1 else LOST
         return tuple(
-            f"the row at the {'upper' if k else 'lower'} end of y carries nothing {why}"
+            f"the row at the {'upper' if k else 'lower'} end of y carries nothing {reason}"
             for k in bare
         )
 
@@ -184,7 +184,6 @@ class OverLoad:
     """Stiffness of a bearing over the load."""
 
     factors: np.ndarray  #: (n,) on the load of the scene
-    load: np.ndarray  #: (n, 6) load on the bearing
     middle: np.ndarray  #: (n, 6) diagonal of its stiffness
     low: np.ndarray  #: its least value over the range of estimated dimensions
     high: np.ndarray  #: its largest
@@ -196,66 +195,35 @@ def over_load(
     """Compute the stiffness of every catalogue bearing at multiples of the load of the scene;
     `body` is the shaft, needed where bearings settle under the load.
     """
-    names = [b.name for b in scene.bearings if b.catalogue is not None]
-    loads: dict[str, list] = {name: [] for name in names}
-    diagonals: dict[tuple[str, str], list] = {}
-    for end in ("middle", "softer", "stiffer"):
+    diagonals: dict[str, list] = {b.name: [] for b in scene.bearings if b.catalogue is not None}
+    for end in (AS_STATED, *ENDS):
         start = None
         for factor in factors:
-            state = solved(scene, body, Choice(end=end, load=factor), start)
+            state = solved(scene, body, replace(end, load=factor), start)
             start = state.equilibrium
-            for name in names:
-                bearing, motion = state.made[name].bearing, state.motion[name]
-                diagonals.setdefault((name, end), []).append(np.diag(bearing.tangent(motion)))
-                if end == "middle":
-                    loads[name].append(bearing.load(motion))
+            for name, rows in diagonals.items():
+                rows.append(np.diag(state.made[name].bearing.tangent(state.motion[name])))
     curves = {}
-    for name in names:
-        ends = np.array([diagonals[name, end] for end in ("middle", "softer", "stiffer")])
-        at_load = np.array(loads[name])
-        curves[name] = OverLoad(
-            np.array(factors), at_load, ends[0], ends.min(axis=0), ends.max(axis=0)
-        )
+    for name, rows in diagonals.items():
+        ends = np.reshape(rows, (-1, len(factors), 6))
+        low, high = ends.min(axis=0), ends.max(axis=0)
+        curves[name] = OverLoad(np.array(factors), ends[0], low, high)
     return curves
 
 
-def with_load(scene: Scene, load: dict[str, str | float], bearing: str | None) -> Scene:
-    """Return the scene with a load of the components `load` on its port or on the bearing of a
-    name.
-    """
-    new = BearingLoad(**load)
-    if bearing is None:
-        free = tuple(
-            b
-            if b.catalogue is None
-            else b.with_changes(catalogue=b.catalogue.with_changes(load=None))
-            for b in scene.bearings
-        )
-        return scene.with_changes(load=new, bearings=free)
-    catalogues = {b.name: b.catalogue for b in scene.bearings if b.catalogue is not None}
-    if bearing not in catalogues:
-        raise SolidgearError(
-            f"--bearing {bearing}: no bearing of catalogue data has this name; known here: "
-            f"{', '.join(catalogues) or 'none'}"
-        )
-    data = catalogues[bearing].with_changes(load=new, displacement=None)
-    changed = (b.with_changes(catalogue=data) if b.name == bearing else b for b in scene.bearings)
-    return scene.with_changes(bearings=tuple(changed))
-
-
 def loaded_by(scene: Scene, load: str, bearing: str | None = None) -> Scene:
-    """A scene under a load of the command line such as ``x=2 kN, z=-500 N``, on its port or on one
-    of its bearings; components that are none are refused.
+    """Return the scene under a load of the command line such as ``x=2 kN, z=-500 N``, on the port or
+    on a bearing; refuse components that are none.
     """
     try:
-        return with_load(scene, _components(load), bearing)
+        return _with_load(scene, BearingLoad(**_components(load)), bearing)
     except SceneError as error:
         raise SolidgearError(f"--load {show(load)}: {error}") from None
 
 
-def _components(text: str) -> dict[str, str | float]:
-    """Components of a load from ``x=2 kN, z=500``."""
-    found: dict[str, str | float] = {}
+def _components(text: str) -> dict[str, Any]:
+    """Return the components of a load from ``x=2 kN, z=500``."""
+    components: dict[str, Any] = {}
     for part in text.split(","):
         key, sep, value = (piece.strip() for piece in part.partition("="))
         if not sep or not value:
@@ -263,7 +231,27 @@ def _components(text: str) -> dict[str, str | float]:
                 f'--load {show(text)}: write components such as "x=2 kN, z=-500 N, thx=10 N*m"'
             )
         try:
-            found[key] = float(value)
+            components[key] = float(value)
         except ValueError:
-            found[key] = value
-    return found
+            components[key] = value
+    return components
+
+
+def _with_load(scene: Scene, load: BearingLoad, bearing: str | None) -> Scene:
+    """Return the scene with a load on the port, or on the bearing of a name."""
+    catalogues = {b.name: b.catalogue for b in scene.bearings if b.catalogue is not None}
+    if bearing is None:
+        catalogues = {name: data.with_changes(load=None) for name, data in catalogues.items()}
+    elif bearing in catalogues:
+        catalogues = {bearing: catalogues[bearing].with_changes(load=load, displacement=None)}
+    else:
+        raise SolidgearError(
+            f"--bearing {bearing}: no bearing of catalogue data has this name; known here: "
+            f"{', '.join(catalogues) or 'none'}"
+        )
+    bearings = tuple(
+        b.with_changes(catalogue=catalogues[b.name]) if b.name in catalogues else b
+        for b in scene.bearings
+    )
+    on_port = {"load": load} if bearing is None else {}
+    return scene.with_changes(bearings=bearings, **on_port)

@@ -41,6 +41,8 @@ VERDICTS = {
     "avoid": "will not hold",
     "fault": "will not hold",
 }
+#: verdicts from the best to the worst
+BEST = tuple(dict.fromkeys(VERDICTS.values()))
 #: relative error of the mass beside arcs, which coarse elements follow to their order
 FOLLOWED = 1e-6
 #: guards whose answer a comparison finds itself, or that do not concern models
@@ -144,8 +146,7 @@ def check_scene(scene: Scene, body: Body, probe: Probe | None = None) -> Check:
     by_guard += [("features", notice) for notice in _beyond_the_segments(scene)]
     if not free:
         by_guard += [("round_part", notice) for notice in described(scene)]
-    for name in _guards(scene):
-        by_guard += [(name, notice) for notice in _heard(name, probe)]
+    by_guard += [(name, n) for name in _guards(scene) for n in _heard(name, probe)]
     records = tuple(record(name, notice, notice.models) for name, notice in by_guard)
     verdicts = {model: _verdict(model, records) for model in (*beams(), *_solids(scene))}
     return Check(scene.name, records, verdicts)
@@ -196,20 +197,19 @@ def cautions(scene: Scene, body: Body, name: str | None = None) -> list[str]:
     are of another model.
     """
     model = name or body.fidelity
-    probe, out = Probe(scene.plain, body, whole=scene), []
-    silent = set(NOT_HEARD_ALONE)
+    probe, silent = Probe(scene.plain, body, whole=scene), set(NOT_HEARD_ALONE)
     if LADDER[model].family != BEAM:
         silent.add("beam_against_solid")
     if model != body.fidelity:
         silent.update(OF_A_MESH)
-    for guard in _guards(scene):
-        if guard not in silent:
-            out += [
-                n.sentence
-                for n in _heard(guard, probe)
-                if n.level != "fact" and (not n.models or model in n.models)
-            ]
-    return list(dict.fromkeys(out))
+    sentences = [
+        notice.sentence
+        for guard in _guards(scene)
+        if guard not in silent
+        for notice in _heard(guard, probe)
+        if notice.level != "fact" and (not notice.models or model in notice.models)
+    ]
+    return list(dict.fromkeys(sentences))
 
 
 def _heard(name: str, probe: Probe) -> list[Notice]:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from solidgear.core.judge.record import GuardRecord
-from solidgear.guards.check import VERDICTS, Check
+from solidgear.guards.check import BEST, Check
 from solidgear.show.command import caution
 from solidgear.show.sheet import Sheet, Terminal
 
@@ -32,22 +34,20 @@ def check_sheet(check: Check) -> Sheet:
 def _verdicts(check: Check) -> list[str]:
     """Return a sentence for each verdict, with the models that have it and their reasons."""
     sentences = []
-    for verdict in dict.fromkeys(VERDICTS.values()):
-        models = [name for name, value in check.verdicts.items() if value.verdict == verdict]
+    for verdict in BEST:
+        models = []
+        for model, value in check.verdicts.items():
+            if value.verdict == verdict:
+                models.append(model + _in_brackets(value.reasons, bool(check.shafts)))
         if models:
-            reasons = ", ".join(model + _reason(check, model) for model in models)
-            sentences.append(f"{verdict.capitalize()}: {reasons}.")
+            sentences.append(f"{verdict.capitalize()}: {', '.join(models)}.")
     return sentences
 
 
-def _reason(check: Check, model: str) -> str:
-    """Return the reasons of a verdict in brackets; empty if there are none."""
-    reasons = check.verdicts[model].reasons
-    if not reasons:
-        return ""
-    if check.shafts:
-        return f" ({' and '.join(reasons)})"
-    return f" ({', '.join(reasons).replace('_', ' ')})"
+def _in_brackets(reasons: Sequence[str], are_shafts: bool) -> str:
+    """Return guards, or shafts, in brackets; empty without any."""
+    words = " and ".join(reasons) if are_shafts else ", ".join(reasons).replace("_", " ")
+    return f" ({words})" if words else ""
 
 
 def _sentences(check: Check) -> list[str]:

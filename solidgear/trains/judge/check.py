@@ -13,7 +13,7 @@ import numpy as np
 
 from solidgear.core import HARMONIC, SolidgearError, build, pinned
 from solidgear.guards import Notice, Probe
-from solidgear.guards.check import VERDICTS, Check, Verdict, check_scene, record
+from solidgear.guards.check import BEST, Check, Verdict, check_scene, record
 from solidgear.guards.notice import Notices
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.housing import housing_facts
@@ -41,8 +41,6 @@ ALONE = (
 )
 #: name of the guard of what concerns the train as a whole
 TRAIN = "train"
-#: verdicts from the best to the worst
-BEST = tuple(dict.fromkeys(VERDICTS.values()))
 
 
 @pinned
