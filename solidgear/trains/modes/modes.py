@@ -23,6 +23,8 @@ from solidgear.trains.modes.naming import OVALISING, driven, mode_names
 
 #: a frequency whose bound is above this is not resolved by the reduction
 RESOLVED = 1e-3
+#: relative, of a frequency
+ROUNDING = 1e-9
 
 
 @dataclass(frozen=True)
@@ -198,6 +200,7 @@ def train_modes(
     for stage in assembly.stages.values():
         solved = replace(solved, energy=stage.strained(solved.energy))
     most = solved.dominant()
+    highest_listed = min(limit, float(solved.frequency_hz[-1]) * (1 + ROUNDING))
     elastic = len(solved.frequency_hz) - solved.rigid
     bars = mesh_bars(assembly, system, by_shaft, elastic + 1)
     mesh_errors: list[float | None] = [None] * len(names)
@@ -243,7 +246,7 @@ def train_modes(
             line for contact in assembly.contacts.values() for line in wrench_lines(contact)
         ),
         unpublished=train.unpublished(),
-        cautions=(*assembly.cautions, *spin_cautions(assembly, system, by_shaft, limit)),
+        cautions=(*assembly.cautions, *spin_cautions(assembly, system, by_shaft, highest_listed)),
         undriven={side: families for side, families in undriven_modes.items() if families},
         local=local_lines(assembly, system),
         speeds=train.reference,
