@@ -96,6 +96,8 @@ class Section:
     tables: Sequence[Table] = ()  #: those without rows are left out
     #: SVG by what it says in words, before the charts
     drawings: Mapping[str, bytes | None] = field(default_factory=dict)
+    viewer: str = ""  #: HTML of shapes, before the tables
+    notes: Sequence[str] = ()  #: below the tables
 
 
 @dataclass(frozen=True)
@@ -105,6 +107,8 @@ class Terminal:
     heading: Sequence[str] | None = None  #: in place of title and lead
     tables: Sequence[Table] | None = None
     closing: Sequence[str] | None = None  #: in place of notes and cautions
+    results: Sequence[str] | None = None  #: in place of headline and verdict
+    broken: bool = True  #: lines at the width of the terminal; else of any length
 
 
 @dataclass(frozen=True)
@@ -126,6 +130,10 @@ class Sheet:
     viewer: str = ""  #: HTML of shapes, of the page alone
     reached: bool = True  #: whether every error bar is within the tolerance
     terminal: Terminal = Terminal()
+    words: Mapping[str, str] = field(default_factory=dict)  #: what charts say, by file
+    #: name of its JSON, which then lists all files, where that is not the name of its page
+    json_name: str = ""
+    pictures: Sequence[str] = ()  #: files of the folder that are drawn already
 
 
 def present(study: Callable[[Progress], Sheet], run: Run, out: Path | None = None) -> None:
@@ -139,8 +147,11 @@ def present(study: Callable[[Progress], Sheet], run: Run, out: Path | None = Non
         print(as_json(sheet))
     else:
         print_sheet(sheet)
-        if files:
-            say(f"Written: {', '.join(map(str, files))}", soft_wrap=False)
+        if sheet.json_name and files:
+            say(f"Report: {files[0]}")
+        elif files:
+            written = f"Written: {', '.join(map(str, files))}"
+            say(written, soft_wrap=not sheet.terminal.broken)
     if not sheet.reached:
         import typer  # start-up: pages are written without a command line
 
@@ -151,15 +162,18 @@ def print_sheet(sheet: Sheet) -> None:
     """Print a sheet on the terminal, broken at its width."""
     terminal = sheet.terminal
     heading, tables, closing = terminal.heading, terminal.tables, terminal.closing
+    results = terminal.results
     if heading is None:
         heading = [sheet.title, sheet.lead]
     if tables is None:
         tables = sheet.tables
     if closing is None:
         closing = [*sheet.notes, *map(caution, sheet.cautions)]
-    results = [in_ascii(sheet.headline), *sheet.verdict]
-    say(*heading, *(table for table in tables if table), soft_wrap=False)
-    say(*(sentence for sentence in results if sentence), *closing, soft_wrap=False)
+    if results is None:
+        results = [in_ascii(sheet.headline), *sheet.verdict]
+    soft_wrap = not terminal.broken
+    say(*heading, *(table for table in tables if table), soft_wrap=soft_wrap)
+    say(*(sentence for sentence in results if sentence), *closing, soft_wrap=soft_wrap)
 
 
 def as_json(sheet: Sheet) -> str:
@@ -171,13 +185,23 @@ def write_folder(sheet: Sheet, folder: Path) -> list[Path]:
     """Write a page and its data, tables by file name, and charts; return the paths."""
     folder.mkdir(parents=True, exist_ok=True)
     files = [table.write(folder / f"{stem}.csv") for stem, table in sheet.lines.items()]
-    files.append(folder / f"{sheet.name}.json")
-    write_json(files[-1], sheet.data)
+    if not sheet.json_name:
+        files.append(folder / f"{sheet.name}.json")
+        write_json(files[-1], sheet.data)
     for charts in (sheet.charts, *(section.charts for section in sheet.sections)):
         for stem, make in charts.items():
             files += write_charts(folder / stem, make)
-    page = write_sheet(
-        folder / f"{sheet.name}.html",
+    page = write_page_of(sheet, folder / f"{sheet.name}.html")
+    if sheet.json_name:
+        names = [page.name, *(path.name for path in files), *sheet.pictures]
+        write_json(folder / f"{sheet.json_name}.json", {**sheet.data, "files": names})
+    return [page, *files]
+
+
+def write_page_of(sheet: Sheet, path: Path) -> Path:
+    """Write the page of a sheet alone."""
+    return write_sheet(
+        path,
         sheet.title,
         f"{sheet.lead} {sheet.headline}".strip(),
         sheet.tables,
@@ -187,8 +211,8 @@ def write_folder(sheet: Sheet, folder: Path) -> list[Path]:
         verdict=sheet.verdict,
         viewer=sheet.viewer,
         sections=sheet.sections,
+        words=sheet.words,
     )
-    return [page, *files]
 
 
 def write_json(path: Path, data: Mapping[str, Any]) -> None:
@@ -219,14 +243,21 @@ def write_sheet(
     cautions: Sequence[str] = (),
     verdict: Sequence[str] = (),
     sections: Sequence[Section] = (),
+    words: Mapping[str, str] | None = None,
 ) -> Path:
     """Write a page without network: conclusions, cautions, charts, HTML of shapes, tables and
     notes.
     """
     from markupsafe import Markup
 
+    captions = words or {}
     drawn = [
-        (s, [table for table in s.tables if table], [*_given(s), *_drawn(s.charts, s.title)])
+        (
+            s,
+            [table for table in s.tables if table],
+            [*_given(s), *_drawn(s.charts, s.title, captions)],
+            Markup(s.viewer),
+        )
         for s in sections
     ]
     page = template("train_sheet.html").render(
@@ -234,23 +265,27 @@ def write_sheet(
         title=title,
         lead=lead,
         tables=[table for table in tables if table],
-        charts=_drawn(charts or {}, title),
+        charts=_drawn(charts or {}, title, captions),
         viewer=Markup(viewer),
         notes=notes,
         cautions=cautions,
         verdict=verdict,
-        sections=[part for part in drawn if part[0].words or part[1] or part[2]],
+        sections=[part for part in drawn if part[0].words or any(part[1:])],
     )
     return write_page(path, page)
 
 
-def _drawn(charts: Mapping[str, Make], title: str) -> list[tuple[str, str]]:
+def _drawn(
+    charts: Mapping[str, Make], title: str, words: Mapping[str, str]
+) -> list[tuple[str, str]]:
     """Draw charts for the page with their words, without empty ones."""
     from markupsafe import Markup
 
     drawn = {name: page_svg(name, make) for name, make in charts.items()}
     return [
-        (Markup(svg.decode()), _words(name) or f"{title}.") for name, svg in drawn.items() if svg
+        (Markup(svg.decode()), words.get(name) or _words(name) or f"{title}.")
+        for name, svg in drawn.items()
+        if svg
     ]
 
 

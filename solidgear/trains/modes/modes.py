@@ -74,6 +74,11 @@ class TrainModes:
         out = plain(self)
         return {"train": out.pop("train")} | out.pop("models") | out
 
+    @property
+    def has_mesh_bars(self) -> bool:
+        """Whether any mode has the error bar of a mesh."""
+        return any(mode.mesh is not None for mode in self.modes)
+
     def heading(self) -> list[str]:
         """Return the title of the train, and the reduction in words."""
         kept = ", ".join(f"{side} {n} of {self.unknowns[side]}" for side, n in self.kept.items())
@@ -88,13 +93,13 @@ class TrainModes:
 
     def notes(self) -> list[str]:
         """Return notes on the numbers."""
-        lines, meshed = [], any(mode.mesh is not None for mode in self.modes)
+        lines = []
         if self.rigid == 1 and not self.free:
             lines.append("The whole train turns freely: one motion at exactly 0 Hz.")
         lines += list(self.free)
         lines += [*self._still(), *self.local, *filter(None, [self.turn, self.hidden])]
         bound = "Bound: largest relative error by the reduction, proven"
-        if meshed:
+        if self.has_mesh_bars:
             bound += "; mesh: error bar of the harmonic shafts' meshes, by local problems."
         else:
             bound += "; it does not include the shafts' meshes."

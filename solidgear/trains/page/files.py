@@ -53,7 +53,7 @@ def write_response(
     if orders is not None:
         tables["orders"] = crossings(orders, shaft)
         charts["orders"] = partial(order_chart, orders, title, teeth, chosen_units)
-        shown_tables.append(train_tables.crossings(plain(orders.crossings), chosen_units, shaft))
+        shown_tables.append(train_tables.crossings(orders.crossings, chosen_units, shaft))
     remarks: list[str] = []
     if speed is not None:
         tables["lines"] = speed_tables.all_lines(speed.lines)
