@@ -86,8 +86,7 @@ def response(
         soft_wrap=False,
     )
     say(*top.sentences(), *map(caution, warnings))
-    tops = [(p.frequency_hz, p.force, p.mode) for p in responses[0].peaks]
-    print_peaks(tops, "mesh force", "N", teeth, run.units)
+    print_peaks(responses[0].peaks, "mesh force", "N", teeth, run.units)
     if at_speed is not None:
         say_at_speed(at_speed)
     say(*unpublished_lines(unpublished), *map(caution, responses[0].cautions))

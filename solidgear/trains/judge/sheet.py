@@ -148,8 +148,7 @@ def _sections(comparison: TrainComparison, units: Units, viewer: str) -> list[Se
     chain = "Engine, shafts, teeth and load"
     if len(train.shafts) == 2:
         chain = "Engine, {}'s shaft, teeth, {}'s shaft and load".format(*train.shafts)
-    tops = [(peak.frequency_hz, peak.force, peak.mode) for peak in judge.peaks]
-    peaks = train_tables.peaks(tops, "mesh force", "N", orders.teeth, units, solid)
+    peaks = train_tables.peaks(judge.peaks, "mesh force", "N", orders.teeth, units, solid)
     met = train_tables.crossings(orders.crossings, units, comparison.modes.speeds)
     orders_chart = charts.pop("orders")
     return [

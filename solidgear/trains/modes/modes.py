@@ -209,31 +209,30 @@ def train_modes(
     elastic = len(solved.frequency_hz) - solved.rigid
     bars = mesh_bars(assembly, system, by_shaft, elastic + 1)
     mesh_errors: list[float | None] = [None] * len(names)
+    hidden = ""
     if bars is not None:
         mesh_errors[solved.rigid :] = bars[:elastic].tolist()
-    modes = []
-    for k, (name, hz) in enumerate(zip(names, solved.frequency_hz)):
-        strained = "" if hz == 0 else f"{most[k]} {100 * solved.energy[most[k]][k]:.0f} %"
-        rpm = 60 * float(hz) / train.per_turn(train.drivers[0])
-        bound = float(solved.error_bound[k])
-        modes.append(
-            TrainMode(
-                name=name,
-                frequency_hz=float(hz),
-                rpm=rpm,
-                strained=strained,
-                bound=bound,
-                driven=bool(is_driven[k]),
-                mesh=mesh_errors[k],
-            )
+        hidden = _mode_below_limit(omega[elastic:], bars[elastic:], limit)
+    per_turn = train.per_turn(train.drivers[0])
+    modes = tuple(
+        TrainMode(
+            name=name,
+            frequency_hz=float(hz),
+            rpm=60 * float(hz) / per_turn,
+            strained="" if hz == 0 else f"{most[k]} {100 * solved.energy[most[k]][k]:.0f} %",
+            bound=float(solved.error_bound[k]),
+            driven=bool(is_driven[k]),
+            mesh=mesh_errors[k],
         )
-    undriven_modes = {}
-    for side, model in by_shaft.items():
-        if model == JUDGE:
-            driven_waves = tuple(waves_of(system.parts[side]))
-            undriven_modes[side] = undriven(
-                assembly.shaft_model(side, model).body, limit, driven_waves
-            )
+        for k, (name, hz) in enumerate(zip(names, solved.frequency_hz))
+    )
+    undriven_modes = {
+        side: undriven(
+            assembly.shaft_model(side, model).body, limit, (*waves_of(system.parts[side]),)
+        )
+        for side, model in by_shaft.items()
+        if model == JUDGE
+    }
     return TrainModes(
         train=train.called,
         models=by_shaft,
@@ -244,7 +243,7 @@ def train_modes(
             side: assembly.shaft_model(side, model).unknowns for side, model in by_shaft.items()
         },
         seconds=assembly.build_seconds(*models),
-        modes=tuple(modes),
+        modes=modes,
         rigid=solved.rigid,
         free=free_motions(assembly, system),
         contact=tuple(
@@ -256,9 +255,7 @@ def train_modes(
         local=local_lines(assembly, system),
         speeds=train.reference,
         turn=frequencies_over_a_turn(assembly, by_shaft, names),
-        hidden=""
-        if bars is None
-        else _mode_below_limit(omega[elastic : elastic + 1], bars[elastic:], limit),
+        hidden=hidden,
     )
 
 

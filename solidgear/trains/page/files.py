@@ -45,8 +45,9 @@ def write_response(
     charts: dict[str, Make] = {
         "response": partial(response_chart, responses, title, teeth, band, {}, chosen_units)
     }
-    tops = [(p.frequency_hz, p.force, p.mode) for p in first.peaks]
-    shown_tables = [train_tables.peaks(tops, "mesh force", "N", teeth, chosen_units, first.label)]
+    shown_tables = [
+        train_tables.peaks(first.peaks, "mesh force", "N", teeth, chosen_units, first.label)
+    ]
     if housing := train_tables.housing_columns(first):
         charts["housing"] = partial(columns_chart, responses, housing, teeth, chosen_units)
         shown_tables.append(train_tables.housing(first, chosen_units))
