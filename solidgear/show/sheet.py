@@ -7,7 +7,7 @@ command was asked to.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 from solidgear.core import whole
 from solidgear.core.machine.whole_file import write_page
 from solidgear.show.command import NOT_REACHED, Progress, caution, say
-from solidgear.show.folder import held
+from solidgear.show.folder import begun, held
 from solidgear.show.page_parts import Contents, template
 from solidgear.show.plot import WIDE, Make, page_svg
 from solidgear.show.table import Table
@@ -25,6 +25,8 @@ from solidgear.show.units import in_ascii
 if TYPE_CHECKING:
     from solidgear.show.options import Run
 
+#: files of a chart
+KINDS = ("png", "svg")
 #: what charts say in words, by how their names begin
 WORDS = {
     "response": "Dynamic mesh force and transmission error of each model.",
@@ -74,12 +76,7 @@ WORDS = {
         "orders of the mesh."
     ),
     "receptance": "Amplitude and phase of the receptance of every model.",
-    "shapes": (
-        "Motions of sections along both shafts in the lowest pairs of modes, in the plane of the "
-        "largest, scaled to one."
-    ),
     "sensitivities": "Change of the number for one per cent more of each entry.",
-    "shares": "Strain energy of every mode by part.",
 }
 
 
@@ -96,6 +93,7 @@ class Section:
     tables: Sequence[Table] = ()  #: those without rows are left out
     #: SVG by what it says in words, before the charts
     drawings: Mapping[str, bytes | None] = field(default_factory=dict)
+    filed: Collection[str] | None = None  #: charts that are files as well; None: all of them
     viewer: str = ""  #: HTML of shapes, before the tables
     notes: Sequence[str] = ()  #: below the tables
 
@@ -133,7 +131,7 @@ class Sheet:
     words: Mapping[str, str] = field(default_factory=dict)  #: what charts say, by file
     #: name of its JSON, which then lists all files, where that is not the name of its page
     json_name: str = ""
-    pictures: Sequence[str] = ()  #: files of the folder that are drawn already
+    pictures: Sequence[str] = ()  #: files of its folder that are drawn already
 
 
 def present(study: Callable[[Progress], Sheet], run: Run, out: Path | None = None) -> None:
@@ -183,18 +181,28 @@ def as_json(sheet: Sheet) -> str:
 
 def write_folder(sheet: Sheet, folder: Path) -> list[Path]:
     """Write a page and its data, tables by file name, and charts; return the paths."""
+    with begun(folder) if sheet.json_name else nullcontext():
+        return _written(sheet, folder)
+
+
+def _written(sheet: Sheet, folder: Path) -> list[Path]:
     folder.mkdir(parents=True, exist_ok=True)
-    files = [table.write(folder / f"{stem}.csv") for stem, table in sheet.lines.items()]
-    if not sheet.json_name:
-        files.append(folder / f"{sheet.name}.json")
-        write_json(files[-1], sheet.data)
-    for charts in (sheet.charts, *(section.charts for section in sheet.sections)):
-        for stem, make in charts.items():
-            files += write_charts(folder / stem, make)
-    page = write_page_of(sheet, folder / f"{sheet.name}.html")
+    charts = {**sheet.charts}
+    for s in sheet.sections:
+        charts |= {stem: make for stem, make in s.charts.items() if _is_filed(s, stem)}
+    data = sheet.data
     if sheet.json_name:
-        names = [page.name, *(path.name for path in files), *sheet.pictures]
-        write_json(folder / f"{sheet.json_name}.json", {**sheet.data, "files": names})
+        names = [f"{sheet.name}.html", *(f"{stem}.csv" for stem in sheet.lines)]
+        names += [f"{stem}.{kind}" for stem in charts for kind in KINDS]
+        names += sheet.pictures
+        data = {**data, "files": names}
+    json_file = folder / f"{sheet.json_name or sheet.name}.json"
+    write_json(json_file, data)  # numbers first: whatever happens to charts, they are there
+    files = [table.write(folder / f"{stem}.csv") for stem, table in sheet.lines.items()]
+    files.append(json_file)
+    for stem, make in charts.items():
+        files += write_charts(folder / stem, make)
+    page = write_page_of(sheet, folder / f"{sheet.name}.html")
     return [page, *files]
 
 
@@ -215,6 +223,10 @@ def write_page_of(sheet: Sheet, path: Path) -> Path:
     )
 
 
+def _is_filed(section: Section, chart: str) -> bool:
+    return section.filed is None or chart in section.filed
+
+
 def write_json(path: Path, data: Mapping[str, Any]) -> None:
     """Write plain data as a whole file or none."""
     with whole(path) as half:
@@ -226,7 +238,7 @@ def write_charts(stem: Path, make: Make) -> list[Path]:
     chart = make(WIDE)
     if chart is None:
         return []
-    files = [stem.with_suffix(f".{kind}") for kind in ("png", "svg")]
+    files = [stem.with_suffix(f".{kind}") for kind in KINDS]
     chart.write(*files)
     return files
 

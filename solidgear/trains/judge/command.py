@@ -73,7 +73,8 @@ def _judged(
             return comparison_sheet(comparison, units)
         progress("report")
         with begun(out) as folder:
-            # numbers first: whatever happens to pictures, they are there
+            # numbers first: whatever happens to pictures, they are there; without a list of files,
+            # since the folder is begun again when all of it is written
             write_json(folder / "results.json", comparison.results())
             pictures = comparison.pictures(folder) if renders else Pictures()
         return comparison_sheet(comparison, units, pictures, shapes(comparison, pictures, out))
