@@ -51,11 +51,13 @@ def comparison_sheet(
     viewer: str = "",
 ) -> Sheet:
     """Return the sheet of a train whose models are compared, with pictures of a folder and HTML of
-    the judge's modes.
+    the judge's modes; without a folder that of a terminal.
     """
     verdict, data = comparison.verdict, comparison.results()
+    sections: Sequence[Section] = []
     if pictures is not None:
         data |= {"pictures": pictures.files, "left_out": pictures.left_out}
+        sections = _sections(comparison, units, viewer)
     pictures = pictures or Pictures()
     loudest, conclusions = comparison.top.sentences(), verdict.sentences()
     return Sheet(
@@ -73,7 +75,7 @@ def comparison_sheet(
         verdict=[*loudest, *conclusions],
         notes=[f"Whole run: {seconds(comparison.seconds)} s."],
         cautions=[*verdict.cautions, *pictures.left_out],
-        sections=_sections(comparison, units, viewer),
+        sections=sections,
         pictures=[*pictures.files.values()],
         terminal=Terminal(
             heading=[f"{verdict.train}, up to {verdict.highest_hz:g} Hz", *loudest],
@@ -105,22 +107,6 @@ def _lead(comparison: TrainComparison) -> str:
     )
 
 
-def _charts(comparison: TrainComparison, units: Units) -> dict[str, Make]:
-    """Return charts of the mesh force, of the housing where there is one, and of orders."""
-    train, orders, verdict = comparison.assembly.train, comparison.orders, comparison.verdict
-    title, teeth = train.called, orders.teeth
-    if [mesh.name for mesh in train.drivers] != ["mesh"]:
-        title += f", driven by the {train.drivers[0].name}"
-    drawn, marks = comparison.drawn, comparison.marks
-    charts: dict[str, Make] = {
-        "response": partial(response_chart, drawn, title, teeth, verdict.decibels, marks, units),
-        "orders": partial(order_chart, orders, title, teeth, units),
-    }
-    if housing := train_tables.housing_columns(comparison.judge):
-        charts["housing"] = partial(columns_chart, [comparison.judge], housing, teeth, units)
-    return charts
-
-
 def _words(comparison: TrainComparison) -> dict[str, str]:
     """Return what the charts say."""
     every = comparison.verdict.every
@@ -143,21 +129,29 @@ def _words(comparison: TrainComparison) -> dict[str, str]:
 
 def _sections(comparison: TrainComparison, units: Units, viewer: str) -> list[Section]:
     """Return the sections of the page."""
-    train, data, charts = comparison.assembly.train, comparison.data, _charts(comparison, units)
-    judge, orders, solid = comparison.judge, comparison.orders, f"{train.every} shafts solid"
+    train, verdict, judge = comparison.assembly.train, comparison.verdict, comparison.judge
+    data, orders, solid = comparison.data, comparison.orders, f"{train.every} shafts solid"
+    title, teeth = train.called, orders.teeth
+    if [mesh.name for mesh in train.drivers] != ["mesh"]:
+        title += f", driven by the {train.drivers[0].name}"
+    drawn, marks = comparison.drawn, comparison.marks
+    force: dict[str, Make] = {
+        "response": partial(response_chart, drawn, title, teeth, verdict.decibels, marks, units)
+    }
+    if housing := train_tables.housing_columns(judge):
+        force["housing"] = partial(columns_chart, [judge], housing, teeth, units)
     chain = "Engine, shafts, teeth and load"
     if len(train.shafts) == 2:
         chain = "Engine, {}'s shaft, teeth, {}'s shaft and load".format(*train.shafts)
-    peaks = train_tables.peaks(judge.peaks, "mesh force", "N", orders.teeth, units, solid)
+    peaks = train_tables.peaks(judge.peaks, "mesh force", "N", teeth, units, solid)
     met = train_tables.crossings(orders.crossings, units, comparison.modes.speeds)
-    orders_chart = charts.pop("orders")
     return [
         Section("train", "Train", f"{chain}, {AXES}", tables=[train_tables.facts(data, units)]),
-        Section("mixes", "Verdict on the models", PAIRED, tables=[mixes_table(comparison.verdict)]),
+        Section("mixes", "Verdict on the models", PAIRED, tables=[mixes_table(verdict)]),
         Section(
             "response",
             "Mesh force",
-            charts=charts,
+            charts=force,
             tables=[peaks, train_tables.housing(judge, units)],
             notes=[] if peaks else ["No peak of the mesh force lies in this range."],
         ),
@@ -170,12 +164,12 @@ def _sections(comparison: TrainComparison, units: Units, viewer: str) -> list[Se
         Section(
             "orders",
             "Order lines",
-            charts={"orders": orders_chart},
+            charts={"orders": partial(order_chart, orders, title, teeth, units)},
             tables=[met],
             notes=[] if met else ["No order line meets a mode in this range."],
         ),
         Section("shapes", "Mode shapes", viewer=viewer),
-        *(_shaft(side, data[side]["scene"], units) for side in train.shafts),
+        *(_shaft(k, side, data[side]["scene"], units) for k, side in enumerate(train.shafts)),
         Section(
             "provenance",
             "Provenance",
@@ -185,14 +179,14 @@ def _sections(comparison: TrainComparison, units: Units, viewer: str) -> list[Se
     ]
 
 
-def _shaft(side: str, scene: Mapping[str, Any], units: Units) -> Section:
+def _shaft(k: int, side: str, scene: Mapping[str, Any], units: Units) -> Section:
     """Return the section of one shaft: drawn, and its bearings."""
     words = (
         f"The shaft of the {side}: upper half in section, lower half from outside; y runs along the "
         "shaft, dimensions in mm."
     )
     return Section(
-        f"shaft_{side}",
+        f"shaft_{k}",
         f"Shaft of the {side}",
         drawings={words: sketch_svg(side, scene)},
         tables=[input_tables.bearings(scene, units)],
