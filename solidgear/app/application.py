@@ -120,7 +120,7 @@ GROUPS = {
     },
     "Trains": {
         "system-modes": Entry(
-            "trains.command",
+            "trains.modes.command",
             "Natural frequencies of a train, each with its name and a proven bound.",
         ),
         "response": Entry(

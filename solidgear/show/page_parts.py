@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import functools
 import logging
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -51,3 +52,12 @@ def data_uri(key: str, path: Path) -> str | None:
     if not data.startswith(b"\x89PNG"):
         return None
     return f"data:image/png;base64,{base64.b64encode(data).decode()}"
+
+
+def figures(files: Mapping[str, Path], what: str) -> str:
+    """Return pictures of deformed bodies as HTML, by their captions; `what` begins the text for
+    those who do not see them.
+    """
+    picture = template("parts.html").module.picture
+    drawn = "".join(picture(name, data_uri(name, path), what) for name, path in files.items())
+    return f'<div class="renders">\n{drawn}</div>' if drawn else ""

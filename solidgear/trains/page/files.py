@@ -45,15 +45,16 @@ def write_response(
     charts: dict[str, Make] = {
         "response": partial(response_chart, responses, title, teeth, band, {}, chosen_units)
     }
-    tops = [(p.frequency_hz, p.force, p.mode) for p in first.peaks]
-    shown_tables = [train_tables.peaks(tops, "mesh force", "N", teeth, chosen_units, first.label)]
+    shown_tables = [
+        train_tables.peaks(first.peaks, "mesh force", "N", teeth, chosen_units, first.label)
+    ]
     if housing := train_tables.housing_columns(first):
         charts["housing"] = partial(columns_chart, responses, housing, teeth, chosen_units)
         shown_tables.append(train_tables.housing(first, chosen_units))
     if orders is not None:
         tables["orders"] = crossings(orders, shaft)
         charts["orders"] = partial(order_chart, orders, title, teeth, chosen_units)
-        shown_tables.append(train_tables.crossings(plain(orders.crossings), chosen_units, shaft))
+        shown_tables.append(train_tables.crossings(orders.crossings, chosen_units, shaft))
     remarks: list[str] = []
     if speed is not None:
         tables["lines"] = speed_tables.all_lines(speed.lines)
