@@ -7,7 +7,7 @@ command was asked to.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 from solidgear.core import whole
 from solidgear.core.machine.whole_file import write_page
 from solidgear.show.command import NOT_REACHED, Progress, caution, say
-from solidgear.show.folder import held
+from solidgear.show.folder import begun, held
 from solidgear.show.page_parts import Contents, template
 from solidgear.show.plot import WIDE, Make, page_svg
 from solidgear.show.table import Table
@@ -25,6 +25,8 @@ from solidgear.show.units import in_ascii
 if TYPE_CHECKING:
     from solidgear.show.options import Run
 
+#: files of a chart
+KINDS = ("png", "svg")
 #: what charts say in words, by how their names begin
 WORDS = {
     "response": "Dynamic mesh force and transmission error of each model.",
@@ -74,12 +76,7 @@ WORDS = {
         "orders of the mesh."
     ),
     "receptance": "Amplitude and phase of the receptance of every model.",
-    "shapes": (
-        "Motions of sections along both shafts in the lowest pairs of modes, in the plane of the "
-        "largest, scaled to one."
-    ),
     "sensitivities": "Change of the number for one per cent more of each entry.",
-    "shares": "Strain energy of every mode by part.",
 }
 
 
@@ -96,6 +93,7 @@ class Section:
     tables: Sequence[Table] = ()  #: those without rows are left out
     #: SVG by what it says in words, before the charts
     drawings: Mapping[str, bytes | None] = field(default_factory=dict)
+    filed: Collection[str] | None = None  #: charts that are files as well; None: all of them
 
 
 @dataclass(frozen=True)
@@ -105,6 +103,7 @@ class Terminal:
     heading: Sequence[str] | None = None  #: in place of title and lead
     tables: Sequence[Table] | None = None
     closing: Sequence[str] | None = None  #: in place of notes and cautions
+    results: Sequence[str] | None = None  #: in place of headline and verdict
 
 
 @dataclass(frozen=True)
@@ -126,6 +125,9 @@ class Sheet:
     viewer: str = ""  #: HTML of shapes, of the page alone
     reached: bool = True  #: whether every error bar is within the tolerance
     terminal: Terminal = Terminal()
+    words: Mapping[str, str] = field(default_factory=dict)  #: what charts say, by file
+    #: name of its JSON where that lists the files of the folder, so that the next run removes them
+    record: str = ""
 
 
 def present(study: Callable[[Progress], Sheet], run: Run, out: Path | None = None) -> None:
@@ -140,7 +142,8 @@ def present(study: Callable[[Progress], Sheet], run: Run, out: Path | None = Non
     else:
         print_sheet(sheet)
         if files:
-            say(f"Written: {', '.join(map(str, files))}", soft_wrap=False)
+            written = f"Written: {', '.join(map(str, files))}"
+            say(f"Report: {files[0]}" if sheet.record else written, soft_wrap=False)
     if not sheet.reached:
         import typer  # start-up: pages are written without a command line
 
@@ -151,13 +154,15 @@ def print_sheet(sheet: Sheet) -> None:
     """Print a sheet on the terminal, broken at its width."""
     terminal = sheet.terminal
     heading, tables, closing = terminal.heading, terminal.tables, terminal.closing
+    results = terminal.results
     if heading is None:
         heading = [sheet.title, sheet.lead]
     if tables is None:
         tables = sheet.tables
     if closing is None:
         closing = [*sheet.notes, *map(caution, sheet.cautions)]
-    results = [in_ascii(sheet.headline), *sheet.verdict]
+    if results is None:
+        results = [in_ascii(sheet.headline), *sheet.verdict]
     say(*heading, *(table for table in tables if table), soft_wrap=False)
     say(*(sentence for sentence in results if sentence), *closing, soft_wrap=False)
 
@@ -169,13 +174,28 @@ def as_json(sheet: Sheet) -> str:
 
 def write_folder(sheet: Sheet, folder: Path) -> list[Path]:
     """Write a page and its data, tables by file name, and charts; return the paths."""
+    if not sheet.record:
+        return _written(sheet, folder)
+    with begun(folder):
+        return _written(sheet, folder)
+
+
+def _written(sheet: Sheet, folder: Path) -> list[Path]:
     folder.mkdir(parents=True, exist_ok=True)
+    charts = {**sheet.charts}
+    for s in sheet.sections:
+        charts |= {stem: make for stem, make in s.charts.items() if _is_filed(s, stem)}
+    data = sheet.data
+    if sheet.record:
+        names = [f"{sheet.name}.html", *(f"{stem}.csv" for stem in sheet.lines)]
+        names += [f"{stem}.{kind}" for stem in charts for kind in KINDS]
+        data = {**data, "files": names}
+    record = folder / f"{sheet.record or sheet.name}.json"
+    write_json(record, data)  # numbers first: whatever happens to charts, they are there
     files = [table.write(folder / f"{stem}.csv") for stem, table in sheet.lines.items()]
-    files.append(folder / f"{sheet.name}.json")
-    write_json(files[-1], sheet.data)
-    for charts in (sheet.charts, *(section.charts for section in sheet.sections)):
-        for stem, make in charts.items():
-            files += write_charts(folder / stem, make)
+    files.append(record)
+    for stem, make in charts.items():
+        files += write_charts(folder / stem, make)
     page = write_sheet(
         folder / f"{sheet.name}.html",
         sheet.title,
@@ -187,8 +207,13 @@ def write_folder(sheet: Sheet, folder: Path) -> list[Path]:
         verdict=sheet.verdict,
         viewer=sheet.viewer,
         sections=sheet.sections,
+        words=sheet.words,
     )
     return [page, *files]
+
+
+def _is_filed(section: Section, chart: str) -> bool:
+    return section.filed is None or chart in section.filed
 
 
 def write_json(path: Path, data: Mapping[str, Any]) -> None:
@@ -202,7 +227,7 @@ def write_charts(stem: Path, make: Make) -> list[Path]:
     chart = make(WIDE)
     if chart is None:
         return []
-    files = [stem.with_suffix(f".{kind}") for kind in ("png", "svg")]
+    files = [stem.with_suffix(f".{kind}") for kind in KINDS]
     chart.write(*files)
     return files
 
@@ -219,14 +244,20 @@ def write_sheet(
     cautions: Sequence[str] = (),
     verdict: Sequence[str] = (),
     sections: Sequence[Section] = (),
+    words: Mapping[str, str] | None = None,
 ) -> Path:
     """Write a page without network: conclusions, cautions, charts, HTML of shapes, tables and
     notes.
     """
     from markupsafe import Markup
 
+    captions = words or {}
     drawn = [
-        (s, [table for table in s.tables if table], [*_given(s), *_drawn(s.charts, s.title)])
+        (
+            s,
+            [table for table in s.tables if table],
+            [*_given(s), *_drawn(s.charts, captions, s.title)],
+        )
         for s in sections
     ]
     page = template("train_sheet.html").render(
@@ -234,7 +265,7 @@ def write_sheet(
         title=title,
         lead=lead,
         tables=[table for table in tables if table],
-        charts=_drawn(charts or {}, title),
+        charts=_drawn(charts or {}, captions, title),
         viewer=Markup(viewer),
         notes=notes,
         cautions=cautions,
@@ -244,13 +275,17 @@ def write_sheet(
     return write_page(path, page)
 
 
-def _drawn(charts: Mapping[str, Make], title: str) -> list[tuple[str, str]]:
+def _drawn(
+    charts: Mapping[str, Make], words: Mapping[str, str], title: str
+) -> list[tuple[str, str]]:
     """Draw charts for the page with their words, without empty ones."""
     from markupsafe import Markup
 
     drawn = {name: page_svg(name, make) for name, make in charts.items()}
     return [
-        (Markup(svg.decode()), _words(name) or f"{title}.") for name, svg in drawn.items() if svg
+        (Markup(svg.decode()), words.get(name) or _words(name) or f"{title}.")
+        for name, svg in drawn.items()
+        if svg
     ]
 
 
