@@ -126,8 +126,8 @@ class Sheet:
     reached: bool = True  #: whether every error bar is within the tolerance
     terminal: Terminal = Terminal()
     words: Mapping[str, str] = field(default_factory=dict)  #: what charts say, by file
-    #: name of its JSON where that lists the files of the folder, so that the next run removes them
-    record: str = ""
+    #: name of its JSON, which then lists all files, where that is not the name of its page
+    json_name: str = ""
 
 
 def present(study: Callable[[Progress], Sheet], run: Run, out: Path | None = None) -> None:
@@ -141,9 +141,10 @@ def present(study: Callable[[Progress], Sheet], run: Run, out: Path | None = Non
         print(as_json(sheet))
     else:
         print_sheet(sheet)
-        if files:
-            written = f"Written: {', '.join(map(str, files))}"
-            say(f"Report: {files[0]}" if sheet.record else written, soft_wrap=False)
+        if sheet.json_name and files:
+            say(f"Report: {files[0]}")
+        elif files:
+            say(f"Written: {', '.join(map(str, files))}", soft_wrap=False)
     if not sheet.reached:
         import typer  # start-up: pages are written without a command line
 
@@ -174,9 +175,7 @@ def as_json(sheet: Sheet) -> str:
 
 def write_folder(sheet: Sheet, folder: Path) -> list[Path]:
     """Write a page and its data, tables by file name, and charts; return the paths."""
-    if not sheet.record:
-        return _written(sheet, folder)
-    with begun(folder):
+    with begun(folder) if sheet.json_name else nullcontext():
         return _written(sheet, folder)
 
 
@@ -186,14 +185,14 @@ def _written(sheet: Sheet, folder: Path) -> list[Path]:
     for s in sheet.sections:
         charts |= {stem: make for stem, make in s.charts.items() if _is_filed(s, stem)}
     data = sheet.data
-    if sheet.record:
+    if sheet.json_name:
         names = [f"{sheet.name}.html", *(f"{stem}.csv" for stem in sheet.lines)]
         names += [f"{stem}.{kind}" for stem in charts for kind in KINDS]
         data = {**data, "files": names}
-    record = folder / f"{sheet.record or sheet.name}.json"
-    write_json(record, data)  # numbers first: whatever happens to charts, they are there
+    json_file = folder / f"{sheet.json_name or sheet.name}.json"
+    write_json(json_file, data)  # numbers first: whatever happens to charts, they are there
     files = [table.write(folder / f"{stem}.csv") for stem, table in sheet.lines.items()]
-    files.append(record)
+    files.append(json_file)
     for stem, make in charts.items():
         files += write_charts(folder / stem, make)
     page = write_sheet(
@@ -256,7 +255,7 @@ def write_sheet(
         (
             s,
             [table for table in s.tables if table],
-            [*_given(s), *_drawn(s.charts, captions, s.title)],
+            [*_given(s), *_drawn(s.charts, s.title, captions)],
         )
         for s in sections
     ]
@@ -265,7 +264,7 @@ def write_sheet(
         title=title,
         lead=lead,
         tables=[table for table in tables if table],
-        charts=_drawn(charts or {}, captions, title),
+        charts=_drawn(charts or {}, title, captions),
         viewer=Markup(viewer),
         notes=notes,
         cautions=cautions,
@@ -276,7 +275,7 @@ def write_sheet(
 
 
 def _drawn(
-    charts: Mapping[str, Make], words: Mapping[str, str], title: str
+    charts: Mapping[str, Make], title: str, words: Mapping[str, str]
 ) -> list[tuple[str, str]]:
     """Draw charts for the page with their words, without empty ones."""
     from markupsafe import Markup

@@ -180,6 +180,7 @@ def sheet(
         heading, sentences = [*heading, *sentences], []
     return Sheet(
         name="report",
+        json_name="results",
         title=" beside ".join(dict.fromkeys(side.title for side in pair.both)),
         lead=f"solidgear report on {pair.kind}: {'; '.join(side.label for side in pair.both)}.",
         tables=(),
@@ -196,7 +197,6 @@ def sheet(
             sentences,
         ),
         words=words or {},
-        record="results",
     )
 
 
@@ -300,14 +300,13 @@ def mode_table(pair: Beside[S, M]) -> Table:
 
 def mode_label(pair: ModePair[M]) -> str:
     """Return the name of a mode in A, and in B where it is another."""
-    return names(*(None if mode is None else mode.name for mode in (pair.a, pair.b)))
+    labels = [mode.name for mode in (pair.a, pair.b) if mode is not None]
+    return names(labels[0], labels[-1])
 
 
-def names(a: str | None, b: str | None, of_b: str = "B: ") -> str:
-    """Return the name of a thing in A, and in B where it is another; None where one has no such
-    thing.
-    """
-    return a or b or "" if None in (a, b) or a == b else f"{a} ({of_b}{b})"
+def names(a: str, b: str, of_b: str = "B: ") -> str:
+    """Return a name in A, and in B where it is another."""
+    return a if a == b else f"{a} ({of_b}{b})"
 
 
 def apart(change: Change, scale: float) -> str | Cell:

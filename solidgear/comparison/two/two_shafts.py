@@ -37,7 +37,7 @@ from solidgear.core.judge.quantities import in_order, judged
 from solidgear.core.plain import plain
 from solidgear.guards.one_shaft import OneShaft, Progress, one_shaft
 from solidgear.show.open_words import interval
-from solidgear.show.panel import GREY, Axis, Panel, Series, readout
+from solidgear.show.panel import GREY, Axis, Panel, Series, curve, lines_legend, readout
 from solidgear.show.plot import BETWEEN, NARROW, WIDE, Chart, in_columns
 from solidgear.show.run_tables import pairs_of
 from solidgear.show.sheet import Section, Sheet
@@ -171,7 +171,7 @@ def _number(number: NumberChange) -> dict[str, Any]:
 def summary(pair: TwoShafts) -> Table:
     """Return numbers of two shafts, their differences and verdicts."""
     rows = [
-        (n.name, n.change.a, n.change.b, n.unit, percent(n.change.relative), n.verdict)
+        (n.name, n.change.a, n.change.b, n.unit, percent(n.relative), n.verdict)
         for n in pair.changes
     ]
     heads = ("number", "A", "B", "unit", "difference", "")
@@ -224,8 +224,8 @@ def _changes(
     """Yield the mass, entries of C and K, and the first frequencies, each beside that of the
     partner of the mode.
     """
-    bars = [None if s.mass_bar is None else s.mass_bar * s.mass for s in (a, b)]
-    yield NumberChange("mass", "kg", Change(a.mass, b.mass, *bars), a.mass)
+    bar_a, bar_b = (None if s.mass_bar is None else s.mass_bar * s.mass for s in (a, b))
+    yield NumberChange("mass", "kg", Change(a.mass, b.mass, bar_a, bar_b), a.mass)
     for name in in_order(a.values):
         if name.is_frequency or name not in b.values or _twin(a, name) and _twin(b, name):
             continue
@@ -514,7 +514,6 @@ def shapes_chart(
     looks = {shaft.label: Series(colour) for shaft, colour in zip(shafts.both, PAIR)}
     last = max(units.values(shaft.modes.stations, "m").max() for shaft in shafts.both)
     columns = 2 if width > NARROW and len(drawn) > 1 else 1
-    legend = {"orient": "top", "columns": 2, "symbolType": "stroke", "symbolStrokeWidth": 3}
     panels = []
     for k, (title, partners) in enumerate(drawn[:MOST]):
         panel = Panel(
@@ -523,16 +522,15 @@ def shapes_chart(
             130.0,
             title,
             series=looks,
-            legend=legend if k == 0 else None,
+            legend=lines_legend(2) if k == 0 else None,
         )
         panel.draw({"type": "rule", "color": GREY}, [{"y": 0.0}])
         lines = _lines(shafts.both, partners)
         for shaft, mode, line in zip(shafts.both, partners, lines):
             words = readout(shaft.label, ("frequency", hertz(mode.frequency_hz), "Hz"))
             along = units.values(shaft.modes.stations, "m")
-            rows = [{"x": float(x), "y": float(u)} for x, u in zip(along, line)]
-            panel.draw("line", [{**row, "name": shaft.label} for row in rows])
-            panel.read([{**row, "readout": words} for row in rows], looks[shaft.label].colour)
+            panel.draw("line", curve(along, line, name=shaft.label))
+            panel.read(curve(along, line, readout=words), looks[shaft.label].colour)
         panels.append(panel)
     if len(panels) % columns:  # as wide as those above it
         panels[-1].right += (width + BETWEEN) / columns

@@ -156,7 +156,8 @@ class PeakPair:
     @property
     def label(self) -> str:
         """Mode that makes the peak in A, and in B where it is another."""
-        return beside.names(*(None if p is None else p.mode for p in (self.a, self.b)))
+        labels = [peak.mode for peak in (self.a, self.b) if peak is not None]
+        return beside.names(labels[0], labels[-1])
 
 
 @dataclass(frozen=True, repr=False, eq=False)
