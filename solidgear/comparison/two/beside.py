@@ -221,8 +221,8 @@ def inputs(differences: Sequence[Difference]) -> str:
 
 def input_section(pair: Beside[S, M]) -> Section:
     """Return the section of the entries that differ."""
-    same = "" if pair.inputs else inputs(pair.inputs)
-    return Section("input", "Input", same, tables=[input_table(pair)])
+    words = "" if pair.inputs else inputs(pair.inputs)
+    return Section("input", "Input", words, tables=[input_table(pair)])
 
 
 def input_table(pair: Beside[S, M], width: int = LONG) -> Table:
@@ -246,7 +246,9 @@ def modes(mode_pairs: Sequence[ModePair[M]], place: str) -> Iterator[str]:
     by_shape = [pair for pair in pairs if pair[0].mac is not None] or pairs
     moved = max(by_shape, key=lambda pair: abs(pair[1].relative or 0.0), default=None)
     if moved is not None and moved[1].verdict != "not resolved":
-        yield f"Largest change: {_moved(*moved)}."
+        name, change = mode_label(moved[0], "in B "), moved[1]
+        hz = f"from {hertz(change.a)} to {hertz(change.b)} Hz"
+        yield f"Largest change: {name}, {hz} ({percent(change.relative)})."
     for letter, alone in (
         ("A", [p.a for p in mode_pairs if p.b is None]),
         ("B", [p.b for p in mode_pairs if p.a is None]),
@@ -268,19 +270,13 @@ def resolved(changes: Sequence[Change], plural: str) -> Iterator[str]:
     yield f"{how_many} {count} {plural} changed by more than their error bars."
 
 
-def _moved(pair: ModePair[M], change: Change) -> str:
-    assert pair.a is not None and pair.b is not None
-    name = names(pair.a.name, pair.b.name, "in B ")
-    return f"{name}, from {hertz(change.a)} to {hertz(change.b)} Hz ({percent(change.relative)})"
-
-
 def mode_table(pair: Beside[S, M]) -> Table:
     """Return natural frequencies side by side, with the verdict on each difference."""
     columns = [
         text("mode", mode_label),
         Column("A, Hz", lambda p: p.a and p.a.frequency_hz, hertz),
         Column("B, Hz", lambda p: p.b and p.b.frequency_hz, hertz),
-        Column("difference", lambda p: p.change and apart(p.change, abs(p.change.a))),
+        Column("difference", lambda p: p.change and relative(p.change, abs(p.change.a))),
     ]
     note = f"Paired {pair.pairing}. "
     if any(p.change is not None and p.change.band is not None for p in pair.modes):
@@ -298,10 +294,10 @@ def mode_table(pair: Beside[S, M]) -> Table:
     return Table("Natural frequencies", columns, pair.modes, note, style="ruled")
 
 
-def mode_label(pair: ModePair[M]) -> str:
+def mode_label(pair: ModePair[M], of_b: str = "B: ") -> str:
     """Return the name of a mode in A, and in B where it is another."""
     labels = [mode.name for mode in (pair.a, pair.b) if mode is not None]
-    return names(labels[0], labels[-1])
+    return names(labels[0], labels[-1], of_b)
 
 
 def names(a: str, b: str, of_b: str = "B: ") -> str:
@@ -309,7 +305,7 @@ def names(a: str, b: str, of_b: str = "B: ") -> str:
     return a if a == b else f"{a} ({of_b}{b})"
 
 
-def apart(change: Change, scale: float) -> str | Cell:
+def relative(change: Change, scale: float) -> str | Cell:
     """Return the difference in per cent of a scale, marked where it is within the error bars."""
     share = percent(change.difference / scale) if scale else DASH
     return Cell(share, "unresolved") if change.verdict == "not resolved" else share

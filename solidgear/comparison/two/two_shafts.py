@@ -24,7 +24,6 @@ from solidgear.core import (
     BarredMode,
     Displayed,
     Mode,
-    ModeSet,
     OpenNumbers,
     Quantity,
     pinned,
@@ -257,7 +256,8 @@ def _paired(a: OneShaft, b: OneShaft) -> tuple[list[ModePair[BarredMode]], str]:
     )
     same_shape: list[ModePair[BarredMode]] = []
     words = "by name, since the shafts are not divided at the same places along the axis"
-    if _same_stations(a.modes, b.modes):
+    stations = a.modes.stations, b.modes.stations
+    if stations[0].shape == stations[1].shape and np.allclose(stations[0], stations[1]):
         words = "by the motions of sections along the axis, or by name where no shape is certain"
         for p in pair_modes(b.modes, a.modes):
             partners = [m for m in (p.mode, *p.others) if m is not None and p.certain]
@@ -274,11 +274,6 @@ def _paired(a: OneShaft, b: OneShaft) -> tuple[list[ModePair[BarredMode]], str]:
         and (pair.change is not None or pair.within(end))
     ]
     return pairs, words
-
-
-def _same_stations(a: ModeSet, b: ModeSet) -> bool:
-    same = a.stations.shape == b.stations.shape
-    return same and bool(np.allclose(a.stations, b.stations))
 
 
 # ---------------------------------------------------------------------- sentences
@@ -362,23 +357,19 @@ def _solved(shafts: TwoShafts) -> Iterator[str]:
     by = f"Both by the {titles[0]}"
     if titles[0] != titles[1]:
         by = f"A by the {titles[0]}, B by the {titles[1]}"
-    asked = {shaft.scene.ask.tolerance for shaft in shafts.both}
-    smaller = "the smaller tolerance of both" if len(asked) > 1 else "the tolerance of both"
+    tolerances = {shaft.scene.ask.tolerance for shaft in shafts.both}
+    smaller = "the smaller tolerance of both" if len(tolerances) > 1 else "the tolerance of both"
     yield f"{by}, to error bars of {percent(shafts.tolerance, signed=False)}: a tenth of {smaller}."
     for shaft in shafts.both:
-        if not shaft.settled.reached:
-            yield _not_reached(shaft)
+        largest = shaft.settled.largest
+        if not shaft.settled.reached and largest is None:
+            yield f"{shaft.letter} has no error bars."
+        elif not shaft.settled.reached and largest is not None:
+            name, bar = largest
+            width = percent(bar, signed=False) if is_number(bar) else "unknown"
+            yield f"Not reached by {shaft.letter}: the largest error bar is {width}, of {name}."
     if any(b.catalogue is not None for shaft in shafts.both for b in shaft.scene.bearings):
         yield "Error bars are for mesh and solver, not for open data of catalogue bearings."
-
-
-def _not_reached(shaft: OneShaft) -> str:
-    largest = shaft.settled.largest
-    if largest is None:
-        return f"{shaft.letter} has no error bars."
-    name, bar = largest
-    width = percent(bar, signed=False) if is_number(bar) else "unknown"
-    return f"Not reached by {shaft.letter}: the largest error bar is {width}, of {name}."
 
 
 # ---------------------------------------------------------------------- page
@@ -449,7 +440,7 @@ def _columns(units: Units) -> list[Column]:
         Column("A", lambda n: _value(n, n.change.a, units)),
         Column("B", lambda n: _value(n, n.change.b, units)),
         text("unit", lambda n: units.unit(n.unit)),
-        Column("difference", _apart),
+        Column("difference", _difference),
         Column("error bar of A", lambda n: _bar(n, n.change.bar_a)),
         Column("error bar of B", lambda n: _bar(n, n.change.bar_b)),
     ]
@@ -460,10 +451,10 @@ def _alike(number: NumberChange) -> bool:
     return number.name == "mass" and number.change.difference == 0
 
 
-def _apart(number: NumberChange) -> str | Cell:
+def _difference(number: NumberChange) -> str | Cell:
     if _alike(number):
         return percent(0.0)
-    return beside.apart(number.change, number.scale or abs(number.change.a))
+    return beside.relative(number.change, number.scale or abs(number.change.a))
 
 
 def _value(number: NumberChange, value: float, units: Units) -> str:

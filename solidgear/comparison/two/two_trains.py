@@ -217,7 +217,13 @@ class TwoTrains(Beside[OneTrain, SeenMode]):
             "highest_hz": self.highest_hz,
             "peaks": self.peaks,
             "largest": {column: self.largest(column) for column in self.columns},
-            "responses": {letter: _curves(train.response) for letter, train in trains},
+            "responses": {
+                letter: {
+                    "frequency_hz": train.response.frequency_hz,
+                    "amplitude": {c: np.abs(v) for c, v in train.response.columns.items()},
+                }
+                for letter, train in trains
+            },
             "misalignment": {
                 n.name: {"unit": n.unit.split()[0], **plain(n.change)} for n in self.changes
             },
@@ -272,11 +278,6 @@ class TwoTrains(Beside[OneTrain, SeenMode]):
 
 def _force_of(pair: Pair | PlanetMesh) -> str:
     return f"force of the {pair.name}" if pair.label else "mesh force"
-
-
-def _curves(response: TrainResponse) -> dict[str, Any]:
-    amplitude = {name: np.abs(values) for name, values in response.columns.items()}
-    return {"frequency_hz": response.frequency_hz, "amplitude": amplitude}
 
 
 @pinned
