@@ -18,6 +18,7 @@ from solidgear.core import COMPLIANCE, BarredMode, Quantity
 from solidgear.core.judge.change import Change, ModePair, Side
 from solidgear.core.machine.environment import environment
 from solidgear.core.plain import plain
+from solidgear.show.command import caution
 from solidgear.show.sheet import Section, Sheet, Terminal, write_folder
 from solidgear.show.table import Cell, Column, Table, text, word
 from solidgear.show.units import ENGINEERING, Units, in_ascii, units_named
@@ -27,6 +28,12 @@ from solidgear.show.words import DASH, hertz, percent, seconds
 NAMED, WIDTH = 3, 30
 #: letters of an entry on a page and in a terminal
 LONG, SHORT = 60, 34
+#: keys of results.json in their order; either kind has some of its own
+KEYS = (
+    "kind shafts trains models mesh tolerance highest_hz differences sentences numbers asked open "
+    "paired modes alone peaks largest responses misalignment at_rest cautions unpublished "
+    "unpublished_lines environment seconds_total"
+).split()
 
 S = TypeVar("S", bound=Side)
 M = TypeVar("M", bound=BarredMode)
@@ -124,19 +131,18 @@ class Beside(Generic[S, M]):
     @cached_property
     def results(self) -> dict[str, Any]:
         """Plain data that JSON can hold, SI."""
-        return plain(
-            {
-                "kind": self.kind,
-                **self.data(),
-                "differences": self.inputs,
-                "sentences": self.sentences,
-                "paired": self.pairing,
-                "modes": self.modes,
-                "cautions": self.cautions,
-                "environment": environment(),
-                "seconds_total": self.seconds,
-            }
-        )
+        data = {
+            "kind": self.kind,
+            "differences": self.inputs,
+            "sentences": self.sentences,
+            "paired": self.pairing,
+            "modes": self.modes,
+            "cautions": self.cautions,
+            "environment": environment(),
+            "seconds_total": self.seconds,
+            **self.data(),
+        }
+        return plain({key: data[key] for key in sorted(data, key=KEYS.index)})
 
     def write_report(self, out: str | os.PathLike, *, units: str = "engineering") -> Path:
         """Write results.json and report.html into a folder.
@@ -191,10 +197,10 @@ def sheet(
         cautions=pair.cautions,
         sections=sections,
         terminal=Terminal(
-            heading,
-            printed,
-            [*closing, *(f"caution: {sentence}" for sentence in pair.cautions)],
-            sentences,
+            heading=heading,
+            tables=printed,
+            closing=[*closing, *map(caution, pair.cautions)],
+            results=sentences,
         ),
         words=words or {},
     )
