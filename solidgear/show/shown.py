@@ -205,23 +205,3 @@ def _told(columns: Mapping[str, list], head: str, k: int) -> str:
     if value is None or isinstance(value, str):
         return (value or "-")[:60]
     return f"{value:.6g}" if bar is None else f"{value:.6g} ± {bar:.1g}"
-
-
-def two_shafts(pair: Any) -> Table:
-    """Return numbers of two shafts, their differences and verdicts."""
-    rows = [
-        (
-            change.name,
-            change.change.a,
-            change.change.b,
-            change.unit,
-            percent(change.relative),
-            change.verdict,
-        )
-        for change in pair.changes
-    ]
-    return Table(
-        f"{pair.a.label} beside {pair.b.label}",
-        ("number", "A", "B", "unit", "difference", ""),
-        rows,
-    )
