@@ -28,20 +28,12 @@ if TYPE_CHECKING:
 #: what charts say in words, by how their names begin
 WORDS = {
     "response": "Dynamic mesh force and transmission error of each model.",
-    "orders": (
-        "Orders of the mesh and of both shafts over the speed of the pinion, and the natural "
-        "frequencies they meet. Colour: mesh force along orders of the transmission error."
-    ),
     "deflection": (
         "Deflection lines of every shaft in both planes, by every model; dashed lines are bearings."
     ),
     "turn_": (
         "Mesh force of every planet over a turn of its carrier from the file's position on; "
         "bearings have their stiffness at rest."
-    ),
-    "measured": (
-        "The measured spectrum, its peaks named by their orders at this speed, above the computed "
-        "mesh force. Grey lines: natural frequencies."
     ),
     "section_forces": (
         "Section forces along the shaft; with two components, the dashed line is their resultant."
@@ -73,7 +65,6 @@ WORDS = {
         "Spectra of the mesh force along the run, each over 16 to 64 mesh cycles around its speed; grey: "
         "orders of the mesh."
     ),
-    "receptance": "Amplitude and phase of the receptance of every model.",
     "shapes": (
         "Motions of sections along both shafts in the lowest pairs of modes, in the plane of the "
         "largest, scaled to one."
@@ -103,8 +94,10 @@ class Terminal:
     """Parts that a terminal shows in another way than the page; None is as on the page."""
 
     heading: Sequence[str] | None = None  #: in place of title and lead
-    tables: Sequence[Table] | None = None
+    tables: Sequence[Table | str] | None = None
     closing: Sequence[str] | None = None  #: in place of notes and cautions
+    results: Sequence[str] | None = None  #: in place of headline and verdict
+    broken: bool = True  #: lines at the width of the terminal; else of any length
 
 
 @dataclass(frozen=True)
@@ -126,6 +119,7 @@ class Sheet:
     viewer: str = ""  #: HTML of shapes, of the page alone
     reached: bool = True  #: whether every error bar is within the tolerance
     terminal: Terminal = Terminal()
+    words: Mapping[str, str] = field(default_factory=dict)  #: what charts say, by file
 
 
 def present(study: Callable[[Progress], Sheet], run: Run, out: Path | None = None) -> None:
@@ -140,7 +134,8 @@ def present(study: Callable[[Progress], Sheet], run: Run, out: Path | None = Non
     else:
         print_sheet(sheet)
         if files:
-            say(f"Written: {', '.join(map(str, files))}", soft_wrap=False)
+            written = f"Written: {', '.join(map(str, files))}"
+            say(written, soft_wrap=not sheet.terminal.broken)
     if not sheet.reached:
         import typer  # start-up: pages are written without a command line
 
@@ -151,15 +146,18 @@ def print_sheet(sheet: Sheet) -> None:
     """Print a sheet on the terminal, broken at its width."""
     terminal = sheet.terminal
     heading, tables, closing = terminal.heading, terminal.tables, terminal.closing
+    results = terminal.results
     if heading is None:
         heading = [sheet.title, sheet.lead]
     if tables is None:
         tables = sheet.tables
     if closing is None:
         closing = [*sheet.notes, *map(caution, sheet.cautions)]
-    results = [in_ascii(sheet.headline), *sheet.verdict]
-    say(*heading, *(table for table in tables if table), soft_wrap=False)
-    say(*(sentence for sentence in results if sentence), *closing, soft_wrap=False)
+    if results is None:
+        results = [in_ascii(sheet.headline), *sheet.verdict]
+    results = [sentence for sentence in results if sentence]
+    blocks = *heading, *(table for table in tables if table), *results, *closing
+    say(*blocks, soft_wrap=not terminal.broken)
 
 
 def as_json(sheet: Sheet) -> str:
@@ -187,6 +185,7 @@ def write_folder(sheet: Sheet, folder: Path) -> list[Path]:
         verdict=sheet.verdict,
         viewer=sheet.viewer,
         sections=sheet.sections,
+        words=sheet.words,
     )
     return [page, *files]
 
@@ -219,14 +218,20 @@ def write_sheet(
     cautions: Sequence[str] = (),
     verdict: Sequence[str] = (),
     sections: Sequence[Section] = (),
+    words: Mapping[str, str] | None = None,
 ) -> Path:
     """Write a page without network: conclusions, cautions, charts, HTML of shapes, tables and
     notes.
     """
     from markupsafe import Markup
 
+    captions = words or {}
     drawn = [
-        (s, [table for table in s.tables if table], [*_given(s), *_drawn(s.charts, s.title)])
+        (
+            s,
+            [table for table in s.tables if table],
+            [*_given(s), *_drawn(s.charts, s.title, captions)],
+        )
         for s in sections
     ]
     page = template("train_sheet.html").render(
@@ -234,7 +239,7 @@ def write_sheet(
         title=title,
         lead=lead,
         tables=[table for table in tables if table],
-        charts=_drawn(charts or {}, title),
+        charts=_drawn(charts or {}, title, captions),
         viewer=Markup(viewer),
         notes=notes,
         cautions=cautions,
@@ -244,13 +249,17 @@ def write_sheet(
     return write_page(path, page)
 
 
-def _drawn(charts: Mapping[str, Make], title: str) -> list[tuple[str, str]]:
+def _drawn(
+    charts: Mapping[str, Make], title: str, words: Mapping[str, str]
+) -> list[tuple[str, str]]:
     """Draw charts for the page with their words, without empty ones."""
     from markupsafe import Markup
 
     drawn = {name: page_svg(name, make) for name, make in charts.items()}
     return [
-        (Markup(svg.decode()), _words(name) or f"{title}.") for name, svg in drawn.items() if svg
+        (Markup(svg.decode()), words.get(name) or _words(name) or f"{title}.")
+        for name, svg in drawn.items()
+        if svg
     ]
 
 
