@@ -60,7 +60,7 @@ def _measured(speed: AtSpeed, spectrum: Spectrum, ends: tuple[float, float], wid
             log=not spectrum.in_decibels,
         ),
         300.0,
-        title=f"Measured: {spectrum.name}, at {speed.rpm:.6g} rpm of the pinion",
+        title=f"Measured: {spectrum.name}, at {speed.rpm:.6g} rpm of the {speed.shaft}",
         series=MARKS,
         legend={"orient": "top", "columns": 2 if width <= NARROW else 5},
     )
