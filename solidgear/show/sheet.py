@@ -52,18 +52,9 @@ WORDS = {
     ),
     "designs": "The goal in every design solved, each with its error bar.",
     "sweep": "Natural frequencies and other columns over the number that varies.",
-    "nonlinear": (
-        "Dynamic mesh force over the speed of the pinion: periodic motions with backlash, stable and "
-        "unstable, with the jumps between them, runs through the speeds, and the linear answer. Below: "
-        "contact over the cycle, and the orders of the largest force."
-    ),
     "housing": (
         "Loads on the mounts of the housing and accelerations of its points, over all three "
         "directions."
-    ),
-    "waterfall": (
-        "Spectra of the mesh force along the run, each over 16 to 64 mesh cycles around its speed; grey: "
-        "orders of the mesh."
     ),
     "shapes": (
         "Motions of sections along both shafts in the lowest pairs of modes, in the plane of the "

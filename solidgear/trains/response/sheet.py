@@ -284,15 +284,16 @@ def _peak_row(peak: MeasuredPeak) -> list[Any]:
 
 def every_peak(speed: AtSpeed, spectrum: Spectrum) -> Table:
     """Return every measured peak with its orders, for a file."""
-    peaks, unit = speed.peaks, f" [{spectrum.unit}]" if spectrum.unit else ""
+    peaks, lines = speed.peaks, [peak.line for peak in speed.peaks]
+    unit = f" [{spectrum.unit}]" if spectrum.unit else ""
     return numbers(
         {
             "frequency [Hz]": [peak.frequency_hz for peak in peaks],
             f"amplitude{unit}": [peak.amplitude for peak in peaks],
             "order": [peak.name for peak in peaks],
-            "order [Hz]": [peak.line and peak.line.frequency_hz for peak in peaks],
-            "from [Hz]": [peak.line and peak.line.low_hz for peak in peaks],
-            "to [Hz]": [peak.line and peak.line.high_hz for peak in peaks],
+            "order [Hz]": [line.frequency_hz if line else None for line in lines],
+            "from [Hz]": [line.low_hz if line else None for line in lines],
+            "to [Hz]": [line.high_hz if line else None for line in lines],
             "others": ["; ".join(peak.others) for peak in peaks],
         }
     )
