@@ -167,8 +167,8 @@ def backlash_model(
     system, turning, name = assembly.system(*models), turning_line(assembly, pair), pair.name
     force = teeth.mean_force
     if turning is not None:
-        links = {**system.links, name: turning.mean_of(mesh_of(system, name))}
-        system = System(system.parts, links)
+        mean = replace(mesh_of(system, name), row=turning.mean[:6], to_row=turning.mean[6:])
+        system = System(system.parts, {**system.links, name: mean})
         force *= float(turning.mean[AXIAL] / assembly.contacts[name].pinion.vector[AXIAL])
     load = rotor_loads(assembly, torque_of(assembly, name, force))
     system = parting(system, teeth, damped)
@@ -176,7 +176,9 @@ def backlash_model(
     sways = {}
     if turning is not None and len(turning.further):
         # both rows turned as that of the mean line is
-        sways[name] = turning.further_of(mesh_of(system, name)), -turning.orders
+        rows, to_rows = turning.further[:, :6], turning.further[:, 6:]
+        further = replace(mesh_of(system, name), row=rows, to_row=to_rows, law=None)
+        sways[name] = further, -turning.orders
     return remainder(
         system,
         loss=loss,
@@ -385,14 +387,6 @@ class TurningLine:
     mean: np.ndarray  #: (12,) row of the mean line on the pinion, and on the gear
     further: np.ndarray  #: (r, 12) rows by which it turns
     orders: np.ndarray  #: (o, r) how much of each, by orders of the mesh
-
-    def mean_of(self, mesh: RowSpring) -> RowSpring:
-        """Return the teeth along the mean line."""
-        return replace(mesh, row=self.mean[:6], to_row=self.mean[6:])
-
-    def further_of(self, mesh: RowSpring) -> RowSpring:
-        """Return rows by which it turns, between the same ports."""
-        return replace(mesh, row=self.further[:, :6], to_row=self.further[:, 6:], law=None)
 
 
 def orders_of(angle: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

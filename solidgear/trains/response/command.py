@@ -142,36 +142,17 @@ def response(
     assembly = driven.assembly(reduced, train)
     (turns, origin), spectrum = at.turns(assembly.train), at.spectrum()
     mixes, driver = driven.mixes(assembly.train), assembly.train.named_mesh(driven.mesh)
-    highest, damping, matched = reduced.max_frequency, driven.damping, driven.matched_at or 0.0
+    how = {"highest_hz": reduced.max_frequency, "mesh": driver.name, **driven.losses}
     forces = _forces(force)
 
     def study(progress: Progress) -> Sheet:
         responses = [
-            respond(
-                assembly,
-                *mix,
-                highest_hz=highest,
-                damping=damping,
-                matched_hz=matched,
-                forces=forces,
-                mesh=driver.name,
-                turns=turns or None,
-            )
-            for mix in mixes
+            respond(assembly, *mix, forces=forces, turns=turns or None, **how) for mix in mixes
         ]
         # a force on a port has no order of the mesh
-        lines = None
-        if not forces:
-            lines = order_map(
-                assembly,
-                *mixes[0],
-                highest_hz=highest,
-                damping=damping,
-                matched_hz=matched,
-                mesh_orders=orders,
-                mesh=driver.name,
-            )
-        modes = (lines or train_modes(assembly, *mixes[0], max_frequency=highest)).modes
+        lines = None if forces else order_map(assembly, *mixes[0], mesh_orders=orders, **how)
+        limit = reduced.max_frequency
+        modes = (lines or train_modes(assembly, *mixes[0], max_frequency=limit)).modes
         within = NEAR if at.within is None else at.within
         speed = None
         if turns:
@@ -243,17 +224,10 @@ def receptance(
     begin, end = _end("--from", from_), _end("--to", to)
 
     def study(progress: Progress) -> Sheet:
+        highest, mixes = reduced.max_frequency, driven.mixes(assembly.train)
         receptances = [
-            between(
-                assembly,
-                *mix,
-                from_=begin,
-                to=end,
-                highest_hz=reduced.max_frequency,
-                damping=driven.damping,
-                matched_hz=driven.matched_at or 0.0,
-            )
-            for mix in driven.mixes(assembly.train)
+            between(assembly, *mix, from_=begin, to=end, highest_hz=highest, **driven.losses)
+            for mix in mixes
         ]
         teeth = assembly.train.per_turn(assembly.train.named_mesh(driven.mesh))
         return receptance_sheet(assembly, receptances, teeth, units_named(run.units))

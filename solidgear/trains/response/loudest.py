@@ -13,8 +13,8 @@ from solidgear.core import Scene
 from solidgear.core.plain import plain
 from solidgear.trains.file.train import PerTurn, Train
 from solidgear.trains.modes.modes import TrainMode
+from solidgear.trains.response.drive import highest_speed
 from solidgear.trains.response.response import OrderCurve, TrainResponse, figures
-from solidgear.trains.response.speeds import highest_speed
 
 #: relative, of frequencies that are the same
 SAME = 1e-9

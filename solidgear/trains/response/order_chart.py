@@ -78,16 +78,8 @@ def _mode_names(panel: Panel, orders: OrderMap, letter: int) -> None:
 
 
 def spread(places: np.ndarray, distance: float) -> np.ndarray:
-    """Return ascending places moved as little as possible so that neighbours are `distance` apart
-    and below 1.
-
-    Parameters
-    ----------
-    places : (n,) ndarray
-
-    Returns
-    -------
-    (n,) ndarray
+    """Return ascending places (n,) moved as little as possible so that neighbours are `distance`
+    apart and below 1.
 
     Examples
     --------
