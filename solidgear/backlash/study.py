@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -17,6 +17,8 @@ from solidgear.core.plain import plain
 from solidgear.trains.file.layout import PerTurn
 from solidgear.trains.file.train import Train
 
+#: a frequency, or several
+Frequency = TypeVar("Frequency", float, np.ndarray)
 CALM = "The teeth keep contact in all of the range: the linear answer holds to the last digit."
 #: of motions that repeat themselves otherwise than every mesh period
 WANDERS = "From {0} the periodic motion is unstable: {1} comes in, and a sweep may leave it there."
@@ -127,7 +129,7 @@ class BacklashStudy:
             lines.append(PHASES)
         return [*lines, DEPENDS]
 
-    def rpm(self, hz: Any) -> Any:
+    def rpm(self, hz: Frequency) -> Frequency:
         """Return speeds of the engine's shaft at frequencies of the driven mesh."""
         return 60 * hz / self.teeth_a_turn
 
@@ -177,8 +179,9 @@ class BacklashStudy:
             sentence = MERGED if branch.end == "merged" else APART
             span = self._range(range_of(branch.frequency_hz))
             lines.append(sentence.format(PERIODS[branch.periods], span, motion))
-        span, rest = self._range(range_of(search.omega / (2 * np.pi))), OTHERS if branches else NONE
-        lines.append(SEARCHED.format(search.starts, len(search.omega), span, max(STARTS), rest))
+        span = self._range(range_of(search.omega / (2 * np.pi)))
+        outcome = OTHERS if branches else NONE
+        lines.append(SEARCHED.format(search.starts, len(search.omega), span, max(STARTS), outcome))
         if search.lost:
             lost = ", ".join(self._place(omega / (2 * np.pi)) for omega in sorted({*search.lost}))
             lines.append(f"Further motions at {lost} could not be followed.")
@@ -221,8 +224,8 @@ class BacklashStudy:
             "swept up and down."
         ]
         for cycle in sorted(cycle for cycle in places if cycle > 1):
-            at = ", ".join(places[cycle])
-            lines.append(f"It repeats itself after {cycle} mesh periods at {at}.")
+            longer = ", ".join(places[cycle])
+            lines.append(f"It repeats itself after {cycle} mesh periods at {longer}.")
         if 0 in places:
             lines.append(f"It reached no steady motion at {', '.join(places[0])}.")
         return lines
@@ -310,7 +313,7 @@ class BacklashStudy:
 
     def _run_data(self, run: SpeedRun) -> dict[str, Any]:
         tolerance = self.train.ask.tolerance
-        driven, *others = [
+        driven, *further = [
             {
                 "mesh": mesh.backlash.teeth.mesh,
                 "largest": plain(mesh.loudest),
@@ -323,10 +326,10 @@ class BacklashStudy:
         ]
         del driven["mesh"]
         out = {"mesh_frequency_hz_each_second": run.ramp, "cycles": len(run.force), **driven}
-        return out | ({"other_meshes": others} if others else {})
+        return out | ({"other_meshes": further} if further else {})
 
     def _mix_data(self, mix: Backlash) -> dict[str, Any]:
-        driven, *others = [self._mesh_data(mesh) for mesh in mix.meshes]
+        driven, *further = [self._mesh_data(mesh) for mesh in mix.meshes]
         del driven["mesh"]
         search = mix.search and {
             "frequency_hz": (mix.search.omega / (2 * np.pi)).tolist(),
@@ -345,7 +348,7 @@ class BacklashStudy:
             "apart": [_branch_data(branch) for branch in mix.branches_apart],
             **driven,
         }
-        return out | ({"other_meshes": others} if others else {})
+        return out | ({"other_meshes": further} if further else {})
 
     def _mesh_data(self, mesh: Backlash) -> dict[str, Any]:
         errors = mesh.linear_errors(self.train.ask.decibels)

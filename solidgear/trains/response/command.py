@@ -142,15 +142,15 @@ def response(
     assembly = driven.assembly(reduced, train)
     (turns, origin), spectrum = at.turns(assembly.train), at.spectrum()
     mixes, driver = driven.mixes(assembly.train), assembly.train.named_mesh(driven.mesh)
-    how = {"highest_hz": reduced.max_frequency, "mesh": driver.name, **driven.losses}
+    options = {"highest_hz": reduced.max_frequency, "mesh": driver.name, **driven.losses}
     forces = _forces(force)
 
     def study(progress: Progress) -> Sheet:
         responses = [
-            respond(assembly, *mix, forces=forces, turns=turns or None, **how) for mix in mixes
+            respond(assembly, *mix, forces=forces, turns=turns or None, **options) for mix in mixes
         ]
         # a force on a port has no order of the mesh
-        lines = None if forces else order_map(assembly, *mixes[0], mesh_orders=orders, **how)
+        lines = None if forces else order_map(assembly, *mixes[0], mesh_orders=orders, **options)
         limit = reduced.max_frequency
         modes = (lines or train_modes(assembly, *mixes[0], max_frequency=limit)).modes
         within = NEAR if at.within is None else at.within
