@@ -37,7 +37,7 @@ from solidgear.trains.page.files import places
 JUMPS = text("jump up, Hz"), text("jump down, Hz")
 #: what charts say
 FORCES = (
-    "Dynamic mesh force over the speed of the pinion: periodic motions with backlash, stable and "
+    "Dynamic mesh force over the speed of the {0}: periodic motions with backlash, stable and "
     "unstable, with the jumps between them, runs through the speeds, and the linear answer. Below: "
     "contact over the cycle, and the orders of the largest force."
 )
@@ -77,7 +77,10 @@ def nonlinear_sheet(
             results=(),
             broken=False,
         ),
-        words={"nonlinear": FORCES, **dict.fromkeys(waterfalls, SPECTRA)},
+        words={
+            "nonlinear": FORCES.format(study.teeth_a_turn.of),
+            **dict.fromkeys(waterfalls, SPECTRA),
+        },
     )
 
 

@@ -39,7 +39,7 @@ MOST, MOST_NEAR = 30, 10
 WORDS = {
     "response": "Dynamic mesh force and transmission error of each model.",
     "orders": (
-        "Orders of the mesh and of both shafts over the speed of the pinion, and the natural "
+        "Orders of the mesh and of {0} shafts over the speed of the {1}, and the natural "
         "frequencies they meet. Colour: mesh force along orders of the transmission error."
     ),
     "housing": (
@@ -108,6 +108,7 @@ def response_sheet(result: Responses, units: Units) -> Sheet:
             peaks = measured(speed, speed.spectrum, MOST)
             printed.append(peaks or f"{peaks.title}: none stands out of the noise.")
     notes = [] if speed is None else speed.notes()
+    shafts = "both" if len(result.assembly.train.shafts) == 2 else "all"
     return Sheet(
         name="response",
         title=title,
@@ -130,7 +131,7 @@ def response_sheet(result: Responses, units: Units) -> Sheet:
             closing=[*notes, *unpublished_lines(unpublished), *map(caution, first.cautions)],
             broken=False,
         ),
-        words=WORDS,
+        words={**WORDS, "orders": WORDS["orders"].format(shafts, shaft)},
     )
 
 
