@@ -124,12 +124,12 @@ GROUPS = {
             "Natural frequencies of a train, each with its name and a proven bound.",
         ),
         "response": Entry(
-            "trains.command",
+            "trains.response.command",
             "Steady response to the transmission error: mesh force, reactions, motions, and a "
             "chart.",
         ),
         "receptance": Entry(
-            "trains.response.receptance_command",
+            "trains.response.command",
             "Receptance between any two ports of a train: table, chart, and peaks with their "
             "modes.",
         ),

@@ -30,20 +30,12 @@ KINDS = ("png", "svg")
 #: what charts say in words, by how their names begin
 WORDS = {
     "response": "Dynamic mesh force and transmission error of each model.",
-    "orders": (
-        "Orders of the mesh and of both shafts over the speed of the pinion, and the natural "
-        "frequencies they meet. Colour: mesh force along orders of the transmission error."
-    ),
     "deflection": (
         "Deflection lines of every shaft in both planes, by every model; dashed lines are bearings."
     ),
     "turn_": (
         "Mesh force of every planet over a turn of its carrier from the file's position on; "
         "bearings have their stiffness at rest."
-    ),
-    "measured": (
-        "The measured spectrum, its peaks named by their orders at this speed, above the computed "
-        "mesh force. Grey lines: natural frequencies."
     ),
     "section_forces": (
         "Section forces along the shaft; with two components, the dashed line is their resultant."
@@ -62,20 +54,10 @@ WORDS = {
     ),
     "designs": "The goal in every design solved, each with its error bar.",
     "sweep": "Natural frequencies and other columns over the number that varies.",
-    "nonlinear": (
-        "Dynamic mesh force over the speed of the pinion: periodic motions with backlash, stable and "
-        "unstable, with the jumps between them, runs through the speeds, and the linear answer. Below: "
-        "contact over the cycle, and the orders of the largest force."
-    ),
     "housing": (
         "Loads on the mounts of the housing and accelerations of its points, over all three "
         "directions."
     ),
-    "waterfall": (
-        "Spectra of the mesh force along the run, each over 16 to 64 mesh cycles around its speed; grey: "
-        "orders of the mesh."
-    ),
-    "receptance": "Amplitude and phase of the receptance of every model.",
     "sensitivities": "Change of the number for one per cent more of each entry.",
 }
 
@@ -103,7 +85,7 @@ class Terminal:
     """Parts that a terminal shows in another way than the page; None is as on the page."""
 
     heading: Sequence[str | Table] | None = None  #: in place of title and lead
-    tables: Sequence[Table] | None = None
+    tables: Sequence[Table | str] | None = None
     closing: Sequence[str] | None = None  #: in place of notes and cautions
     #: sentences longer than a line: broken at the width, with further lines indented, or whole
     lines: Literal["broken", "hanging", "whole"] = "broken"

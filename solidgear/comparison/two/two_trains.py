@@ -532,7 +532,7 @@ def _sections(pair: TwoTrains, units: Units) -> list[Section]:
     by_unit = [reactions(pair, unit) for unit in ("N", "N m")]
     by_shaft = [motions(pair, shaft) for shaft in pair.models]
     peaks = [peak_table(pair, units)]
-    housing = train_tables.housing_columns(pair)
+    housing = train_tables.housing_columns(pair.columns)
     facts = [
         train_tables.facts(pair.results["trains"][letter], units, f"Train {train.label}")
         for letter, train in pair.by_letter.items()

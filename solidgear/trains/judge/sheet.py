@@ -138,7 +138,7 @@ def _sections(comparison: TrainComparison, units: Units, viewer: str) -> list[Se
     force: dict[str, Make] = {
         "response": partial(response_chart, drawn, title, teeth, verdict.decibels, marks, units)
     }
-    if housing := train_tables.housing_columns(judge):
+    if housing := train_tables.housing_columns(judge.columns):
         force["housing"] = partial(columns_chart, [judge], housing, teeth, units)
     chain = "Engine, shafts, teeth and load"
     if len(train.shafts) == 2:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from math import degrees
 from typing import Any
 
@@ -69,11 +69,11 @@ def _housing(box: Mapping[str, Any], units: Units) -> list[list[str]]:
     return rows
 
 
-def housing_columns(response: TrainResponse) -> list[tuple[str, str]]:
+def housing_columns(columns: Iterable[str]) -> list[tuple[str, str]]:
     """Return columns of a response for its housing, with their titles."""
     return [
         (column, column.partition(" [")[0])
-        for column in response.columns
+        for column in columns
         if column.startswith("mount ")
         and " force [" in column
         or column.startswith("housing ")
@@ -84,7 +84,7 @@ def housing_columns(response: TrainResponse) -> list[tuple[str, str]]:
 def housing(response: TrainResponse, units: Units = ENGINEERING) -> Table:
     """Return the largest loads of mounts and accelerations of the housing over a response."""
     rows = []
-    for column, name in housing_columns(response):
+    for column, name in housing_columns(response.columns):
         size = abs(response.columns[column])
         si, top = column.partition(" [")[2].rstrip("]"), int(size.argmax())
         rows.append((name, units.text(float(size[top]), si, 4), response.frequency_hz[top]))
