@@ -12,12 +12,12 @@ from rich.console import Console
 
 import solidgear as sg
 from solidgear.app.application import app
+from solidgear.comparison.page.sheet import final_table
 from solidgear.comparison.recording import recorded
 from solidgear.core.judge.quantities import change
 from solidgear.core.judge.record import Record
 from solidgear.core.judge.study import study
 from solidgear.core.scene import Bearing, Port, Scene, Segment
-from solidgear.show.terminal import final_table
 from tests.dense import rigid_at
 from tests.plain import render_page
 

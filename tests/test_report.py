@@ -15,11 +15,10 @@ from rich.console import Console
 
 import solidgear as sg
 from solidgear.comparison.page import charts
-from solidgear.comparison.recording import recorded
+from solidgear.comparison.recording import as_record, recorded
 from solidgear.core.errors import SolidgearError
 from solidgear.core.judge.record import SCHEMA, Record
 from solidgear.show import viewer
-from solidgear.show.border import as_record
 from solidgear.show.page_parts import data_uri
 from solidgear.show.plot import WIDE
 from solidgear.show.terminal import matrix_table, modes_table

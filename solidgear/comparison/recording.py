@@ -1,11 +1,23 @@
-"""Record of a comparison, built from the solutions."""
+"""Record of a comparison, built from the solutions or read from a file."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import asdict
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from solidgear.core import COMPLIANCE, DOF_NAMES, FIRST_BENDING, LADDER, SCENE, Record, Solution
+from pydantic import ValidationError
+
+from solidgear.core import (
+    COMPLIANCE,
+    DOF_NAMES,
+    FIRST_BENDING,
+    LADDER,
+    SCENE,
+    Record,
+    SolidgearError,
+    Solution,
+)
 from solidgear.core.judge.at_rest import spin_caution
 from solidgear.core.judge.bars import ErrorBar
 from solidgear.core.judge.completeness import completeness, cut_short, split_apart
@@ -15,6 +27,7 @@ from solidgear.core.judge.hidden import COMPLETE, less_widest
 from solidgear.core.judge.lumped import model_facts, model_record
 from solidgear.core.judge.quantities import usual
 from solidgear.core.judge.record import (
+    SCHEMA,
     BarRecord,
     BarSummary,
     CauseRecord,
@@ -310,3 +323,43 @@ def _mac(solutions: dict[str, Solution], reference: str | None) -> MacRecord | N
         if model != reference
     }
     return MacRecord(reference=reference, stations=base.stations.tolist(), models=tables)
+
+
+def as_record(data: Mapping[str, Any], name: str = "the results") -> Record:
+    """Return the plain data, such as ``results.json`` has it, as a record.
+
+    Parameters
+    ----------
+    data : mapping
+        Parts may be missing.  Data without a ``schema`` is taken for current.
+    name : str
+        What an error calls it.
+
+    Raises
+    ------
+    SolidgearError
+        For data of another version of the layout, or data that is no record.
+
+    Examples
+    --------
+    >>> as_record({"verdict": {"trust": "harmonic"}}).verdict.trust
+    'harmonic'
+    >>> as_record({"schema": 2}, "out/results.json")
+    Traceback (most recent call last):
+    solidgear.core.errors.SolidgearError: out/results.json: written by an older version of solidgear (layout 2; this version reads 4); run solidgear compare again
+    """
+    version = data.get("schema")
+    if version is not None and version != SCHEMA:
+        older = isinstance(version, int) and version < SCHEMA
+        raise SolidgearError(
+            f"{name}: written by {'an older' if older else 'another'} version of solidgear "
+            f"(layout {version}; this version reads {SCHEMA}); run solidgear compare again"
+        )
+    try:
+        return Record.model_validate(data)
+    except ValidationError as error:
+        first = error.errors()[0]
+        place = ".".join(str(part) for part in first["loc"])
+        raise SolidgearError(
+            f"{name}: {place} cannot be read ({first['msg']}); run solidgear compare again"
+        ) from None

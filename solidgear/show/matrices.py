@@ -6,13 +6,14 @@ from collections.abc import Collection, Sequence
 
 from solidgear.core import DOF_NAMES
 from solidgear.core.quantity import BLOCK_UNITS
-from solidgear.show.reading import entry, is_nothing
 from solidgear.show.table import Cell, Table
 from solidgear.show.units import Units
 from solidgear.show.words import is_number
 
 #: a row of numbers each for six components
 Rows = Sequence[Sequence[float | None]]
+#: below this share of the geometric mean of its diagonal entries a coupling is next to nothing
+FAINT = 1e-6
 
 
 def block(
@@ -64,3 +65,17 @@ def block(
         style="matrix",
         over=[tuple(map(units.unit, pair)) for pair in quarters],
     )
+
+
+def entry(matrix: Rows | None, i: int, j: int) -> float | None:
+    """Return one entry of a matrix; None if there is none."""
+    if matrix is None or i >= len(matrix) or j >= len(matrix[i]):
+        return None
+    return matrix[i][j]
+
+
+def is_nothing(value: float | None, first: float | None, second: float | None) -> bool:
+    """Return True where a coupling is negligible beside two entries of its size."""
+    if value is None or first is None or second is None:
+        return False
+    return abs(value) <= FAINT * abs(first * second) ** 0.5

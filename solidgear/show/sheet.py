@@ -23,6 +23,8 @@ from solidgear.show.table import Table
 from solidgear.show.units import in_ascii
 
 if TYPE_CHECKING:
+    from rich.console import RenderableType
+
     from solidgear.show.options import Run
 
 #: what charts say in words, by how their names begin
@@ -103,8 +105,9 @@ class Terminal:
     """Parts that a terminal shows in another way than the page; None is as on the page."""
 
     heading: Sequence[str] | None = None  #: in place of title and lead
-    tables: Sequence[Table] | None = None
+    tables: Sequence[RenderableType] | None = None
     closing: Sequence[str] | None = None  #: in place of notes and cautions
+    unbroken: Sequence[str] = ()  #: last, a line of any length each
 
 
 @dataclass(frozen=True)
@@ -126,11 +129,12 @@ class Sheet:
     viewer: str = ""  #: HTML of shapes, of the page alone
     reached: bool = True  #: whether every error bar is within the tolerance
     terminal: Terminal = Terminal()
+    exit_code: int = 0  #: of a run that ended early, after its numbers
 
 
 def present(study: Callable[[Progress], Sheet], run: Run, out: Path | None = None) -> None:
     """Solve a study, write its folder if there is one, print its sheet, and exit with code 3 where
-    the tolerance is not reached.
+    the tolerance is not reached, or with that of the sheet.
     """
     with held(out) if out else nullcontext(), run.progress() as progress:
         sheet = study(progress)
@@ -141,10 +145,11 @@ def present(study: Callable[[Progress], Sheet], run: Run, out: Path | None = Non
         print_sheet(sheet)
         if files:
             say(f"Written: {', '.join(map(str, files))}", soft_wrap=False)
-    if not sheet.reached:
+    exit_code = sheet.exit_code or (0 if sheet.reached else NOT_REACHED)
+    if exit_code:
         import typer  # start-up: pages are written without a command line
 
-        raise typer.Exit(NOT_REACHED)
+        raise typer.Exit(exit_code)
 
 
 def print_sheet(sheet: Sheet) -> None:
@@ -160,6 +165,7 @@ def print_sheet(sheet: Sheet) -> None:
     results = [in_ascii(sheet.headline), *sheet.verdict]
     say(*heading, *(table for table in tables if table), soft_wrap=False)
     say(*(sentence for sentence in results if sentence), *closing, soft_wrap=False)
+    say(*terminal.unbroken)
 
 
 def as_json(sheet: Sheet) -> str:

@@ -14,7 +14,6 @@ from solidgear.core import SolidgearError
 from solidgear.show.folder import begun, prepare
 from solidgear.show.outputs import OUTPUTS
 from solidgear.show.page_parts import data_uri
-from solidgear.show.reading import model_name
 from solidgear.show.render import Drawing, RenderJob, render_modes
 from solidgear.show.sheet import write_json
 from solidgear.show.turning import Turned, turned
@@ -103,7 +102,7 @@ def _jobs(record: Record, shapes: dict[str, Solution], folder: Path) -> dict[str
             continue
         path = folder / f"mode_{model}.png"
         path.unlink(missing_ok=True)  # whoever made it, it must not pass for this run's
-        drawn = Drawn(solution.body, solution.modes, model_name(record, model))
+        drawn = Drawn(solution.body, solution.modes, record.name(model))
         job = _try(record, f"render of {model}", drawn.job, name, path)
         if job is not None:
             jobs[model] = job
@@ -129,7 +128,7 @@ def _write_turned(record: Record, shapes: dict[str, Solution], folder: Path) -> 
     for key, solution in reversed(shapes.items()):
         if solution.body.geometry is None or _drawn_mode(solution.modes) is None:
             continue
-        models.append(turned(solution.body, solution.modes, model_name(record, key), models))
+        models.append(turned(solution.body, solution.modes, record.name(key), models))
         if not still and key in record.images:
             still = data_uri(key, folder / record.images[key]) or ""
     if models:

@@ -16,6 +16,8 @@ import gc
 import json
 import logging
 import math
+import subprocess
+import sys
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -23,8 +25,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from solidgear.comparison.race.cases import AUTO
-from solidgear.comparison.race.pareto import CHARTED, Race, Row
+from solidgear.comparison.race.race import AUTOMATIC, CHARTED, WHOLE, Race, Reference, Row
 from solidgear.core import (
     BEAM,
     FIRST_BENDING,
@@ -42,6 +43,7 @@ from solidgear.core.judge.refinement import Refinement
 from solidgear.core.judge.solving import Answer, Statics, solve
 from solidgear.core.ladder.model import LUMPED
 from solidgear.core.machine.meter import processor_seconds
+from solidgear.core.machine.patience import Patience
 from solidgear.core.solve.condensed import Condensed
 from solidgear.core.solve.families import FAMILIES
 
@@ -50,6 +52,11 @@ if TYPE_CHECKING:
 
 
 log = logging.getLogger(__name__)
+#: name of the automatic choice among models in rows of a chart, and its tolerances
+AUTO = "auto"
+TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4)
+#: s of processor time that a fresh interpreter may take for its imports
+SETUP = 120.0
 #: relative error bar of the reference, below the gaps between models; one of a millionth
 #: takes minutes on a shaft of ten edges
 SURE, FULL_SURE = 3e-4, 1e-6
@@ -64,6 +71,77 @@ CHEAP = (LUMPED, BEAM)
 GROWTH = 3.0
 
 
+def plan(scene: Scene, full: bool = False) -> list[Row]:
+    """List series of every family, uniform and graded, level by level, and the automatic choice by
+    tolerances; of a model that does not fit the scene one row with the reason. With more levels
+    when full, up to solids of several hundred thousand unknowns.
+    """
+    rows = [
+        Row(family, label, level, model.name, options)
+        for model in LADDER
+        if not model.unfit(scene)
+        for family, label, all_options in model.series(scene, full)
+        for level, options in enumerate(all_options, start=1)
+    ]
+    unfit = ((model, model.unfit(scene)) for model in LADDER if model.concerns(scene))
+    rows += [
+        Row(model.family, model.heading, 1, model.name, {}, "failed", reason)
+        for model, reason in unfit
+        if reason
+    ]
+    rows += [
+        Row(AUTOMATIC, AUTOMATIC, level, AUTO, {"tol": tol})
+        for level, tol in enumerate(TOLERANCES, start=1)
+    ]
+    return sorted(rows, key=lambda row: row.level)
+
+
+_SETUP = """
+import json, time
+seconds, start = {}, time.perf_counter()
+def lap(name):
+    global start
+    now = time.perf_counter()
+    seconds[name], start = now - start, now
+from solidgear.core.machine.threads import pin
+pin()
+import numpy, scipy.sparse.linalg, scipy.optimize
+lap("numpy and scipy")
+import solidgear.core.models.harmonic.body, solidgear.core.models.solid.body, solidgear.core.models.beam.body
+import solidgear.core.solve.modes, solidgear.core.scene.file
+lap("solidgear and scikit-fem")
+try:
+    import gmsh
+    gmsh.initialize(["gmsh", "-noenv"], readConfigFiles=False)
+    lap("gmsh, first use")
+    import pypardiso
+    pypardiso.PyPardisoSolver(mtype=2)
+    lap("MKL, first use")
+except Exception:
+    pass
+print(json.dumps(seconds))
+"""
+
+
+def setup_seconds() -> dict[str, float]:
+    """Measure the seconds that a fresh interpreter pays once before the first model, by purpose;
+    empty where none can be started.
+    """
+    try:
+        with subprocess.Popen(
+            [sys.executable, "-c", _SETUP],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            text=True,
+        ) as child:
+            assert child.stdout is not None
+            Patience(SETUP).wait(child)
+            return json.loads(child.stdout.read().splitlines()[-1])
+    except (OSError, ValueError, IndexError) as error:
+        log.info("set-up costs: %s", error)
+        return {}
+
+
 def race(
     scene,
     rows: list[Row],
@@ -76,7 +154,7 @@ def race(
     keep: Callable[[Race], None] = lambda _: None,
 ) -> Race:
     """Solve a scene in many ways, in turns, so that a noisy spell of the machine hits all equally;
-    rows (:func:`solidgear.comparison.race.cases.plan`) are filled in. After Ctrl-C the finished runs are
+    rows (:func:`plan`) are filled in. After Ctrl-C the finished runs are
     returned, with ``complete`` False.
 
     Parameters
@@ -177,7 +255,7 @@ def scaled_error(compliance: np.ndarray, reference: np.ndarray) -> float | None:
     return float(np.abs((a - b) / np.outer(size, size)).max())
 
 
-def _reference(scene, sure: float, n: int, progress) -> tuple[dict, np.ndarray]:
+def _reference(scene, sure: float, n: int, progress) -> tuple[Reference, np.ndarray]:
     """Solve the model that judges the scene, refined to an error bar; return the record and the
     compliance.
     """
@@ -198,20 +276,20 @@ def _reference(scene, sure: float, n: int, progress) -> tuple[dict, np.ndarray]:
     if model.bounded:  # beams are of revolution, as it is; section ties ask less of its mesh
         progress("reference with section ties")
         like = answer(scene.with_attachment("section"), model.name, settled.options, n).quantities
-    record = {
-        "model": model.title,
-        "options": json.loads(json.dumps(settled.options)),
-        "setting": settled.setting,
-        "unknowns": reference_answer.body.size,
-        "seconds": seconds,
-        "values": {q: values[q] for q in have},
-        "bands": {q: settled.bars[q] for q in have},
-        "like_for_like": {q: like[q] for q in have if q in like},
-    }
+    record = Reference(
+        model=model.title,
+        options=json.loads(json.dumps(settled.options)),
+        setting=settled.setting,
+        unknowns=reference_answer.body.size,
+        seconds=seconds,
+        values={q: values[q] for q in have},
+        bands={q: settled.bars[q] for q in have},
+        like_for_like={q: like[q] for q in have if q in like},
+    )
     return record, reference_answer.statics.main.compliance
 
 
-def _run(scene, row: Row, n: int, reference: dict, compliance: np.ndarray) -> None:
+def _run(scene, row: Row, n: int, reference: Reference, compliance: np.ndarray) -> None:
     """Run a row once more; the first run fills in the numbers."""
     gc.collect()
     start, began = time.perf_counter(), processor_seconds()
@@ -234,19 +312,19 @@ def _run(scene, row: Row, n: int, reference: dict, compliance: np.ndarray) -> No
         return
     row.status, values = "ok", result.quantities
     row.unknowns = 6 if row.family == LUMPED else result.body.size
-    row.values = {q: values[q] for q in reference["values"] if q in values}
-    row.errors = {q: abs(v / reference["values"][q] - 1) for q, v in row.values.items()}
-    if row.family in CHEAP and reference["like_for_like"]:
+    row.values = {q: values[q] for q in reference.values if q in values}
+    row.errors = {q: abs(v / reference.values[q] - 1) for q, v in row.values.items()}
+    if row.family in CHEAP and reference.like_for_like:
         like = answer(scene.with_attachment("section"), row.model, row.options, n).quantities
         row.like_for_like = {
-            q: abs(like[q] / v - 1) for q, v in reference["like_for_like"].items() if q in like
+            q: abs(like[q] / v - 1) for q, v in reference.like_for_like.items() if q in like
         }
-    missing = [q for q in reference["values"] if q not in values]
+    missing = [q for q in reference.values if q not in values]
     if missing:
         _note(row, f"found no {' and no '.join(missing)}")
     compliance_error = scaled_error(result.statics.main.compliance, compliance)
     if compliance_error is not None:
-        row.errors["C 6x6"] = compliance_error
+        row.errors[WHOLE] = compliance_error
 
 
 def _failure(error: Exception) -> str:
