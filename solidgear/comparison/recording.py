@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict
+from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from pydantic import ValidationError
@@ -14,9 +14,12 @@ from solidgear.core import (
     FIRST_BENDING,
     LADDER,
     SCENE,
+    OpenNumbers,
+    Quantity,
     Record,
     SolidgearError,
     Solution,
+    WhereRecord,
 )
 from solidgear.core.judge.at_rest import spin_caution
 from solidgear.core.judge.bars import ErrorBar
@@ -44,7 +47,7 @@ from solidgear.core.judge.record import (
     PortRecord,
     VariantRecord,
 )
-from solidgear.core.judge.solving import ENOUGH, Answer, Statics
+from solidgear.core.judge.solving import ENOUGH, Answer
 from solidgear.core.judge.verdict import Judgement, judge, percent, trusted
 from solidgear.core.ladder.model import LUMPED, SOLID
 from solidgear.core.machine.environment import environment
@@ -54,18 +57,23 @@ if TYPE_CHECKING:
     from solidgear.core import Scene
 
 
-def recorded(
-    scene: Scene,
-    solutions: dict[str, Solution],
-    failed: dict[str, str],
-    causes: list[CauseRecord],
-    lumped: dict[str, LumpedRecord],
-    guards: list[GuardRecord],
-    complete: bool,
-) -> Record:
-    """Build the record of a comparison; `failed` holds the reasons of models that could not be
-    solved, and `complete` is False after an interrupt.
-    """
+@dataclass
+class Findings:
+    """Findings of a comparison so far; an interrupt leaves them whole."""
+
+    solutions: dict[str, Solution] = field(default_factory=dict)
+    failed: dict[str, str] = field(default_factory=dict)  #: why models could not be solved
+    causes: list[CauseRecord] = field(default_factory=list)
+    lumped: dict[str, LumpedRecord] = field(default_factory=dict)
+    guards: list[GuardRecord] = field(default_factory=list)
+    where: WhereRecord | None = None
+    open_: OpenNumbers = field(default_factory=OpenNumbers)
+    complete: bool = True  #: False after an interrupt
+
+
+def recorded(scene: Scene, findings: Findings) -> Record:
+    """Build the record of a comparison."""
+    solutions, guards = findings.solutions, findings.guards
     trust, _ = trusted(solutions, scene.ask.tolerance, usual(scene))
     # Where nothing may judge, the distances are still reported; they are no judgement.
     reference = trust or next((m for m in LADDER.judges if m in solutions), None)
@@ -76,28 +84,33 @@ def recorded(
     for model in LADDER.bodies:
         if model in solutions:
             models[model] = _model_record(solutions[model], validity[model])
-        elif model in failed:
-            models[model] = ModelRecord(**model_facts(model), valid=False, why_not=failed[model])
+        elif why_not := findings.failed.get(model):
+            models[model] = ModelRecord(**model_facts(model), valid=False, why_not=why_not)
+    ports = [_port_record(scene, solutions, k) for k in range(len(scene.ports))]
     out = Record(
-        complete=complete,
+        complete=findings.complete,
         scene=scene.as_dict(),
-        port=_port_record(scene, solutions, 0),
-        further_ports=[
-            _port_record(scene, solutions, k) for k in range(1, len(scene.ports)) if solutions
-        ],
-        attachments=_attachments(solutions),
+        port=ports[0],
+        further_ports=ports[1:] if solutions else [],
+        attachments={
+            model: {tie: _variant_record(answer) for tie, answer in solution.variants.items()}
+            for model, solution in solutions.items()
+            if solution.variants
+        },
         mac=_mac(solutions, reference),
         deviations=[_deviation_record(gap) for gap in gaps],
-        causes=causes,
-        lumped=lumped,
+        causes=findings.causes,
+        lumped=findings.lumped,
         verdict=verdict,
         guards=guards,
+        where=findings.where,
+        open=findings.open_,
         environment=environment(),
         models=models,
         missing=[LADDER[model].title for model in LADDER.fit(scene) if model not in models],
     )
-    if lumped and reference:
-        _add_lumped(out, solutions[reference], guards, scene.ask.tolerance, scene.ask.lumped)
+    if out.lumped and reference:
+        _add_lumped(out, solutions[reference], scene)
     out.warnings = _warnings(solutions, guards, out.models)
     if listed := solutions.get(reference or next(reversed(solutions), "")):
         error_bars = {str(q): bar.width for q, bar in listed.error_bars.get(SCENE, {}).items()}
@@ -127,14 +140,6 @@ def _deviation_record(gap: Deviation) -> DeviationRecord:
     )
 
 
-def _attachments(solutions: dict[str, Solution]) -> dict[str, dict[str, VariantRecord]]:
-    return {
-        model: {name: _variant_record(answer) for name, answer in solution.variants.items()}
-        for model, solution in solutions.items()
-        if solution.variants
-    }
-
-
 def _warnings(
     solutions: dict[str, Solution], guards: list[GuardRecord], models: dict[str, ModelRecord]
 ) -> list[str]:
@@ -158,20 +163,18 @@ def _warnings(
     return out
 
 
-def _add_lumped(
-    record: Record, base: Solution, guards: list[GuardRecord], tolerance: float, synthesis: bool
-) -> None:
+def _add_lumped(record: Record, base: Solution, scene: Scene) -> None:
     """Add the lumped model to the models, and the errors of every synthesis only where they are
     asked for.
     """
-    bar = base.error_bars.get(SCENE, {}).get(FIRST_BENDING)
+    bar, tolerance = base.error_bars.get(SCENE, {}).get(FIRST_BENDING), scene.ask.tolerance
     lumped_model = model_record(
         record.lumped,
         record.models,
         base.quantities.get(FIRST_BENDING),
         tolerance,
         bar.width if bar else None,
-        guards,
+        record.guards,
     )
     if lumped_model is None:
         return
@@ -193,13 +196,13 @@ def _add_lumped(
             f"({masses}), for first bending and below only."
         )
     variants = record.lumped[base.model].variants if base.model in record.lumped else {}
-    if not variants or verdict.trust is None or not synthesis:
+    if not variants or verdict.trust is None or not scene.ask.lumped:
         return
-    errors = [
-        f"{n} {_error(v.frequency_error)}"
-        for n, v in variants.items()
-        if v.feasible and v.frequency_error is not None
-    ]
+    errors = []
+    for name, variant in variants.items():
+        error = variant.frequency_error
+        if variant.feasible and error is not None:
+            errors.append(f"{name} exact" if abs(error) < 1e-9 else f"{name} {100 * error:+.2g} %")
     verdict.sentences.append(
         f"First bending of lumped models made from the {LADDER[base.model].title}: "
         f"{', '.join(errors)}."
@@ -211,69 +214,46 @@ def _add_lumped(
         )
 
 
-def _error(relative: float) -> str:
-    return "exact" if abs(relative) < 1e-9 else f"{100 * relative:+.2g} %"
-
-
 def _model_record(solution: Solution, judgement: Judgement) -> ModelRecord:
-    return ModelRecord(
+    statics, coupled = solution.ties[SCENE].statics, solution.ties[SCENE].statics.coupled
+    bars = solution.error_bars.get(SCENE, {})
+    record = ModelRecord(
         **model_facts(solution.model),
         valid=judgement.valid,
         open=judgement.open,
         why_not=judgement.why_not,
         compliance=solution.condensed.compliance,
         stiffness=solution.condensed.stiffness,
-        points={
-            name: PointRecord.model_validate(condensed)
-            for name, condensed in solution.ties[SCENE].statics.further.items()
-        },
-        coupled=_coupled(solution.ties[SCENE].statics),
+        points={name: PointRecord.model_validate(c) for name, c in statics.further.items()},
         modes=[ModeRecord.model_validate(m) for m in solution.modes.modes],
-        band=_bar_summary(solution),
-        convergence=_convergence(solution),
         dofs=solution.body.size,
         seconds=solution.meter.total(),
         peak_mb=solution.meter.peak_mb,
         backend=solution.condensed.evidence["backend"],
         mesh=solution.body.mesh,
-        evidence=_evidence(solution),
+        evidence=_evidence(solution, bars),
     )
-
-
-def _coupled(statics: Statics) -> CoupledRecord | None:
-    coupled = statics.coupled
-    if coupled is None:
-        return None
-    return CoupledRecord(
-        ports=list(coupled.ports),
-        stiffness=coupled.stiffness,
-        compliance=coupled.compliance,
-        stiffness_error=coupled.evidence["stiffness_error"],
-    )
-
-
-def _bar_summary(solution: Solution) -> BarSummary | None:
-    error_bars = solution.error_bars.get(SCENE, {})
-    if not error_bars:
-        return None
-    method = next(iter(error_bars.values())).method
-    return BarSummary(
-        compliance=max(
-            (b.width for q, b in error_bars.items() if q.kind == COMPLIANCE), default=None
-        ),
-        method=f"{method}, {len(solution.levels)} meshes",
-        each={name: bar.width for name, bar in error_bars.items()},
-    )
-
-
-def _convergence(solution: Solution) -> ConvergenceRecord | None:
-    error_bars = solution.error_bars.get(SCENE, {})
-    if not error_bars:
-        return None
-    return ConvergenceRecord(
-        levels=solution.levels,
-        quantities={name: _bar_record(bar) for name, bar in error_bars.items()},
-    )
+    if coupled is not None:
+        record.coupled = CoupledRecord(
+            ports=list(coupled.ports),
+            stiffness=coupled.stiffness,
+            compliance=coupled.compliance,
+            stiffness_error=coupled.evidence["stiffness_error"],
+        )
+    if bars:
+        method = next(iter(bars.values())).method
+        record.band = BarSummary(
+            compliance=max(
+                (bar.width for q, bar in bars.items() if q.kind == COMPLIANCE), default=None
+            ),
+            method=f"{method}, {len(solution.levels)} meshes",
+            each={name: bar.width for name, bar in bars.items()},
+        )
+        record.convergence = ConvergenceRecord(
+            levels=solution.levels,
+            quantities={name: _bar_record(bar) for name, bar in bars.items()},
+        )
+    return record
 
 
 def _bar_record(bar: ErrorBar) -> BarRecord:
@@ -281,12 +261,10 @@ def _bar_record(bar: ErrorBar) -> BarRecord:
     return BarRecord(gci=facts.pop("width"), **facts)
 
 
-def _evidence(solution: Solution) -> EvidenceRecord:
+def _evidence(solution: Solution, bars: Mapping[Quantity, ErrorBar]) -> EvidenceRecord:
     statics = solution.condensed.evidence
-    error_bars = solution.error_bars.get(SCENE, {})
-    evidence = less_widest(
-        solution.modes.evidence, [bar.width for q, bar in error_bars.items() if q.is_frequency]
-    )
+    widths = [bar.width for q, bar in bars.items() if q.is_frequency]
+    evidence = less_widest(solution.modes.evidence, widths)
     return EvidenceRecord(
         asymmetry=statics["asymmetry"],
         refinement_residual=statics["residual"],

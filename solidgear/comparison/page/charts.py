@@ -65,7 +65,7 @@ def _convergence(name: str, model: ModelRecord, quantity: Quantity) -> Panel | N
         return None
     along = next((a for a in ("h", "order") if all(_place(level, a) for level in levels)), "dofs")
     colour = model.colour
-    spots = []
+    spots: list[dict[str, Any]] = []
     for level in levels:
         x, value = _place(level, along), level.quantities.get(quantity)
         if x is None or value is None:
@@ -85,7 +85,7 @@ def _convergence(name: str, model: ModelRecord, quantity: Quantity) -> Panel | N
         return None
     spots.sort(key=lambda spot: (spot["x"], spot["y"]))
     xs, ys = [spot["x"] for spot in spots], [spot["y"] for spot in spots]
-    low, high = min(ys) / 3, max(ys) * 3
+    low, high = min(ys) / 3, 3 * max(ys)
     if bar.gci:
         low, high = min(low, bar.gci / 3), max(high, bar.gci * 2)
     ticks = {x: _tick(along, x) for x in xs}  # at the meshes: three seldom span a decade
@@ -130,7 +130,7 @@ def mode_chart(record: Record, width: float = WIDE) -> Chart | None:
     """Chart natural frequencies of all models side by side, and below them their differences from
     the reference.
     """
-    modes = {
+    modes: dict[str, dict[str, ModeRecord]] = {
         key: {mode.name: mode for mode in model.modes if (mode.frequency_hz or 0.0) > 0}
         for key, model in record.models.items()
         if model.modes

@@ -10,17 +10,17 @@ from collections.abc import Sequence
 from rich.console import Group
 from rich.text import Text
 
+from solidgear.comparison.page.tables import NOT_RESOLVED, apart
 from solidgear.core import C_ZZ, FIRST_BENDING, Quantity, Record
 from solidgear.core.judge.record import ModelRecord, VerdictRecord
 from solidgear.core.quantity import K_ZZ
 from solidgear.show import open_words
 from solidgear.show.command import caution
 from solidgear.show.sheet import Sheet, Terminal
-from solidgear.show.table import MARK, Column, Table, word
+from solidgear.show.table import MARK, Cell, Column, Table, word
 from solidgear.show.units import Units, in_ascii, units_named
-from solidgear.show.words import DASH, bar_percent, count, hertz, percent, seconds
+from solidgear.show.words import DASH, bar_percent, count, hertz, seconds
 
-NOT_RESOLVED = "n.r."
 #: validity -> how it is written in a narrow column
 VALID = {"yes": "yes", "no": "NO", "open": "?", "unknown": "?"}
 
@@ -66,29 +66,31 @@ def final_table(record: Record) -> Group:
             VALID[model.validity],
             *(_number(model, name, units) for name in (K_ZZ, C_ZZ)),
             model.first_frequency("bending"),
-            _apart(record, key, C_ZZ),
-            _apart(record, key, FIRST_BENDING),
+            apart(record, key, C_ZZ, narrow=True),
+            apart(record, key, FIRST_BENDING, narrow=True),
             model.band.compliance if model.band else None,
             model.dofs,
             model.answer_seconds,
         ]
         for key, model in record.models.items()
     ]
-    lines = _marks(record, any(NOT_RESOLVED in row for row in rows))
+    table = Table("", columns, rows, style="narrow")
+    lines = _marks(record, any(NOT_RESOLVED in row for row in table.values))
     if record.further_ports:
         lines.append(f"the table is for {record.port.name if record.port else 'the first point'}")
     for port in record.further_ports:
         name = C_ZZ.at(port.name)
-        values = [
-            f"{_heading(model, key)} {_number(model, name, units)} ({_apart(record, key, name)})"
-            for key, model in record.models.items()
-        ]
+        values = []
+        for key, model in record.models.items():
+            difference = apart(record, key, name, narrow=True) or Cell(DASH)
+            value = _number(model, name, units)
+            values.append(f"{_heading(model, key)} {value} ({difference.value})")
         lines.append(in_ascii(f"C_zz at {port.name}, {units.unit('m/N')}: {', '.join(values)}"))
     for key, model in record.models.items():
         if model.validity in ("no", "open"):
             reason = model.why_not or "not valid for this scene"
             lines.append(f"{VALID[model.validity]:<4}{record.name(key)}: {reason}")
-    return Group(Table("", columns, rows, style="narrow"), *map(Text, lines))
+    return Group(table, *map(Text, lines))
 
 
 def _heading(model: ModelRecord, key: str) -> str:
@@ -98,16 +100,6 @@ def _heading(model: ModelRecord, key: str) -> str:
 
 def _number(model: ModelRecord, name: Quantity, units: Units) -> str:
     return units.number(model.value(name), name.unit, 4)
-
-
-def _apart(record: Record, key: str, name: Quantity) -> str:
-    """Return the difference of a model from the reference, for one cell."""
-    if key == record.reference:
-        return "ref."
-    row = record.headline(key, name)
-    if row is None:
-        return DASH
-    return percent(row.relative) if row.resolved else NOT_RESOLVED
 
 
 def _marks(record: Record, unresolved: bool) -> list[str]:

@@ -55,6 +55,8 @@ unsigned = partial(percent, signed=False)
 
 #: a frequency of a motion without strain
 RIGID = "0 (rigid)"
+#: of a difference smaller than the error bars, in a narrow column
+NOT_RESOLVED = "n.r."
 #: validity -> cell
 WORTH = {
     "yes": Cell("yes", "good"),
@@ -100,19 +102,19 @@ def models(record: Record) -> Table:
     return Table("Models of this scene", columns, rows)
 
 
-def apart(record: Record, key: str, name: str) -> Cell | None:
+def apart(record: Record, key: str, name: Quantity, narrow: bool = False) -> Cell | None:
     """Return the deviation of a model from the reference, weaker where error bars do not resolve
-    it.
+    it; `narrow` in few characters.
     """
     if key == record.reference:
-        return Cell("reference", "quiet")
+        return Cell("ref." if narrow else "reference", "quiet")
     deviation = record.headline(key, name)
     if deviation is None:
         return None
     difference = percent(deviation.relative)
     if deviation.resolved:
         return Cell(difference)
-    return Cell(f"not resolved ({difference})", "quiet")
+    return Cell(NOT_RESOLVED if narrow else f"not resolved ({difference})", "quiet")
 
 
 def summary(record: Record, units: Units = ENGINEERING) -> Table:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from solidgear.comparison.race.race import AUTOMATIC, COSTS, Race, Row
+from solidgear.core import Quantity
 from solidgear.show.panel import (
     COUNT,
     GREY,
@@ -135,7 +136,7 @@ class _Errors:
     """A panel of errors of a quantity over a cost, log-log."""
 
     race: Race
-    quantity: str
+    quantity: Quantity
     cost: str
 
     def __post_init__(self) -> None:
@@ -184,9 +185,9 @@ class _Errors:
         setup = sum(race.setup.values())
         if self.cost == "seconds" and left < setup < right:
             panel.draw({"type": "rule", "color": GREY, "strokeDash": [1, 2]}, [{"x": setup}])
-            name = {"type": "text", "angle": -90, "align": "right", "dy": -6} | SMALL
+            look = {"type": "text", "angle": -90, "align": "right", "dy": -6} | SMALL
             words = {"x": setup, "text": "set-up, once a process"}
-            panel.draw(name | {"color": GREY}, [words], y={"value": 4})
+            panel.draw(look | {"color": GREY}, [words], y={"value": 4})
         return panel
 
     def _draw_bar(self) -> None:

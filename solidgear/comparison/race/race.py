@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.core import C_ZZ, FIRST_BENDING
+from solidgear.core import C_ZZ, FIRST_BENDING, Quantity
 from solidgear.core.machine.environment import environment
 from solidgear.core.plain import plain
 from solidgear.show.sheet import write_json
@@ -86,9 +86,9 @@ class Reference:
     setting: str
     unknowns: int
     seconds: float
-    values: dict[str, float]  #: by quantity
-    bands: dict[str, float]  #: relative error bar by quantity
-    like_for_like: dict[str, float] = field(default_factory=dict)  #: values with section ties
+    values: dict[Quantity, float]  #: by quantity
+    bands: dict[Quantity, float]  #: relative error bar by quantity
+    like_for_like: dict[Quantity, float] = field(default_factory=dict)  #: values with section ties
 
     @property
     def costs(self) -> dict[str, float]:
@@ -112,7 +112,7 @@ class Race:
     complete: bool = True  #: false after an interrupt
     environment: dict[str, Any] = field(default_factory=environment)
 
-    def error(self, row: Row, quantity: str) -> float | None:
+    def error(self, row: Row, quantity: Quantity) -> float | None:
         """Return the error of a row, never below the error bar of the reference; None where the row
         has none.
         """
@@ -121,7 +121,7 @@ class Race:
             return None
         return max(error, self.reference.bands[quantity])
 
-    def sure_error(self, row: Row, quantity: str) -> float | None:
+    def sure_error(self, row: Row, quantity: Quantity) -> float | None:
         """Return the largest of the error a user makes, the one like for like, and those of finer
         levels of the series.
 
@@ -139,11 +139,11 @@ class Race:
         ]
         return max(error, row.like_for_like.get(quantity, 0.0), *finer)
 
-    def resolved(self, row: Row, quantity: str) -> bool:
+    def resolved(self, row: Row, quantity: Quantity) -> bool:
         """Return whether the error of a row lies above the error bar of the reference."""
         return row.errors.get(quantity, 0.0) > self.reference.bands[quantity]
 
-    def error_text(self, row: Row, quantity: str) -> str:
+    def error_text(self, row: Row, quantity: Quantity) -> str:
         """Return the error of a row in per cent, with a beam's like for like after a slash."""
         error = self.error(row, quantity)
         if error is None:
@@ -154,7 +154,7 @@ class Race:
         like = row.like_for_like.get(quantity)
         return text if like is None else f"{text} / {percent(like, signed=False)}"
 
-    def front(self, quantity: str, cost: str = "seconds") -> list[Row]:
+    def front(self, quantity: Quantity, cost: str = "seconds") -> list[Row]:
         """Return the rows on the Pareto front of a quantity over ``seconds`` or ``unknowns``,
         cheapest first.
         """

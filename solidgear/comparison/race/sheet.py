@@ -7,6 +7,7 @@ from pathlib import Path
 
 from solidgear.comparison.race.figure import race_chart
 from solidgear.comparison.race.race import PICTURE, ROWS, Race, Row, records
+from solidgear.core import FIRST_BENDING
 from solidgear.core.plain import plain
 from solidgear.show.sheet import Section, Sheet, Terminal
 from solidgear.show.table import Column, Table, text, word
@@ -63,7 +64,7 @@ def sheet(race: Race, out: Path, reported: bool) -> Sheet:
         sections=[part],
         terminal=Terminal(
             heading=[],
-            tables=[_narrow(race)],
+            tables=[_front(race, narrow=True)],
             closing=notes,
             unbroken=[*lines, f"Chart: {out / PICTURE}{written}"],
         ),
@@ -82,64 +83,51 @@ def front_rows(race: Race) -> list[tuple[Row, list[str]]]:
     return sorted(rows, key=lambda pair: pair[0].seconds or 0.0)
 
 
-def _narrow(race: Race) -> Table:
-    """Return the Pareto front over seconds in 80 columns."""
-    heads = {"bending 1": "f1"}
-    columns = [
-        word("model"),
-        text("options"),
-        Column("DOFs", write=count),
-        Column("s", write=seconds),
-        *(f"error {heads.get(q, q)}" for q in race.reference.values),
-    ]
+def _front(race: Race, narrow: bool) -> Table:
+    """Return the Pareto front over seconds, for a page or, narrow, in 80 columns."""
+    quantities = list(race.reference.values)
+    columns = [word("model"), text("options")]
+    if narrow:
+        heads = {FIRST_BENDING: "f1"}
+        columns += [Column("DOFs", write=count), Column("s", write=seconds)]
+        columns += [Column(f"error {heads.get(q, q)}") for q in quantities]
+    else:
+        columns += [Column("unknowns", write=grouped), Column("seconds", write=seconds)]
+        columns += [*(Column(f"error of {q}") for q in quantities), text("on the front of")]
     rows = []
     for row, names in front_rows(race):
-        errors = [
-            race.error_text(row, q).replace(" %", "%") + ("*" if q in names else " ")
-            for q in race.reference.values
-        ]
-        rows.append([row.series, row.setting or "default", row.unknowns, row.seconds, *errors])
-    return Table("Pareto front over wall time", columns, rows, style="narrow")
-
-
-def section(race: Race) -> Section:
-    """Return the section of the report on a race."""
+        errors = [race.error_text(row, q) for q in quantities]
+        if narrow:
+            marks = ["*" if q in names else " " for q in quantities]
+            errors = [f"{error.replace(' %', '%')}{mark}" for error, mark in zip(errors, marks)]
+        cells = [row.series, row.setting or "default", row.unknowns, row.seconds]
+        rows.append([*cells, *errors, ", ".join(names)])
+    if narrow:
+        return Table("Pareto front over wall time", columns, rows, style="narrow")
     note = (
         "“<”: below the error bar of the reference, which is shown instead. After the slash: like "
         "for like, with section ties on both sides. Cancellations do not count."
     )
-    columns = [
-        word("model"),
-        text("options"),
-        Column("unknowns", write=grouped),
-        Column("seconds", write=seconds),
-        *(f"error of {q}" for q in race.reference.values),
-        text("on the front of"),
-    ]
-    front = []
-    for row, names in front_rows(race):
-        errors = [race.error_text(row, q) for q in race.reference.values]
-        cells = [row.series, row.setting or "default", row.unknowns, row.seconds]
-        front.append([*cells, *errors, ", ".join(names)])
+    return Table("The Pareto front over wall time", columns, rows, note)
+
+
+def section(race: Race) -> Section:
+    """Return the section of the report on a race."""
     lost = [
         [f"{row.series}, level {row.level}", row.setting, row.status, row.reason]
         for row in race.rows
         if row.status != "ok" or row.reason
     ]
     setup = "Set-up, once a process and in none of the times"
-    tables = [
-        Table("The Pareto front over wall time", columns, front, note),
-        Table(setup, ["what", Column("seconds", write=seconds)], list(race.setup.items())),
-        Table(
-            "Failed, skipped, or incomplete",
-            [word("case"), text("options"), "status", text("reason")],
-            lost,
-        ),
-    ]
+    columns = [word("case"), text("options"), "status", text("reason")]
     return Section(
         anchor="speed",
         title="Speed against accuracy",
         words=CAPTION,
         charts={"speed": partial(race_chart, race)},
-        tables=tables,
+        tables=[
+            _front(race, narrow=False),
+            Table(setup, ["what", Column("seconds", write=seconds)], list(race.setup.items())),
+            Table("Failed, skipped, or incomplete", columns, lost),
+        ],
     )

@@ -284,11 +284,15 @@ class ModelRecord(Part):
 
     def value(self, quantity: Quantity) -> float | None:
         """Return an entry of a matrix, at the main point, a further one or between points."""
+        matrix = None
         if quantity.pair:
-            matrix = self.coupled and self.coupled.block(*quantity.pair, quantity.kind)
+            if self.coupled is not None:
+                matrix = self.coupled.block(*quantity.pair, quantity.kind)
+        elif quantity.points:
+            point = self.points.get(quantity.points[0])
+            matrix = None if point is None else matrix_of(point, quantity.kind)
         else:
-            point = self.points.get(quantity.points[0]) if quantity.points else self
-            matrix = point and matrix_of(point, quantity.kind)
+            matrix = matrix_of(self, quantity.kind)
         return None if matrix is None else quantity.of(matrix)
 
     def first_frequency(self, family: str) -> float | None:
