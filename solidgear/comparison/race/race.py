@@ -248,7 +248,6 @@ def records(race: Race) -> list[dict[str, Any]]:
             "status": row.status,
             "reason": row.reason,
             "unknowns": row.unknowns,
-            "processor_seconds": row.processor_seconds,
             "options": row.setting,
             "runs": len(row.samples),
             "seconds_min": min(row.samples, default=None),
