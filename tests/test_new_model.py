@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 import solidgear as sg
+from solidgear.app.render import Drawn, render_mode
 from solidgear.comparison.page.html import render_page
 from solidgear.comparison.page.sheet import final_table
-from solidgear.comparison.page.write import Drawn, render_mode
 from solidgear.comparison.race.figure import race_chart
 from solidgear.comparison.race.timing import plan, race
 from solidgear.core.ladder.beams import Timoshenko
