@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.comparison.page.html import further_points, numbers
+from solidgear.comparison.page.html import numbers
+from solidgear.comparison.page.tables import further_points
 from solidgear.comparison.recording import Findings, recorded
 from solidgear.core.judge.quantities import between, canonical_name, measure, size
 from solidgear.core.judge.settle import settle

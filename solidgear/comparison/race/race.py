@@ -65,6 +65,15 @@ class Row:
         """Median wall time, s."""
         return median(self.samples) if self.samples else None
 
+    def before(self, row: Row) -> bool:
+        """Return whether this is a coarser level of the same series."""
+        return self.series == row.series and self.level < row.level
+
+    def note(self, text: str) -> None:
+        """Add to the reason."""
+        if text not in self.reason:
+            self.reason = "; ".join(filter(None, (self.reason, text)))
+
     @property
     def costs(self) -> dict[str, float | None]:
         """Costs by their names in ``COSTS``."""
@@ -132,11 +141,7 @@ class Race:
         error = self.error(row, quantity)
         if error is None:
             return None
-        finer = [
-            self.error(r, quantity) or 0.0
-            for r in self.rows
-            if r.series == row.series and r.level > row.level
-        ]
+        finer = [self.error(r, quantity) or 0.0 for r in self.rows if row.before(r)]
         return max(error, row.like_for_like.get(quantity, 0.0), *finer)
 
     def resolved(self, row: Row, quantity: Quantity) -> bool:

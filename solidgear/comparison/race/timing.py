@@ -83,12 +83,9 @@ def plan(scene: Scene, full: bool = False) -> list[Row]:
         for family, label, all_options in model.series(scene, full)
         for level, options in enumerate(all_options, start=1)
     ]
-    unfit = ((model, model.unfit(scene)) for model in LADDER if model.concerns(scene))
-    rows += [
-        Row(model.family, model.heading, 1, model.name, {}, "failed", reason)
-        for model, reason in unfit
-        if reason
-    ]
+    for model in LADDER:
+        if model.concerns(scene) and (reason := model.unfit(scene)):
+            rows.append(Row(model.family, model.heading, 1, model.name, {}, "failed", reason))
     rows += [
         Row(AUTOMATIC, AUTOMATIC, level, AUTO, {"tol": tol})
         for level, tol in enumerate(TOLERANCES, start=1)
@@ -143,7 +140,7 @@ def setup_seconds() -> dict[str, float]:
 
 
 def race(
-    scene,
+    scene: Scene,
     rows: list[Row],
     *,
     runs: int = 5,
@@ -208,25 +205,17 @@ def race(
         while waiting := [row for row in result.rows if row.status == "waiting"]:
             # Cheapest first, so that one large solid does not use up the budget of many small
             # models.
-            row = min(
-                (
-                    r
-                    for r in waiting
-                    if not any(w.series == r.series and w.level < r.level for w in waiting)
-                ),
-                key=lambda r: _guess(r, result, first),
-            )
+            lowest = [row for row in waiting if not any(other.before(row) for other in waiting)]
+            row = min(lowest, key=lambda row: _guess(row, result, first))
             _admit(row, result, first, spent())
             if row.status == "waiting":
                 timed(row, 0)
         for turn in range(1, runs):
             for row in result.rows:
-                if row.status != "ok" or len(row.processor_seconds) >= _most_runs(
-                    row.processor_seconds[0], runs
-                ):
+                if row.status != "ok" or _runs_left(row, runs) <= 0:
                     continue
                 if spent() + row.processor_seconds[0] > budget:
-                    _note(row, f"the budget of {budget:g} s ended after run {len(row.samples)}")
+                    row.note(f"the budget of {budget:g} s ended after run {len(row.samples)}")
                 else:
                     timed(row, turn)
     except KeyboardInterrupt:
@@ -255,7 +244,9 @@ def scaled_error(compliance: np.ndarray, reference: np.ndarray) -> float | None:
     return float(np.abs((a - b) / np.outer(size, size)).max())
 
 
-def _reference(scene, sure: float, n: int, progress) -> tuple[Reference, np.ndarray]:
+def _reference(
+    scene: Scene, sure: float, n: int, progress: Callable[[str], None]
+) -> tuple[Reference, np.ndarray]:
     """Solve the model that judges the scene, refined to an error bar; return the record and the
     compliance.
     """
@@ -289,7 +280,7 @@ def _reference(scene, sure: float, n: int, progress) -> tuple[Reference, np.ndar
     return record, reference_answer.statics.main.compliance
 
 
-def _run(scene, row: Row, n: int, reference: Reference, compliance: np.ndarray) -> None:
+def _run(scene: Scene, row: Row, n: int, reference: Reference, compliance: np.ndarray) -> None:
     """Run a row once more; the first run fills in the numbers."""
     gc.collect()
     start, began = time.perf_counter(), processor_seconds()
@@ -321,7 +312,7 @@ def _run(scene, row: Row, n: int, reference: Reference, compliance: np.ndarray) 
         }
     missing = [q for q in reference.values if q not in values]
     if missing:
-        _note(row, f"found no {' and no '.join(missing)}")
+        row.note(f"found no {' and no '.join(missing)}")
     compliance_error = scaled_error(result.statics.main.compliance, compliance)
     if compliance_error is not None:
         row.errors[WHOLE] = compliance_error
@@ -335,17 +326,16 @@ def _failure(error: Exception) -> str:
     return f"{type(error).__name__}: {error}"
 
 
-def _note(row: Row, text: str) -> None:
-    if text not in row.reason:
-        row.reason = "; ".join(t for t in (row.reason, text) if t)
-
-
 def _kind(row: Row) -> tuple:
     return row.model, row.options.get("element"), row.options.get("order", 0) > 2
 
 
 def _warm_up(
-    scene, chart: Race, n: int, progress, spent: Callable[[], float]
+    scene: Scene,
+    chart: Race,
+    n: int,
+    progress: Callable[[str], None],
+    spent: Callable[[], float],
 ) -> dict[tuple, float]:
     """Run the first case of every kind once, outside the rows: first calls pay for imports and
     caches; return processor seconds by kind, infinite for those that half the budget does not
@@ -372,11 +362,7 @@ def _guess(row: Row, chart: Race, first: dict[tuple, float]) -> float:
     """Estimate the processor seconds of one run of a row, from the levels before it in the series;
     the first level costs as much as the warm-up of that kind did.
     """
-    times = [
-        r.processor_seconds[0]
-        for r in chart.rows
-        if r.series == row.series and r.level < row.level and r.status == "ok"
-    ]
+    times = [r.processor_seconds[0] for r in chart.rows if r.before(row) and r.status == "ok"]
     growth = min(max(times[-1] / times[-2], 1.5), 10.0) if len(times) > 1 else GROWTH
     return times[-1] * growth if times else first.get(_kind(row), 0.0)
 
@@ -385,21 +371,15 @@ def _admit(row: Row, chart: Race, first: dict[tuple, float], spent: float) -> No
     """Leave a row out if the budget would not suffice for it beside all runs of all admitted rows;
     the cheapest is kept where no other has an answer.
     """
-    if any(
-        r.status == "left out" for r in chart.rows if r.series == row.series and r.level < row.level
-    ):
+    if any(r.status == "left out" for r in chart.rows if r.before(row)):
         row.status, row.reason = "left out", "the level before it was left out"
         return
     cheap = any(r.family in CHEAP and r.status == "waiting" for r in chart.rows)
     if row.family in CHEAP or not (cheap or any(r.status == "ok" for r in chart.rows)):
         return
     guess = _guess(row, chart, first)
-    owed = sum(
-        r.processor_seconds[0]
-        * (_most_runs(r.processor_seconds[0], chart.runs) - len(r.processor_seconds))
-        for r in chart.rows
-        if r.status == "ok"
-    )
+    solved = [r for r in chart.rows if r.status == "ok"]
+    owed = sum(r.processor_seconds[0] * _runs_left(r, chart.runs) for r in solved)
     # a series with one point, run once, is worth more than further runs of others
     runs = 1 if row.level == 1 else _most_runs(guess, chart.runs)
     if spent + owed + guess * runs > chart.budget:
@@ -411,6 +391,10 @@ def _admit(row: Row, chart: Race, first: dict[tuple, float], spent: float) -> No
 
 def _most_runs(seconds: float, runs: int) -> int:
     return next((min(most, runs) for limit, most in FEWER_RUNS if seconds > limit), runs)
+
+
+def _runs_left(row: Row, runs: int) -> int:
+    return _most_runs(row.processor_seconds[0], runs) - len(row.processor_seconds)
 
 
 def answer(scene: Scene, model: str, options: dict, n: int) -> Answer:
