@@ -14,6 +14,7 @@ from solidgear.show.words import percent
 
 if TYPE_CHECKING:
     from solidgear.core import Record, WhereRecord
+    from solidgear.core.judge.record import PlaceRecord
 
 #: shares below this are all of one colour
 LEAST = 1e-4
@@ -90,7 +91,7 @@ def _chart(record: WhereRecord, title: str, width: float) -> Chart:
     return Chart(rows_of, width, "; ".join(filter(None, (title, drawn_as))), "\n".join(names))
 
 
-def _inset(corners, shares, place: Any, number: int, half: float) -> Panel:
+def _inset(corners, shares, place: PlaceRecord, number: int, half: float) -> Panel:
     """Return cells near a place, so many metres to either side."""
     centre = 1e3 * np.array([place.y, place.r])
     low, high = centre - 1e3 * half, centre + 1e3 * half
@@ -126,7 +127,7 @@ def _words(y: float, r: float, share: float) -> str:
     return readout("cell", ("share of the error", size, ""), *places)
 
 
-def _close(points: np.ndarray, places: Sequence[Any]) -> list[tuple[int, float]]:
+def _close(points: np.ndarray, places: Sequence[PlaceRecord]) -> list[tuple[int, float]]:
     """Return numbers of places with cells too small to be seen, and half the width (m) of an
     inset.
     """
@@ -158,12 +159,6 @@ def where_chart(record: Record, width: float = WIDE) -> Chart | None:
     return _chart(places, "", width)
 
 
-def worth_naming(rows: Sequence[Any]) -> list[Any]:
-    """Return the first few places with a share worth a word.
-
-    Parameters
-    ----------
-    rows : sequence of PlaceRecord
-        Places with a ``share``, the largest first.
-    """
+def worth_naming(rows: Sequence[PlaceRecord]) -> list[PlaceRecord]:
+    """Return the first few places with a share worth a word, of places from the largest down."""
     return [r for r in rows[:MOST_PLACES] if r.share is not None and abs(r.share) >= WORTH_NAMING]

@@ -7,7 +7,6 @@ terminal run has no use for it.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -147,10 +146,20 @@ def mode_chart(record: Record, width: float = WIDE) -> Chart | None:
     rows: list[dict[str, Any]] = []
     for k, (key, by_name) in enumerate(modes.items()):
         shift = (k - (len(modes) - 1) / 2) * step
-        compared = base if key != record.reference and base is not None else {}
         for i, name in enumerate(names):
-            if name in by_name:
-                rows.append({"x": i + shift, **_row(record.name(key), by_name[name], compared)})
+            if name not in by_name:
+                continue
+            hz, change = by_name[name].frequency_hz, None
+            if base is not None and name in base and key != record.reference:
+                change = relative_change(hz, base[name].frequency_hz)
+            words = readout(
+                record.name(key),
+                ("mode", name, ""),
+                ("frequency", hertz(hz), "Hz"),
+                ("from reference", percent(change) if change is not None else "", ""),
+            )
+            place = {"x": i + shift, "y": hz or 0.0, "apart": change}
+            rows.append({**place, "name": record.name(key), "readout": words})
     series = {}
     for key in modes:
         model = record.models[key]
@@ -179,19 +188,6 @@ def mode_chart(record: Record, width: float = WIDE) -> Chart | None:
 def _rank(mode: ModeRecord) -> tuple:
     """Order along the axis: by family, the usual ones first, then by frequency."""
     return FAMILIES.get(mode.family, len(FAMILIES)), mode.family, mode.frequency_hz
-
-
-def _row(model: str, mode: ModeRecord, reference: Mapping[str, ModeRecord]) -> dict[str, Any]:
-    """Return one mode of one model: frequency, difference from the reference, and readout."""
-    base = reference[mode.name].frequency_hz if mode.name in reference else None
-    change = relative_change(mode.frequency_hz, base)
-    words = readout(
-        model,
-        ("mode", mode.name, ""),
-        ("frequency", hertz(mode.frequency_hz), "Hz"),
-        ("from reference", percent(change) if change is not None else "", ""),
-    )
-    return {"y": mode.frequency_hz or 0.0, "apart": change, "name": model, "readout": words}
 
 
 def _stems(
@@ -236,28 +232,14 @@ def cost_chart(record: Record, width: float = WIDE) -> Chart | None:
     The reference has no deviation; it stands at its own error bar, hollow, like every deviation that is
     not resolved.
     """
-    spots = {quantity: _spots(record, quantity) for quantity in CHARTED}
-    tolerance = record.verdict.tolerance
-    if tolerance is not None and tolerance <= 0:
-        tolerance = None
-    panels = [_panel(quantity, points, tolerance) for quantity, points in spots.items() if points]
-    return Chart([panels], width) if panels else None
+    panels = [_cost(record, quantity) for quantity in CHARTED]
+    drawn = [panel for panel in panels if panel is not None]
+    return Chart([drawn], width) if drawn else None
 
 
-@dataclass(frozen=True)
-class _Spot:
-    """One model in one panel: a hollow marker is an error bar and no deviation."""
-
-    name: str
-    model: ModelRecord
-    seconds: float
-    error: float
-    remark: str  #: why its marker is hollow
-
-
-def _spots(record: Record, quantity: Quantity) -> list[_Spot]:
-    """Return the models with known time and distance from the reference."""
-    out = []
+def _cost(record: Record, quantity: Quantity) -> Panel | None:
+    """Draw the models with known time and distance from the reference; None without any."""
+    spots = []
     for key, model in record.models.items():
         total, row = model.answer_seconds, record.headline(key, quantity)
         if total is None or total <= 0:
@@ -268,16 +250,14 @@ def _spots(record: Record, quantity: Quantity) -> list[_Spot]:
             is_compliance = quantity.kind == COMPLIANCE
             bar = model.band.compliance if is_compliance else model.bars.get(quantity)
         if bar and bar > 0:
-            out.append(_Spot(record.name(key), model, total, bar, "own error bar"))
+            spots.append((key, total, bar, "own error bar"))
         elif row is not None and row.relative:
-            remark = "" if row.resolved else "not resolved"
-            out.append(_Spot(record.name(key), model, total, abs(row.relative), remark))
-    return out
-
-
-def _panel(quantity: Quantity, spots: list[_Spot], tolerance: float | None) -> Panel:
-    times, errors = [spot.seconds for spot in spots], [spot.error for spot in spots]
-    if tolerance is not None:
+            spots.append((key, total, abs(row.relative), "" if row.resolved else "not resolved"))
+    if not spots:
+        return None
+    times, errors = [total for _, total, *_ in spots], [error for _, _, error, _ in spots]
+    tolerance = record.verdict.tolerance or 0.0
+    if tolerance > 0:
         errors.append(tolerance)
     panel = Panel(
         # with room for the last name
@@ -290,36 +270,32 @@ def _panel(quantity: Quantity, spots: list[_Spot], tolerance: float | None) -> P
         ),
         230,
     )
-    if tolerance is not None:
+    if tolerance > 0:
         tolerance_line(panel, tolerance)
-    for spot in spots:
-        _draw(panel, spot, quantity)
+    for key, total, error, hollow in spots:
+        name, model = record.name(key), record.models[key]
+        rejected = model.valid is False
+        remarks = ", ".join(filter(None, (hollow, "rejected" if rejected else "")))
+        words = readout(
+            name,
+            (f"{quantity}, from reference", percent(error, signed=False), ""),
+            ("building and solving", seconds(total), "s"),
+            ("unknowns", grouped(model.dofs), ""),
+            ("remark", remarks, ""),
+        )
+        place = {"x": total, "y": error}
+        mark = {
+            "type": "point",
+            "shape": SHAPES["x"] if rejected else SHAPES.get(model.marker, "circle"),
+            "stroke": model.colour,
+            "fill": "#ffffff" if hollow else model.colour,
+            "strokeWidth": 2,
+            "size": 80,
+        }
+        panel.draw(mark, [{**place, "readout": words}])
+        text = {"type": "text", "align": "left", "baseline": "middle", "dx": 10}
+        panel.draw(text, [{**place, "text": name + (f"\n({remarks})" if remarks else "")}])
     return panel
-
-
-def _draw(panel: Panel, spot: _Spot, quantity: str) -> None:
-    rejected = spot.model.valid is False
-    remarks = list(filter(None, (spot.remark, "rejected" if rejected else "")))
-    words = readout(
-        spot.name,
-        (f"{quantity}, from reference", percent(spot.error, signed=False), ""),
-        ("building and solving", seconds(spot.seconds), "s"),
-        ("unknowns", grouped(spot.model.dofs), ""),
-        ("remark", ", ".join(remarks), ""),
-    )
-    colour, place = spot.model.colour, {"x": spot.seconds, "y": spot.error}
-    mark = {
-        "type": "point",
-        "shape": SHAPES["x"] if rejected else SHAPES.get(spot.model.marker, "circle"),
-        "stroke": colour,
-        "fill": "#ffffff" if spot.remark else colour,
-        "strokeWidth": 2,
-        "size": 80,
-    }
-    panel.draw(mark, [{**place, "readout": words}])
-    name = spot.name + (f"\n({', '.join(remarks)})" if remarks else "")
-    text = {"type": "text", "align": "left", "baseline": "middle", "dx": 10}
-    panel.draw(text, [{**place, "text": name}])
 
 
 #: quantity -> colour of its bars
@@ -353,28 +329,27 @@ def _bars(
         legend={"orient": "top", "direction": "horizontal"},
         left=margin,
     )
-    rows = list(_rows(labels, columns))
-    panel.draw({"type": "rect", "strokeWidth": 0}, [bar for bar, _ in rows])
-    panel.draw({"type": "rule", "color": GREY}, [{"x": 0}])
-    for sign, align in ((1, "left"), (-1, "right")):
-        figures = [figure for _, figure in rows if (figure["x"] >= 0) == (sign > 0)]
-        text = {"type": "text", "align": align, "baseline": "middle", "dx": 3 * sign}
-        panel.draw(text, figures)
-    return Chart([[panel]], width)
-
-
-def _rows(labels: list[str], columns: dict[str, list[float | None]]):
-    """Return a bar and a figure for every case and quantity."""
-    thick = 0.8 / max(len(columns), 1)
+    bars: list[dict[str, Any]] = []
+    figures: list[dict[str, Any]] = []
+    thick = 0.8 / len(columns)
     for k, (name, values) in enumerate(columns.items()):
         for i, value in enumerate(values):
             if value is None:
                 continue
             y, change = i + (k - (len(columns) - 1) / 2) * thick, percent(value)
             case = labels[i].replace("\n", " ")
-            words = readout(name, ("case", case, ""), (f"change of {name}", change, ""))
-            bar = {"x": 0.0, "x2": value, "y": y - 0.43 * thick, "y2": y + 0.43 * thick}
-            yield {**bar, "name": name, "readout": words}, {"x": value, "y": y, "text": change}
+            place = {"x": 0.0, "x2": value, "y": y - 0.43 * thick, "y2": y + 0.43 * thick}
+            facts = readout(name, ("case", case, ""), (f"change of {name}", change, ""))
+            bars.append({**place, "name": name, "readout": facts})
+            figures.append({"x": value, "y": y, "text": change})
+    panel.draw({"type": "rect", "strokeWidth": 0}, bars)
+    panel.draw({"type": "rule", "color": GREY}, [{"x": 0}])
+    text = {"type": "text", "baseline": "middle"}
+    right = [figure for figure in figures if figure["x"] >= 0]
+    left = [figure for figure in figures if figure["x"] < 0]
+    panel.draw(text | {"align": "left", "dx": 3}, right)
+    panel.draw(text | {"align": "right", "dx": -3}, left)
+    return Chart([[panel]], width)
 
 
 def cause_chart(record: Record, width: float = WIDE) -> Chart | None:

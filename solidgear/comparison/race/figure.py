@@ -71,40 +71,25 @@ class Look:
         return FAMILIES[self.family][1] if self.family in FAMILIES else UNLISTED
 
     @property
-    def shape(self) -> str:
-        kind = self.series.removesuffix(" uniform").removesuffix(" graded")
-        return SHAPES[MARKERS.get(kind, "o")]
-
-    @property
-    def uniform(self) -> bool:
-        return self.series.endswith("uniform")
-
-    @property
     def converges(self) -> bool:
         """True where the levels refine one mesh."""
         return self.family not in SCATTERED
 
     @property
-    def width(self) -> float:
-        return 1.0 if self.uniform else 1.5
-
-    @property
-    def dash(self) -> list[float]:
-        return [5, 3] if self.uniform else [1, 0]
-
-    @property
-    def fill(self) -> str:
-        """Inside of the markers; empty means like for like."""
-        if not self.uniform:
-            return self.colour
-        parts = (int(self.colour[k : k + 2], 16) for k in (1, 3, 5))
-        return "#" + "".join(f"{round(0.35 * part + 0.65 * 255):02x}" for part in parts)
+    def line(self) -> dict[str, Any]:
+        """Line through the levels in Vega-Lite."""
+        dash, width = ([5, 3], 1.0) if self.series.endswith("uniform") else ([1, 0], 1.5)
+        return {"color": self.colour, "strokeDash": dash, "strokeWidth": width}
 
     @property
     def marks(self) -> dict[str, Any]:
-        """Markers in Vega-Lite."""
-        look = {"type": "point", "shape": self.shape, "stroke": self.colour, "fill": self.fill}
-        return look | {"size": 45, "strokeWidth": 1}
+        """Markers in Vega-Lite; empty ones mean like for like."""
+        kind, fill = self.series.removesuffix(" uniform").removesuffix(" graded"), self.colour
+        if self.series.endswith("uniform"):
+            parts = (int(self.colour[k : k + 2], 16) for k in (1, 3, 5))
+            fill = "#" + "".join(f"{round(0.35 * part + 0.65 * 255):02x}" for part in parts)
+        look = {"type": "point", "stroke": self.colour, "fill": fill, "size": 45, "strokeWidth": 1}
+        return look | {"shape": SHAPES[MARKERS.get(kind, "o")]}
 
     def level_name(self, row: Row) -> str:
         """Return the order or the tolerance of a level, written beside it."""
@@ -242,8 +227,8 @@ class _Errors:
                     ("setting", row.setting, ""),
                 )
                 spots.append((row, {"x": x, "y": error, "readout": words}))
-        line = {"type": "line", "color": look.colour, "strokeWidth": look.width}
-        line |= {"strokeDash": look.dash, "opacity": 0.75 if look.uniform else 1.0}
+        opacity = 0.75 if look.series.endswith("uniform") else 1.0
+        line = {"type": "line", "opacity": opacity} | look.line
         panel.draw(line, [{"x": spot["x"], "y": spot["y"]} for _, spot in spots])
         if self.cost == "seconds":
             several = [
@@ -352,8 +337,7 @@ def legend(race: Race, width: float) -> Panel:
         if looks and family not in ("lumped", AUTOMATIC):  # their one series has their name
             entries.append(Entry(FAMILIES.get(family, (family,))[0].upper()))
         for look in looks:
-            line = {"color": look.colour, "strokeDash": look.dash, "strokeWidth": look.width}
-            entries.append(Entry(look.name, line if look.converges else None, look.marks))
+            entries.append(Entry(look.name, look.line if look.converges else None, look.marks))
     entries += MARKS
     columns = max(1, int(width / COLUMN))
     counts = [entry.words.count("\n") + 1 for entry in entries]

@@ -288,14 +288,14 @@ def _run(scene: Scene, row: Row, n: int, reference: Reference, compliance: np.nd
         result = answer(scene, row.model, row.options, n)
     except Exception as error:  # whatever stops a model is a finding about it, and the others go on
         row.samples = [time.perf_counter() - start]
-        row.status, row.reason = "failed", _failure(error)
-        log.info(
-            "%s, level %d: %s",
-            row.series,
-            row.level,
-            row.reason,
-            exc_info=not isinstance(error, SolidgearError),
+        known = isinstance(error, SolidgearError)
+        row.status, row.reason = (
+            "failed",
+            str(error) if known else f"{type(error).__name__}: {error}",
         )
+        if isinstance(error, MemoryError):
+            row.reason = "not enough memory"
+        log.info("%s, level %d: %s", row.series, row.level, row.reason, exc_info=not known)
         return
     row.samples.append(time.perf_counter() - start)
     row.processor_seconds.append(processor_seconds() - began)
@@ -316,14 +316,6 @@ def _run(scene: Scene, row: Row, n: int, reference: Reference, compliance: np.nd
     compliance_error = scaled_error(result.statics.main.compliance, compliance)
     if compliance_error is not None:
         row.errors[WHOLE] = compliance_error
-
-
-def _failure(error: Exception) -> str:
-    if isinstance(error, SolidgearError):
-        return str(error)
-    if isinstance(error, MemoryError):
-        return "not enough memory"
-    return f"{type(error).__name__}: {error}"
 
 
 def _kind(row: Row) -> tuple:
