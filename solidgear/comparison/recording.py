@@ -86,12 +86,12 @@ def recorded(scene: Scene, findings: Findings) -> Record:
             models[model] = _model_record(solutions[model], validity[model])
         elif why_not := findings.failed.get(model):
             models[model] = ModelRecord(**model_facts(model), valid=False, why_not=why_not)
-    ports = [_port_record(scene, solutions, k) for k in range(len(scene.ports))]
+    ports = _port_records(scene, solutions)
     out = Record(
         complete=findings.complete,
         scene=scene.as_dict(),
         port=ports[0],
-        further_ports=ports[1:] if solutions else [],
+        further_ports=ports[1:],
         attachments={
             model: {tie: _variant_record(answer) for tie, answer in solution.variants.items()}
             for model, solution in solutions.items()
@@ -120,17 +120,18 @@ def recorded(scene: Scene, findings: Findings) -> Record:
     return out
 
 
-def _port_record(scene: Scene, solutions: dict[str, Solution], k: int) -> PortRecord:
-    port, first = scene.ports[k], next(iter(solutions.values()), None)
-    statics = None if first is None else first.ties[SCENE].statics
-    condensed = None if statics is None else [statics.main, *statics.further.values()][k]
-    return PortRecord(
-        name=port.name,
-        y=port.y,
-        attachment=port.attachment,
-        order=list(DOF_NAMES),
-        free=list(condensed.free_names) if condensed else [],
-    )
+def _port_records(scene: Scene, solutions: dict[str, Solution]) -> list[PortRecord]:
+    """Return all lumped points; before anything is solved the main one."""
+    free: list[list[str]] = [[]]
+    if solutions:
+        statics = next(iter(solutions.values())).ties[SCENE].statics
+        free = [list(at.free_names) for at in (statics.main, *statics.further.values())]
+    return [
+        PortRecord(
+            name=port.name, y=port.y, attachment=port.attachment, order=list(DOF_NAMES), free=names
+        )
+        for port, names in zip(scene.ports, free)
+    ]
 
 
 def _deviation_record(gap: Deviation) -> DeviationRecord:
@@ -150,16 +151,13 @@ def _warnings(
         if about or not notice.models:
             titles = ", ".join(models[m].title for m in about)
             out.append(f"{titles}: {notice.sentence}" if about else notice.sentence)
-    out += [
-        f"{LADDER[m].title}: {part}: {reason}"
-        for m, r in solutions.items()
-        for part, reason in r.failed.items()
-    ]
     for model, solution in solutions.items():
-        out += [f"{LADDER[model].title}: {text}" for text in split_apart(solution.modes.evidence)]
-        out += [
-            f"{LADDER[model].title}: {mixture.sentence}" for mixture in mixtures(solution.modes)
-        ]
+        failed = [f"{part}: {reason}" for part, reason in solution.failed.items()]
+        out += [f"{LADDER[model].title}: {sentence}" for sentence in failed]
+    for model, solution in solutions.items():
+        sentences = [*split_apart(solution.modes.evidence)]
+        sentences += [mixture.sentence for mixture in mixtures(solution.modes)]
+        out += [f"{LADDER[model].title}: {sentence}" for sentence in sentences]
     return out
 
 

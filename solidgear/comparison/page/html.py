@@ -64,7 +64,7 @@ def render_page(record: Record, folder: Path, drawn: Drawn | None = None) -> str
     viewer = ""
     if TURNED in (record.files or ()):
         viewer = fragment_of(folder / TURNED, still=not any(uri for _, uri in pictures.values()))
-    return template("report.html").render(
+    return template("report.html", Path(__file__).parent).render(
         record=record,
         customer=Contents(),
         appendix=Contents("A{}"),

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from solidgear.comparison.race.figure import race_chart
 from solidgear.comparison.race.race import PICTURE, ROWS, Race, Row, records
-from solidgear.core import FIRST_BENDING
+from solidgear.core import FIRST_BENDING, Quantity
 from solidgear.core.plain import plain
 from solidgear.show.sheet import Section, Sheet, Terminal
 from solidgear.show.table import Column, Table, text, word
@@ -72,7 +72,7 @@ def sheet(race: Race, out: Path, reported: bool) -> Sheet:
     )
 
 
-def front_rows(race: Race) -> list[tuple[Row, list[str]]]:
+def front_rows(race: Race) -> list[tuple[Row, list[Quantity]]]:
     """Return rows on a front over seconds, cheapest first, and their quantities."""
     on = {q: race.front(q) for q in race.reference.values}
     rows = []

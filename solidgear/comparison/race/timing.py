@@ -304,7 +304,7 @@ def _run(scene: Scene, row: Row, n: int, reference: Reference, compliance: np.nd
     row.status, values = "ok", result.quantities
     row.unknowns = 6 if row.family == LUMPED else result.body.size
     row.values = {q: values[q] for q in reference.values if q in values}
-    row.errors = {q: abs(v / reference.values[q] - 1) for q, v in row.values.items()}
+    row.errors = {q: abs(values[q] / v - 1) for q, v in reference.values.items() if q in values}
     if row.family in CHEAP and reference.like_for_like:
         like = answer(scene.with_attachment("section"), row.model, row.options, n).quantities
         row.like_for_like = {
