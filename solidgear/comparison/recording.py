@@ -181,18 +181,17 @@ def _add_lumped(record: Record, base: Solution, scene: Scene) -> None:
     verdict = record.verdict
     source = LADDER[lumped_model.source or name]
     masses = f"{lumped_model.variant} masses on the stiffness of the {source.title}"
+    within, only = percent(tolerance), "for first bending and below only"
     if lumped_model.valid and source.family == SOLID:
         verdict.sentences.append(
-            f"A {LADDER[name].title} ({masses}) is within {percent(tolerance)} too, for first "
-            "bending and below only, and costs as much as the solid it is made from."
+            f"A {LADDER[name].title} ({masses}) is within {within} too, {only}, and costs as much "
+            "as the solid it is made from."
         )
     elif lumped_model.valid:
         verdict.cheapest = name
         verdict.sentences = [s for s in verdict.sentences if not s.startswith("Cheapest model")]
-        verdict.sentences.append(
-            f"Cheapest model within {percent(tolerance)}: {LADDER[name].title} "
-            f"({masses}), for first bending and below only."
-        )
+        cheapest = f"{LADDER[name].title} ({masses})"
+        verdict.sentences.append(f"Cheapest model within {within}: {cheapest}, {only}.")
     variants = record.lumped[base.model].variants if base.model in record.lumped else {}
     if not variants or verdict.trust is None or not scene.ask.lumped:
         return
@@ -302,19 +301,9 @@ def _mac(solutions: dict[str, Solution], reference: str | None) -> MacRecord | N
 
 
 def as_record(data: Mapping[str, Any], name: str = "the results") -> Record:
-    """Return the plain data, such as ``results.json`` has it, as a record.
-
-    Parameters
-    ----------
-    data : mapping
-        Parts may be missing.  Data without a ``schema`` is taken for current.
-    name : str
-        What an error calls it.
-
-    Raises
-    ------
-    SolidgearError
-        For data of another version of the layout, or data that is no record.
+    """Return plain data, such as ``results.json`` has it, as a record; parts may be missing, and data
+    without a ``schema`` is taken for current. SolidgearError, which calls it `name`, for data of
+    another version of the layout, or data that is no record.
 
     Examples
     --------

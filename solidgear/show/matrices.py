@@ -25,21 +25,12 @@ def block(
     sizes: Sequence[Sequence[float | None]] | None = None,
     faint_digits: int = 0,
 ) -> Table:
-    """Return a 6x6 of one point or between two.
+    """Return a 6x6 of one point or between two, with dashes for `free` components and for None.
 
-    Parameters
-    ----------
-    matrix : six rows of six numbers
-        SI, order x y z thx thy thz; a dash for what is None or NaN.
-    kind : {'stiffness', 'compliance'}
-    free : collection of str
-        Components that are shown as a dash.
-    sizes : two lists of six numbers, optional
-        Entries of the diagonal beside which a coupling may be next to nothing, of rows and of
-        columns; by default those of the matrix, whose diagonal is none.
-    faint_digits : int
-        Figures of a coupling that is next to nothing, in units without exponents: there zeros would
-        fill its cell. By default it is a bare zero.
+    `sizes` are the entries of both diagonals, of rows and of columns, beside which a coupling may
+    be next to nothing; by default those of the matrix, whose diagonal is none. `faint_digits` are
+    the figures of such a coupling in units without exponents, where zeros would fill its cell; by
+    default it is a bare zero.
     """
     diagonal = [entry(matrix, k, k) for k in range(6)]
     across, along = sizes or (diagonal, diagonal)

@@ -30,19 +30,8 @@ MOST_PLACES, WORTH_NAMING = 5, 5e-4
 
 
 def draw_where(file: Path, places: WhereRecord, title: str = "") -> None:
-    """Write the picture.
-
-    Parameters
-    ----------
-    file : Path
-        Its ending, ``.png`` or ``.svg``, says what it becomes.
-    places : WhereRecord
-        Cells with their shares, whose magnitudes are drawn; places worth it are named.
-
-    Raises
-    ------
-    SolidgearError
-        For another ending, or a file that cannot be written.
+    """Write the picture as ``.png`` or ``.svg``; SolidgearError for another ending, or a file that
+    cannot be written.
     """
     _chart(places, title, WIDE).write(file)
 

@@ -249,16 +249,15 @@ def reasons(record: Record) -> list[str]:
         return ["The run was interrupted before the verdict."]
     if not verdict.trust:
         return list(verdict.sentences[:3])
-    return [_own(record), _second(record), _others(record)]
+    return [_trusted_model(record), _second_solid(record), _cheaper_models(record)]
 
 
-def _own(record: Record) -> str:
+def _trusted_model(record: Record) -> str:
     """Return the sentence on the trusted model's own error bars."""
     trust = record.verdict.trust
     model = record.model(trust)
     solves = f", which solves {model.theory}," if model.theory else ""
-    bars = model.bars
-    judged = record.verdict.judged or list(map(Quantity, bars))
+    bars, judged = model.bars, record.verdict.judged or list(map(Quantity, model.bars))
     c = max((bars[q] or 0.0 for q in judged if q.kind == COMPLIANCE and q in bars), default=None)
     sure = [(c, "compliance"), (bars.get(FIRST_BENDING), "first bending")]
     errors = [f"{bar_percent(bar)} in {kind}" for bar, kind in sure if bar is not None]
@@ -268,7 +267,7 @@ def _own(record: Record) -> str:
     return f"The {record.name(trust)}{solves}{claim}{end}."
 
 
-def _second(record: Record) -> str:
+def _second_solid(record: Record) -> str:
     """Return the sentence on the distance of a second solid from the trusted one."""
     trust, judged = record.verdict.trust, record.verdict.judged
     sentences = []
@@ -294,7 +293,7 @@ def _second(record: Record) -> str:
     return " ".join(sentences) or "No second solid was solved to confirm it."
 
 
-def _others(record: Record) -> str:
+def _cheaper_models(record: Record) -> str:
     """Return the sentence on cheaper models, those that are enough and those that are not."""
     verdict = record.verdict
     tolerance = short_percent(verdict.tolerance) or "the tolerance"
@@ -304,10 +303,10 @@ def _others(record: Record) -> str:
     cheapest = verdict.cheapest
     if cheapest and cheapest != verdict.trust:
         only = " for first bending and below" if record.model(cheapest).family == LUMPED else ""
-        text = f"The {record.name(cheapest)} is enough within {tolerance}{only}"
-        return f"{text}; {keep}." if keep else f"{text}."
-    text = f"No cheaper model was shown to be within {tolerance}"
-    return f"{text}: {keep}." if keep else f"{text}."
+        enough = f"The {record.name(cheapest)} is enough within {tolerance}{only}"
+        return f"{enough}; {keep}." if keep else f"{enough}."
+    none = f"No cheaper model was shown to be within {tolerance}"
+    return f"{none}: {keep}." if keep else f"{none}."
 
 
 def stamp(record: Record) -> list[tuple[str, str]]:

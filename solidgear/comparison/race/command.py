@@ -82,12 +82,11 @@ def run_chart(
     budget: float | None = None,
     progress: Progress,
 ) -> tuple[Race, bool]:
-    """Run and write the chart of a scene, and put it into the report that an earlier comparison of it left
-    there; with whether there was such a report.
+    """Run and write the chart of a scene, and put it into the report that an earlier comparison of
+    it left there; with whether there was such a report.
 
-    SolidgearError for a bad number, a folder that cannot be written, a scene with nothing to chart or a
-    comparison of it by another version of solidgear, before anything is timed; where no case has an
-    answer.
+    SolidgearError for a bad number, a folder that cannot be written, or a comparison by another
+    version of solidgear, before anything is timed; where no case has an answer.
     """
     if runs < 1:
         raise SolidgearError(f"--runs {runs}: give a whole number of at least 1")

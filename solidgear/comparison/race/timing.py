@@ -1,13 +1,10 @@
-"""Many discretisations of one scene, solved and timed in turns.
+"""Many discretisations of one scene, solved and timed in turns, the automatic choice among them.
 
 A time runs from the scene in memory to both answers, compliance at the lumped point and modes, on a
 new body; costs that a process pays once (imports, first use of gmsh and MKL) are measured
-separately, and each kind of model runs once unmeasured before.
-
-Answers of the rows of a chart of error against cost, the automatic choice among them.
-
-The cost of the automatic choice is the whole climb, every mesh that was tried included; that of the
-other rows is one mesh, which nobody has shown to be sufficient.
+separately, and each kind of model runs once unmeasured before. The cost of the automatic choice is
+the whole climb, every mesh that was tried included; that of the other rows is one mesh, which
+nobody has shown to be sufficient.
 """
 
 from __future__ import annotations
@@ -151,29 +148,15 @@ def race(
     keep: Callable[[Race], None] = lambda _: None,
 ) -> Race:
     """Solve a scene in many ways, in turns, so that a noisy spell of the machine hits all equally;
-    rows (:func:`plan`) are filled in. After Ctrl-C the finished runs are
-    returned, with ``complete`` False.
+    rows (:func:`plan`) are filled in, and `keep` is called with the race after every run.
 
-    Parameters
-    ----------
-    runs : int
-        Of each case; cases above 8 s of processor time get at most three, above 20 s one.
-    budget : float
-        Seconds of processor time for the rows; the reference is not limited. A level that would not
-        fit in with all its runs, the first of a series with one, is left out, but for beams and
-        lumped models, and the cheapest case where no other has an answer.
-    sure : float, optional
-        Relative error bar that the reference is refined to; 3e-4 by default.
-    setup : dict of str to float, optional
-        Start-up costs of a process, for the record.
-    keep : callable
-        Called with the race after every run, for writing it down.
+    `budget` (processor time, s) is for the rows; the reference, refined to the relative error bar
+    `sure`, is not limited. A level that would not fit in with all its runs, the first of a series
+    with one, is left out, but for beams and lumped models, and the cheapest case where no other has
+    an answer. After Ctrl-C the finished runs are returned, with ``complete`` False.
 
-    Raises
-    ------
-    SolidgearError
-        If the reference fails or has none of the charted quantities with an error bar, or no row
-        has an answer.
+    SolidgearError if the reference fails or has none of the charted quantities with an error bar,
+    or no row has an answer.
     """
     start = time.perf_counter()
     n = max(scene.ask.modes, 10)
