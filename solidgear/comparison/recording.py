@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from pydantic import ValidationError
 
@@ -17,6 +17,7 @@ from solidgear.core import (
     OpenNumbers,
     Quantity,
     Record,
+    Scene,
     SolidgearError,
     Solution,
     WhereRecord,
@@ -52,9 +53,6 @@ from solidgear.core.judge.verdict import Judgement, judge, percent, trusted
 from solidgear.core.ladder.model import LUMPED, SOLID
 from solidgear.core.machine.environment import environment
 from solidgear.core.solve.mixtures import mixtures
-
-if TYPE_CHECKING:
-    from solidgear.core import Scene
 
 
 @dataclass

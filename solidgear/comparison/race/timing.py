@@ -18,7 +18,7 @@ import sys
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -28,7 +28,9 @@ from solidgear.core import (
     FIRST_BENDING,
     LADDER,
     QUANTITIES,
+    Body,
     Quantity,
+    Scene,
     SolidgearError,
     settle,
     synthesise,
@@ -43,10 +45,6 @@ from solidgear.core.machine.meter import processor_seconds
 from solidgear.core.machine.patience import Patience
 from solidgear.core.solve.condensed import Condensed
 from solidgear.core.solve.families import FAMILIES
-
-if TYPE_CHECKING:
-    from solidgear.core import Body, Scene
-
 
 log = logging.getLogger(__name__)
 #: name of the automatic choice among models in rows of a chart, and its tolerances
