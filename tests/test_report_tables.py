@@ -3,7 +3,7 @@
 from dataclasses import fields
 
 import solidgear as sg
-from solidgear.comparison.page import evidence_tables
+from solidgear.comparison.page import tables
 from solidgear.core.judge.bars import ErrorBar
 from solidgear.core.judge.record import BarRecord, Record
 from solidgear.show.units import US
@@ -60,14 +60,10 @@ def test_the_mirrored_coupling_is_no_further_entry():
 def test_a_mode_that_is_like_no_other_has_no_partner_by_name():
     # of an Euler beam's second axial mode beside a solid without one
     pair = {"mode": "axial 2", "partner": "bending 8", "mac": 0.0237}
-    table = evidence_tables.pairs(
-        Record.model_validate({"mac": {"models": {"euler": {"pairs": [pair]}}}})
-    )
+    table = tables.pairs(Record.model_validate({"mac": {"models": {"euler": {"pairs": [pair]}}}}))
     assert table.rows == [["axial 2", "0.0237 (none)"]]
     pair["mac"] = 0.8
-    table = evidence_tables.pairs(
-        Record.model_validate({"mac": {"models": {"euler": {"pairs": [pair]}}}})
-    )
+    table = tables.pairs(Record.model_validate({"mac": {"models": {"euler": {"pairs": [pair]}}}}))
     assert table.rows == [["axial 2", "0.8000 (bending 8)"]]
 
 

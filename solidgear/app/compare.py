@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Annotated
 
@@ -10,14 +9,15 @@ import typer
 
 from solidgear.comparison.models import check_models
 from solidgear.comparison.models import compare as compared
+from solidgear.comparison.page.sheet import sheet
 from solidgear.comparison.race.command import run_chart
 from solidgear.comparison.two.command import compare_two
 from solidgear.core import ELEMENTS, LADDER, is_train, listed
 from solidgear.core import load as read
-from solidgear.show.command import command, say
+from solidgear.show.command import Progress, command
 from solidgear.show.folder import held
 from solidgear.show.options import MODEL, SceneFile, Shown, options_by_name, refuse
-from solidgear.show.terminal import closing_lines, final_table, verdict_text
+from solidgear.show.sheet import Sheet, present
 from solidgear.trains.judge.command import compare_train
 from solidgear.trains.options import Pair
 
@@ -116,19 +116,17 @@ def compare(
     chosen = options_by_name(settings, LADDER.bodies, "model", "solid.around=32")
     if solid_element:
         chosen.setdefault("solid", {})["element"] = solid_element
-    with held(out):
-        with run.progress() as progress:
+
+    def study(progress: Progress) -> Sheet:
+        with held(out):
             comparison = compared(loaded, names, settings=chosen, progress=progress)
-            drawn = renders and comparison.record.complete
+            complete = comparison.record.complete
+            drawn = renders and complete
             comparison.write_report(out, renders=drawn, units=run.units, progress=progress)
-        if chart and comparison.record.complete:
-            run_chart(loaded, out, quiet=run.as_json)
-    if run.as_json:
-        print(json.dumps(comparison.results, allow_nan=False))
-    else:
-        say(final_table(comparison.record), verdict_text(comparison.record), soft_wrap=False)
-        say(*closing_lines(comparison.record), f"Report: {out / 'report.html'}")
-    if not comparison.record.complete:
-        raise typer.Exit(130)
-    if not comparison.solutions:
-        raise typer.Exit(1)
+            if chart and complete:
+                run_chart(loaded, out, progress=progress)
+        exit_code = 0 if comparison.solutions else 1
+        files = [f"Report: {out / 'report.html'}"]
+        return sheet(comparison.record, files, exit_code if complete else 130)
+
+    present(study, run)

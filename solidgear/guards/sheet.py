@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from solidgear.core.judge.record import GuardRecord
 from solidgear.guards.check import BEST, Check
-from solidgear.show.command import caution
+from solidgear.show.command import FAULTY, caution
 from solidgear.show.sheet import Sheet, Terminal
 
 #: not capitalised where it begins a sentence
@@ -27,7 +27,7 @@ def check_sheet(check: Check) -> Sheet:
         verdict=_verdicts(check),
         notes=sentences,
         terminal=Terminal(heading=["== train"] if check.shafts else [], lines="hanging"),
-        faulty=check.faulty,
+        exit_code=FAULTY if check.faulty else 0,
     )
 
 

@@ -28,11 +28,12 @@ class Contents:
 
 
 @functools.cache
-def template(name: str):
-    """Return the template of a page."""
+def template(name: str, folder: Path | None = None):
+    """Return the template of a page, in a folder of its study or here."""
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-    loader = FileSystemLoader(Path(__file__).parent)
+    here = Path(__file__).parent
+    loader = FileSystemLoader([folder or here, here])
     return Environment(
         loader=loader,
         autoescape=True,

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from solidgear.core import whole
 from solidgear.core.machine.whole_file import write_page
-from solidgear.show.command import FAULTY, NOT_REACHED, Progress, caution, filled, say
+from solidgear.show.command import NOT_REACHED, Progress, caution, filled, say
 from solidgear.show.folder import begun, held
 from solidgear.show.page_parts import Contents, template
 from solidgear.show.plot import WIDE, Make, page_svg
@@ -23,6 +23,8 @@ from solidgear.show.table import Table
 from solidgear.show.units import in_ascii
 
 if TYPE_CHECKING:
+    from rich.console import RenderableType
+
     from solidgear.show.options import Run
 
 #: files of a chart
@@ -85,11 +87,12 @@ class Terminal:
     """Parts that a terminal shows in another way than the page; None is as on the page."""
 
     heading: Sequence[str | Table] | None = None  #: in place of title and lead
-    tables: Sequence[Table | str] | None = None
+    tables: Sequence[RenderableType] | None = None
     closing: Sequence[str] | None = None  #: in place of notes and cautions
     #: sentences longer than a line: broken at the width, with further lines indented, or whole
     lines: Literal["broken", "hanging", "whole"] = "broken"
     results: Sequence[str] | None = None  #: in place of headline and verdict
+    unbroken: Sequence[str] = ()  #: last, a line of any length each
 
 
 @dataclass(frozen=True)
@@ -111,7 +114,7 @@ class Sheet:
     viewer: str = ""  #: HTML of shapes, of the page alone
     reached: bool = True  #: whether every error bar is within the tolerance
     terminal: Terminal = Terminal()
-    faulty: bool = False  #: whether it shows what must not be used
+    exit_code: int = 0  #: of a fault, or of a run that ended early, after its numbers
     words: Mapping[str, str] = field(default_factory=dict)  #: what charts say, by file
     #: name of its JSON, which then lists all files, where that is not the name of its page
     json_name: str = ""
@@ -119,8 +122,8 @@ class Sheet:
 
 
 def present(study: Callable[[Progress], Sheet], run: Run, out: Path | None = None) -> None:
-    """Solve a study, write its folder if there is one, print its sheet, and exit with code 1 for a
-    fault, or 3 where the tolerance is not reached.
+    """Solve a study, write its folder if there is one, print its sheet, and exit with the code of
+    the sheet, or 3 where the tolerance is not reached.
     """
     with held(out) if out else nullcontext(), run.progress() as progress:
         sheet = study(progress)
@@ -134,10 +137,11 @@ def present(study: Callable[[Progress], Sheet], run: Run, out: Path | None = Non
         elif files:
             written = f"Written: {', '.join(map(str, files))}"
             say(written, soft_wrap=sheet.terminal.lines != "broken")
-    if sheet.faulty or not sheet.reached:
+    exit_code = sheet.exit_code or (0 if sheet.reached else NOT_REACHED)
+    if exit_code:
         import typer  # start-up: pages are written without a command line
 
-        raise typer.Exit(FAULTY if sheet.faulty else NOT_REACHED)
+        raise typer.Exit(exit_code)
 
 
 def print_sheet(sheet: Sheet) -> None:
@@ -158,6 +162,7 @@ def print_sheet(sheet: Sheet) -> None:
     if terminal.lines == "hanging":
         blocks = [filled(block) if isinstance(block, str) else block for block in blocks]
     say(*blocks, soft_wrap=terminal.lines != "broken")
+    say(*terminal.unbroken)
 
 
 def as_json(sheet: Sheet) -> str:

@@ -9,7 +9,6 @@ import numpy as np
 
 from solidgear.core import DOF_NAMES
 from solidgear.core.quantity import BLOCK_UNITS
-from solidgear.show.reading import mode_of
 from solidgear.show.sketch import draw
 from solidgear.show.table import Table
 from solidgear.show.words import bar_of, percent
@@ -162,7 +161,7 @@ def comparison(compared: Any) -> Table:
     """Return the verdict and first numbers of every model."""
     record, rows = compared.record, []
     for name, model in record.models.items():
-        first = mode_of(model, "bending 1")
+        first = model.mode("bending 1")
         c_zz = model.compliance[2][2] if model.compliance else None
         spent = round(sum(v for v in model.seconds.values() if v is not None), 3)
         rows.append(

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 
 from solidgear.bearings.words import catalogue, load_row, speed_row, without_column
 from solidgear.core import Quantity, Record
-from solidgear.show.reading import entry
+from solidgear.show.matrices import entry
 from solidgear.show.table import Column, Table, given, text, word
 from solidgear.show.units import ENGINEERING, Units
 from solidgear.show.words import DASH, engineering, is_number, short_percent
