@@ -46,18 +46,6 @@ WORDS = {
     "section_forces": (
         "Section forces along the shaft; with two components, the dashed line is their resultant."
     ),
-    "off": (
-        "Difference of each computed frequency from the measured one; grey: two standard "
-        "deviations of the measured and the error bar of the computed one."
-    ),
-    "mac": (
-        "MAC, the likeness of every measured shape (rows) and every computed mode at the "
-        "measuring points."
-    ),
-    "overlay": (
-        "Measured (dark) and computed (green, with its band) responses at the same points; dots: "
-        "resonances found."
-    ),
     "designs": "The goal in every design solved, each with its error bar.",
     "sweep": "Natural frequencies and other columns over the number that varies.",
     "nonlinear": (
@@ -104,7 +92,7 @@ class Terminal:
 
     heading: Sequence[str] | None = None  #: in place of title and lead
     tables: Sequence[Table] | None = None
-    closing: Sequence[str] | None = None  #: in place of notes and cautions
+    closing: Sequence[str | Table] | None = None  #: in place of notes and cautions
 
 
 @dataclass(frozen=True)
@@ -126,6 +114,7 @@ class Sheet:
     viewer: str = ""  #: HTML of shapes, of the page alone
     reached: bool = True  #: whether every error bar is within the tolerance
     terminal: Terminal = Terminal()
+    words: Mapping[str, str] = field(default_factory=dict)  #: what charts say, by file
 
 
 def present(study: Callable[[Progress], Sheet], run: Run, out: Path | None = None) -> None:
@@ -152,7 +141,7 @@ def print_sheet(sheet: Sheet) -> None:
     terminal = sheet.terminal
     heading, tables, closing = terminal.heading, terminal.tables, terminal.closing
     if heading is None:
-        heading = [sheet.title, sheet.lead]
+        heading = [text for text in (sheet.title, sheet.lead) if text]
     if tables is None:
         tables = sheet.tables
     if closing is None:
@@ -187,6 +176,7 @@ def write_folder(sheet: Sheet, folder: Path) -> list[Path]:
         verdict=sheet.verdict,
         viewer=sheet.viewer,
         sections=sheet.sections,
+        words=sheet.words,
     )
     return [page, *files]
 
@@ -219,6 +209,7 @@ def write_sheet(
     cautions: Sequence[str] = (),
     verdict: Sequence[str] = (),
     sections: Sequence[Section] = (),
+    words: Mapping[str, str] | None = None,
 ) -> Path:
     """Write a page without network: conclusions, cautions, charts, HTML of shapes, tables and
     notes.
@@ -226,7 +217,11 @@ def write_sheet(
     from markupsafe import Markup
 
     drawn = [
-        (s, [table for table in s.tables if table], [*_given(s), *_drawn(s.charts, s.title)])
+        (
+            s,
+            [table for table in s.tables if table],
+            [*_given(s), *_drawn(s.charts, words or {}, s.title)],
+        )
         for s in sections
     ]
     page = template("train_sheet.html").render(
@@ -234,7 +229,7 @@ def write_sheet(
         title=title,
         lead=lead,
         tables=[table for table in tables if table],
-        charts=_drawn(charts or {}, title),
+        charts=_drawn(charts or {}, words or {}, title),
         viewer=Markup(viewer),
         notes=notes,
         cautions=cautions,
@@ -244,13 +239,17 @@ def write_sheet(
     return write_page(path, page)
 
 
-def _drawn(charts: Mapping[str, Make], title: str) -> list[tuple[str, str]]:
+def _drawn(
+    charts: Mapping[str, Make], words: Mapping[str, str], title: str
+) -> list[tuple[str, str]]:
     """Draw charts for the page with their words, without empty ones."""
     from markupsafe import Markup
 
     drawn = {name: page_svg(name, make) for name, make in charts.items()}
     return [
-        (Markup(svg.decode()), _words(name) or f"{title}.") for name, svg in drawn.items() if svg
+        (Markup(svg.decode()), words.get(name) or _words(name) or f"{title}.")
+        for name, svg in drawn.items()
+        if svg
     ]
 
 
