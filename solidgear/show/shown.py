@@ -15,7 +15,12 @@ from solidgear.show.table import Table
 from solidgear.show.words import bar_of, percent
 
 if TYPE_CHECKING:
-    from solidgear.core import Body
+    from matplotlib.figure import Figure
+
+    from solidgear.core import Body, ModeSet, Scene
+    from solidgear.core.judge.answer import Answered
+    from solidgear.core.scene.parts import Segment
+    from solidgear.core.solve.condensed import Condensed, Coupled
 
 #: shapes that a picture shows unless told otherwise
 MOST_SHAPES = 6
@@ -23,9 +28,9 @@ MOST_SHAPES = 6
 SMALL = 0.05
 
 
-def scene(shaft: Any) -> Table:
+def scene(shaft: Scene) -> Table:
     """Return parts of a shaft along its axis."""
-    rows: list[tuple[Any, ...]] = []
+    rows: list[tuple[str | float, ...]] = []
     for s in shaft.segments:
         rows.append((s.name, "segment", 1e3 * s.y0, 1e3 * s.y1, _diameters(s)))
     for f in shaft.features:
@@ -61,7 +66,7 @@ def scene(shaft: Any) -> Table:
     )
 
 
-def _diameters(segment: Any) -> str:
+def _diameters(segment: Segment) -> str:
     outer = (segment.outer0, segment.outer1)
     inner = (segment.inner0, segment.inner1)
 
@@ -72,7 +77,7 @@ def _diameters(segment: Any) -> str:
     return f"diameter {ends(outer)} mm{bore}"
 
 
-def scene_figure(shaft: Any) -> Any:
+def scene_figure(shaft: Scene) -> Figure | None:
     """Return the dimensioned section of the report."""
     return draw(shaft.as_dict())
 
@@ -91,7 +96,7 @@ def body(free_body: Body) -> Table:
     )
 
 
-def mode_set(modes: Any) -> Table:
+def mode_set(modes: ModeSet) -> Table:
     """Return the natural frequencies."""
     rows = [(m.name, m.frequency_hz, m.multiplicity, m.waves, m.error) for m in modes.modes]
     return Table(
@@ -101,7 +106,7 @@ def mode_set(modes: Any) -> Table:
     )
 
 
-def mode_set_figure(modes: Any, names: Sequence[str] = ()) -> Any:
+def mode_set_figure(modes: ModeSet, names: Sequence[str] = ()) -> Figure:
     """Draw section motions of elastic modes along the shaft: translations, for torsion rotations.
 
     Parameters
@@ -112,8 +117,9 @@ def mode_set_figure(modes: Any, names: Sequence[str] = ()) -> Any:
     from matplotlib.figure import Figure
 
     elastic = [m for m in modes.modes if m.frequency_hz > 0]
-    drawn = [modes.named(name) for name in names] if names else elastic[:MOST_SHAPES]
-    if not drawn or None in drawn:
+    chosen = [modes.named(name) for name in names] if names else elastic[:MOST_SHAPES]
+    drawn = [mode for mode in chosen if mode is not None]
+    if not drawn or len(drawn) < len(chosen):
         raise ValueError(f"no such mode; there are {', '.join(modes.names)}")
     figure = Figure(figsize=(7.0, 0.6 + 1.15 * len(drawn)), layout="constrained")
     axes = figure.subplots(len(drawn), 1, sharex=True, squeeze=False)[:, 0]
@@ -136,18 +142,20 @@ def mode_set_figure(modes: Any, names: Sequence[str] = ()) -> Any:
     return figure
 
 
-def condensed(statics: Any, kind: str = "stiffness") -> Table:
+def condensed(statics: Condensed, kind: str = "stiffness") -> Table:
     """Return the 6x6 at a port, a stiffness or a compliance."""
     return _matrix(statics, kind, f"at {statics.port} ({statics.attachment})", DOF_NAMES, "free")
 
 
-def coupled(statics: Any, kind: str = "compliance") -> Table:
+def coupled(statics: Coupled, kind: str = "compliance") -> Table:
     """Return the matrix between several ports, a stiffness or a compliance."""
     heads = [f"{port} {name}" for port in statics.ports for name in DOF_NAMES]
     return _matrix(statics, kind, f"between {' and '.join(statics.ports)}", heads, "free together")
 
 
-def _matrix(statics: Any, kind: str, place: str, heads: Sequence[str], free: str) -> Table:
+def _matrix(
+    statics: Condensed | Coupled, kind: str, place: str, heads: Sequence[str], free: str
+) -> Table:
     if kind not in BLOCK_UNITS:
         raise ValueError(f"kind {kind!r}: use stiffness or compliance")
     rows = [
@@ -178,7 +186,7 @@ def comparison(compared: Any) -> Table:
     )
 
 
-def answered(answer: Any) -> Table:
+def answered(answer: Answered) -> Table:
     """Return numbers with their error bars."""
     rows = [(v.quantity, v.value, v.unit, bar_of(v)) for v in answer.values]
     words = "within" if answer.reached else "not within"

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from solidgear.show.words import percent
 
 if TYPE_CHECKING:
     from solidgear.core import Record, WhereRecord
+    from solidgear.core.judge.record import PlaceRecord
 
 #: shares below this are all of one colour
 LEAST = 1e-4
@@ -46,9 +47,23 @@ def draw_where(file: Path, places: WhereRecord, title: str = "") -> None:
     _chart(places, title, WIDE).write(file)
 
 
+class _Spot(NamedTuple):
+    """A place that is drawn, with the share of the error and the reach (m)."""
+
+    what: str
+    y: float
+    r: float
+    share: float
+    reach: float | None
+
+
 def _chart(record: WhereRecord, title: str, width: float) -> Chart:
     points, cells, shares = map(np.array, (record.points, record.cells, record.shares))
-    places = [p for p in worth_naming(record.rows) if p.y is not None and p.r is not None]
+    places = [
+        _Spot(p.what, p.y, p.r, p.share, p.reach)
+        for p in worth_naming(record.rows)
+        if p.y is not None and p.r is not None and p.share is not None
+    ]
     r, y = 1e3 * points
     length, radius = np.ptp(y), r.max()
     stretch = max(1.0, length / (SLENDEREST * radius))
@@ -64,7 +79,11 @@ def _chart(record: WhereRecord, title: str, width: float) -> Chart:
         scale * stretch * top,
         right=12 + room - 1.04 * scale * length,
     )
-    legend: dict[str, Any] = {"orient": "top", "title": "share of the cell", "labelExpr": PERCENT}
+    legend: dict[str, object] = {
+        "orient": "top",
+        "title": "share of the cell",
+        "labelExpr": PERCENT,
+    }
     legend["values"] = np.geomspace(LEAST, 1.0, 5).tolist()
     _draw(panel, corners, shares, legend | {"gradientLength": min(room, 300.0)})
     numbers = [
@@ -90,7 +109,7 @@ def _chart(record: WhereRecord, title: str, width: float) -> Chart:
     return Chart(rows_of, width, "; ".join(filter(None, (title, drawn_as))), "\n".join(names))
 
 
-def _inset(corners, shares, place: Any, number: int, half: float) -> Panel:
+def _inset(corners, shares, place: _Spot, number: int, half: float) -> Panel:
     """Return cells near a place, so many metres to either side."""
     centre = 1e3 * np.array([place.y, place.r])
     low, high = centre - 1e3 * half, centre + 1e3 * half
@@ -101,7 +120,7 @@ def _inset(corners, shares, place: Any, number: int, half: float) -> Panel:
     return panel
 
 
-def _draw(panel: Panel, corners, shares, legend: Any) -> None:
+def _draw(panel: Panel, corners, shares, legend: Mapping[str, object] | None) -> None:
     """Draw cells in the colours of their shares, which can be read off."""
     scale = {"type": "log", "domain": [LEAST, 1.0], "scheme": "yelloworangered", "clamp": True}
     shade = {"field": "share", "type": "quantitative", "scale": scale, "legend": legend}
@@ -126,7 +145,7 @@ def _words(y: float, r: float, share: float) -> str:
     return readout("cell", ("share of the error", size, ""), *places)
 
 
-def _close(points: np.ndarray, places: Sequence[Any]) -> list[tuple[int, float]]:
+def _close(points: np.ndarray, places: Sequence[_Spot]) -> list[tuple[int, float]]:
     """Return numbers of places with cells too small to be seen, and half the width (m) of an
     inset.
     """
@@ -158,12 +177,6 @@ def where_chart(record: Record, width: float = WIDE) -> Chart | None:
     return _chart(places, "", width)
 
 
-def worth_naming(rows: Sequence[Any]) -> list[Any]:
-    """Return the first few places with a share worth a word.
-
-    Parameters
-    ----------
-    rows : sequence of PlaceRecord
-        Places with a ``share``, the largest first.
-    """
+def worth_naming(rows: Sequence[PlaceRecord]) -> list[PlaceRecord]:
+    """Return the first few places with a share worth a word, of those with the largest first."""
     return [r for r in rows[:MOST_PLACES] if r.share is not None and abs(r.share) >= WORTH_NAMING]
