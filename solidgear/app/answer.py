@@ -111,7 +111,7 @@ def answer_sheet(
         data["where"] = places.model_dump(exclude=cells)
         total, time = percent(places.total, signed=False), seconds(places.seconds)
         sentence = f"{places.sentence} (a bound by local problems, {total}; {time} s)."
-        closing += [_where_table(places), sentence]
+        closing += [_where_table(places, units), sentence]
         if picture is not None:
             closing.append(f"Picture: {picture}")
     elif places:
@@ -196,17 +196,19 @@ def _places(scene: Scene, answered: Answered) -> WhereRecord:
     return places.model_copy(update={"total": widest.bar})
 
 
-def _where_table(places: WhereRecord) -> Table:
+def _where_table(places: WhereRecord, units: Units) -> Table:
     """Return places of the error with their shares of it, the largest first."""
 
-    def millimetres(value: float) -> str:
-        return f"{1e3 * value:.4g}"
+    def length(value: float) -> str:
+        return f"{units.value(value, 'm'):.4g}"
+
+    unit = units.unit("m")
 
     columns = [
         Column(f"error of {places.quantity}", lambda row: row.what),
-        Column("y, mm", lambda row: row.y, millimetres),
-        Column("r, mm", lambda row: "" if row.r is None else row.r, millimetres),
-        Column("within, mm", lambda row: "" if row.reach is None else row.reach, millimetres),
+        Column(f"y, {unit}", lambda row: row.y, length),
+        Column(f"r, {unit}", lambda row: "" if row.r is None else row.r, length),
+        Column(f"within, {unit}", lambda row: "" if row.reach is None else row.reach, length),
         Column("share", lambda row: row.share, lambda share: f"{100 * share:.1f} %"),
     ]
     return Table("", columns, worth_naming(places.rows))

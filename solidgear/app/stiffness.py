@@ -101,8 +101,8 @@ def stiffness_sheet(statics: Condensed | Coupled, judged: Judged, units: Units) 
     head = judged.heading
     closing: list[str | Table] = []
     if isinstance(statics, Condensed):
-        place = _at(judged.scene.port)
-        head += f", port {statics.port!r} at {place} mm ({statics.attachment})"
+        place = _at(judged.scene.port, units)
+        head += f", port {statics.port!r} at {place} ({statics.attachment})"
         tables = [
             matrix_table(statics.stiffness, STIFFNESS, units),
             matrix_table(statics.compliance, COMPLIANCE, units),
@@ -110,9 +110,9 @@ def stiffness_sheet(statics: Condensed | Coupled, judged: Judged, units: Units) 
         closing += _free(statics)
         point = statics.port
     else:
-        places = {port.name: _at(port) for port in judged.scene.ports}
+        places = {port.name: _at(port, units) for port in judged.scene.ports}
         ports = (
-            f"{name!r} at {places[name]} mm ({kind})"
+            f"{name!r} at {places[name]} ({kind})"
             for name, kind in zip(statics.ports, statics.attachments)
         )
         head += f", ports {', '.join(ports)}"
@@ -139,11 +139,13 @@ def stiffness_sheet(statics: Condensed | Coupled, judged: Judged, units: Units) 
     )
 
 
-def _at(port: Port) -> str:
-    """Return the place of a lumped point, mm."""
-    if port.patch is None:
-        return f"y = {1e3 * port.y:.3f}"
-    return "({})".format(", ".join(f"{1e3 * v:.3f}" for v in port.patch.point))
+def _at(port: Port, units: Units) -> str:
+    """Return the place of a lumped point."""
+    unit = units.unit("m")
+    decimals = 3 if unit == "mm" else 4
+    place = (port.y,) if port.patch is None else port.patch.point
+    numbers = ", ".join(f"{units.value(v, 'm'):.{decimals}f}" for v in place)
+    return f"y = {numbers} {unit}" if port.patch is None else f"({numbers}) {unit}"
 
 
 def _free(condensed: Condensed) -> Iterator[str]:

@@ -11,7 +11,7 @@ from __future__ import annotations
 import hashlib
 import json
 import logging
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -183,7 +183,7 @@ def _tables(record: Record, units: Units) -> dict[str, Any]:
         "frequencies": result_tables.frequencies(record),
         "deviations": evidence_tables.deviations(record, units),
         "causes": evidence_tables.causes(record),
-        "lumped": lumped_tables(record),
+        "lumped": lumped_tables(record, units),
         "attachments": evidence_tables.attachments(record, units),
         "where": _where(record),
         "levels": evidence_tables.levels(record, units),
@@ -404,7 +404,7 @@ def stamp(record: Record) -> list[tuple[str, str]]:
 Item = tuple[str, LumpedVariant]
 
 
-def lumped_tables(record: Record) -> list[Table]:
+def lumped_tables(record: Record, units: Units) -> list[Table]:
     """Return first bending side by side and one table of synthesis per body, where the scene asks
     for it.
     """
@@ -418,7 +418,7 @@ def lumped_tables(record: Record) -> list[Table]:
         *(_method(method) for method in methods),
     ]
     title = "First bending, Hz: each body and the lumped models made from it"
-    details = [_detail(model_name(record, key), synthesis) for key, synthesis in lumped.items()]
+    details = [_detail(model_name(record, key), lumped[key], units) for key in lumped]
     return [Table(title, columns, list(lumped.items())), *details]
 
 
@@ -436,17 +436,21 @@ def _first(variant: LumpedVariant | None) -> str:
     return f"{text} ({percent(variant.frequency_error)})"
 
 
-def _detail(name: str, synthesis: LumpedRecord) -> Table:
+def _detail(name: str, synthesis: LumpedRecord, units: Units) -> Table:
     """Return the synthesis from one body, a method a row."""
 
-    def mass(i: int, j: int) -> Callable[[Item], float | None]:
-        return lambda item: entry(item[1].mass, i, j)
+    def mass(head: str, si: str, i: int, j: int) -> Column:
+        return Column(
+            f"{head}, {units.unit(si)}",
+            lambda item: units.value(entry(item[1].mass, i, j), si),
+            engineering,
+        )
 
     columns = [
         Column("mass matrix", lambda item: item[0]),
-        Column("M, kg", mass(0, 0), engineering),
-        Column("I, kg m²", mass(1, 1), engineering),
-        Column("coupling, kg m", mass(0, 1), engineering),
+        mass("M", "kg", 0, 0),
+        mass("I", "kg m²", 1, 1),
+        mass("coupling", "kg m", 0, 1),
         Column("slope phi/z", lambda item: item[1].slope_error, percent),
         Column("kinetic energy", lambda item: item[1].kinetic_error, percent),
         Column("valid to, Hz", lambda item: item[1].valid_to_hz, hertz),
