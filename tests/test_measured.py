@@ -21,10 +21,9 @@ from solidgear.measured.alignment import Peak, ShapeLikeness, align
 from solidgear.measured.computed import Computed, computed_up_to
 from solidgear.measured.correlate import SURE, correlate
 from solidgear.measured.data import Measured, load_measured
-from solidgear.measured.fit import Fit
+from solidgear.measured.fit import Fit, varied_of
 from solidgear.measured.identify import Sprung, identify
 from solidgear.measured.same_part import Common
-from solidgear.measured.varied import varied_of
 from solidgear.variants.sensitivity.adjoint import mode_form
 from solidgear.variants.sensitivity.derivatives import Derivatives
 

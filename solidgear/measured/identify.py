@@ -37,9 +37,8 @@ from solidgear.core.scene.paths import Tables, replace_entry
 from solidgear.measured.computed import Computed, computed_like, computed_up_to
 from solidgear.measured.correlate import DEVIATIONS, SURE, placed_in
 from solidgear.measured.data import Measured
-from solidgear.measured.fit import ALIKE, SAME, End, Fit, best_of
+from solidgear.measured.fit import ALIKE, SAME, End, Fit, best_of, varied_of
 from solidgear.measured.same_part import Likeness
-from solidgear.measured.varied import varied_of
 from solidgear.variants.sensitivity.adjoint import mode_form
 from solidgear.variants.sensitivity.derivatives import Derivatives
 from solidgear.variants.sweep.bench import surface

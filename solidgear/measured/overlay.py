@@ -19,7 +19,7 @@ from solidgear.core.solve.coupling import decoupled, groups
 from solidgear.core.solve.supported import Supported
 from solidgear.measured.computed import motions_up_to
 from solidgear.measured.correlate import Correlation
-from solidgear.measured.responses import ResponseFit
+from solidgear.measured.modal_fit import ResponseFit
 from solidgear.measured.shapes import SurfacePoints
 
 #: of the highest measured frequency: modes up to there count
