@@ -10,7 +10,9 @@ import typer
 from solidgear.core import (
     LADDER,
     MOST_MODES,
+    Mode,
     ModeSet,
+    OpenNumbers,
     Quantity,
     Settled,
     SolidgearError,
@@ -26,13 +28,14 @@ from solidgear.core.judge.completeness import completeness, cut_short, split_apa
 from solidgear.core.judge.hidden import complete_list, less_widest
 from solidgear.core.plain import plain
 from solidgear.core.solve.mixtures import mixtures
+from solidgear.show import open_words
 from solidgear.show.command import Progress, caution, command
 from solidgear.show.options import Run, SceneFile, Solved, options, speed_of
 from solidgear.show.remarks import cautions, load, open_ranges
 from solidgear.show.settled import SECOND_MESH, Judged, bar_lines
 from solidgear.show.sheet import Sheet, present
-from solidgear.show.terminal import modes_table
-from solidgear.show.words import by_plane, percent
+from solidgear.show.table import Column, Table, text
+from solidgear.show.words import by_plane, hertz, percent
 
 #: rows of a list whose beginning has left the terminal
 MANY = 30
@@ -167,6 +170,24 @@ def modes_sheet(modes: ModeSet, judged: Judged, proof: dict[str, Any], counted: 
         cautions=judged.cautions,
         reached=judged.reached,
     )
+
+
+def modes_table(modes: Sequence[Mode], bars: Mapping[str, float], open_: OpenNumbers) -> Table:
+    """Return natural frequencies with names and multiplicity, error bars and ranges."""
+
+    def bar(mode: Mode) -> str:
+        width = bars.get(mode.name)
+        return "" if width is None else percent(width, signed=False)
+
+    columns = [
+        text("mode", lambda m: m.name or None),
+        text("family", lambda m: m.family or None),
+        Column("frequency, Hz", lambda m: m.frequency_hz, hertz),
+        Column("shapes", lambda m: m.multiplicity),
+        *([Column("error bar", bar)] if bars else []),
+        *open_words.columns(open_, lambda mode: mode.name),
+    ]
+    return Table("", columns, modes, open_words.remark(open_))
 
 
 def _beyond(bars: Mapping[str, float], settled: Settled | None) -> list[str]:

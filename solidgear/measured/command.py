@@ -24,7 +24,7 @@ from solidgear.measured.overlay import Overlay, overlay
 from solidgear.measured.shapes import SurfacePoints
 from solidgear.show.command import Progress, command
 from solidgear.show.mode_charts import mac_panel
-from solidgear.show.options import Run, share
+from solidgear.show.options import Run, relative
 from solidgear.show.packing import Mesh
 from solidgear.show.panel import GREY, INK, PERCENT, Axis, Panel, Series, readout
 from solidgear.show.plot import WIDE, Chart
@@ -46,9 +46,7 @@ MeasuredFile = Annotated[
 ]
 Tolerance = Annotated[
     float,
-    typer.Option(
-        "--tol", parser=share, metavar="FLOAT", help="Error bar allowed for computed frequencies."
-    ),
+    relative("--tol", "Error bar allowed for computed frequencies."),
 ]
 Out = Annotated[
     Path | None, typer.Option("--out", "-o", help="Folder for a page, data and tables.")

@@ -15,7 +15,7 @@ import math
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 import scipy.linalg as sla
@@ -32,7 +32,6 @@ from solidgear.core import (
     pinned,
 )
 from solidgear.core.loading import scene_of
-from solidgear.core.plain import plain
 from solidgear.core.scene.paths import Tables, replace_entry
 from solidgear.measured.computed import Computed, computed_like, computed_up_to
 from solidgear.measured.correlate import DEVIATIONS, SURE, placed_in
@@ -148,11 +147,6 @@ class Identification(Displayed):
     def sentences(self) -> list[str]:
         """Conclusions."""
         return list(_sentences(self))
-
-    @property
-    def results(self) -> dict[str, Any]:
-        """Plain data that JSON can hold, SI."""
-        return plain(self)
 
 
 def _sentences(result: Identification) -> Iterator[str]:

@@ -19,7 +19,6 @@ from solidgear.core.solve.coupling import decoupled, groups
 from solidgear.core.solve.supported import Supported
 from solidgear.measured.computed import motions_up_to
 from solidgear.measured.correlate import Correlation
-from solidgear.measured.modal_fit import ResponseFit
 from solidgear.measured.shapes import SurfacePoints
 
 #: of the highest measured frequency: modes up to there count
@@ -134,7 +133,9 @@ def overlay(correlation: Correlation) -> Overlay | None:
             )
             band += np.abs(constant)[:, None] * error
         if number is not None:
-            measured = _constants(fitted, number)[usable]
+            # products of shapes of unit mass, by residues of accelerances (Ewins, eq. 4.30)
+            pole = fitted.fit.poles[number]
+            measured = 2j * pole.imag * fitted.fit.residues[number, usable] / pole**2
             constants[number + 1] = float(
                 abs(np.vdot(measured, constant)) / np.sum(np.abs(measured) ** 2)
             )
@@ -153,7 +154,11 @@ def overlay(correlation: Correlation) -> Overlay | None:
         )
         band += np.where(same_point, np.abs(static_rest), sure)[:, None]
     kind, unit_ = KINDS[derivatives]
-    names = tuple(f"{_end(ends[k][0])} for {_end(ends[k][1])}" for k in usable)
+
+    def label(end: tuple[int, int]) -> str:
+        return f"{end[0]}{'-' if end[1] < 0 else ''}{AXES[abs(end[1]) - 1]}"
+
+    names = tuple(f"{label(ends[k][0])} for {label(ends[k][1])}" for k in usable)
     return Overlay(
         hertz,
         responses.values[usable][:, ahead],
@@ -199,18 +204,6 @@ def _ends(
     first, second = ([ends.index(pair[side]) for pair in pairs] for side in (0, 1))
     places_and_ways = [(numbers.index(point), way) for point, way in ends]
     return places, _Ends(places_and_ways, np.array(first), np.array(second))
-
-
-def _constants(fitted: ResponseFit, number: int) -> np.ndarray:
-    """Return products of shapes of unit mass at both ends of every response, by residues of
-    accelerances (Ewins 2000, Modal Testing, eq. 4.30).
-    """
-    pole = fitted.fit.poles[number]
-    return 2j * pole.imag * fitted.fit.residues[number] / pole**2
-
-
-def _end(end: tuple[int, int]) -> str:
-    return f"{end[0]}{'-' if end[1] < 0 else ''}{AXES[abs(end[1]) - 1]}"
 
 
 #: waves around of a body of revolution that a force at a point counts with, at least
