@@ -438,7 +438,10 @@ def turned_beside(correlation: Correlation) -> tuple[Turned, ...]:
         return ()
     places = SurfacePoints(computed.body, measured.numbers.tolist(), measured.points)
     measured_points = np.any(measured.values != 0, axis=0)
-    moved = [_real(measured.values[numbers[str(mode.name)]]) for mode in modes]
+    shapes_measured = [measured.values[numbers[str(mode.name)]] for mode in modes]
+    # in the phase in which each is largest
+    phases = [np.exp(-0.5j * np.angle(np.sum(shape**2))) for shape in shapes_measured]
+    moved = [np.real(shape * phase) for shape, phase in zip(shapes_measured, phases)]
     vectors = []
     for mode, shape in zip(modes, moved):
         span = np.column_stack([places.motion(vector)[measured_points] for vector in mode.vectors])
@@ -458,11 +461,6 @@ def turned_beside(correlation: Correlation) -> tuple[Turned, ...]:
         hertz = correlation.measured.modes[numbers[turned_shape.name]].frequency
         shapes.append(replace(turned_shape, frequency_hz=hertz, displacement=displacement))
     return Turned("measured", mesh, tuple(shapes)), turned
-
-
-def _real(shape: np.ndarray) -> np.ndarray:
-    """Return a complex shape in the phase in which it is largest."""
-    return np.real(shape * np.exp(-0.5j * np.angle(np.sum(shape**2))))
 
 
 def _mesh(points: np.ndarray) -> Mesh:

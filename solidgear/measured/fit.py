@@ -315,9 +315,11 @@ class Fit:
         problem, advice = f"leave {parts[0]} open", "leave it out"
         if len(parts) > 1:
             problem, advice = f"cannot separate {' and '.join(parts)}", "leave one of them out"
+        reach = f"they leave a factor of {math.exp(min(deviation, 10)):.3g} either way"
+        if deviation > 10:
+            reach = "any change of them that way moves the resonances by less than their scatter"
         raise SolidgearError(
-            f"identify: these resonances {problem}: {_factor(deviation)}; {advice}, or measure a mode that "
-            "it moves"
+            f"identify: these resonances {problem}: {reach}; {advice}, or measure a mode that it moves"
         )
 
 
@@ -345,12 +347,3 @@ def best_of(ends: Sequence[End]) -> End:
     """Return the end that fits best, at the least scatter of all."""
     scatter = min(end.fit.scatter for end in ends)
     return min(ends, key=lambda end: end.misfit(scatter))
-
-
-def _factor(deviation: float) -> str:
-    """Return the standard deviation of a logarithm in words."""
-    return (
-        "any change of them that way moves the resonances by less than their scatter"
-        if deviation > 10
-        else f"they leave a factor of {math.exp(deviation):.3g} either way"
-    )

@@ -71,11 +71,6 @@ class Identified:
         """Return whether a bound holds it where it is."""
         return self.value <= self.low * (1 + EDGE) or self.value >= self.high * (1 - EDGE)
 
-    @property
-    def uninformed(self) -> bool:
-        """Return whether the data add nothing to the prior."""
-        return self.prior is not None and self.deviation > LITTLE * self.prior[1]
-
 
 @dataclass(frozen=True)
 class Fitted:
@@ -198,7 +193,7 @@ def _sentences(result: Identification) -> Iterator[str]:
 
 def _prior_sentences(entry: Identified, middle: float, deviation: float) -> Iterator[str]:
     prior = f"{middle:.6g}, known to {100 * deviation:.2g} % beforehand"
-    if entry.uninformed:
+    if entry.deviation > LITTLE * deviation:
         yield f"The data do not determine {entry.path}: it stays as it was, {prior}."
     deviations = abs(math.log(entry.value / middle)) / deviation
     if deviations > FAR:

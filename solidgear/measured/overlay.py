@@ -179,7 +179,8 @@ def _unit(natural: float | np.ndarray, omega: np.ndarray, ratio: float) -> np.nd
 
 def _along(motion: np.ndarray, ends: Sequence[tuple[int, int]]) -> np.ndarray:
     """Return (e,) motions (p, 3) of points along the directions of ends."""
-    return np.array([np.sign(way) * motion[point, abs(way) - 1] for point, way in ends])
+    points, ways = np.array(ends).T
+    return np.sign(ways) * motion[points, np.abs(ways) - 1]
 
 
 #: waves around of a body of revolution that a force at a point counts with, at least
@@ -243,15 +244,10 @@ def _on_block(
 ) -> np.ndarray:
     """Return (n, e) unit forces at the ends in the unknowns of a block."""
     block = body.block(index)
-    corners = places.corners[[point for point, _ in ends]]
+    points, ways = np.array(ends).T
+    corners = places.corners[points]
     rows = body.geometry.rows(block.name, corners.ravel())  # type: ignore[union-attr]
     rows = rows.reshape(*corners.shape, 3, -1)
-    way = np.array([abs(way) - 1 for _, way in ends])
-    sign = np.sign([way for _, way in ends])
-    along = np.einsum(
-        "ecn,ec->en",
-        rows[np.arange(len(ends)), :, way],
-        places.weights[[point for point, _ in ends]],
-    )
-    along = sign[:, None] * along
+    directed = rows[np.arange(len(ends)), :, np.abs(ways) - 1]
+    along = np.einsum("ecn,ec->en", directed, places.weights[points]) * np.sign(ways)[:, None]
     return (along if block.expand is None else along @ block.expand).T

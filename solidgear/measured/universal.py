@@ -139,18 +139,10 @@ def read_universal(
     with explained(path, {}):
         sets = _datasets(Path(path), UFF)
         kinds = NORMAL, *COMPLEX
-        modes = [
-            dataset
-            for dataset in sets
-            if dataset["type"] == 55 and dataset["analysis_type"] in kinds
-        ]
+        modes = [d for d in sets if d["type"] == 55 and d["analysis_type"] in kinds]
         if modes:
             return _shapes(sets, modes)
-        responses = [
-            dataset
-            for dataset in sets
-            if dataset["type"] == 58 and dataset["func_type"] == RESPONSE
-        ]
+        responses = [d for d in sets if d["type"] == 58 and d["func_type"] == RESPONSE]
         if responses:
             return _responses(sets, responses, response_unit)
         raise SceneError(
@@ -173,7 +165,10 @@ def _shapes(
     missing = [int(k) for k in numbers if int(k) not in places]
     if missing and places:
         raise SceneError(f"gives no position of point {missing[0]} (dataset 15 or 2411)")
-    hertz = [_hertz(mode) for mode in modes]
+    hertz = [
+        float(m["freq"] if m["analysis_type"] == NORMAL else abs(m["eig"]) / (2 * np.pi))
+        for m in modes
+    ]
     order = np.argsort(hertz, kind="stable")
     values = np.array(
         [np.column_stack([modes[k]["r1"], modes[k]["r2"], modes[k]["r3"]]) for k in order]
@@ -217,15 +212,9 @@ def _responses(
         remarks.append(f"Frequencies are in {labels[0][0]}, as the label of their axis says.")
     return Responses(
         np.asarray(axis) * hertz,
-        np.array(
-            [
-                np.multiply(dataset["data"], scale or 1.0)
-                for dataset, scale in zip(datasets, scales)
-            ],
-            complex,
-        ),
-        tuple((dataset["rsp_node"], dataset["rsp_dir"]) for dataset in datasets),
-        tuple((dataset["ref_node"], dataset["ref_dir"]) for dataset in datasets),
+        np.array([np.multiply(d["data"], s or 1.0) for d, s in zip(datasets, scales)], complex),
+        tuple((d["rsp_node"], d["rsp_dir"]) for d in datasets),
+        tuple((d["ref_node"], d["ref_dir"]) for d in datasets),
         _points(sets),
         derivatives,
         _length(sets),
@@ -294,11 +283,10 @@ def _datasets(path: Path, reader: Callable) -> list[dict[str, Any]]:
 
 def _units(sets: Sequence[Mapping[str, Any]]) -> tuple[float, float] | None:
     """Return units of length and force, m and N; None where dataset 164 is not there."""
-    datasets = [dataset for dataset in sets if dataset["type"] == 164]
-    if not datasets:
-        return None
-    dataset = datasets[0]
-    return units_of(dataset["units_code"], dataset["length"], dataset["force"])
+    for d in sets:
+        if d["type"] == 164:
+            return units_of(d["units_code"], d["length"], d["force"])
+    return None
 
 
 def _length(sets: Sequence[Mapping[str, Any]]) -> float | None:
@@ -321,13 +309,6 @@ def _points(sets: Sequence[Mapping[str, Any]]) -> dict[int, tuple[float, float, 
         for dataset in nodes
         for k, x, y, z in zip(dataset["node_nums"], dataset["x"], dataset["y"], dataset["z"])
     }
-
-
-def _hertz(mode: Mapping[str, Any]) -> float:
-    """Return the frequency of a mode; of a complex one from the eigenvalue."""
-    return float(
-        mode["freq"] if mode["analysis_type"] == NORMAL else abs(mode["eig"]) / (2 * np.pi)
-    )
 
 
 def response_unit(label: str) -> tuple[float, int] | None:
