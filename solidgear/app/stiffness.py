@@ -13,6 +13,7 @@ from solidgear.core import (
     COMPLIANCE,
     DOF_NAMES,
     STIFFNESS,
+    Condensed,
     Port,
     Quantity,
     Scene,
@@ -21,7 +22,7 @@ from solidgear.core import (
 from solidgear.core.judge.coarser_mesh import static_bars
 from solidgear.core.plain import plain
 from solidgear.core.scene.rules import no_such_point
-from solidgear.core.solve.condensed import Condensed, Coupled
+from solidgear.core.solve.condensed import Coupled
 from solidgear.core.solve.statics import condense
 from solidgear.show.command import Progress, caution, command
 from solidgear.show.open_words import table as open_table

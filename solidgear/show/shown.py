@@ -17,10 +17,9 @@ from solidgear.show.words import bar_of, percent
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from solidgear.core import Body, ModeSet, Scene
+    from solidgear.core import Body, Condensed, ModeSet, Scene
     from solidgear.core.judge.answer import Answered
-    from solidgear.core.scene.parts import Segment
-    from solidgear.core.solve.condensed import Condensed, Coupled
+    from solidgear.core.solve.condensed import Coupled
 
 #: shapes that a picture shows unless told otherwise
 MOST_SHAPES = 6
@@ -32,7 +31,9 @@ def scene(shaft: Scene) -> Table:
     """Return parts of a shaft along its axis."""
     rows: list[tuple[str | float, ...]] = []
     for s in shaft.segments:
-        rows.append((s.name, "segment", 1e3 * s.y0, 1e3 * s.y1, _diameters(s)))
+        bore = f", bore {_diameters(s.inner0, s.inner1)} mm" if s.inner0 or s.inner1 else ""
+        size = f"diameter {_diameters(s.outer0, s.outer1)} mm{bore}"
+        rows.append((s.name, "segment", 1e3 * s.y0, 1e3 * s.y1, size))
     for f in shaft.features:
         lo, hi = f.span(shaft.segments)
         rows.append((f.name, f.what, 1e3 * lo, 1e3 * hi, f"on {f.segment}"))
@@ -66,15 +67,9 @@ def scene(shaft: Scene) -> Table:
     )
 
 
-def _diameters(segment: Segment) -> str:
-    outer = (segment.outer0, segment.outer1)
-    inner = (segment.inner0, segment.inner1)
-
-    def ends(pair: tuple[float, float]) -> str:
-        return " to ".join(f"{2e3 * r:.6g}" for r in dict.fromkeys(pair))
-
-    bore = f", bore {ends(inner)} mm" if any(inner) else ""
-    return f"diameter {ends(outer)} mm{bore}"
+def _diameters(first: float, last: float) -> str:
+    """Return diameters by the radii at both ends, mm."""
+    return " to ".join(f"{2e3 * r:.6g}" for r in dict.fromkeys((first, last)))
 
 
 def scene_figure(shaft: Scene) -> Figure | None:

@@ -30,6 +30,7 @@ from solidgear.core import (
     FIRST_BENDING,
     LADDER,
     QUANTITIES,
+    Condensed,
     Quantity,
     SolidgearError,
     settle,
@@ -42,7 +43,6 @@ from solidgear.core.judge.refinement import Refinement
 from solidgear.core.judge.solving import Answer, Statics, solve
 from solidgear.core.ladder.model import LUMPED
 from solidgear.core.machine.meter import processor_seconds
-from solidgear.core.solve.condensed import Condensed
 from solidgear.core.solve.families import FAMILIES
 
 if TYPE_CHECKING:
