@@ -42,18 +42,6 @@ WORDS = {
     "section_forces": (
         "Section forces along the shaft; with two components, the dashed line is their resultant."
     ),
-    "off": (
-        "Difference of each computed frequency from the measured one; grey: two standard "
-        "deviations of the measured and the error bar of the computed one."
-    ),
-    "mac": (
-        "MAC, the likeness of every measured shape (rows) and every computed mode at the "
-        "measuring points."
-    ),
-    "overlay": (
-        "Measured (dark) and computed (green, with its band) responses at the same points; dots: "
-        "resonances found."
-    ),
     "designs": "The goal in every design solved, each with its error bar.",
     "sweep": "Natural frequencies and other columns over the number that varies.",
     "housing": (
@@ -88,7 +76,7 @@ class Terminal:
 
     heading: Sequence[str | Table] | None = None  #: in place of title and lead
     tables: Sequence[RenderableType] | None = None
-    closing: Sequence[str] | None = None  #: in place of notes and cautions
+    closing: Sequence[str | Table] | None = None  #: in place of notes and cautions
     #: sentences longer than a line: broken at the width, with further lines indented, or whole
     lines: Literal["broken", "hanging", "whole"] = "broken"
     results: Sequence[str] | None = None  #: in place of headline and verdict
@@ -150,7 +138,7 @@ def print_sheet(sheet: Sheet) -> None:
     heading, tables, closing = terminal.heading, terminal.tables, terminal.closing
     results = terminal.results
     if heading is None:
-        heading = [sheet.title, sheet.lead]
+        heading = [text for text in (sheet.title, sheet.lead) if text]
     if tables is None:
         tables = sheet.tables
     if closing is None:

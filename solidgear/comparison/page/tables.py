@@ -310,7 +310,11 @@ def _frequency(mode: ModeRecord | None, base: ModeRecord | None) -> str | None:
     return hertz(mode.frequency_hz) + ("" if change is None else f" ({percent(change)})")
 
 
-def lumped_tables(record: Record) -> list[Table]:
+#: entries of a lumped mass matrix: head, unit and place
+MASSES = (("M", "kg", (0, 0)), ("I", "kg m²", (1, 1)), ("coupling", "kg m", (0, 1)))
+
+
+def lumped_tables(record: Record, units: Units = ENGINEERING) -> list[Table]:
     """Return first bending side by side and one table of synthesis per body, where the scene asks
     for it.
     """
@@ -330,9 +334,7 @@ def lumped_tables(record: Record) -> list[Table]:
     tables = [Table(title, ["source", Column("body itself", write=hertz), *methods], sources)]
     columns = [
         "mass matrix",
-        Column("M, kg", write=engineering),
-        Column("I, kg m²", write=engineering),
-        Column("coupling, kg m", write=engineering),
+        *(Column(f"{head}, {units.unit(si)}", write=engineering) for head, si, _ in MASSES),
         Column("slope phi/z", write=percent),
         Column("kinetic energy", write=percent),
         Column("valid to, Hz", write=hertz),
@@ -342,7 +344,7 @@ def lumped_tables(record: Record) -> list[Table]:
         rows = [
             [
                 method,
-                *(entry(variant.mass, i, j) for i, j in ((0, 0), (1, 1), (0, 1))),
+                *(units.value(entry(variant.mass, *place), si) for _, si, place in MASSES),
                 variant.slope_error,
                 variant.kinetic_error,
                 variant.valid_to_hz,

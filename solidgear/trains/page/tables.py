@@ -55,7 +55,8 @@ def _housing(box: Mapping[str, Any], units: Units) -> list[list[str]]:
         return f"at ({', '.join(units.given(v, 'm') for v in point)}) {units.unit('m')}"
 
     alone = ", ".join(f"{hz:.1f}" for hz in box["alone_hz"])
-    carries = f"{box['mass']:.4g} kg {place(box['centre'])}, carries {', '.join(box['carries'])}"
+    mass = f"{units.value(box['mass'], 'kg'):.4g} {units.unit('kg')}"
+    carries = f"{mass} {place(box['centre'])}, carries {', '.join(box['carries'])}"
     rows = [
         ["housing, elastic" if box["elastic"] else "housing, rigid", carries, "housing"],
         ["housing alone on its mounts", f"{alone} Hz", ""],
@@ -100,8 +101,8 @@ def housing(response: TrainResponse, units: Units = ENGINEERING) -> Table:
 def material_words(material: Mapping[str, Any], units: Units) -> str:
     """Return a material by its name, where it has one, and its constants."""
     modulus = f"{units.given(material.get('E'), 'Pa')} {units.unit('Pa')}"
-    density = units.given(material.get("density"), "kg/m³")
-    words = f"E = {modulus}, nu = {material.get('nu', DASH)}, density = {density} kg/m³"
+    density = f"{units.given(material.get('density'), 'kg/m³')} {units.unit('kg/m³')}"
+    words = f"E = {modulus}, nu = {material.get('nu', DASH)}, density = {density}"
     return f"{material['name']}: {words}" if material.get("name") else words
 
 
