@@ -25,7 +25,7 @@ from solidgear.core.machine.environment import environment
 from solidgear.core.plain import plain
 from solidgear.show.units import ENGINEERING, Units, units_named
 from solidgear.show.words import hertz, percent
-from solidgear.strength.deflection.train import TrainDeflection, deflection, with_ranges
+from solidgear.strength.deflection.at_rest import Deflection, deflection, with_ranges
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.shaft import JUDGE, LUMPED, mix_label
 from solidgear.trains.assembly.slips import unit_slips
@@ -60,7 +60,7 @@ class OneTrain(Side):
     response: TrainResponse  #: named by the label
     #: elastic ones, also some above the highest frequency, where partners may lie
     modes: tuple[SeenMode, ...]
-    loaded: TrainDeflection | None  #: at its operating point
+    loaded: Deflection | None  #: at its operating point
 
     @property
     def title(self) -> str:

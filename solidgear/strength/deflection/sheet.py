@@ -8,7 +8,6 @@ from math import degrees, isfinite
 
 import numpy as np
 
-from solidgear.bearings.life import Life
 from solidgear.core import DOF_NAMES, listed
 from solidgear.show.command import caution
 from solidgear.show.panel import GREY, Axis, Panel, Series, curve, lines_legend, readout
@@ -16,13 +15,14 @@ from solidgear.show.plot import NARROW, WIDE, Chart, Make, in_columns
 from solidgear.show.sheet import Sheet, Terminal
 from solidgear.show.table import Cell, Column, Table, numbers, quantity, text, word
 from solidgear.show.units import ENGINEERING, Units
-from solidgear.strength.deflection.shaft import (
+from solidgear.strength.deflection.at_rest import (
+    MOVED,
     WITHOUT_BAR,
-    BearingState,
-    SceneDeflection,
-    ShaftDeflection,
+    Deflection,
+    Deflections,
+    Measured,
 )
-from solidgear.strength.deflection.train import MOVED, Deflections, Measured, TrainDeflection
+from solidgear.strength.deflection.shaft import BearingState, ShaftDeflection
 from solidgear.trains.assembly.components import FORCE_UNITS
 from solidgear.trains.assembly.layout import senses_sentence
 from solidgear.trains.assembly.turn import PlanetTurn, StageTurn
@@ -32,81 +32,56 @@ from solidgear.trains.page.chart import COLOURS
 LEAST = 0.01
 #: of the largest of a motion's translations or rotations; less is rounding
 ROUNDING = 1e-9
+OF_BARS = f"Error bar: of the mesh, by local problems; none below {LEAST:g} % is shown."
 
 
-def scene_sheet(deflected: SceneDeflection, units: Units) -> Sheet:
-    """Return the sheet of a shaft under the load of its scene."""
-    judge = deflected.shafts[-1]
-    load = load_in_words(deflected.load, deflected.port, units)
-    lead = f"Under {load}; numbers by {judge.model}."
-    title = f"{deflected.title}: deflection"
-    by_model = {shaft.model: [shaft] for shaft in deflected.shafts}
-    note = f"No error bars: {WITHOUT_BAR}."
-    return Sheet(
-        name="deflection",
-        title=title,
-        lead=lead,
-        tables=[
-            models(deflected.shafts, deflected.port, note, units),
-            *bearings([judge], units),
-            displacements([judge], units),
-        ],
-        data=deflected.as_dict(),
-        charts={"deflection": partial(deflection_chart, by_model, title, units)},
-        lines={f"deflection_{judge.name}": line(judge)},
-        cautions=judge.notes,
-        terminal=Terminal(heading=[deflected.title, lead]),
-    )
-
-
-def load_in_words(load: Sequence[float] | np.ndarray, port: str, units: Units) -> str:
-    """Return a load (6,) at a port in words, such as ``z 2000 N at pinion``."""
-    parts = [
-        f"{name} {units.text(float(value), si, 4)}"
-        for name, value, si in zip(DOF_NAMES, load, FORCE_UNITS)
-        if value
-    ]
-    return f"{', '.join(parts) or 'no force'} at {port}"
-
-
-def train_sheet(deflected: Deflections, units: Units) -> Sheet:
-    """Return the sheet of a train at an operating point."""
+def sheet(deflected: Deflections, units: Units) -> Sheet:
+    """Return the sheet of a train at an operating point, or of a shaft under its load."""
     judge = deflected.judge
-    point = judge.point
-    force = mesh_forces_in_words(deflected, units)
-    sense = senses_sentence(deflected.senses)
     skew = misalignment(deflected, units)
     turning = over_a_turn(judge.turns, units)
     by_point = over_points(deflected.points, units)
     housed = housing(judge, units)
-    carried = [*bearings(judge.shafts, units), displacements(judge.shafts, units)]
-    flank = "coast" if point.coast else "drive"
-    terminal = Terminal(
-        heading=[
-            f"{deflected.title} at {point.label}",
-            f"Mesh force {force} along the line of action, {flank} flank.",
-            f"{sense[0].upper()}{sense[1:]}.",
-        ],
-        tables=[skew, *carried, *housed, *turning, *by_point],
-        closing=[*judge.notes, *map(caution, deflected.cautions)],
-    )
+    carried = [
+        *motions(deflected, units),
+        *bearings(judge.shafts, units),
+        displacements(judge, units),
+    ]
     title = f"{deflected.title}: deflection"
     by_model = {model.model: model.shafts for model in deflected.solutions}
     charts: dict[str, Make] = {"deflection": partial(deflection_chart, by_model, title, units)}
     charts |= {f"turn_{turn.stage}": partial(turn_chart, turn, units) for turn in judge.turns}
     lines = {f"deflection_{shaft.name}": line(shaft) for shaft in judge.shafts}
     lines |= {f"turn_{turn.stage}": turn_lines(turn) for turn in judge.turns}
+    if deflected.load is not None:
+        lead = f"{deflected.load.words(units)}; numbers by {judge.model}."
+        heading, cautions = [deflected.title, lead], []
+    else:
+        force, point = mesh_forces_in_words(deflected, units), judge.point
+        lead = f"At {point.label}: {force} along the line of action."
+        sense = senses_sentence(deflected.senses)
+        heading = [
+            f"{deflected.title} at {point.label}",
+            f"Mesh force {force} along the line of action, {'coast' if point.coast else 'drive'} "
+            "flank.",
+            f"{sense[0].upper()}{sense[1:]}.",
+        ]
+        cautions = [sense]
     return Sheet(
         name="deflection",
         title=title,
-        lead=f"At {point.label}: {force} along the line of action.",
+        lead=lead,
         tables=[skew, *turning, *by_point, *housed, *carried],
         data=deflected.as_dict(),
         charts=charts,
         lines=lines,
         headline=deflected.verdict(),
-        cautions=[sense, *judge.notes, *deflected.cautions],
-        terminal=terminal,
+        cautions=[*cautions, *judge.notes, *deflected.cautions],
+        terminal=Terminal(
+            heading=heading,
+            tables=[skew, *carried, *housed, *turning, *by_point],
+            closing=[*judge.notes, *map(caution, deflected.cautions)],
+        ),
     )
 
 
@@ -189,7 +164,7 @@ def turn_lines(turn: StageTurn) -> Table:
     return numbers({"carrier [rad]": turn.angle, **forces})
 
 
-def over_points(points: Sequence[TrainDeflection], units: Units = ENGINEERING) -> list[Table]:
+def over_points(points: Sequence[Deflection], units: Units = ENGINEERING) -> list[Table]:
     """Return misalignment and radial bearing loads over several operating points; none for one
     point.
     """
@@ -220,20 +195,20 @@ def over_points(points: Sequence[TrainDeflection], units: Units = ENGINEERING) -
     ]
 
 
-def _force(name: str, deflected: TrainDeflection) -> float:
+def _force(name: str, deflected: Deflection) -> float:
     return deflected.mesh_forces[name]
 
 
-def _lies(k: int, deflected: TrainDeflection) -> float:
+def _lies(k: int, deflected: Deflection) -> float:
     return deflected.misalignment[k].value
 
 
-def _radial(side: int, end: str, deflected: TrainDeflection) -> float:
+def _radial(side: int, end: str, deflected: Deflection) -> float:
     shaft = deflected.shafts[side]
     return next(b.radial for b in shaft.bearings if f"{shaft.name}.{b.name}" == end)
 
 
-def _widest(points: Sequence[TrainDeflection], k: int) -> str | None:
+def _widest(points: Sequence[Deflection], k: int) -> str | None:
     """Return the widest error bar of a number over all points, in per cent of its largest value."""
     measures = [deflected.misalignment[k] for deflected in points]
     largest = max(abs(m.value) for m in measures)
@@ -241,7 +216,7 @@ def _widest(points: Sequence[TrainDeflection], k: int) -> str | None:
     return f"± {max(100 * max(bars) / largest, LEAST):.2g} %" if bars and largest else None
 
 
-def _of(deflected: TrainDeflection, units: Units, measured: Measured) -> str:
+def _of(deflected: Deflection, units: Units, measured: Measured) -> str:
     value = next(m.value for m in deflected.misalignment if m.name == measured.name)
     return units.number(value, measured.unit, 3)
 
@@ -260,18 +235,21 @@ def _range(measured: Measured, units: Units) -> str | None:
     return f"{low} to {high}"
 
 
-def displacements(shafts: Sequence[ShaftDeflection], units: Units = ENGINEERING) -> Table:
-    """Return the motion of every lumped point and bearing."""
-    rows = [
-        [f"{shaft.name}.{name}", *_rounded(six)]
-        for shaft in shafts
-        for name, six in shaft.ports.items()
-    ]
+def displacements(deflected: Deflection, units: Units = ENGINEERING) -> Table:
+    """Return the motion of every lumped point and bearing, of a shaft alone with error bars."""
     note = "Relative to the unloaded state, in the axes of each shaft's scene, y along it."
+    rows = []
+    for shaft in deflected.shafts:
+        for name, six in shaft.ports.items():
+            rows.append([f"{shaft.name}.{name}", *_rounded(six)])
+            if deflected.load is not None:
+                rows += _bars(deflected, name, units)
+    if deflected.load is not None and deflected.barred:
+        note += f" {OF_BARS}"
     return Table("Displacements", [word("place"), *_six(MOVED, units)], rows, note)
 
 
-def housing(deflected: TrainDeflection, units: Units = ENGINEERING) -> list[Table]:
+def housing(deflected: Deflection, units: Units = ENGINEERING) -> list[Table]:
     """Return loads on the mounts of a housing and its motion; none without one."""
     if not deflected.mounts:
         return []
@@ -287,12 +265,41 @@ def housing(deflected: TrainDeflection, units: Units = ENGINEERING) -> list[Tabl
     ]
 
 
-def models(
-    shafts: Sequence[ShaftDeflection], port: str, note: str, units: Units = ENGINEERING
-) -> Table:
-    """Return the motion of one place by every model."""
-    rows = [[shaft.model, *_rounded(shaft.ports[port])] for shaft in shafts]
-    return Table(f"Motion of {port}", [word("model"), *_six(MOVED, units)], rows, note)
+def motions(deflected: Deflections, units: Units = ENGINEERING) -> list[Table]:
+    """Return the motion of the lumped point of a shaft alone by every model, with error bars and
+    ranges by bearing data; none of a train.
+    """
+    if deflected.load is None:
+        return []
+    rows, port = [], deflected.load.port
+    for solution in deflected.solutions:
+        rows.append([solution.model, *_rounded([m.value for m in solution.compared])])
+        rows += _bars(solution, port, units)
+    note = f"No error bars: {WITHOUT_BAR}."
+    if any(solution.barred for solution in deflected.solutions):
+        note = f"{OF_BARS} Models differ by what their theory leaves out."
+    ranges = [m.open for m in deflected.judge.compared if m.open is not None]
+    if ranges:
+        least, largest = zip(*ranges)
+        rows += [["least", *_rounded(least)], ["largest", *_rounded(largest)]]
+        note += " Least and largest: by estimated insides and classes of clearance of the bearings."
+    return [Table(f"Motion of {port}", [word("model"), *_six(MOVED, units)], rows, note)]
+
+
+def _bars(deflected: Deflection, place: str, units: Units) -> list[list[str | None]]:
+    """Return a row of the error bars of a place, none less than a share of the largest translation
+    or rotation; no row where it has none.
+    """
+    if not deflected.barred:
+        return []
+    six = deflected.displacement[place]
+    largest = np.abs([m.value for m in six]).reshape(2, 3).max(axis=1)
+    least = np.repeat(LEAST / 100 * largest, 3)
+    bars = [
+        None if m.bar is None else units.number(max(m.bar, size), m.unit, 2)
+        for m, size in zip(six, least)
+    ]
+    return [["error bar", *bars]]
 
 
 def _six(si_units: Sequence[str], units: Units) -> list[Column]:
@@ -313,60 +320,58 @@ def _rounded(
 
 def bearings(shafts: Sequence[ShaftDeflection], units: Units = ENGINEERING) -> list[Table]:
     """Return loads of every bearing, and the elements that carry them in catalogue bearings."""
-    rows = [(f"{s.name}.{b.name}", b) for s in shafts for b in s.bearings]
-    inside = [row for row in rows if row[1].rows]
-    name = word("bearing", lambda row: row[0])
+    by_name = [(f"{shaft.name}.{b.name}", b) for shaft in shafts for b in shaft.bearings]
+    inside = [(name, bearing) for name, bearing in by_name if bearing.rows]
     loads = [
-        name,
-        quantity("radial", "N", units, lambda row: row[1].radial, 4),
-        Column("at, deg", lambda row: f"{degrees(row[1].azimuth):.0f}"),
-        quantity("axial", "N", units, lambda row: float(row[1].load[1]), 4),
-        quantity("moment", "N m", units, lambda row: row[1].moment, 4),
+        word("bearing"),
+        quantity("radial", "N", units, digits=4),
+        Column("at, deg", write=lambda azimuth: f"{azimuth:.0f}"),
+        quantity("axial", "N", units, digits=4),
+        quantity("moment", "N m", units, digits=4),
     ]
     note = "Load of the shaft on the bearing; it acts at an angle from x towards z."
-    if inside:
-        loads += [
-            Column("C0/P0", lambda row: _life(row[1], lambda life: life.static_safety)),
-            Column("L10r, 1e6", lambda row: _life(row[1], lambda life: life.reference / 1e6)),
-        ]
-        note += (
-            " C0/P0: static safety (ISO 76); L10r: basic reference life (ISO/TS 16281) in 1e6 "
-            "revolutions; solidgear bearing shows their ranges and duty tables."
-        )
-    out = [Table("Bearing loads", loads, rows, note)]
-    if inside:
-        carried = [
-            name,
-            word("loaded", lambda row: _elements(row[1])),
-            quantity("largest", "N", units, lambda row: _largest(row[1]), 4),
-            quantity("pressure", "Pa", units, lambda row: row[1].pressure, 4),
-            quantity("clearance", "m moved", units, lambda row: row[1].clearance, 3),
-        ]
-        note = (
-            "Number of loaded elements of all, row by row; largest load of an element; largest "
-            "pressure at both rings, by Hertz or in slices; radial clearance once mounted and "
-            "warm."
-        )
-        out.append(Table("Inside the bearings", carried, inside, note))
-    return out
+    rows: list[list] = [
+        [name, b.radial, degrees(b.azimuth), float(b.load[1]), b.moment] for name, b in by_name
+    ]
+    if not inside:
+        return [Table("Bearing loads", loads, rows, note)]
+    loads += [Column("C0/P0"), Column("L10r, 1e6")]
+    for row, (_, bearing) in zip(rows, by_name):
+        row += [_rated(bearing.static_safety, 1.0), _rated(bearing.reference_life, 1e6)]
+    note += (
+        " C0/P0: static safety (ISO 76); L10r: basic reference life (ISO/TS 16281) in 1e6 "
+        "revolutions; solidgear bearing shows their ranges and duty tables."
+    )
+    elements = [
+        word("bearing"),
+        word("loaded"),
+        quantity("largest", "N", units, digits=4),
+        quantity("pressure", "Pa", units, digits=4),
+        quantity("clearance", "m moved", units, digits=3),
+    ]
+    element_note = (
+        "Number of loaded elements of all, row by row; largest load of an element; largest "
+        "pressure at both rings, by Hertz or in slices; radial clearance once mounted and warm."
+    )
+    carried = [
+        [name, _loaded(b), max(float(row.load.max()) for row in b.rows), b.pressure, b.clearance]
+        for name, b in inside
+    ]
+    return [
+        Table("Bearing loads", loads, rows, note),
+        Table("Inside the bearings", elements, carried, element_note),
+    ]
 
 
-def _life(bearing: BearingState, number: Callable[[Life], float]) -> str | None:
-    if bearing.life is None:
+def _rated(value: float | None, unit: float) -> str | None:
+    if value is None:
         return None
-    value = number(bearing.life)
-    return f"{value:.3g}" if isfinite(value) else "endless"
+    return f"{value / unit:.3g}" if isfinite(value) else "endless"
 
 
-def _elements(bearing: BearingState) -> str | Cell | None:
-    if not bearing.rows:
-        return None
+def _loaded(bearing: BearingState) -> str | Cell:
     counts = ", ".join(f"{n}/{len(row.load)}" for n, row in zip(bearing.loaded, bearing.rows))
     return counts if any(bearing.loaded) else Cell("none", "bad")
-
-
-def _largest(bearing: BearingState) -> float | None:
-    return max((float(row.load.max()) for row in bearing.rows), default=None)
 
 
 def line(shaft: ShaftDeflection) -> Table:

@@ -17,8 +17,8 @@ from solidgear.show.sheet import Sheet, Terminal
 from solidgear.show.table import Cell, Column, Table, quantity, text, word
 from solidgear.show.units import ENGINEERING, Units, plain
 from solidgear.show.words import percent
-from solidgear.strength.deflection.sheet import load_in_words
-from solidgear.strength.stress.at_rest import LoadAtPort, StressAtRest, StressedShaft
+from solidgear.strength.load import LoadAtPort
+from solidgear.strength.stress.at_rest import StressAtRest, StressedShaft
 from solidgear.strength.stress.rating import Entry, Rating
 from solidgear.strength.stress.section_forces import SectionForces
 from solidgear.strength.stress.shaft import Notch, ShaftStress
@@ -93,10 +93,7 @@ def loads_in_words(stressed: StressAtRest, units: Units) -> str:
     """Return the load, or the operating point, that the shafts are under in words."""
     load = stressed.under
     if isinstance(load, LoadAtPort):
-        words = f"Under {load_in_words(load.load, load.port, units)}"
-        for name, torque in load.drive.items():
-            words += f", and {units.text(torque, 'N m', 4)} from {name} to {load.port}"
-        return words
+        return load.words(units)
     force = units.text(load.mesh_force, "N", 5)
     return f"At {load.point.label}: mesh force {force} along the line of action"
 
