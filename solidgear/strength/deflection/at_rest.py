@@ -6,7 +6,8 @@ the ports lies between F and F + M (:mod:`solidgear.core.bounds.harmonic`), so t
 the ports at rest, and those, g, which a unit load on the quantity would bring about on the bearings'
 tangents,
 
-    |error| <= sqrt(f'M f) sqrt(g'M g),      summed over the shafts
+    |error| <= sqrt(f'M f) sqrt(g'M g),      summed over the shafts and their axial, torsional and
+                                             bending parts, which M does not couple
 
 (Cauchy and Schwarz in the energy of the local problems; second order in M is left out).  Beams are
 exact in their theory and have no error bar; the harmonic solid shows what their theory leaves out.
@@ -474,11 +475,14 @@ class StaticBars:
         total = 0.0
         for side, bounds in self.bounds.items():
             f, g = self.rest[side], unit_forces[side]
-            double, single = (
-                float(np.sqrt(max(f @ m @ f, 0.0) * max(g @ m @ g, 0.0)))
-                for m in (bounds.more, bounds.less)
-            )
-            total += LOCAL * with_tail(double, single)
+            for rows in (bounds.body.rows(block) for block in bounds.body.blocks):
+                double, single = (
+                    float(
+                        np.sqrt(max(f[rows] @ m @ f[rows], 0.0) * max(g[rows] @ m @ g[rows], 0.0))
+                    )
+                    for m in (bounds.more[np.ix_(rows, rows)], bounds.less[np.ix_(rows, rows)])
+                )
+                total += LOCAL * with_tail(double, single)
         return total
 
 

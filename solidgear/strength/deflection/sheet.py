@@ -31,7 +31,7 @@ from solidgear.trains.page.chart import COLOURS
 #: per cent; no smaller error bar is shown
 LEAST = 0.01
 #: of the largest of a motion's translations or rotations; less is rounding
-ROUNDING = 1e-9
+ROUNDING = 1e-8
 OF_BARS = f"Error bar: of the mesh, by local problems; none below {LEAST:g} % is shown."
 
 

@@ -178,12 +178,11 @@ class Operating:
         begin = None
         if start is not None and start.point.coast == point.coast:
             begin = start.equilibrium
-        alone = assembly.train.is_one_shaft
-        place = "under this load" if alone else f"at {point.label}"
+        place = "" if assembly.train.is_one_shaft else f"at {point.label}"
         try:
             solved = seated.equilibrium(total, begin)
         except SolidgearError as error:
-            raise SolidgearError(f"{place}: {error}") from None
+            raise SolidgearError(f"{place}: {error}".removeprefix(": ")) from None
         solved = _engine_still(solved, seated.system, assembly.train)
         if loop_shares := loop_forces(assembly, seated.system, solved.coordinates, point.label):
             forces = {name: {**forces, **loop_shares}[name] for name in assembly.contacts}
