@@ -32,19 +32,9 @@ WORDS = {
         "Orders of the mesh and of both shafts over the speed of the pinion, and the natural "
         "frequencies they meet. Colour: mesh force along orders of the transmission error."
     ),
-    "deflection": (
-        "Deflection lines of every shaft in both planes, by every model; dashed lines are bearings."
-    ),
-    "turn_": (
-        "Mesh force of every planet over a turn of its carrier from the file's position on; "
-        "bearings have their stiffness at rest."
-    ),
     "measured": (
         "The measured spectrum, its peaks named by their orders at this speed, above the computed "
         "mesh force. Grey lines: natural frequencies."
-    ),
-    "section_forces": (
-        "Section forces along the shaft; with two components, the dashed line is their resultant."
     ),
     "off": (
         "Difference of each computed frequency from the measured one; grey: two standard "
@@ -126,6 +116,7 @@ class Sheet:
     viewer: str = ""  #: HTML of shapes, of the page alone
     reached: bool = True  #: whether every error bar is within the tolerance
     terminal: Terminal = Terminal()
+    words: Mapping[str, str] = field(default_factory=dict)  #: what charts say, by file
 
 
 def present(study: Callable[[Progress], Sheet], run: Run, out: Path | None = None) -> None:
@@ -187,6 +178,7 @@ def write_folder(sheet: Sheet, folder: Path) -> list[Path]:
         verdict=sheet.verdict,
         viewer=sheet.viewer,
         sections=sheet.sections,
+        words=sheet.words,
     )
     return [page, *files]
 
@@ -219,14 +211,20 @@ def write_sheet(
     cautions: Sequence[str] = (),
     verdict: Sequence[str] = (),
     sections: Sequence[Section] = (),
+    words: Mapping[str, str] | None = None,
 ) -> Path:
     """Write a page without network: conclusions, cautions, charts, HTML of shapes, tables and
     notes.
     """
     from markupsafe import Markup
 
+    captions = words or {}
     drawn = [
-        (s, [table for table in s.tables if table], [*_given(s), *_drawn(s.charts, s.title)])
+        (
+            s,
+            [table for table in s.tables if table],
+            [*_given(s), *_drawn(s.charts, s.title, captions)],
+        )
         for s in sections
     ]
     page = template("train_sheet.html").render(
@@ -234,7 +232,7 @@ def write_sheet(
         title=title,
         lead=lead,
         tables=[table for table in tables if table],
-        charts=_drawn(charts or {}, title),
+        charts=_drawn(charts or {}, title, captions),
         viewer=Markup(viewer),
         notes=notes,
         cautions=cautions,
@@ -244,13 +242,17 @@ def write_sheet(
     return write_page(path, page)
 
 
-def _drawn(charts: Mapping[str, Make], title: str) -> list[tuple[str, str]]:
+def _drawn(
+    charts: Mapping[str, Make], title: str, words: Mapping[str, str]
+) -> list[tuple[str, str]]:
     """Draw charts for the page with their words, without empty ones."""
     from markupsafe import Markup
 
     drawn = {name: page_svg(name, make) for name, make in charts.items()}
     return [
-        (Markup(svg.decode()), _words(name) or f"{title}.") for name, svg in drawn.items() if svg
+        (Markup(svg.decode()), words.get(name) or _words(name) or f"{title}.")
+        for name, svg in drawn.items()
+        if svg
     ]
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
 from math import degrees, isfinite
 
@@ -25,13 +25,21 @@ from solidgear.strength.deflection.at_rest import (
 from solidgear.strength.deflection.shaft import BearingState, ShaftDeflection
 from solidgear.trains.assembly.components import FORCE_UNITS
 from solidgear.trains.assembly.layout import senses_sentence
-from solidgear.trains.assembly.turn import PlanetTurn, StageTurn
+from solidgear.trains.assembly.turn import StageTurn
 from solidgear.trains.page.chart import COLOURS
 
 #: per cent; no smaller error bar is shown
 LEAST = 0.01
 #: of the largest of a motion's translations or rotations; less is rounding
 ROUNDING = 1e-8
+#: what the charts say
+LINES_SHOWN = (
+    "Deflection lines of every shaft in both planes, by every model; dashed lines are bearings."
+)
+TURN_SHOWN = (
+    "Mesh force of every planet over a turn of its carrier from the file's position on; bearings "
+    "have their stiffness at rest."
+)
 OF_BARS = f"Error bar: of the mesh, by local problems; none below {LEAST:g} % is shown."
 
 
@@ -51,6 +59,7 @@ def sheet(deflected: Deflections, units: Units) -> Sheet:
     by_model = {model.model: model.shafts for model in deflected.solutions}
     charts: dict[str, Make] = {"deflection": partial(deflection_chart, by_model, title, units)}
     charts |= {f"turn_{turn.stage}": partial(turn_chart, turn, units) for turn in judge.turns}
+    words = {"deflection": LINES_SHOWN} | {f"turn_{turn.stage}": TURN_SHOWN for turn in judge.turns}
     lines = {f"deflection_{shaft.name}": line(shaft) for shaft in judge.shafts}
     lines |= {f"turn_{turn.stage}": turn_lines(turn) for turn in judge.turns}
     if deflected.load is not None:
@@ -82,6 +91,7 @@ def sheet(deflected: Deflections, units: Units) -> Sheet:
             tables=[skew, *carried, *housed, *turning, *by_point],
             closing=[*judge.notes, *map(caution, deflected.cautions)],
         ),
+        words=words,
     )
 
 
@@ -96,19 +106,33 @@ def mesh_forces_in_words(deflected: Deflections, units: Units) -> str:
 
 def misalignment(deflected: Deflections, units: Units = ENGINEERING) -> Table:
     """Return misalignment by every model, with error bar and range by bearing data."""
-    judge = deflected.judge
-    columns = [word("of the axes", lambda m: f"{m.name}, {units.unit(m.unit)}")]
-    columns += [Column(model.model, partial(_of, model, units)) for model in deflected.solutions]
-    columns.append(Column("error bar", _bar))
-    if any(m.open is not None for m in judge.misalignment):
-        columns.append(Column("range", lambda m: _range(m, units)))
+    measures = deflected.judge.misalignment
+    columns = [word("of the axes"), *(Column(s.model) for s in deflected.solutions)]
+    columns.append(Column("error bar"))
+    rows: list[list[str | None]] = []
+    for k, m in enumerate(measures):
+        values = [s.misalignment[k].value for s in deflected.solutions]
+        share = percent_of(m.bar, m.value)
+        shown = [units.number(value, m.unit, 3) for value in values]
+        rows.append([f"{m.name}, {units.unit(m.unit)}", *shown, share])
     note = (
-        f"{meanings(judge.misalignment, units)}. Error bar: of the last model's mesh, "
+        f"{meanings(measures, units)}. Error bar: of the last model's mesh, "
         "by local problems; models differ by what their theory leaves out."
     )
-    if any(m.open is not None for m in judge.misalignment):
+    if any(m.open is not None for m in measures):
+        columns.append(Column("range"))
+        for row, m in zip(rows, measures):
+            ends = [units.number(end, m.unit, 3) for end in m.open or ()]
+            row.append(" to ".join(ends) or None)
         note += " Range: by estimated insides and classes of clearance of the bearings."
-    return Table("Misalignment", columns, judge.misalignment, note)
+    return Table("Misalignment", columns, rows, note)
+
+
+def percent_of(bar: float | None, value: float) -> str | None:
+    """Return an error bar in per cent of a value; None without either."""
+    if bar is None or not value:
+        return None
+    return f"± {max(100 * bar / abs(value), LEAST):.2g} %"
 
 
 def meanings(measures: Sequence[Measured], units: Units) -> str:
@@ -129,10 +153,8 @@ def meanings(measures: Sequence[Measured], units: Units) -> str:
 
 def over_a_turn(turns: Sequence[StageTurn], units: Units = ENGINEERING) -> list[Table]:
     """Return the mesh forces of planets over a turn of their carrier, a table for each stage."""
-
-    def force(title: str, of: Callable[[PlanetTurn], float]) -> Column:
-        return quantity(title, "N", units, of, 4)
-
+    heads = ("here", "mean", "least", "largest", "once a turn")
+    columns = [Column("planet"), *(quantity(head, "N", units, digits=4) for head in heads)]
     note = (
         "Force of each planet with the sun, and with the ring alike, since it spins freely; "
         "bearings have their stiffness at this position. Here: at the file's position; once a "
@@ -141,15 +163,8 @@ def over_a_turn(turns: Sequence[StageTurn], units: Units = ENGINEERING) -> list[
     return [
         Table(
             f"Mesh forces over a turn of the carrier ({turn.stage})",
-            [
-                Column("planet", lambda planet: planet.planet),
-                force("here", lambda planet: planet.at),
-                force("mean", lambda planet: planet.mean),
-                force("least", lambda planet: planet.least),
-                force("largest", lambda planet: planet.most),
-                force("once a turn", lambda planet: planet.once),
-            ],
-            turn.planets,
+            columns,
+            [[p.planet, p.at, p.mean, p.least, p.most, p.once] for p in turn.planets],
             note,
         )
         for turn in turns
@@ -171,68 +186,29 @@ def over_points(points: Sequence[Deflection], units: Units = ENGINEERING) -> lis
     if not points:
         return []
     first = points[0]
-    label = text("at", lambda deflected: deflected.point.label)
-    forces = [
-        quantity("mesh force" + name.removeprefix("mesh"), "N", units, partial(_force, name), 4)
-        for name in first.mesh_forces
-    ]
-    lie = [
-        quantity(m.name, m.unit, units, partial(_lies, k), 3)
-        for k, m in enumerate(first.misalignment)
-    ]
-    widest = [_widest(points, k) for k in range(len(first.misalignment))]
-    bars = [f"{m.name} {bar}" for m, bar in zip(first.misalignment, widest) if bar]
+    lie = [text("at")]
+    for name in first.mesh_forces:
+        lie.append(quantity("mesh force" + name.removeprefix("mesh"), "N", units, digits=4))
+    bars = []
+    for k, m in enumerate(first.misalignment):
+        lie.append(quantity(m.name, m.unit, units, digits=3))
+        at_points = [point.misalignment[k] for point in points]
+        widest = max((m.bar for m in at_points if m.bar is not None), default=None)
+        if share := percent_of(widest, max(abs(m.value) for m in at_points)):
+            bars.append(f"{m.name} {share}")
     note = f"By {first.model}; error bars {', '.join(bars)} at most." if bars else ""
-    ends = [
-        (s, f"{shaft.name}.{b.name}")
-        for s, shaft in enumerate(first.shafts)
-        for b in shaft.bearings
+    ends = [f"{shaft.name}.{b.name}" for shaft in first.shafts for b in shaft.bearings]
+    carried = [text("at"), *(quantity(end, "N", units, digits=4) for end in ends)]
+    lie_rows = [
+        [p.point.label, *p.mesh_forces.values(), *(m.value for m in p.misalignment)] for p in points
     ]
-    carried = [quantity(end, "N", units, partial(_radial, s, end), 4) for s, end in ends]
+    carried_rows = [
+        [p.point.label, *(b.radial for shaft in p.shafts for b in shaft.bearings)] for p in points
+    ]
     return [
-        Table("Misalignment over the operating points", [label, *forces, *lie], points, note),
-        Table("Radial bearing loads over the operating points", [label, *carried], points),
+        Table("Misalignment over the operating points", lie, lie_rows, note),
+        Table("Radial bearing loads over the operating points", carried, carried_rows),
     ]
-
-
-def _force(name: str, deflected: Deflection) -> float:
-    return deflected.mesh_forces[name]
-
-
-def _lies(k: int, deflected: Deflection) -> float:
-    return deflected.misalignment[k].value
-
-
-def _radial(side: int, end: str, deflected: Deflection) -> float:
-    shaft = deflected.shafts[side]
-    return next(b.radial for b in shaft.bearings if f"{shaft.name}.{b.name}" == end)
-
-
-def _widest(points: Sequence[Deflection], k: int) -> str | None:
-    """Return the widest error bar of a number over all points, in per cent of its largest value."""
-    measures = [deflected.misalignment[k] for deflected in points]
-    largest = max(abs(m.value) for m in measures)
-    bars = [m.bar for m in measures if m.bar is not None]
-    return f"± {max(100 * max(bars) / largest, LEAST):.2g} %" if bars and largest else None
-
-
-def _of(deflected: Deflection, units: Units, measured: Measured) -> str:
-    value = next(m.value for m in deflected.misalignment if m.name == measured.name)
-    return units.number(value, measured.unit, 3)
-
-
-def _bar(measured: Measured) -> str | None:
-    if measured.bar is None or not measured.value:
-        return None
-    share = 100 * measured.bar / abs(measured.value)
-    return f"± {max(share, LEAST):.2g} %"
-
-
-def _range(measured: Measured, units: Units) -> str | None:
-    if measured.open is None:
-        return None
-    low, high = (units.number(v, measured.unit, 3) for v in measured.open)
-    return f"{low} to {high}"
 
 
 def displacements(deflected: Deflection, units: Units = ENGINEERING) -> Table:
