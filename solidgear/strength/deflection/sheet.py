@@ -214,7 +214,7 @@ def over_points(points: Sequence[Deflection], units: Units = ENGINEERING) -> lis
 def displacements(deflected: Deflection, units: Units = ENGINEERING) -> Table:
     """Return the motion of every lumped point and bearing, of a shaft alone with error bars."""
     note = "Relative to the unloaded state, in the axes of each shaft's scene, y along it."
-    rows = []
+    rows: list[Sequence[object]] = []
     for shaft in deflected.shafts:
         for name, six in shaft.ports.items():
             rows.append([f"{shaft.name}.{name}", *_rounded(six)])
@@ -247,7 +247,8 @@ def motions(deflected: Deflections, units: Units = ENGINEERING) -> list[Table]:
     """
     if deflected.load is None:
         return []
-    rows, port = [], deflected.load.port
+    rows: list[Sequence[object]] = []
+    port = deflected.load.port
     for solution in deflected.solutions:
         rows.append([solution.model, *_rounded([m.value for m in solution.compared])])
         rows += _bars(solution, port, units)

@@ -141,9 +141,10 @@ def stress_at_rest(
         as_stated = choice == AS_STATED
         state = usual if as_stated else Operating(settling, model, choice=choice).at(point)
         loads = _on_shafts(settling, state)
-        for name, torque in load.drive.items() if load else ():
-            loads[ALONE].add(name, torque * np.eye(6)[4])
-            loads[ALONE].add(load.port, -torque * np.eye(6)[4])
+        if load is not None:
+            for name, torque in load.drive.items():
+                loads[ALONE].add(name, torque * np.eye(6)[4])
+                loads[ALONE].add(load.port, -torque * np.eye(6)[4])
         return loads
 
     shafts, open_by = _shafts(train, acting, asked, progress)
