@@ -56,6 +56,12 @@ def test_a_load_along_the_axis_widens_no_bar_across_it():
     assert bars[1] == pytest.approx(bars[0], rel=0.05)
 
 
+def test_a_bearing_that_carries_nothing_is_named():
+    scene = as_written(CATALOGUE).with_changes(load={"y": -300.0})
+    notes = deflection(Assembly.of(scene, kept=6), AT_REST, "euler").notes
+    assert any(note.startswith("bearing shaft.A carries no load within") for note in notes)
+
+
 def test_models_of_a_shaft_are_judged_by_the_motion_of_its_port():
     scene = as_written(SPRINGS).with_changes(load={"z": 2000.0}, ask={"tolerance": 0.2})
     found = deflect(coarse(Assembly.of(scene, kept=6)), models=("rigid", "timoshenko", "harmonic"))
