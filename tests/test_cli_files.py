@@ -14,7 +14,7 @@ from solidgear.app.starts import SHAFTS, STARTS, start
 from solidgear.core.errors import SolidgearError
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.scene.file import load
-from solidgear.strength.deflection.train import deflection
+from solidgear.strength.deflection.at_rest import deflection
 from solidgear.trains.assembly.assembly import Assembly
 from tests.command import command
 

@@ -13,8 +13,8 @@ import solidgear as sg
 from solidgear.core.errors import SolidgearError
 from solidgear.core.scene.paths import keys_of, label_of, with_entry
 from solidgear.core.scene.toml_file import parse
+from solidgear.strength.deflection.at_rest import deflection
 from solidgear.strength.deflection.misalignment import measured_names
-from solidgear.strength.deflection.train import deflection
 from solidgear.trains.assembly import assembly as train_assembly
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.load.operation import at_point

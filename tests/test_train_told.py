@@ -8,8 +8,8 @@ import pytest
 import solidgear as sg
 from solidgear.show.command import say
 from solidgear.show.units import ENGINEERING
+from solidgear.strength.deflection.at_rest import Measured, deflect
 from solidgear.strength.deflection.sheet import meanings
-from solidgear.strength.deflection.train import Measured, deflect_train
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.layout import senses
 from solidgear.trains.file.operation import OperatingPoint
@@ -82,5 +82,5 @@ def test_ten_near_orders_are_shown_and_a_file_has_all():
 
 def test_a_deflection_tells_the_sense_of_every_shaft(assembly):
     point = OperatingPoint(torque=100.0, of="input")
-    found = deflect_train(assembly, point, ("timoshenko",))
+    found = deflect(assembly, point, ("timoshenko",))
     assert set(found.as_dict()["senses"]) == {"input", "middle", "output"}

@@ -32,16 +32,6 @@ KINDS = ("png", "svg")
 #: what charts say in words, by how their names begin
 WORDS = {
     "response": "Dynamic mesh force and transmission error of each model.",
-    "deflection": (
-        "Deflection lines of every shaft in both planes, by every model; dashed lines are bearings."
-    ),
-    "turn_": (
-        "Mesh force of every planet over a turn of its carrier from the file's position on; "
-        "bearings have their stiffness at rest."
-    ),
-    "section_forces": (
-        "Section forces along the shaft; with two components, the dashed line is their resultant."
-    ),
     "designs": "The goal in every design solved, each with its error bar.",
     "sweep": "Natural frequencies and other columns over the number that varies.",
     "housing": (

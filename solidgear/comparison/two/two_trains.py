@@ -28,7 +28,7 @@ from solidgear.show.sheet import Section, Sheet
 from solidgear.show.table import Column, Table, quantity, text
 from solidgear.show.units import ENGINEERING, Units
 from solidgear.show.words import hertz, percent
-from solidgear.strength.deflection.train import TrainDeflection, deflection, with_ranges
+from solidgear.strength.deflection.at_rest import Deflection, deflection, with_ranges
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.shaft import JUDGE, LUMPED, mix_label
 from solidgear.trains.assembly.slips import unit_slips
@@ -95,7 +95,7 @@ class OneTrain(Side):
     response: TrainResponse  #: named by the label
     #: elastic ones, also some above the highest frequency, where partners may lie
     modes: tuple[SeenMode, ...]
-    loaded: TrainDeflection | None  #: at its operating point
+    loaded: Deflection | None  #: at its operating point
 
     @property
     def title(self) -> str:
