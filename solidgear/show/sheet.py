@@ -58,8 +58,6 @@ WORDS = {
         "Measured (dark) and computed (green, with its band) responses at the same points; dots: "
         "resonances found."
     ),
-    "designs": "The goal in every design solved, each with its error bar.",
-    "sweep": "Natural frequencies and other columns over the number that varies.",
     "nonlinear": (
         "Dynamic mesh force over the speed of the pinion: periodic motions with backlash, stable and "
         "unstable, with the jumps between them, runs through the speeds, and the linear answer. Below: "
@@ -78,7 +76,6 @@ WORDS = {
         "Motions of sections along both shafts in the lowest pairs of modes, in the plane of the "
         "largest, scaled to one."
     ),
-    "sensitivities": "Change of the number for one per cent more of each entry.",
     "shares": "Strain energy of every mode by part.",
 }
 
@@ -126,6 +123,7 @@ class Sheet:
     viewer: str = ""  #: HTML of shapes, of the page alone
     reached: bool = True  #: whether every error bar is within the tolerance
     terminal: Terminal = Terminal()
+    words: Mapping[str, str] = field(default_factory=dict)  #: what charts say, by file
 
 
 def present(study: Callable[[Progress], Sheet], run: Run, out: Path | None = None) -> None:
@@ -187,6 +185,7 @@ def write_folder(sheet: Sheet, folder: Path) -> list[Path]:
         verdict=sheet.verdict,
         viewer=sheet.viewer,
         sections=sheet.sections,
+        words=sheet.words,
     )
     return [page, *files]
 
@@ -219,6 +218,7 @@ def write_sheet(
     cautions: Sequence[str] = (),
     verdict: Sequence[str] = (),
     sections: Sequence[Section] = (),
+    words: Mapping[str, str] | None = None,
 ) -> Path:
     """Write a page without network: conclusions, cautions, charts, HTML of shapes, tables and
     notes.
@@ -226,7 +226,7 @@ def write_sheet(
     from markupsafe import Markup
 
     drawn = [
-        (s, [table for table in s.tables if table], [*_given(s), *_drawn(s.charts, s.title)])
+        (s, [table for table in s.tables if table], [*_given(s), *_drawn(s.charts, {}, s.title)])
         for s in sections
     ]
     page = template("train_sheet.html").render(
@@ -234,7 +234,7 @@ def write_sheet(
         title=title,
         lead=lead,
         tables=[table for table in tables if table],
-        charts=_drawn(charts or {}, title),
+        charts=_drawn(charts or {}, words or {}, title),
         viewer=Markup(viewer),
         notes=notes,
         cautions=cautions,
@@ -244,13 +244,17 @@ def write_sheet(
     return write_page(path, page)
 
 
-def _drawn(charts: Mapping[str, Make], title: str) -> list[tuple[str, str]]:
+def _drawn(
+    charts: Mapping[str, Make], words: Mapping[str, str], title: str
+) -> list[tuple[str, str]]:
     """Draw charts for the page with their words, without empty ones."""
     from markupsafe import Markup
 
     drawn = {name: page_svg(name, make) for name, make in charts.items()}
     return [
-        (Markup(svg.decode()), _words(name) or f"{title}.") for name, svg in drawn.items() if svg
+        (Markup(svg.decode()), words.get(name) or _words(name) or f"{title}.")
+        for name, svg in drawn.items()
+        if svg
     ]
 
 
