@@ -79,10 +79,13 @@ def optimise(
 def optimum_sheet(optimum: Optimum) -> Sheet:
     """Return the sheet of a search."""
     title = f"{optimum.scene}: {optimum.goal}"
+    how = "the cheapest mesh whose bars are within the tolerance"
+    if optimum.model:
+        how = f"the {optimum.model} model, without error bars"
     return Sheet(
         name="optimum",
         title=title,
-        lead="Every design solved by the cheapest mesh whose bars are within the tolerance.",
+        lead=f"Every design solved by {how}.",
         tables=[designs(optimum)],
         data=optimum.results,
         charts={"designs": partial(designs_chart, optimum, title)},
