@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from solidgear.core import whole
-from solidgear.core.machine.whole_file import write_page
+from solidgear.core.machine.whole_file import write_page as write_whole
 from solidgear.show.command import NOT_REACHED, Progress, caution, say
 from solidgear.show.folder import held
 from solidgear.show.page_parts import Contents, template
@@ -174,8 +174,13 @@ def write_folder(sheet: Sheet, folder: Path) -> list[Path]:
     for charts in (sheet.charts, *(section.charts for section in sheet.sections)):
         for stem, make in charts.items():
             files += write_charts(folder / stem, make)
-    page = write_sheet(
-        folder / f"{sheet.name}.html",
+    return [write_page(sheet, folder / f"{sheet.name}.html"), *files]
+
+
+def write_page(sheet: Sheet, path: Path) -> Path:
+    """Write the page of a sheet alone."""
+    return write_sheet(
+        path,
         sheet.title,
         f"{sheet.lead} {sheet.headline}".strip(),
         sheet.tables,
@@ -187,7 +192,6 @@ def write_folder(sheet: Sheet, folder: Path) -> list[Path]:
         sections=sheet.sections,
         words=sheet.words,
     )
-    return [page, *files]
 
 
 def write_json(path: Path, data: Mapping[str, Any]) -> None:
@@ -241,7 +245,7 @@ def write_sheet(
         verdict=verdict,
         sections=[part for part in drawn if part[0].words or part[1] or part[2]],
     )
-    return write_page(path, page)
+    return write_whole(path, page)
 
 
 def _drawn(

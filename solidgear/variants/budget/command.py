@@ -50,8 +50,8 @@ def budget(
         absent = [name for name in names if ranges.of(name) is None]
         if absent:
             raise SolidgearError(f"--ask: no range is known for {listed(absent)}")
-        chart = None if out is None else budget_chart(ranges, asked=names)
-        if chart is not None:
+        chart = budget_chart(ranges, asked=names)
+        if out is not None and chart is not None:
             chart.write(out)
         return Sheet(
             name="budget",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -73,6 +73,11 @@ class Curves:
         lists = self.frequencies, self.misalignment, self.radial, self.axial, self.peak_force
         return not any(lists)
 
+    @property
+    def on_terminal(self) -> bool:
+        """True where the table of the rows has numbers beside the one that varies."""
+        return bool(self.frequencies or self.mesh_force or self.peak_hz)
+
 
 def chartable(variants: FileVariants) -> Entry:
     """Return the one entry that curves go over; refuse a sweep without one before it begins.
@@ -100,15 +105,19 @@ def chartable(variants: FileVariants) -> Entry:
 
 
 def curves_of(
-    columns: Mapping[str, list[Any]], variants: FileVariants, misalignments: Sequence[str] = ()
+    read: Callable[[], Mapping[str, list[Any]]],
+    variants: FileVariants,
+    misalignments: Sequence[str] = (),
 ) -> Curves | None:
     """Return the curves of the columns of all rows, over the torque where operating points vary; None
-    of a sweep that has none. `misalignments` names the numbers of the misalignment of a train.
+    of a sweep that has none, whose columns are not read. `misalignments` names the numbers of the
+    misalignment of a train.
     """
     try:
         entry = chartable(variants)
     except SolidgearError:
         return None
+    columns = read()
     of_points = entry.label == POINT
     over = "torque" if of_points else entry.label
     x = _numbers(columns[over])

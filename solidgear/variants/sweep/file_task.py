@@ -168,7 +168,7 @@ class FileTask(Task[Swept]):
         return Swept(
             columns,
             varied=tuple(self.variants.columns),
-            curves=curves_of(columns, self.variants, self.misalignments),
+            curves=curves_of(lambda: columns, self.variants, self.misalignments),
             path=file.path,
             skipped=skipped,
             seconds=sum(seconds),
