@@ -10,7 +10,7 @@ from solidgear.core import DIMENSIONS, SceneError, SolidgearError, show
 from solidgear.core.scene.open_range import FACTOR, PLUS_MINUS, Uncertain, range_ends
 from solidgear.core.scene.paths import Keys, Tables, entry, keys_of, label_of
 from solidgear.core.scene.units import quantity
-from solidgear.variants.sweep.spans import in_si
+from solidgear.variants.sweep.entries import in_si
 
 
 @dataclass(frozen=True)

@@ -31,11 +31,10 @@ from solidgear.core.judge.change import Change
 from solidgear.core.plain import plain
 from solidgear.core.scene.units import quantity, si_factor
 from solidgear.variants.sweep.design import Design as SweepDesign
-from solidgear.variants.sweep.entries import Entry, assignment
+from solidgear.variants.sweep.entries import Entry, amount, assignment, in_si, plain_number
 from solidgear.variants.sweep.file_task import without_bars
 from solidgear.variants.sweep.file_variants import SceneVariants, scene_variants
 from solidgear.variants.sweep.scene_task import MOST_MODES, STATICS, SceneTask
-from solidgear.variants.sweep.spans import amount, in_si, plain_number
 
 
 @dataclass(frozen=True)

@@ -10,9 +10,8 @@ from typing import Any
 import numpy as np
 
 from solidgear.core import SolidgearError, listed
-from solidgear.variants.sweep.entries import Entry
+from solidgear.variants.sweep.entries import Entry, in_si
 from solidgear.variants.sweep.file_variants import POINT, FileVariants
-from solidgear.variants.sweep.spans import in_si
 
 #: rows that curves are made of
 MOST_CURVED = 5000
