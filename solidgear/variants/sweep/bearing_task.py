@@ -91,7 +91,9 @@ class BearingTask(Task[SweptBearings]):
     model: str
     options: Mapping[str, Any]  #: of the builder of the model
     n: int  #: elastic shapes, twins counted twice
-    tolerance: float  #: relative error of frequencies against the same body solved in full
+    #: relative error of frequencies against the same body solved in full: a variant whose bound
+    #: exceeds it makes the basis larger, and where that does not do it is solved in full
+    tolerance: float
     #: relative error bars of the mesh by the names of numbers and modes; None where it has none
     bars: Mapping[str, float] | None = None
     judged_on: int = 0  #: number of bearing sets that these are the largest over
@@ -332,27 +334,8 @@ def bearing_task(
     bars: Mapping[str, float] | None = None,
     judged_on: int = 0,
 ) -> BearingTask:
-    """Statics and first modes of many bearing sets on one body.
-
-    Parameters
-    ----------
-    model, options
-        As for :func:`solidgear.core.ladder.build`.
-    n : int, optional
-        Elastic shapes, twins counted twice; as many as the scene asks for by default.
-    tolerance : float
-        Relative error of frequencies against the same body solved in full. A variant whose bound
-        exceeds it makes the basis larger, and where that does not do it is solved in full.
-    bars : mapping of str to float, optional
-        Relative, of the mesh, by the names of numbers and modes, as of
-        :func:`bars_of_rows`; bars stand in columns beside numbers.
-    judged_on : int
-        Bearing sets that these are the largest over.
-
-    Raises
-    ------
-    SolidgearError
-        Values that no variant can have; too many seats are refused by the run.
+    """Return the task of statics and first modes of many bearing sets on one body; parameters as of
+    :class:`BearingTask`, by default as many elastic shapes as the scene asks for.
 
     Examples
     --------

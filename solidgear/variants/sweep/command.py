@@ -32,8 +32,7 @@ from solidgear.variants.sweep.design import Design
 from solidgear.variants.sweep.file_task import R, Swept, Task, run
 from solidgear.variants.sweep.scene_task import scene_task
 from solidgear.variants.sweep.sheet import bearings_sheet, scene_sheet, sweep_chart, train_sheet
-from solidgear.variants.sweep.train_task import ASKED, train_task
-from solidgear.variants.sweep.train_variants import shafts_in
+from solidgear.variants.sweep.train_task import ASKED, shafts_in, train_task
 
 #: ending of a chart that is a page
 PAGE = ".html"

@@ -79,13 +79,7 @@ class Curves:
 
 
 def chartable(variants: FileVariants) -> Entry:
-    """Return the one entry that curves go over; refuse a sweep without one before it begins.
-
-    Raises
-    ------
-    SolidgearError
-        If there are several, its values are words, or there are too many.
-    """
+    """Return the one entry that curves go over; refuse several, words and too many values."""
     several = [entry for entry in variants.entries if len(entry.values) > 1]
     if len(several) != 1:
         labels = listed(entry.label for entry in several) or "none"

@@ -57,14 +57,7 @@ class Design:
         *,
         example: str,
     ) -> DesignPoints:
-        """Return the points of the design on files by their names; an error shows the `example`.
-
-        Raises
-        ------
-        SolidgearError
-            For texts and tables that cannot be read, designs that exclude each other, and too many
-            variants.
-        """
+        """Return the points of the design on files by their names; an error shows the `example`."""
         rows = None
         if self.table is None:
             varied = entries_of(self.vary, files, owner)

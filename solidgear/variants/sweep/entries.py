@@ -138,13 +138,8 @@ def assignment(text: str, form: str) -> tuple[str, str]:
 def entries_of(
     texts: Iterable[str], files: Mapping[str, Tables], owner: Owner
 ) -> tuple[Entry, ...]:
-    """Read all ``PATH=VALUES`` texts of a study over files, by their names.
-
-    Raises
-    ------
-    SolidgearError
-        A text that cannot be read, a name that a list of the file does not have, or the same entry
-        twice.
+    """Read all ``PATH=VALUES`` texts of a study over files, by their names; refuse unknown entries
+    and the same twice.
     """
     out: list[Entry] = []
     for text in texts:
@@ -170,11 +165,6 @@ def entries_of_table(
     """Read a CSV file with paths as heads and a variant a row: entries, and the values of its rows.
 
     Cells hold the text to be written into the file; an empty one leaves an entry as it is.
-
-    Raises
-    ------
-    SolidgearError
-        A file that cannot be read, has no rows, or a head as :func:`entries_of`.
     """
     try:
         with path.open(newline="", encoding="utf-8-sig") as file:
@@ -269,12 +259,8 @@ class KeptSum:
 def kept_sums(
     texts: Iterable[str], files: Mapping[str, Tables], owner: Owner, varied: Sequence[Entry]
 ) -> tuple[KeptSum, ...]:
-    """Read all ``PATH+PATH`` texts of sums that are kept.
-
-    Raises
-    ------
-    SolidgearError
-        Fewer than two entries, of more than one file, no numbers, or none or all of them vary.
+    """Read all ``PATH+PATH`` texts of sums that are kept: numbers of one file, of which all but one
+    vary.
     """
     out = []
     moved = {(place.file, place.keys) for entry in varied for place in entry.places}

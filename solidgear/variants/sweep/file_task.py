@@ -185,25 +185,8 @@ def run(
     overwrite: bool = False,
     progress: Progress = lambda done, total, text: None,
 ) -> R:
-    """Solve the variants whose rows are not there yet, and return the result of the task.
-
-    Parameters
-    ----------
-    out : path
-        ``.csv`` or ``.parquet``. Rows already there from the same sweep are kept and not solved
-        again.
-    jobs : int
-        Processes on this machine (joblib), at most eight for each processor.
-    dask : str, optional
-        Address of a Dask scheduler, whose workers have solidgear installed.
-    overwrite : bool
-        Discard rows that are there.
-
-    Raises
-    ------
-    SolidgearError
-        A file that belongs to another sweep, is being written by one or cannot be written. A variant
-        that is refused is no error: its row says why.
+    """Solve the variants whose rows are not there yet, and return the result of the task; parameters
+    as of :func:`solidgear.sweep`. A variant that is refused is no error: its row says why.
     """
     start = time.perf_counter()
     number("sweep", "jobs", jobs, least=1, whole=True)
@@ -241,14 +224,7 @@ Workers = Callable[[RowSolver, Sequence[Sequence[int]]], Iterator[Rows]]
 
 
 def workers(jobs: int = 1, dask: str | None = None) -> Workers:
-    """Return the workers that were asked for.
-
-    Raises
-    ------
-    SolidgearError
-        If the package it takes is not installed, there is no cluster at that address, or so many
-        processes would only stand in each other's way.
-    """
+    """Return the workers that were asked for; refuse those without their package or cluster."""
     if dask:
         return _dask(dask)
     return _in_this_process if jobs == 1 else _joblib(jobs)

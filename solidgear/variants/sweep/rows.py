@@ -38,13 +38,8 @@ DAMAGED = (sqlite3.SQLITE_NOTADB, sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_ERROR)
 
 
 class RowFile:
-    """Rows of one sweep, to be used in a ``with`` statement by one process at a time.
-
-    Raises
-    ------
-    SolidgearError
-        For another suffix, a missing package, a folder that cannot be written, a file that another
-        process is writing, rows of another plan, or a file that is no database of rows.
+    """Rows of one sweep, to be used in a ``with`` statement by one process at a time; refuses rows of
+    another plan.
     """
 
     def __init__(
