@@ -59,26 +59,21 @@ KEPT = 50
 
 @dataclass(frozen=True)
 class SweptBearings:
-    """Account of a sweep of bearings."""
+    """Account of a sweep of bearings; numbers are zero where nothing was left to do."""
 
     path: Path
     total: int  #: number of variants
     skipped: int  #: rows that were there before
-    refused: int = 0  #: variants without numbers, of this run
-    full: int = 0  #: variants whose modes were solved on the body itself, of this run
-    #: unknowns, seats, basis: of the body; seats on it; unknowns of the largest small problem. Zero
-    #: if there was nothing left to do.
-    unknowns: int = 0
-    seats: int = 0
-    basis: int = 0
-    #: seconds_once, seconds_each: wall seconds for body and reduction, and per variant of this run
-    seconds_once: float = 0.0
-    seconds_each: float = 0.0
-    #: reasons why variants were refused, and how many for that reason, of this run
-    whys: dict[str, int] = field(default_factory=dict)
-    #: sentence on the load at which the stiffness of catalogue bearings is taken
-    settling: str = ""
-    curves: Curves | None = field(default=None, repr=False)  #: where one number varies
+    refused: int  #: variants without numbers, of this run
+    full: int  #: variants whose modes were solved on the body itself, of this run
+    unknowns: int  #: of the body
+    seats: int  #: on the body
+    basis: int  #: unknowns of the largest small problem
+    seconds_once: float  #: wall seconds for body and reduction
+    seconds_each: float  #: wall seconds per variant of this run
+    whys: dict[str, int]  #: reasons why variants were refused, and how many for that, of this run
+    settling: str  #: sentence on the load at which the stiffness of catalogue bearings is taken
+    curves: Curves | None = field(repr=False)  #: where one number varies
 
 
 @dataclass(eq=False)
@@ -194,7 +189,9 @@ class BearingTask(Task[SweptBearings]):
         numbers: dict[str, Any] = {
             "how": "reduced",
             BOUND: shapes.error_bound,
-            BARS: self._words_on_bars,
+            BARS: without_bars(self.model)
+            if self.bars is None
+            else f"of the mesh: the largest over {self.judged_on} bearing sets",
             "rigid_modes": supports.unresisted(frame).shape[1],
         }
         for kind, matrix in (("K", static.stiffness), ("C", static.compliance)):
@@ -204,22 +201,15 @@ class BearingTask(Task[SweptBearings]):
 
     def _seats_at(self, basis: Reduced, ports: tuple[int, ...]) -> Seats:
         key = (basis.level, *ports)
-        seats = self._seats.get(key)
-        if seats is None:
+        if key not in self._seats:
             if len(self._seats) >= KEPT:
                 self._seats.clear()
-            seats = self._seats[key] = Seats(basis, ports)
-        return seats
+            self._seats[key] = Seats(basis, ports)
+        return self._seats[key]
 
     @cached_property
     def _seats(self) -> dict[tuple[int, ...], Seats]:
         return {}
-
-    @property
-    def _words_on_bars(self) -> str:
-        if self.bars is None:
-            return without_bars(self.model)
-        return f"of the mesh: the largest over {self.judged_on} bearing sets"
 
     def _bars_of_statics(self, numbers: Mapping[str, Any]) -> dict[str, float]:
         """Return the error bars of the entries of a row, in their units."""
@@ -287,25 +277,20 @@ class BearingTask(Task[SweptBearings]):
 
     def result(self, file: RowFile, skipped: int, seconds: tuple[float, float]) -> SweptBearings:
         total, (once, rows) = len(self.variants), seconds
-        account = SweptBearings(
+        return SweptBearings(
             file.path,
             total,
             skipped,
-            settling=_settling(self.variants),
-            curves=curves_of(file.by_column, self.variants),
-        )
-        if self.body is None:
-            return account
-        return replace(
-            account,
             refused=self.whys.total(),
             full=self.full,
-            unknowns=self.body.size,
+            unknowns=0 if self.body is None else self.body.size,
             seats=self.seats,
-            basis=self.bases[-1].size,
-            seconds_once=once,
-            seconds_each=rows / (total - skipped),
+            basis=max((basis.size for basis in self.bases), default=0),
+            seconds_once=0.0 if self.body is None else once,
+            seconds_each=0.0 if self.body is None else rows / (total - skipped),
             whys=dict(self.whys),
+            settling=_settling(self.variants),
+            curves=curves_of(file.by_column, self.variants),
         )
 
 

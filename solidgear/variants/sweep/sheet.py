@@ -82,7 +82,8 @@ def scene_sheet(task: SceneTask, result: Swept, chart: Path | None) -> Sheet:
         task.variants.path.stem,
         lead=f"Rows in {result.path.name}.",
         solved=_solved(result),
-        notes=[note, *_chart_written(result, chart)],
+        notes=[note],
+        chart=chart,
         cautions=result.cautions,
         data=plain(result) | {"cautions": result.cautions},
     )
@@ -113,7 +114,8 @@ def train_sheet(task: TrainTask, result: Swept, chart: Path | None, counted: boo
         heading=[f"{title}: {models}"],
         lead=f"{models[0].upper()}{models[1:]}; rows in {result.path.name}.",
         solved=shafts + _solved(result),
-        notes=[*notes, *_chart_written(result, chart)],
+        notes=notes,
+        chart=chart,
         cautions=cautions,
         data=plain(result) | {"bodies": made, "cut": cut, "title": title, "cautions": cautions},
     )
@@ -129,6 +131,7 @@ def _sheet(
     notes: Sequence[str],
     cautions: Sequence[str],
     data: Mapping[str, Any],
+    chart: Path | None = None,  # file of it
     reached: bool = True,
 ) -> Sheet:
     """Return the sheet of a sweep; a terminal shows few rows, and the sentences on the run."""
@@ -143,6 +146,7 @@ def _sheet(
     run = [f"{path}: all {result.total} rows were there already."]
     if new:
         run = [f"Wrote {new} rows to {path}{before}.", solved]
+    drawn = [] if chart is None else [f"Chart: {chart if charts else 'none'}"]
     return Sheet(
         name="sweep",
         title=title,
@@ -155,7 +159,7 @@ def _sheet(
         terminal=Terminal(
             heading=heading,
             tables=tables if few else [],
-            closing=[*run, *refusals(result), *notes, *map(caution, cautions)],
+            closing=[*run, *refusals(result), *notes, *drawn, *map(caution, cautions)],
         ),
         words={"sweep": "Natural frequencies and other columns over the number that varies."},
     )
@@ -163,18 +167,9 @@ def _sheet(
 
 def _solved(result: Swept) -> str:
     """Return the sentence on the variants of this run and their time."""
-    new = result.total - result.skipped
-    each = 1e3 * result.seconds / max(new, 1)
-    return (
-        f"{new} variants in {result.seconds:.1f} s, {each:.0f} ms each; {result.refused} refused."
-    )
-
-
-def _chart_written(result: Swept, file: Path | None) -> list[str]:
-    """Return the sentence on the chart of a sweep; none without a file of it."""
-    if file is None:
-        return []
-    return ["Chart: none" if result.curves is None or result.curves.empty else f"Chart: {file}"]
+    new, seconds = result.total - result.skipped, result.seconds
+    each = 1e3 * seconds / max(new, 1)
+    return f"{new} variants in {seconds:.1f} s, {each:.0f} ms each; {result.refused} refused."
 
 
 def _caution_on_parting(result: Swept) -> list[str]:
@@ -194,9 +189,9 @@ def refusals(result: Swept | SweptBearings) -> list[str]:
     """Return a sentence a reason for which variants were refused, the commonest first."""
     reasons = sorted(result.whys.items(), key=lambda why: -why[1])
     sentences = []
-    for why, count in reasons[:REASONS]:
+    for reason, count in reasons[:REASONS]:
         variants = f" ({count} variants)" if count > 1 else ""
-        sentences.append(f"Refused{variants}: {why}")
+        sentences.append(f"Refused{variants}: {reason}")
     if len(reasons) > REASONS:
         others = sum(count for _, count in reasons[REASONS:])
         sentences.append(f"{others} more are refused for other reasons (column status).")
@@ -238,14 +233,12 @@ def sweep_table(curves: Curves, units: Units = ENGINEERING) -> Table:
     of_train = [*curves.mesh_force, *curves.misalignment]
     modes = _by_name(curves.frequencies)
     shown = {} if of_train else _moving_most(modes)
-    columns += [_column(curve.name, curve, units) for curve in (*of_train, *curves.statics)]
-    columns += [_values(name, values, "Hz", units) for name, values in shown.items()]
-    for hz, force in zip(curves.peak_hz, curves.peak_force):
-        columns += [
-            _column("peak", hz, units),
-            _column("peak", force, units),
-            text("mode", partial(_words, hz)),
-        ]
+    numbers = [(c.name, c.values, c.unit) for c in (*of_train, *curves.statics)]
+    numbers += [(name, values, "Hz") for name, values in shown.items()]
+    numbers += [("peak", c.values, c.unit) for c in (*curves.peak_hz, *curves.peak_force)]
+    columns += [_column(head, values, si, units) for head, values, si in numbers]
+    for hz in curves.peak_hz:
+        columns.append(text("mode", [word or None for word in hz.words].__getitem__))
     notes = ["Peak: largest of the mesh force."] if curves.peak_hz else []
     if len(shown) < len(modes) and shown:
         notes.append("Modes that change most; the file has all.")
@@ -272,20 +265,12 @@ def _moving_most(modes: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     return {name: values for name, values in modes.items() if name in (most or modes)}
 
 
-def _column(head: str, curve: Curve, units: Units) -> Column:
-    return _values(head, curve.values, curve.unit, units)
-
-
-def _values(head: str, numbers: np.ndarray, si: str, units: Units) -> Column:
+def _column(head: str, numbers: np.ndarray, si: str, units: Units) -> Column:
     write = partial(units.number, si=si, digits=4)
     # numbers that are negligible beside the others are rounding
     least = ROUNDING * float(np.nanmax(np.abs(numbers)))
     values = np.where(np.abs(numbers) < least, 0.0, numbers).tolist()
     return Column(f"{head}\n{units.unit(si)}", values.__getitem__, write)
-
-
-def _words(curve: Curve, k: int) -> str | None:
-    return curve.words[k] or None
 
 
 def _panel(

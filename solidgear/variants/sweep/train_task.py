@@ -26,7 +26,6 @@ from solidgear.trains.file.reading import train_of
 from solidgear.trains.file.train import SHORT, SIDES, Train
 from solidgear.trains.load.operation import (
     SHAFT,
-    OperatingState,
     named_point,
     with_settled_bearings,
 )
@@ -105,7 +104,10 @@ class TrainTask(FileTask):
         if train.operation and DEFLECTION in self.ask:
             out |= dict.fromkeys(map(misaligned, self.misalignments), float)
             out |= {once(stage.called): float for stage in stages_over_a_turn(train)}
-            out |= dict.fromkeys(_loads(train), float)
+            for side, shaft in train.shafts.items():
+                for b in shaft.scene.bearings:
+                    if b.catalogue is not None or np.any(b.stiffness):
+                        out |= {f"{side}.{b.name}.{load}": float for load in LOADS}
         if train.operation:
             out["unloaded"] = str
         if MODES in self.ask:
@@ -181,7 +183,10 @@ class TrainTask(FileTask):
                 out[misaligned(measure.name)] = float(measure.row @ deflected.coordinates)
             for turn in over_a_turn(operating.assembly, deflected, deflected.models):
                 out[once(turn.stage)] = max(planet.once for planet in turn.planets)
-            out |= _bearing_loads(deflected)
+            for end, load in deflected.equilibrium.load.items():
+                # across the shaft, along it and against tilting
+                loads = np.hypot(load[0], load[2]), load[1], np.hypot(load[3], load[5])
+                out |= {f"{end}.{name}": float(value) for name, value in zip(LOADS, loads)}
         return at_rest, out
 
     # ------------------------------------------------------------------------------ moving
@@ -249,7 +254,13 @@ def train_task(
     >>> [row["status"] for row in task.rows(range(3))], task.bench.made
     (['ok', 'ok', 'ok'], 2)
     """
-    kinds = _kinds(ask)
+    asked = set(ask)
+    for word in asked.difference(ASKED):
+        raise SolidgearError(
+            f"--ask {show(word, 40)}: give one or more of {', '.join(ASKED)}{nearest(word, ASKED)}"
+        )
+    if not asked:
+        raise SolidgearError(f"--ask: name one or more of {', '.join(ASKED)}")
     by_side = {"pinion": pinion, "gear": gear}
     chosen = {side: model for side, model in by_side.items() if model is not None}
     chosen |= models or {}
@@ -267,7 +278,7 @@ def train_task(
     return TrainTask(
         variants,
         models={side: chosen.get(side, JUDGE) for side in usual.shafts},
-        ask=kinds,
+        ask=tuple(word for word in ASKED if word in asked),
         n=n,
         max_frequency=max_frequency,
         reduction=reduction,
@@ -276,20 +287,6 @@ def train_task(
         mesh=mesh,
         first=first,
     )
-
-
-def _kinds(ask: Iterable[str]) -> tuple[str, ...]:
-    """Return the kinds of numbers of rows, in the usual order."""
-    kinds = list(ask)
-    for word in kinds:
-        if word not in ASKED:
-            raise SolidgearError(
-                f"--ask {show(word, 40)}: give one or more of "
-                f"{', '.join(ASKED)}{nearest(word, ASKED)}"
-            )
-    if not kinds:
-        raise SolidgearError(f"--ask: name one or more of {', '.join(ASKED)}")
-    return tuple(word for word in ASKED if word in kinds)
 
 
 def statics_of(model: str) -> str:
@@ -303,27 +300,6 @@ def statics_of(model: str) -> str:
 def once(stage: str) -> str:
     """Return the column of the amplitude of the mesh force of a planet once a turn of the carrier."""
     return f"once_a_turn_{stage.replace(' ', '_')}"
-
-
-def _loads(train: Train) -> Iterator[str]:
-    """Yield the columns of the loads of every bearing."""
-    for side, shaft in train.shafts.items():
-        for name in _loaded_bearings(shaft.scene):
-            yield from (f"{side}.{name}.{load}" for load in LOADS)
-
-
-def _loaded_bearings(scene: Scene) -> list[str]:
-    """Return the names of the bearings of a shaft that can carry a load."""
-    return [b.name for b in scene.bearings if b.catalogue is not None or np.any(b.stiffness)]
-
-
-def _bearing_loads(state: OperatingState) -> dict[str, float]:
-    """Return the load of every bearing: across the shaft, along it and against tilting."""
-    out: dict[str, float] = {}
-    for end, load in state.equilibrium.load.items():
-        values = np.hypot(load[0], load[2]), load[1], np.hypot(load[3], load[5])
-        out |= {f"{end}.{name}": float(value) for name, value in zip(LOADS, values)}
-    return out
 
 
 @dataclass(frozen=True)
