@@ -13,7 +13,7 @@ from dataclasses import fields
 
 import numpy as np
 
-from solidgear.core import Body, SolidgearError
+from solidgear.core import Body, Scene, SolidgearError
 from solidgear.core.models.beam.body import (
     matrices,
     pieces,
@@ -181,24 +181,24 @@ class BeamAdjoint:
                 self.nodes[inside] += rates
                 self.seats[p, 0] -= rates.sum(axis=0)
 
-    def by(self, low, high, step: float) -> np.ndarray:
+    def by(self, low: Scene, high: Scene, step: float) -> np.ndarray:
         """Compute the derivatives (f,) along the way from one scene to another; refuse a shaft that
         takes another form, and places of one line that move apart.
         """
-
         segments = rates(low.segments, high.segments, SHAPE, step)
         seats = rates(low.stations, high.stations, SEAT, step)
-        materials = ([s.material for s in scene.segments] for scene in (low, high))
+        before, after = ([s.material for s in scene.segments] for scene in (low, high))
+        matter = rates(before, after, MATTER, step)
         out = np.einsum("sk,skf->f", segments, self.segments)
-        out += np.einsum("sk,skf->f", rates(*materials, MATTER, step), self.materials)
+        out += np.einsum("sk,skf->f", matter, self.materials)
         out += np.einsum("pk,pkf->f", seats, self.seats)
         if self.body.mesh["shoulder"]:
             bends = rates(hinges(low.segments), hinges(high.segments), HINGE, step)
             if len(bends) != len(self.hinges):
                 raise SolidgearError("a step opens there, with another derivative to either side")
             out += np.einsum("hk,hkf->f", bends.reshape(-1, len(HINGE)), self.steps)
-        marks = line_velocities(self.scene, self.stations, segments, seats, FOLLOWED)
-        self.velocity = np.interp(self.places, *marks)
+        lines, moved = line_velocities(self.scene, self.stations, segments, seats, FOLLOWED)
+        self.velocity = np.interp(self.places, lines, moved)
         return out + self.velocity @ self.nodes
 
 

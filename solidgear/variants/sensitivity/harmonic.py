@@ -24,7 +24,7 @@ from typing import Any
 import numpy as np
 from skfem import ElementQuad1
 
-from solidgear.core import TOUCH, Body, SolidgearError, coned
+from solidgear.core import TOUCH, Body, Scene, SolidgearError, coned
 from solidgear.core.kernel.assembly import reference
 from solidgear.core.meshing.bands import radial_bands
 from solidgear.core.models.beam.element import SHAPE
@@ -358,13 +358,11 @@ class Motion:
     section port lies there.
     """
 
-    def __init__(self, adjoint: HarmonicAdjoint, low, high, step: float):
+    def __init__(self, adjoint: HarmonicAdjoint, low: Scene, high: Scene, step: float):
         self.low, self.high, self.step = coned(low), coned(high), step
         self.adjoint = adjoint
-        segments = [scene.segments for scene in (self.low, self.high)]
-        stations = [scene.stations for scene in (self.low, self.high)]
-        self.segment = rates(*segments, SHAPE, step)
-        self.station = rates(*stations, SEAT, step)
+        self.segment = rates(self.low.segments, self.high.segments, SHAPE, step)
+        self.station = rates(self.low.stations, self.high.stations, SEAT, step)
         if len(self.segment) != len(adjoint.scene.segments):
             raise SolidgearError("the shaft takes another form there")
 
@@ -420,13 +418,13 @@ class Motion:
     def moved(self) -> tuple[np.ndarray, np.ndarray, list[np.ndarray]]:
         """Velocity of the nodes, and beyond it the slip of seat ends and the bulge of surfaces."""
         adjoint, flat = self.adjoint, self.adjoint.flat
-        lines = line_velocities(
+        lines, moved = line_velocities(
             adjoint.scene, adjoint.stations, self.segment, self.station, FOLLOWED
         )
-        axial = np.interp(flat.points[1], *lines)
+        axial = np.interp(flat.points[1], lines, moved)
         by_segment, mean = self.radial(axial)
         seats = self.station[:, 1:] - np.array(
-            [np.interp([s.lo, s.hi], *lines) for s, _ in adjoint.stations]
+            [np.interp([s.lo, s.hi], lines, moved) for s, _ in adjoint.stations]
         )
         averaged = np.array([a == "average" for _, a in adjoint.stations])
         slip = np.where(averaged[:, None], seats, 0.0)

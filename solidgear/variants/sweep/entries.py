@@ -349,7 +349,7 @@ def _range(spec: str) -> dict[str, Any]:
     if spacing == "log" and not ends[0] * ends[1] > 0:
         raise SceneError("a logarithmic range needs both ends above zero")
     between = np.linspace if spacing == "linear" else np.geomspace
-    values = between(*ends, int(parts[2])).tolist()
+    values = between(ends[0], ends[1], int(parts[2])).tolist()
     return {
         "values": tuple(dict.fromkeys(values)),
         "spacing": spacing,
