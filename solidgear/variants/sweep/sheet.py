@@ -57,7 +57,7 @@ def bearings_sheet(
         lead=f"Rows in {result.path.name}.",
         solved="Bearings alone vary: one body does for all, reduced to its seats.\n"
         f"{result.unknowns} unknowns with {result.seats} seats solved once in "
-        f"{result.seconds_once:.1f} s; {result.total - result.skipped} variants of up to "
+        f"{result.seconds_once:.1f} s;\n{result.total - result.skipped} variants of up to "
         f"{result.basis} unknowns, {1e3 * result.seconds_each:.1f} ms each; {result.refused} "
         f"refused, {result.full} solved in full.",
         notes=[*filter(None, [result.settling]), *over_the_sweep(settled)],
