@@ -21,7 +21,7 @@ from solidgear.measured.computed import Computed
 from solidgear.measured.correlate import DEVIATIONS, on_points_of, peaks_of
 from solidgear.measured.data import Measured
 from solidgear.measured.same_part import Likeness, alignment_of
-from solidgear.variants.sweep.spans import in_si
+from solidgear.variants.sweep.entries import in_si
 
 #: standard deviation of a logarithm from which on nothing is known of an entry: a factor of two
 UNDETERMINED = math.log(2.0)

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from solidgear.core import whole
-from solidgear.core.machine.whole_file import write_page
+from solidgear.core.machine.whole_file import write_page as write_whole
 from solidgear.show.command import NOT_REACHED, Progress, caution, filled, say
 from solidgear.show.folder import begun, held
 from solidgear.show.page_parts import Contents, template
@@ -29,17 +29,6 @@ if TYPE_CHECKING:
 
 #: files of a chart
 KINDS = ("png", "svg")
-#: what charts say in words, by how their names begin
-WORDS = {
-    "response": "Dynamic mesh force and transmission error of each model.",
-    "designs": "The goal in every design solved, each with its error bar.",
-    "sweep": "Natural frequencies and other columns over the number that varies.",
-    "housing": (
-        "Loads on the mounts of the housing and accelerations of its points, over all three "
-        "directions."
-    ),
-    "sensitivities": "Change of the number for one per cent more of each entry.",
-}
 
 
 @dataclass(frozen=True)
@@ -49,8 +38,7 @@ class Section:
     anchor: str
     title: str
     words: str = ""
-    #: by names of letters and underscores, each of no other chart of the page; those in ``WORDS``
-    #: say what is written there, others the title
+    #: by names of letters and underscores, each of no other chart of the page
     charts: Mapping[str, Make] = field(default_factory=dict)
     tables: Sequence[Table] = ()  #: those without rows are left out
     #: SVG by what it says in words, before the charts
@@ -93,7 +81,8 @@ class Sheet:
     reached: bool = True  #: whether every error bar is within the tolerance
     terminal: Terminal = Terminal()
     exit_code: int = 0  #: of a fault, or of a run that ended early, after its numbers
-    words: Mapping[str, str] = field(default_factory=dict)  #: what charts say, by file
+    #: what charts say, by file; the title where there is nothing
+    words: Mapping[str, str] = field(default_factory=dict)
     #: name of its JSON, which then lists all files, where that is not the name of its page
     json_name: str = ""
     pictures: Sequence[str] = ()  #: files of its folder that are drawn already
@@ -171,11 +160,11 @@ def _written(sheet: Sheet, folder: Path) -> list[Path]:
     files.append(json_file)
     for stem, make in charts.items():
         files += write_charts(folder / stem, make)
-    page = write_page_of(sheet, folder / f"{sheet.name}.html")
+    page = write_page(sheet, folder / f"{sheet.name}.html")
     return [page, *files]
 
 
-def write_page_of(sheet: Sheet, path: Path) -> Path:
+def write_page(sheet: Sheet, path: Path) -> Path:
     """Write the page of a sheet alone."""
     return write_sheet(
         path,
@@ -253,7 +242,7 @@ def write_sheet(
         verdict=verdict,
         sections=[part for part in drawn if part[0].words or any(part[1:])],
     )
-    return write_page(path, page)
+    return write_whole(path, page)
 
 
 def _drawn(
@@ -264,9 +253,7 @@ def _drawn(
 
     drawn = {name: page_svg(name, make) for name, make in charts.items()}
     return [
-        (Markup(svg.decode()), words.get(name) or _words(name) or f"{title}.")
-        for name, svg in drawn.items()
-        if svg
+        (Markup(svg.decode()), words.get(name) or f"{title}.") for name, svg in drawn.items() if svg
     ]
 
 
@@ -275,7 +262,3 @@ def _given(section: Section) -> list[tuple[str, str]]:
     from markupsafe import Markup
 
     return [(Markup(svg.decode()), words) for words, svg in section.drawings.items() if svg]
-
-
-def _words(name: str) -> str:
-    return next((words for start, words in WORDS.items() if name.startswith(start)), "")

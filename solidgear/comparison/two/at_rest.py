@@ -13,13 +13,13 @@ from solidgear.core.judge.change import Change
 from solidgear.show.sheet import Section
 from solidgear.show.table import Cell, Column, Table, quantity, word
 from solidgear.show.units import Units
+from solidgear.strength.deflection.at_rest import Deflection
 from solidgear.strength.deflection.shaft import BearingState
 from solidgear.strength.deflection.sheet import meanings
-from solidgear.strength.deflection.train import TrainDeflection
 from solidgear.trains.file.operation import OperatingPoint
 
 #: train A and B, None where it is not deflected
-Both = Sequence[TrainDeflection | None]
+Both = Sequence[Deflection | None]
 
 
 def misalignment_changes(both: Both) -> Iterator[NumberChange]:
@@ -91,7 +91,7 @@ def section(both: Both, changes: Sequence[NumberChange], units: Units) -> Sectio
 
 
 def misalignment(
-    both: Sequence[TrainDeflection], changes: Sequence[NumberChange], units: Units
+    both: Sequence[Deflection], changes: Sequence[NumberChange], units: Units
 ) -> Table:
     """Return the misalignment of both trains."""
     columns = [
@@ -137,7 +137,7 @@ def _range(
     return f"{low} to {high}"
 
 
-def bearing_loads(both: Sequence[TrainDeflection], units: Units) -> Table:
+def bearing_loads(both: Sequence[Deflection], units: Units) -> Table:
     """Return loads of all bearings of both trains."""
     sides = [
         (letter, {f"{s.name}.{b.name}": b for s in deflected.shafts for b in s.bearings})

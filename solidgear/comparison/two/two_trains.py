@@ -61,6 +61,15 @@ LOUDEST = 3
 LARGE = 0.2
 #: panels of a chart: more do not fit a sheet of paper
 MOST_PANELS = 8
+#: what the charts of a section say
+WORDS = {
+    "response": "Dynamic mesh force and transmission error of each model.",
+    "housing": (
+        "Loads on the mounts of the housing and accelerations of its points, over all three "
+        "directions."
+    ),
+    "shares": "Strain energy of every mode by part.",
+}
 EXCITED = "Steady response to the transmission error of each file."
 REACTIONS = (
     f"From {100 * LARGE:g} % of the largest of their kind on, and the largest of every bearing. "
@@ -190,10 +199,11 @@ class TwoTrains(Beside[OneTrain, SeenMode]):
 
     def sheet(self, units: Units = ENGINEERING) -> Sheet:
         """Return the sheet of terminal, page and JSON."""
+        sections = _sections(self, units)
         return beside.sheet(
             self,
             units,
-            _sections(self, units),
+            sections,
             [
                 beside.input_table(self, beside.SHORT),
                 beside.mode_table(self),
@@ -204,7 +214,9 @@ class TwoTrains(Beside[OneTrain, SeenMode]):
                 f"response_{letter}": over_frequency(train.response, self.per_turn(train))
                 for letter, train in self.by_letter.items()
             },
-            words={"shares": "Strain energy of every mode by part."},
+            words={
+                name: WORDS[s.anchor] for s in sections if s.anchor in WORDS for name in s.charts
+            },
         )
 
     def data(self) -> dict[str, Any]:
@@ -233,7 +245,7 @@ class TwoTrains(Beside[OneTrain, SeenMode]):
         }
 
     @property
-    def loaded(self) -> tuple[TrainDeflection | None, TrainDeflection | None]:
+    def loaded(self) -> tuple[Deflection | None, Deflection | None]:
         """Both at rest under torque."""
         return self.a.loaded, self.b.loaded
 

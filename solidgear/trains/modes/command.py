@@ -10,7 +10,7 @@ import typer
 from solidgear.core import SolidgearError
 from solidgear.show.command import Progress, command
 from solidgear.show.options import UNITS, Shown
-from solidgear.show.sheet import Sheet, present, write_page_of
+from solidgear.show.sheet import Sheet, present, write_page
 from solidgear.show.units import units_named
 from solidgear.show.viewer import viewer_fragment
 from solidgear.trains.assembly.assembly import Assembly
@@ -61,7 +61,7 @@ def system_modes(
             written += [line for line in (sentence, f"Written: {turn}") if line]
         sheet = modes_sheet(assembly, system, units_named(run.units), viewer, written)
         if turn is not None:
-            write_page_of(sheet, turn)
+            write_page(sheet, turn)
         return sheet
 
     present(study, run)
