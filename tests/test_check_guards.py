@@ -24,6 +24,7 @@ from solidgear.guards.check import cautions, check_scene, notices
 from solidgear.guards.notice import against, beams, everything
 from solidgear.guards.probe import Probe
 from solidgear.guards.sheet import check_sheet, thoughts
+from solidgear.show.command import FAULTY
 from tests.command import command
 from validation.shipped import shafts_of_revolution
 
@@ -716,9 +717,9 @@ def test_a_fault_of_a_shaft_is_one_of_its_train():
     verdicts = {"solid": check.Verdict("will not hold", ("mesh",))}
     shaft = check.Check("pinion", (fault,), verdicts)
     train = check.Check("train", (), {"solid": check.Verdict("will not hold", ("pinion",))})
-    assert check_sheet(shaft).faulty and not check_sheet(train).faulty
+    assert check_sheet(shaft).exit_code == FAULTY and not check_sheet(train).exit_code
     whole = replace(train, shafts={"pinion": shaft})
-    assert check_sheet(whole).faulty and whole.faults == []
+    assert check_sheet(whole).exit_code == FAULTY and whole.faults == []
     assert check_sheet(whole).notes == [
         "== pinion",
         "Will not hold: solid (mesh).",

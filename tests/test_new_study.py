@@ -48,6 +48,8 @@ ROOM = {
     "command.py": '''
         """The command mass."""
 
+        from __future__ import annotations
+
         from pathlib import Path
         from typing import Annotated
 
