@@ -17,11 +17,11 @@ GEOMETRY = Path(__file__).parent.parent / "geometry"
 def main():
     scene = sg.load(GEOMETRY / "pinion_overhung.toml")
     found = check_scene(scene, sg.build(scene, "timoshenko"))
-    for model, verdict in found["verdicts"].items():
-        print(f"{model:11s} {verdict['verdict']}")
-    for caution in found["cautions"]:
+    for model, verdict in found.verdicts.items():
+        print(f"{model:11s} {verdict.verdict}")
+    for caution in found.cautions:
         print("-", caution)
-    return {model: verdict["verdict"] for model, verdict in found["verdicts"].items()}
+    return {model: verdict.verdict for model, verdict in found.verdicts.items()}
 
 
 if __name__ == "__main__":

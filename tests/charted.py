@@ -3,7 +3,7 @@
 import html
 import re
 
-from solidgear.comparison.race.pareto import Row
+from solidgear.comparison.race.race import Row
 from solidgear.show.plot import Chart
 
 SETUP = {"numpy and scipy": 0.5, "gmsh, first use": 0.1}

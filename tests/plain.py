@@ -2,10 +2,9 @@
 
 from pathlib import Path
 
-from solidgear.comparison.page import html
+from solidgear.comparison.page import html, sheet
+from solidgear.comparison.recording import as_record
 from solidgear.core.judge.record import Record
-from solidgear.show import terminal
-from solidgear.show.border import as_record
 
 #: a folder without a file
 NOWHERE = Path("there is no such folder")
@@ -28,8 +27,8 @@ def drawn_charts(results):
 
 
 def final_table(results):
-    return terminal.final_table(_record(results))
+    return sheet.final_table(_record(results))
 
 
 def verdict_text(results):
-    return terminal.verdict_text(_record(results))
+    return "\n".join(sheet.verdict_lines(_record(results)))

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from shafts import moved_by
 
+from solidgear.bearings import clearance
 from solidgear.bearings.ball import BallRow
 from solidgear.bearings.catalogue import Catalogue, Kind
 from solidgear.bearings.catalogued import catalogued, state
@@ -100,6 +101,17 @@ def test_clearance_by_class_fit_and_temperature():
     warm = data.with_changes(inner_ring_warmer="20 K")
     assert mounting_change(warm, inside) == pytest.approx(-11.5e-6 * 20 * inside.pitch)
     assert catalogued(data).clearance == pytest.approx(24e-6)
+
+
+def test_a_kind_without_a_table_has_no_clearance_class(monkeypatch):
+    roller = Catalogue(designation="NU 207", clearance="CN", load_rating="48 kN")
+    assert clearance_range(roller) == (25e-6, 50e-6)
+    monkeypatch.delitem(clearance.TABLES, "cylindrical")
+    with pytest.raises(
+        SceneError, match="cylindrical bearings have no clearance class; write a le"
+    ):
+        clearance_range(roller)
+    assert clearance_range(roller.with_changes(clearance="30 um")) == (30e-6, 30e-6)
 
 
 def single(side, height, preload=0.0, first=0.0):

@@ -177,6 +177,9 @@ def test_the_command(tmp_path):
     done = command("bearing", SCENE, "--out", chart)
     assert done.exit_code == 0, done.output
     assert "4 of 13 elements carry" in done.output and chart.stat().st_size > 20_000
+    both = json.loads(command("bearing", SCENE, "--json").stdout)["bearings"]
+    assert [row["no_spread"] for row in both] == ["", "all inner dimensions are given"]
+    assert both[0]["spread"] and both[1]["spread"] is None
     other = command("bearing", SCENE, "--bearing", "A", "--load", "z=9 kN", "--json")
     (row,) = json.loads(other.stdout)["bearings"]
     assert row["load"][2] == pytest.approx(9e3) and row["status"] == "estimated"
@@ -236,6 +239,8 @@ def test_a_bearing_without_load_tells_no_empty_range(tmp_path):
     path = tmp_path / "idle.toml"
     path.write_text(text + '[load]\nx = "0 N"\n')
     told = command("bearing", path, "--bearing", "A").output
+    (basic,) = [line.split() for line in told.splitlines() if "basic L10" in line]
+    assert basic == ["basic", "L10", "endless", "endless", "endless"]
     assert (
         "carries nothing" in told
         and "Range over the estimated inside, from soft to stiff" not in told

@@ -162,7 +162,8 @@ def test_two_meshes_of_a_body_are_judged_by_their_step(meshed):
 
 def test_a_single_mesh_of_a_body_has_frequencies_and_no_bars(meshed, run):
     code, out, _ = run("modes", free(meshed, "4.vtu"), "-n", 3)
-    assert code == 3 and "there is no finer one to judge it by" in out and "mode 3" in out
+    assert code == 3 and "mode 3" in out
+    assert "there is no finer one to judge it by" in " ".join(out.split())
     code, out, _ = run("check", meshed / "free.toml")
     assert code == 0 and "the file names no groups of surfaces" in " ".join(out.split())
     assert "there is one mesh of" in " ".join(out.split())

@@ -139,9 +139,7 @@ def test_check_looks_at_the_elements_of_a_body_without_an_axis(tmp_path):
     path = bar(tmp_path, (4, 1, 1))
     scene = sg.load(path)
     said = check_scene(scene, sg.build(scene, "solid"))
-    assert any(
-        "are hex8, which lock in bending, and are solved as hex20" in f for f in said["facts"]
-    )
+    assert any("are hex8, which lock in bending, and are solved as hex20" in f for f in said.facts)
     path.write_text(path.read_text().replace(f"nu = {NU}", "nu = 0.499"))
     told = command("check", path).stdout
     assert "nu = 0.499 of 4x1x1.inp: element hex20 locks" in told and "Will not hold" in told

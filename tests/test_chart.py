@@ -12,26 +12,26 @@ import pytest
 
 import solidgear as sg
 from solidgear.comparison.race import command
-from solidgear.comparison.race import rows as race_rows
-from solidgear.comparison.race import style as race_style
+from solidgear.comparison.race import race as race_rows
 from solidgear.comparison.race import timing as racing
-from solidgear.comparison.race.cases import AUTO, plan
-from solidgear.comparison.race.figure import draw, race_chart
-from solidgear.comparison.race.pareto import Race, Row
-from solidgear.comparison.race.rows import (
+from solidgear.comparison.race.figure import UNLISTED, race_chart
+from solidgear.comparison.race.race import (
     MACHINE,
     PICTURE,
     ROWS,
-    error_text,
-    left_out,
+    Race,
+    Reference,
+    Row,
+    race_of,
     read_race,
     records,
     write_rows,
 )
-from solidgear.comparison.race.tables import front_rows, section
-from solidgear.comparison.race.timing import answer, race
+from solidgear.comparison.race.sheet import front_rows
+from solidgear.comparison.race.timing import AUTO, answer, plan, race
 from solidgear.core.quantity import QUANTITIES
 from solidgear.show.panel import SHAPES
+from solidgear.show.plot import Chart
 from tests.charted import SETUP, few, texts_of, words_of
 from tests.plain import render_page, write_report
 
@@ -64,7 +64,7 @@ def light():
 
 @pytest.fixture
 def undrawn(monkeypatch):
-    monkeypatch.setattr(command, "draw", lambda found, path: path)
+    monkeypatch.setattr(Chart, "write", lambda chart, path: path)
 
 
 def panels(found):
@@ -98,7 +98,7 @@ def test_rows_hold_every_case_with_runs_times_errors_and_reasons(raced, tmp_path
     assert (beam["status"], beam["runs"], beam["options"]) == ("ok", "2", "elements=1")
     assert float(beam["seconds_min"]) <= float(beam["seconds_median"]) <= float(beam["seconds_max"])
     assert len(beam["samples"].split()) == 2
-    value, reference = float(beam["C_zz"]), raced.reference["values"]["C_zz"]
+    value, reference = float(beam["C_zz"]), raced.reference.values["C_zz"]
     assert float(beam["error_C_zz"]) == pytest.approx(abs(value / reference - 1))
     assert float(beam["like_for_like_C_zz"]) > 0 and float(beam["error_C_6x6"]) > 0
     assert (
@@ -118,7 +118,7 @@ def test_a_damaged_file_is_no_race_and_no_crash(raced, tmp_path, name, text):
     write_rows(raced, tmp_path)
     (tmp_path / name).write_text(text)
     assert read_race(tmp_path) is None
-    assert section(tmp_path, raced.scene) is None
+    assert race_of(tmp_path, raced.scene) is None
 
 
 # ------------------------------------------------------------------------------------------------- figure
@@ -151,22 +151,22 @@ def test_a_number_that_is_missing_is_a_cross_in_its_own_panels():
         {"C_zz": 1.01},
         {"C_zz": 0.01},
     )
-    reference = {
-        "options": COARSE,
-        "model": "harmonic solid",
-        "setting": "order 3",
-        "unknowns": 1,
-        "seconds": 9.0,
-        "values": {"C_zz": 1.0, "bending 1": 1.0},
-        "bands": {"C_zz": 1e-6, "bending 1": 1e-6},
-    }
+    reference = Reference(
+        model="harmonic solid",
+        options=COARSE,
+        setting="order 3",
+        unknowns=1,
+        seconds=9.0,
+        values={"C_zz": 1.0, "bending 1": 1.0},
+        bands={"C_zz": 1e-6, "bending 1": 1e-6},
+    )
     made = Race({}, reference, [row], {}, 1, 10, 1.0)
     assert [len(marks(panel, "x")) for panel in panels(made)] == [0, 0, 1, 1]
 
 
 def test_points_below_the_bar_stand_on_it(raced):
     panel = panels(raced)[0]
-    bar = raced.reference["bands"]["C_zz"]
+    bar = raced.reference.bands["C_zz"]
     assert [row["y"] for row in marks(panel, "D")] == [bar]
     for mark, rows, _ in panel.layers:
         if mark["type"] == "point" and mark["shape"] != SHAPES["*"]:
@@ -195,7 +195,7 @@ def test_the_automatic_choice_is_a_line_of_its_own_and_within_its_tolerance():
     rows = [row for row in plan(sg.load(SCENE)) if row.model == AUTO][:2]
     found = race(sg.load(SCENE), rows, runs=1, sure=2e-4)
     # a twentieth of the tighter tolerance
-    assert max(found.reference["bands"].values()) < 5e-4
+    assert max(found.reference.bands.values()) < 5e-4
     assert [row.status for row in found.rows] == ["ok", "ok"]
     for row in found.rows:
         assert max(row.errors.values()) < row.options["tol"]
@@ -204,21 +204,21 @@ def test_the_automatic_choice_is_a_line_of_its_own_and_within_its_tolerance():
 
 
 def test_picture_is_a_png(raced, tmp_path):
-    path = draw(raced, tmp_path / PICTURE)
+    path = race_chart(raced).write(tmp_path / PICTURE)
     assert path.read_bytes()[:4] == b"\x89PNG"
 
 
 def test_front_table_lists_the_front_over_time(raced):
     names = {row.series for row, _ in front_rows(raced)}
-    assert names == {r.series for q in raced.reference["values"] for r in raced.front(q)}
-    assert error_text(raced, raced.rows[4], "C_zz").startswith("< ")
+    assert names == {r.series for q in raced.reference.values for r in raced.front(q)}
+    assert raced.error_text(raced.rows[4], "C_zz").startswith("< ")
 
 
 def test_where_there_is_no_error_the_reason_stands(raced):
     failed = raced.rows[3]
-    assert failed.reason and error_text(raced, failed, "C_zz") == failed.reason
-    assert error_text(raced, replace(raced.rows[4], errors={}), "C_zz") == "found no C_zz"
-    assert error_text(raced, replace(failed, status="waiting", reason=""), "C_zz") == "waiting"
+    assert failed.reason and raced.error_text(failed, "C_zz") == failed.reason
+    assert raced.error_text(replace(raced.rows[4], errors={}), "C_zz") == "found no C_zz"
+    assert raced.error_text(replace(failed, status="waiting", reason=""), "C_zz") == "waiting"
 
 
 def test_left_out_names_the_first_level_of_each_series(raced):
@@ -226,14 +226,15 @@ def test_left_out_names_the_first_level_of_each_series(raced):
         Row("hexahedra", "HEX20 graded", k, "solid", {}, "left out" if k > 1 else "ok")
         for k in (1, 2, 3)
     ]
-    assert left_out(Race({}, raced.reference, rows, {}, 1, 10, 1.0)) == "HEX20 graded from level 2"
+    made = Race({}, raced.reference, rows, {}, 1, 10, 1.0)
+    assert made.left_out == "HEX20 graded from level 2"
 
 
 def test_an_unknown_family_is_drawn_in_grey_and_named_in_the_legend(raced):
     row = Row("shells", "S4 graded", 1, "shell", {}, "ok", "", 90, [0.3], {}, {"C_zz": 0.01})
     chart = race_chart(Race({}, raced.reference, [row], {}, 1, 10, 1.0))
     colours = {mark["stroke"] for mark, *_ in chart.rows[0][0].layers if mark.get("size") == 45}
-    assert colours == {race_style.GREY}
+    assert colours == {UNLISTED}
     assert texts_of(chart.rows[-1][0])[:2] == ["SHELLS", "S4 graded"]
 
 
@@ -249,7 +250,7 @@ def test_report_has_the_section_when_its_folder_has_a_race_of_the_scene(raced, t
     chart = page[page.index(SPEED) :]
     row = next(row for row in raced.rows if row.status == "ok")
     (found,) = {w for w in words_of(chart) if w.startswith(f"{row.series}\nerror of C_zz")}
-    assert f"C_zz: {error_text(raced, row, 'C_zz')}\n" in found
+    assert f"C_zz: {raced.error_text(row, 'C_zz')}\n" in found
     assert f"unknowns: {row.unknowns}" in found
     assert "order 99" in page
     other = {"scene": raced.scene | {"name": "another"}, "models": {}}

@@ -1,7 +1,7 @@
 """Every guard of `solidgear check`: a scene that sets it off, and a near miss that does not."""
 
 import json
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -12,8 +12,8 @@ import scipy.linalg as sla
 
 import solidgear as sg
 from solidgear import guards
-from solidgear.app.check import thoughts
 from solidgear.bearings.catalogue import Catalogue
+from solidgear.core.judge.record import GuardRecord
 from solidgear.core.judge.study import study
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.scene import STEEL, Ask, Bearing, Fillet, Port, Scene, Segment
@@ -23,6 +23,8 @@ from solidgear.guards import probe as probe_module
 from solidgear.guards.check import cautions, check_scene, notices
 from solidgear.guards.notice import against, beams, everything
 from solidgear.guards.probe import Probe
+from solidgear.guards.sheet import check_sheet, thoughts
+from solidgear.show.command import FAULTY
 from tests.command import command
 from validation.shipped import shafts_of_revolution
 
@@ -534,17 +536,17 @@ CASES = {
 }
 
 
-def said(case_scene, model, options) -> list[dict]:
-    return check_scene(case_scene, sg.build(case_scene, model, **options))["records"]
+def said(case_scene, model, options) -> tuple[GuardRecord, ...]:
+    return check_scene(case_scene, sg.build(case_scene, model, **options)).records
 
 
-def matching(records, case: Case) -> list[dict]:
+def matching(records, case: Case) -> list[GuardRecord]:
     return [
         r
         for r in records
-        if r["guard"] == case.guard
-        and case.says in r["sentence"]
-        and (r["level"] != "fact" or case.level == "fact")
+        if r.guard == case.guard
+        and case.says in r.sentence
+        and (r.level != "fact" or case.level == "fact")
     ]
 
 
@@ -560,12 +562,12 @@ def test_guard(name, monkeypatch):
     # every other guard is taken out for speed; a guard never needs another
     monkeypatch.setattr(check, "GUARDS", {case.guard: GUARDS[case.guard]})
     [record] = matching(said(case.hit, case.model, case.options), case)
-    assert (record["level"], tuple(record["models"])) == (case.level, case.of)
+    assert (record.level, tuple(record.models)) == (case.level, case.of)
     if case.miss is not None:
         options = case.options if case.miss_options is None else case.miss_options
         near = said(case.miss, case.model, options)
         assert not [
-            r for r in matching(near, case) if tuple(r["models"]) == case.of
+            r for r in matching(near, case) if tuple(r.models) == case.of
         ] and "not checked" not in str(near)
 
 
@@ -636,15 +638,15 @@ NAMES = [
 @pytest.mark.parametrize("name", NAMES)
 def test_shipped_scenes_raise_no_false_alarm(shipped, name):
     found = shipped(name)
-    alarms = {r["guard"] for r in found["records"] if r["level"] != "fact"}
+    alarms = {r.guard for r in found.records if r.level != "fact"}
     right = {"beam_against_solid", "slenderness", "shoulder", "doubtful_data"}
     right |= {"effective_mass", "lumped_against_solid"}
     own = {"gear_shaft": {"disc_head"}, "pinion_overhung": {"frequency_range"}}
     own["pinion_filleted"] = {"frequency_range"}
     right |= own.get(name, set())
-    assert alarms <= right and found["faults"] == [], name
+    assert alarms <= right and found.faults == [], name
     # both solids hold everywhere, the Euler beam nowhere
-    assert [found["verdicts"][m]["verdict"] for m in ("harmonic", "solid", "euler")] == [
+    assert [found.verdicts[m].verdict for m in ("harmonic", "solid", "euler")] == [
         "holds",
         "holds",
         "will not hold",
@@ -652,21 +654,20 @@ def test_shipped_scenes_raise_no_false_alarm(shipped, name):
 
 
 def test_of_a_plain_shaft_the_harmonic_solid_is_advised(shipped):
-    assert any("use the harmonic solid" in s for s in shipped("pinion_overhung")["cautions"])
+    assert any("use the harmonic solid" in s for s in shipped("pinion_overhung").cautions)
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_verdicts_are_those_of_a_full_comparison(shipped, name):
     # `compare` measured on the converged models: within 5 % are these, and no others
-    holds = shipped(name)["verdicts"]["timoshenko"]["verdict"] == "holds"
+    holds = shipped(name).verdicts["timoshenko"].verdict == "holds"
     assert holds == (name in {"cylinder_free", "shaft_hollow"})
 
 
 def test_a_shaft_between_its_bearings_is_not_lumped_by_one_mode(shipped):
-    assert shipped("pinion_straddle")["verdicts"]["lumped"] == {
-        "verdict": "will not hold",
-        "guards": ["beam_against_solid", "effective_mass", "lumped_against_solid"],
-    }
+    assert shipped("pinion_straddle").verdicts["lumped"] == check.Verdict(
+        "will not hold", ("beam_against_solid", "effective_mass", "lumped_against_solid")
+    )
 
 
 def test_light_solid_is_close_to_the_default_one():
@@ -696,7 +697,7 @@ def test_arcs_followed_by_coarse_elements_are_no_fault(monkeypatch):
     """At order 3 an arc is followed to some 1e-8 of the mass: enough for every number asked."""
     light = sg.build(filleted(0.004), "harmonic", order=3, layers=1)
     monkeypatch.setattr(check, "GUARDS", {})  # faults are of the mesh itself
-    assert check_scene(filleted(0.004), light)["faults"] == []
+    assert check_scene(filleted(0.004), light).faults == []
 
 
 def test_guard_that_cannot_run_says_so(monkeypatch):
@@ -706,9 +707,24 @@ def test_guard_that_cannot_run_says_so(monkeypatch):
 
     monkeypatch.setattr(check, "GUARDS", {"broken_guard": broken, "units": GUARDS["units"]})
     found = check_scene(slipped(E=1e-9), sg.build(slipped(E=1e-9), "euler"))
-    assert any("not checked (broken guard): no mesh" in c for c in found["cautions"]) and any(
-        "E in Pa of segment" in c for c in found["cautions"]
+    assert any("not checked (broken guard): no mesh" in c for c in found.cautions) and any(
+        "E in Pa of segment" in c for c in found.cautions
     )
+
+
+def test_a_fault_of_a_shaft_is_one_of_its_train():
+    fault = GuardRecord(guard="mesh", level="fault", models=["solid"], sentence="is not free")
+    verdicts = {"solid": check.Verdict("will not hold", ("mesh",))}
+    shaft = check.Check("pinion", (fault,), verdicts)
+    train = check.Check("train", (), {"solid": check.Verdict("will not hold", ("pinion",))})
+    assert check_sheet(shaft).exit_code == FAULTY and not check_sheet(train).exit_code
+    whole = replace(train, shafts={"pinion": shaft})
+    assert check_sheet(whole).exit_code == FAULTY and whole.faults == []
+    assert check_sheet(whole).notes == [
+        "== pinion",
+        "Will not hold: solid (mesh).",
+        "fault: is not free.",
+    ]
 
 
 def test_worst_word_decides(monkeypatch):
@@ -718,8 +734,8 @@ def test_worst_word_decides(monkeypatch):
         yield Notice("avoid", ("euler",), "c")
 
     monkeypatch.setattr(check, "GUARDS", {"three": three})
-    verdicts = check_scene(OVERHUNG, sg.build(OVERHUNG, "euler"))["verdicts"]
-    assert [verdicts[m]["verdict"] for m in ("euler", "solid", "harmonic")] == [
+    verdicts = check_scene(OVERHUNG, sg.build(OVERHUNG, "euler")).verdicts
+    assert [verdicts[m].verdict for m in ("euler", "solid", "harmonic")] == [
         "will not hold",
         "holds with caution",
         "holds",
@@ -749,9 +765,8 @@ def test_a_thought_is_a_sentence_of_its_own():
 def test_no_model_holds_without_a_word_on_a_shaft_that_is_free():
     """Without an axial spring in either bearing: told of no model, and true of all."""
     loose = scene(matrices=[stiff(y=0.0), stiff(y=0.0)])
-    verdicts = check_scene(loose, sg.build(loose, "euler"))["verdicts"]
-    assert verdicts["harmonic"]["verdict"] == "holds with caution"
-    assert verdicts["harmonic"]["guards"] == ["free_motions"]
+    verdicts = check_scene(loose, sg.build(loose, "euler")).verdicts
+    assert verdicts["harmonic"] == check.Verdict("holds with caution", ("free_motions",))
 
 
 def test_a_catalogue_bearing_of_which_few_elements_carry_is_not_told_to_give_digits():
@@ -771,10 +786,10 @@ def test_a_catalogue_bearing_of_which_few_elements_carry_is_not_told_to_give_dig
 
 def test_records_are_plain_data(shipped):
     for found in map(shipped, sorted(OFTEN)):
-        json.dumps(found, allow_nan=False)
-        assert {r["level"] for r in found["records"]} <= set(guards.LEVELS)
-        assert sorted(found["facts"] + found["cautions"] + found["faults"]) == sorted(
-            r["sentence"] for r in found["records"]
+        json.dumps(found.as_dict(), allow_nan=False)
+        assert {r.level for r in found.records} <= set(guards.LEVELS)
+        assert sorted(found.facts + found.cautions + found.faults) == sorted(
+            r.sentence for r in found.records
         )
 
 
@@ -818,16 +833,14 @@ def test_with_features_every_model_that_is_advised_has_a_verdict(name, solids):
     beyond = scene.with_changes(port=scene.port.with_changes(y=scene.port.hi + 0.01))
     found = check_scene(beyond, sg.build(scene.plain, "timoshenko"))
     # what refuses features is advised nowhere
-    advice = {
-        s.split("; use ")[-1].removesuffix(" above") for s in found["cautions"] if "; use " in s
-    }
+    advice = {s.split("; use ")[-1].removesuffix(" above") for s in found.cautions if "; use " in s}
     assert advice == {" or ".join(sorted(solids))}
-    held = {m for m, told in found["verdicts"].items() if told["verdict"].startswith("holds")}
+    held = {m for m, told in found.verdicts.items() if told.verdict.startswith("holds")}
     assert held == solids
-    of_lumped = {r["guard"]: r["level"] for r in found["records"] if "lumped" in r["models"]}
+    of_lumped = {r.guard: r.level for r in found.records if "lumped" in r.models}
     assert of_lumped["features"] == "open" and "beam_against_solid" not in of_lumped
-    of_seat = next(r for r in found["records"] if r["guard"] == "point_beyond_surface")
-    assert solids <= set(of_seat["models"])
+    of_seat = next(r for r in found.records if r.guard == "point_beyond_surface")
+    assert solids <= set(of_seat.models)
 
 
 def test_more_than_twice_as_large_is_told_as_a_factor():
@@ -900,5 +913,5 @@ def test_the_mass_of_check_counts_rigid_masses():
     assert found.iyy == pytest.approx(own.iyy + 0.8, rel=1e-12)
     apart, share = 0.1 - own.centre, own.mass * 50.0 / (own.mass + 50.0)
     assert found.ixx == pytest.approx(own.ixx + 0.4 + share * apart**2, rel=1e-9)
-    first, second, *_ = check_scene(loaded, sg.build(loaded, "euler"))["facts"]
+    first, second, *_ = check_scene(loaded, sg.build(loaded, "euler")).facts
     assert f"mass {found.mass:.4g} kg" in first and "'disc' 50 kg on y = 90 to 110 mm" in second

@@ -214,14 +214,15 @@ def test_the_reference_holds_all_that_is_exported():
 
 
 def test_every_mark_and_column_of_the_final_table_is_explained():
+    from solidgear.comparison.page import sheet
+    from solidgear.comparison.page.tables import NOT_RESOLVED
     from solidgear.core.judge.record import Record
-    from solidgear.show import terminal
 
     page = (DOCS / "guide" / "verdict.md").read_text()
     # what the program prints explains nothing
     page = re.sub(r"(?ms)^```.*?^```", "", page)
-    words = [*terminal.VALID.values(), terminal.NOT_RESOLVED, "ref.", "INCOMPLETE", "caution:"]
-    table = terminal.final_table(Record()).renderables[0]
+    words = [*sheet.VALID.values(), NOT_RESOLVED, "ref.", "INCOMPLETE", "caution:"]
+    table = sheet.final_table(Record()).renderables[0]
     words += [head.replace("bar\n", "bar ").split("\n")[0] for head in table.heads]
     assert [w for w in words if w not in page] == []
 

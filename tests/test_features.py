@@ -21,7 +21,6 @@ from solidgear.cuts.solid.cuts import mirror_plane
 from solidgear.cuts.solid.featured import featured_body, meshed
 from solidgear.cuts.solid.halves import half_blocks
 from solidgear.cuts.solid.meshing import FeaturedMesh, submesh
-from solidgear.show.reading import mode_of
 from validation.campaign.truths.volumes import removed_mass
 
 ROOT = Path(__file__).parent.parent
@@ -145,7 +144,7 @@ def test_two_halves_equal_the_whole(angle):
     for name in ("bending 1", "bending 2", "bending 3"):
         hertz = one.named(name).frequency_hz
         assert hertz == pytest.approx(other.named(name).frequency_hz, rel=1e-11)
-        assert mode_of(told, name).frequency_hz == hertz  # on pages as well
+        assert told.mode(name).frequency_hz == hertz  # on pages as well
     assert max(one.multiplicity) == max(other.multiplicity) == 1  # a split pair stays split
 
 

@@ -8,17 +8,16 @@ from pathlib import Path
 import pytest
 
 import solidgear as sg
+from solidgear.app.render import Drawn, render_mode
 from solidgear.comparison.page.html import render_page
-from solidgear.comparison.page.write import Drawn, render_mode
-from solidgear.comparison.race.cases import plan
+from solidgear.comparison.page.sheet import final_table
 from solidgear.comparison.race.figure import race_chart
-from solidgear.comparison.race.timing import race
+from solidgear.comparison.race.timing import plan, race
 from solidgear.core.ladder.beams import Timoshenko
 from solidgear.core.ladder.harmonic import Harmonic
 from solidgear.core.ladder.model import Model
 from solidgear.core.ladder.registry import LADDER
 from solidgear.guards.check import check_scene
-from solidgear.show.terminal import final_table
 from tests.charted import texts_of
 
 ROOT = Path(__file__).parent.parent
@@ -109,7 +108,7 @@ def test_it_is_drawn_and_written(found, ladder, tmp_path):
 
 @pytest.mark.long
 def test_guards_have_a_verdict_on_it(ladder, scene):
-    verdicts = check_scene(scene, sg.build(scene, "coarse"))["verdicts"]
+    verdicts = check_scene(scene, sg.build(scene, "coarse")).verdicts
     # what is made for features alone has no verdict on a scene without
     assert set(verdicts) == {model.name for model in ladder if not model.for_features}
     # held against a solid as every beam: of more elements it is off by as much

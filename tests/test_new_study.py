@@ -48,19 +48,21 @@ ROOM = {
     "command.py": '''
         """The command mass."""
 
-        import json
+        from __future__ import annotations
+
         from pathlib import Path
         from typing import Annotated
 
         import typer
 
-        from solidgear.core import load
-        from solidgear.mass.numbers import mass_of
-        from solidgear.show.command import command, say
+        from solidgear.core import Scene, load
+        from solidgear.core.plain import plain
+        from solidgear.mass.numbers import Mass, mass_of
+        from solidgear.show.command import Progress, command
         from solidgear.show.options import SceneFile, Shown
-        from solidgear.show.sheet_files import write_files
+        from solidgear.show.sheet import Sheet, present
         from solidgear.show.table import Table, quantity, word
-        from solidgear.show.units import units_named
+        from solidgear.show.units import Units, units_named
 
 
         @command
@@ -71,22 +73,30 @@ ROOM = {
             out: Annotated[Path | None, typer.Option("--out", help="Folder for a page.")] = None,
             run: Shown,
         ) -> None:
-            shaft = load(scene)
-            found = mass_of(shaft, model)
-            units = units_named(run.units)
+            shaft, units = load(scene), units_named(run.units)
+
+            def study(progress: Progress) -> Sheet:
+                return mass_sheet(shaft, mass_of(shaft, model), units)
+
+            present(study, run, out)
+
+
+        def mass_sheet(shaft: Scene, mass: Mass, units: Units) -> Sheet:
+            """Return what is shown of the mass of a shaft."""
             columns = [
                 word("shaft"),
                 quantity("mass", "kg", units),
                 quantity("centre", "m", units),
             ]
-            table = Table("", columns, [[shaft.name, found.mass, found.place]])
-            data = {"shaft": shaft.name, **vars(found)}
-            if out:
-                title = f"Mass of {shaft.name}"
-                write_files(
-                    out, "mass", title, "", [table], data, lines={"mass": table}, charts={}
-                )
-            say(json.dumps(data) if run.as_json else table)
+            table = Table("", columns, [[shaft.name, mass.mass, mass.place]])
+            return Sheet(
+                name="mass",
+                title=f"Mass of {shaft.name}",
+                lead="",
+                tables=[table],
+                data={"shaft": shaft.name, **plain(mass)},
+                lines={"mass": table},
+            )
         ''',
 }
 

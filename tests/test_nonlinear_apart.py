@@ -8,11 +8,11 @@ import pytest
 from test_nonlinear_pair import pair
 
 import solidgear as sg
-from solidgear.backlash.command import BacklashStudy
 from solidgear.backlash.solver.apart import search
 from solidgear.backlash.solver.continuation import follow
 from solidgear.backlash.solver.motion import steady_motion
 from solidgear.backlash.solver.stability import stable
+from solidgear.backlash.study import BacklashStudy
 from solidgear.backlash.train import teeth_of, with_backlash
 from solidgear.trains.assembly.assembly import Assembly
 

@@ -209,8 +209,15 @@ def test_killed_while_files_are_written(at, killed):
 
 
 def test_a_chart_that_is_killed_leaves_no_picture_of_another(tmp_path):
-    from solidgear.comparison.race.pareto import Race, Row
-    from solidgear.comparison.race.rows import MACHINE, PICTURE, ROWS, write_rows
+    from solidgear.comparison.race.race import (
+        MACHINE,
+        PICTURE,
+        ROWS,
+        Race,
+        Reference,
+        Row,
+        write_rows,
+    )
 
     (tmp_path / PICTURE).write_bytes(b"of an earlier chart")
     row = Row(
@@ -225,7 +232,7 @@ def test_a_chart_that_is_killed_leaves_no_picture_of_another(tmp_path):
         values={"C_zz": 1.0},
         errors={"C_zz": 0.1},
     )
-    reference = {"values": {"C_zz": 1.0}, "bands": {"C_zz": 0.01}}
+    reference = Reference("harmonic", {}, "order 2", 6, 0.1, {"C_zz": 1.0}, {"C_zz": 0.01})
     race = Race({}, reference, [row], {}, 1, 4, 1.0)
     write_rows(race, tmp_path)
     assert {p.name for p in tmp_path.iterdir()} == {ROWS, MACHINE}

@@ -12,9 +12,8 @@ import pytest
 
 import solidgear as sg
 from solidgear.comparison.race import timing as racing
-from solidgear.comparison.race.cases import plan, setup_seconds
-from solidgear.comparison.race.pareto import Race, Row, front
-from solidgear.comparison.race.timing import answer, race, scaled_error
+from solidgear.comparison.race.race import Race, Reference, Row, front
+from solidgear.comparison.race.timing import answer, plan, race, scaled_error, setup_seconds
 from solidgear.core.errors import SolidgearError
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
@@ -27,7 +26,7 @@ def scene():
     return sg.load(GEOMETRY / "shaft_stepped.toml")
 
 
-def made(points, bar=1e-4, **more):
+def made(points, bar=1e-4):
     """A race of (seconds, unknowns, error) by hand."""
     table = [
         Row(
@@ -45,9 +44,8 @@ def made(points, bar=1e-4, **more):
         )
         for k, (s, u, e) in enumerate(points, start=1)
     ]
-    return Race(
-        {}, {"values": {"C_zz": 1.0}, "bands": {"C_zz": bar}, **more}, table, {}, 1, 10, 240.0
-    )
+    reference = Reference("harmonic", {}, "order 2", 100, 1.0, {"C_zz": 1.0}, {"C_zz": bar})
+    return Race({}, reference, table, {}, 1, 10, 240.0)
 
 
 # ------------------------------------------------------------------------------------------------- front
@@ -155,7 +153,7 @@ def test_a_failure_is_a_row_with_its_reason_and_stops_nothing(raced):
     assert [beam.status, bad.status, good.status] == ["ok", "failed", "ok"]
     assert "order 99" in bad.reason and bad.errors == {} and raced.error(bad, "C_zz") is None
     assert len(beam.samples) == len(good.samples) == 2 and len(bad.samples) == 1
-    assert raced.complete and 0 < raced.reference["bands"]["C_zz"] < 1e-2
+    assert raced.complete and 0 < raced.reference.bands["C_zz"] < 1e-2
 
 
 def test_errors_are_those_of_the_answers_a_user_gets(scene, raced):
@@ -163,7 +161,7 @@ def test_errors_are_those_of_the_answers_a_user_gets(scene, raced):
     body = sg.build(scene, "timoshenko", **beam.options)
     c = sg.condense(body, scene, scene.port.name).compliance[2, 2]
     f = sg.modes(body, scene, 10).named("bending 1").frequency_hz
-    reference = sg.build(scene, "harmonic", **raced.reference["options"])
+    reference = sg.build(scene, "harmonic", **raced.reference.options)
     c0 = sg.condense(reference, scene, scene.port.name).compliance[2, 2]
     f0 = sg.modes(reference, scene, 10).named("bending 1").frequency_hz
     assert beam.values == pytest.approx({"C_zz": c, "bending 1": f}, rel=1e-12)
@@ -175,7 +173,7 @@ def test_errors_are_those_of_the_answers_a_user_gets(scene, raced):
 
 def test_like_for_like_is_against_section_ties(scene, raced):
     tied = scene.with_attachment("section")
-    reference = sg.build(tied, "harmonic", **raced.reference["options"])
+    reference = sg.build(tied, "harmonic", **raced.reference.options)
     c = sg.condense(reference, tied, scene.port.name).compliance[2, 2]
     beam = raced.rows[1]
     own = sg.condense(sg.build(tied, beam.model, **beam.options), tied, scene.port.name).compliance[
@@ -223,16 +221,15 @@ class Stage:
         # a machine that does nine other things at once
         monkeypatch.setattr(racing.time, "perf_counter", lambda: BUSY * self.now)
         monkeypatch.setattr(racing, "answer", self.answer)
-        reference = {
-            "options": COARSE,
-            "model": "harmonic solid",
-            "setting": "order 3",
-            "unknowns": 1,
-            "seconds": 1.0,
-            "values": {"C_zz": 1e-9, "bending 1": 1e3},
-            "bands": {"C_zz": 1e-6, "bending 1": 1e-6},
-            "like_for_like": {},
-        }
+        reference = Reference(
+            model="harmonic solid",
+            options=COARSE,
+            setting="order 3",
+            unknowns=1,
+            seconds=1.0,
+            values={"C_zz": 1e-9, "bending 1": 1e3},
+            bands={"C_zz": 1e-6, "bending 1": 1e-6},
+        )
         monkeypatch.setattr(
             racing, "_reference", lambda *_: (reference, real.statics.main.compliance)
         )
@@ -415,7 +412,7 @@ def test_a_missing_first_bending_is_said_and_costs_only_that_number(scene, monke
 def test_a_free_shaft_is_charted_by_its_frequency_alone():
     free = sg.load(GEOMETRY / "cylinder_free.toml")
     found = race(free, [Row("beam", "Timoshenko", 1, "timoshenko", {})], runs=1, sure=1e-2)
-    assert list(found.reference["values"]) == ["bending 1"]
+    assert list(found.reference.values) == ["bending 1"]
     assert list(found.rows[0].values) == ["bending 1"]
 
 

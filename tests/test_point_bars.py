@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.comparison.page.html import further_points, numbers
-from solidgear.comparison.recording import recorded
+from solidgear.comparison.page.html import numbers
+from solidgear.comparison.page.tables import further_points
+from solidgear.comparison.recording import Findings, recorded
 from solidgear.core.judge.quantities import between, canonical_name, measure, size
 from solidgear.core.judge.settle import settle
 from solidgear.core.judge.study import study
@@ -200,7 +201,7 @@ def test_judged_and_reported(shaft):
         "timoshenko": study(scene, "timoshenko", evidence=False),
         "harmonic": study(scene, "harmonic", {"order": 3, "layers": 0}, evidence=False),
     }
-    record = recorded(scene, solutions, {}, [], {}, [], True)
+    record = recorded(scene, Findings(solutions))
     assert record.verdict.judged == ["C_zz", "C_zz@wheel@pinion"]
     said = "Compliances are judged at wheel, between wheel and pinion; not at pinion."
     assert said in record.verdict.sentences

@@ -12,12 +12,12 @@ from rich.console import Console
 
 import solidgear as sg
 from solidgear.app.application import app
-from solidgear.comparison.recording import recorded
+from solidgear.comparison.page.sheet import final_table
+from solidgear.comparison.recording import Findings, recorded
 from solidgear.core.judge.quantities import change
 from solidgear.core.judge.record import Record
 from solidgear.core.judge.study import study
 from solidgear.core.scene import Bearing, Port, Scene, Segment
-from solidgear.show.terminal import final_table
 from tests.dense import rigid_at
 from tests.plain import render_page
 
@@ -265,7 +265,7 @@ def test_models_are_judged_at_every_point():
         "timoshenko": study(scene, "timoshenko", evidence=False),
         "harmonic": study(scene, "harmonic", {"order": 3, "layers": 1}, evidence=False),
     }
-    record = recorded(scene, solutions, {}, [], {}, [], True)
+    record = recorded(scene, Findings(solutions))
     assert "C_thx@disc" in record.verdict.judged and record.verdict.trust == "harmonic"
     beam = record.models["timoshenko"]
     assert beam.valid is False and " at disc is " in beam.why_not
@@ -273,7 +273,7 @@ def test_models_are_judged_at_every_point():
     rows = [r for r in record.deviations if r.quantity == "C_zz@disc"]
     assert rows and all(r.band is not None for r in rows)
     asked = scene.with_changes(ask=sg.Ask(quantities=["C_zz"]))
-    only = recorded(asked, solutions, {}, [], {}, [], True)
+    only = recorded(asked, Findings(solutions))
     assert only.verdict.judged == ["C_zz"] and only.models["timoshenko"].valid
     assert "Compliances are judged at gear; not at disc." in only.verdict.sentences
     coupled = record.models["harmonic"].coupled

@@ -14,15 +14,15 @@ import pytest
 from rich.console import Console
 
 import solidgear as sg
+from solidgear.app.modes import modes_table
 from solidgear.comparison.page import charts
-from solidgear.comparison.recording import recorded
+from solidgear.comparison.recording import Findings, as_record, recorded
 from solidgear.core.errors import SolidgearError
-from solidgear.core.judge.record import SCHEMA, Record
+from solidgear.core.judge.record import SCHEMA, OpenNumbers, Record
 from solidgear.show import viewer
-from solidgear.show.border import as_record
 from solidgear.show.page_parts import data_uri
 from solidgear.show.plot import WIDE
-from solidgear.show.terminal import matrix_table, modes_table
+from solidgear.show.terminal import matrix_table
 from solidgear.show.units import ENGINEERING
 from solidgear.show.viewer import END, START, TURNED
 from solidgear.show.words import engineering, hertz, percent
@@ -269,7 +269,7 @@ def test_chart_that_fails_costs_only_itself(monkeypatch):
 
 def test_models_without_a_record_are_named_by_the_ladder():
     scene = sg.load(ROOT / "geometry" / "shaft_stepped.toml")
-    record = recorded(scene, {}, {"euler": "no memory"}, [], {}, [], complete=False)
+    record = recorded(scene, Findings(failed={"euler": "no memory"}, complete=False))
     assert record.missing == ["Timoshenko beam", "harmonic solid", "3D solid"]
     assert record.models["euler"].title == "Euler beam"
 
@@ -374,7 +374,9 @@ def test_matrix_table_has_units_and_fits(kind, unit):
 
 
 def test_modes_table_lists_pairs():
-    text = shown(modes_table(as_record(fixture_results()).models["harmonic"].modes))
+    text = shown(
+        modes_table(as_record(fixture_results()).models["harmonic"].modes, {}, OpenNumbers())
+    )
     assert "rigid torsion" in text and "2758.1" in text
 
 

@@ -67,6 +67,11 @@ def part(page, name):
         (US, "rad/(N m)", 1e-6 / 0.112984829, "1.0000 µrad/(lbf in)"),
         (US, "Pa", 6.894757e6, "1.0000 ksi"),
         (US, "m", 0.0254, "1.0000 in"),
+        # pounds are of mass where kilograms were: 1 lb = 0.45359237 kg
+        (US, "kg", 0.45359237, "1.0000 lb"),
+        (US, "kg m²", 0.45359237 * 0.0254**2, "1.0000 lb in²"),
+        (US, "kg/m³", 0.45359237 / 0.0254**3, "1.0000 lb/in³"),
+        (US, "m/s²", 0.0254, "1.0000 in/s²"),
     ],
 )
 def test_a_value_in_its_unit(units, si, value, told):

@@ -3,11 +3,12 @@
 from dataclasses import fields
 
 import solidgear as sg
-from solidgear.comparison.page import evidence_tables
+from solidgear.comparison.page import tables
 from solidgear.core.judge.bars import ErrorBar
 from solidgear.core.judge.record import BarRecord, Record
 from solidgear.show.units import US
-from solidgear.trains.page.input_tables import bearings, scene_facts
+from solidgear.trains.page.input_tables import bearings, masses, scene_facts
+from solidgear.trains.page.tables import material_words
 
 CATALOGUE = sg.load("geometry/gearbox_catalogue.toml").as_dict()
 GIVEN = sg.load("geometry/shaft_stepped.toml").as_dict()
@@ -29,6 +30,17 @@ def test_the_load_that_bearings_are_taken_under_is_a_fact_of_the_scene():
     # 3800 N / 4.4482216 N
     assert pounds["load at the lumped point"].startswith("x 854.274 lbf, ")
     assert "load at the lumped point" not in {row[0] for row in scene_facts(record(GIVEN)).rows}
+
+
+def test_masses_and_densities_are_in_pounds_and_inches_where_lengths_are():
+    pound, inch = 0.45359237, 0.0254
+    disc = {"name": "disc", "y": inch, "mass": pound, "inertia": [pound * inch**2] * 3}
+    table = masses({"masses": [disc | {"offset": [0.0, inch, 0.0]}]}, US)
+    assert table.heads[2:] == ["y, in", "mass, lb", "inertia x, y, z, lb in²", "offset, in"]
+    assert table.texts[0][2:] == ["1", "1", "1, 1, 1", "0, 1, 0"]
+    steel = {"E": 206.842718795e9, "nu": 0.3, "density": 7850.0}
+    # 7850 kg/m^3 times (0.0254 m)^3, over 0.45359237 kg
+    assert material_words(steel, US) == "E = 30000 ksi, nu = 0.3, density = 0.283599 lb/in³"
 
 
 def test_a_catalogue_bearing_is_told_by_its_designation():
@@ -60,14 +72,10 @@ def test_the_mirrored_coupling_is_no_further_entry():
 def test_a_mode_that_is_like_no_other_has_no_partner_by_name():
     # of an Euler beam's second axial mode beside a solid without one
     pair = {"mode": "axial 2", "partner": "bending 8", "mac": 0.0237}
-    table = evidence_tables.pairs(
-        Record.model_validate({"mac": {"models": {"euler": {"pairs": [pair]}}}})
-    )
+    table = tables.pairs(Record.model_validate({"mac": {"models": {"euler": {"pairs": [pair]}}}}))
     assert table.rows == [["axial 2", "0.0237 (none)"]]
     pair["mac"] = 0.8
-    table = evidence_tables.pairs(
-        Record.model_validate({"mac": {"models": {"euler": {"pairs": [pair]}}}})
-    )
+    table = tables.pairs(Record.model_validate({"mac": {"models": {"euler": {"pairs": [pair]}}}}))
     assert table.rows == [["axial 2", "0.8000 (bending 8)"]]
 
 

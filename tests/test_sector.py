@@ -442,9 +442,9 @@ def test_check_says_what_smearing_costs():
     body = sg.build(scene, "timoshenko")
     for tolerance, level in ((0.2, "fact"), (1e-3, "caution")):
         asked = scene.with_changes(ask=sg.Ask(tolerance=tolerance))
-        said = check_scene(asked, body)["records"]
-        (own,) = [r for r in said if "smeared" in r["sentence"]]
-        assert own["level"] == level
+        said = check_scene(asked, body).records
+        (own,) = [r for r in said if "smeared" in r.sentence]
+        assert own.level == level
 
 
 def test_features_that_meet_on_one_segment():

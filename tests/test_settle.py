@@ -24,8 +24,8 @@ from solidgear.core.ladder.registry import LADDER
 from solidgear.core.quantity import QUANTITIES
 from solidgear.core.scene import Bearing
 from solidgear.core.solve.statics import condense
+from solidgear.variants.sweep.bearing_task import settled_for_sweep
 from solidgear.variants.sweep.bearing_variants import bearing_variants
-from solidgear.variants.sweep.command import settled_for_sweep
 
 ROOT = Path(__file__).parent.parent
 SCENE = str(ROOT / "geometry" / "pinion_overhung.toml")

@@ -201,7 +201,7 @@ def test_wrong_units_are_seen(measured):
 
 
 def test_a_full_disk_costs_the_picture_a_sentence(tmp_path, monkeypatch):
-    from solidgear.comparison.page.write import Drawn, render_mode
+    from solidgear.app.render import Drawn, render_mode
     from solidgear.show import render
 
     scene = sg.load(ROOT / "geometry" / "pinion_overhung.toml")

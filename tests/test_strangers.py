@@ -130,7 +130,7 @@ def checked():
     @cache
     def verdicts(name):
         scene = scene_of(name)
-        return check_scene(scene, sg.build(scene, "timoshenko"))["verdicts"]
+        return check_scene(scene, sg.build(scene, "timoshenko")).verdicts
 
     return verdicts
 
@@ -145,7 +145,7 @@ def test_euler_is_not_valid_behind_ties_that_differ(compared):
 @pytest.mark.long
 def test_check_does_not_condemn_a_rigid_seat(checked):
     verdicts = checked("check_rigid_seat")
-    assert all(not verdicts[m]["verdict"].startswith("will not") for m in ("harmonic", "solid"))
+    assert all(not verdicts[m].verdict.startswith("will not") for m in ("harmonic", "solid"))
 
 
 @pytest.mark.parametrize(
@@ -159,7 +159,7 @@ def test_check_does_not_condemn_a_rigid_seat(checked):
 def test_check_is_never_the_opposite_of_compare(name, compared, checked):
     said, models = checked(name), compared(name)["models"]
     for model, record in models.items():
-        verdict = said[model]["verdict"]
+        verdict = said[model].verdict
         assert not (record["valid"] and verdict == "will not hold"), model
         assert not (verdict.startswith("holds") and not record["valid"] and not record["open"]), (
             model
@@ -217,7 +217,7 @@ def test_a_lumped_model_without_the_first_bending_is_not_valid():
     assert results["lumped"]["harmonic"]["frequency_hz"] == pytest.approx(second, rel=1e-6)
     lumped = results["models"]["lumped"]
     assert not lumped["valid"] and "in the z plane" in lumped["why_not"]
-    checked = check_scene(scene, sg.build(scene, "timoshenko"))["verdicts"]["lumped"]["verdict"]
+    checked = check_scene(scene, sg.build(scene, "timoshenko")).verdicts["lumped"].verdict
     assert checked != "holds"
 
 
@@ -231,10 +231,10 @@ def test_a_beam_that_cannot_be_made_says_nothing_of_the_other(monkeypatch):
 
     monkeypatch.setattr(Probe, "solution", solution)
     scene = sg.load(Path(__file__).parent.parent / "geometry" / "pinion_overhung.toml")
-    verdicts = check_scene(scene, sg.build(scene, "timoshenko"))["verdicts"]
-    assert verdicts["euler"]["verdict"] == "will not hold"
+    verdicts = check_scene(scene, sg.build(scene, "timoshenko")).verdicts
+    assert verdicts["euler"].verdict == "will not hold"
     # its tilt compliance is 15 % off, and nothing else than this guard says so to four digits
-    assert "beam_against_solid" in verdicts["timoshenko"]["guards"]
+    assert "beam_against_solid" in verdicts["timoshenko"].reasons
 
 
 def test_what_could_not_be_checked_does_not_hold(monkeypatch):
@@ -245,8 +245,8 @@ def test_what_could_not_be_checked_does_not_hold(monkeypatch):
     # slender and plain: no other guard speaks against its beams
     rod = sg.Segment.cylinder("rod", length=2.0, diameter=0.02)
     scene = sg.Scene.from_parts([rod])
-    verdicts = check_scene(scene, sg.build(scene, "timoshenko"))["verdicts"]
-    assert verdicts["timoshenko"]["verdict"] == "uncertain"
+    verdicts = check_scene(scene, sg.build(scene, "timoshenko")).verdicts
+    assert verdicts["timoshenko"].verdict == "uncertain"
 
 
 def test_a_shaft_that_is_one_rigid_seat_is_free():

@@ -13,9 +13,10 @@ import pytest
 import solidgear as sg
 from solidgear.core.scene.closed_form import mass_properties
 from solidgear.strength.stress import shaft
-from solidgear.strength.stress.at_rest import StressSettings, stress_of_scene, stress_of_train
+from solidgear.strength.stress.at_rest import StressSettings, stress_at_rest
 from solidgear.strength.stress.rating import Conditions
 from solidgear.strength.stress.sheet import shaft_tables
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.file.operation import GRAVITY, OperatingPoint
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
@@ -66,6 +67,11 @@ def file(tmp_path_factory):
     return path
 
 
+def stress_of(scene, **how):
+    """Stress of a shaft under the load of its scene."""
+    return stress_at_rest(Assembly.of(scene), model="timoshenko", **how)
+
+
 def total(loads, places):
     """Sum (6,) of loads about the origin."""
     out = np.zeros(6)
@@ -107,15 +113,15 @@ def test_a_shaft_without_torque_says_so(run):
 
 def test_points_where_nothing_acts_are_told():
     scene = sg.load(GEOMETRY / "intermediate_shaft.toml").with_changes(load={"x": 100.0})
-    found = stress_of_scene(scene, "timoshenko", {"pinion": 50.0})
+    found = stress_of(scene, drive={"pinion": 50.0})
     assert found.cautions == ()
-    bare = stress_of_scene(scene, "timoshenko").cautions
+    bare = stress_of(scene).cautions
     assert any(c.startswith('nothing acts at the point "pinion"') for c in bare)
 
 
 def test_what_is_cut_into_a_shaft_is_left_out_and_told():
     scene = sg.load(GEOMETRY / "pinion_keyed.toml").with_changes(load={"z": 1e3})
-    (one,) = stress_of_scene(scene, "timoshenko").shafts
+    (one,) = stress_of(scene).shafts
     assert any("keyway" in said and "is not included" in said for said in one.found.remarks)
     assert one.found.forces.largest_moment > 0
 
@@ -123,16 +129,14 @@ def test_what_is_cut_into_a_shaft_is_left_out_and_told():
 @pytest.mark.long
 def test_what_bearings_leave_open_moves_moment_and_stress(file):
     scene = sg.load(file)
-    found = stress_of_scene(scene, "timoshenko", asked=StressSettings(0.05))
+    found = stress_of(scene, asked=StressSettings(0.05))
     (one,) = found.shafts
     (notch,) = one.found.notches
     low, high = one.open["root"]
     assert 0.9 * high < low < high and low <= notch.local.amplitude <= high
     assert one.open_moment[0] <= one.found.forces.largest_moment <= one.open_moment[1]
     assert found.open_by == "estimated insides"
-    known = stress_of_scene(
-        sg.load(FILLETED).with_changes(load={"z": 1e3}), "timoshenko", asked=StressSettings(0.05)
-    )
+    known = stress_of(sg.load(FILLETED).with_changes(load={"z": 1e3}), asked=StressSettings(0.05))
     assert known.shafts[0].open == {} and known.shafts[0].open_moment is None
 
 
@@ -161,7 +165,7 @@ def test_both_shafts_of_a_train_balance(name, direction):
     """Teeth, springs, bearings, weight of shaft and wheel, each shaft in axes of its own."""
     point = OperatingPoint(torque=115.0, **({"weight": direction} if direction else {}))
     train = sg.load_train(GEOMETRY / f"{name}.toml", point)
-    found = stress_of_train(train, point, "timoshenko")
+    found = stress_at_rest(Assembly(train), point, "timoshenko")
     for one in found.shafts:
         places = {station.name: station.y for station in one.scene.stations}
         left = total(one.acting.loads, places)
@@ -186,14 +190,14 @@ def test_torque_runs_from_the_spring_to_the_teeth(run):
 
 def test_a_spring_at_the_teeth_leaves_no_torque_and_that_is_told():
     train = sg.load_train(GEOMETRY / "axle_straddle.toml")
-    found = stress_of_train(train, OperatingPoint(torque=100.0), "timoshenko")
+    found = stress_at_rest(Assembly(train), OperatingPoint(torque=100.0), "timoshenko")
     assert sum("no torque runs along the" in caution for caution in found.cautions) == 2
     assert not any(one.found.forces.right[:, 4].any() for one in found.shafts)
 
 
 def test_weights_stand_in_no_table():
     point = OperatingPoint(torque=115.0, weight="-z")
-    found = stress_of_train(sg.load_train(GEARBOX, point), point, "timoshenko")
+    found = stress_at_rest(Assembly(sg.load_train(GEARBOX, point)), point, "timoshenko")
     assert any("weight of" in name for name in found.shafts[0].found.forces.names)
     for table in shaft_tables(found, found.shafts[0]):
         assert "weight of" not in str([table.texts])
@@ -240,9 +244,7 @@ def test_the_page_holds_every_number_of_the_worst_fillet(run, file, tmp_path):
 def test_a_rating_follows_what_is_given(file):
     scene = sg.load(file)
     usual, rough = (
-        stress_of_scene(scene, "timoshenko", asked=StressSettings(0.05, conditions))
-        .shafts[0]
-        .found.worst[0]
+        stress_of(scene, asked=StressSettings(0.05, conditions)).shafts[0].found.worst[0]
         for conditions in (Conditions(), Conditions(roughness="25 um"))
     )
     assert rough.rating.fatigue < usual.rating.fatigue

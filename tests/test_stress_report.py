@@ -58,7 +58,7 @@ def test_a_fillet_is_told_with_its_bars_beside_what_is_published(found):
 
 
 def test_a_rating_shows_every_factor_its_source_and_what_is_assumed(found):
-    table = stress_tables.rating(found.worst[0])
+    table = stress_tables.rating("fillet", found.worst[0].rating)
     symbols = [row[0] for row in table.texts]
     for wanted in ("K_1 (sigma_B)", "K_2", "K_F", "K_V", "beta", "K_sigma, K_tau", "sigma_WK"):
         assert wanted in symbols

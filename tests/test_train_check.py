@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 import solidgear as sg
+from solidgear.guards.check import Check, Verdict
 from solidgear.guards.probe import Probe
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.slips import mesh_unit_slips, unit_slips
@@ -28,34 +29,34 @@ def said(lines, *words):
 
 @pytest.mark.long
 def test_both_shafts_are_heard_up_to_what_the_train_asks(found):
-    assert said(found["pinion"]["facts"], "15.91 kg")
-    assert said(found["gear"]["facts"], "79.82 kg")
+    assert said(found.shafts["pinion"].facts, "15.91 kg")
+    assert said(found.shafts["gear"].facts, "79.82 kg")
     # the pinion's own file asks 10 kHz and 5 %
-    assert said(found["pinion"]["cautions"], "4000 Hz asked for")
-    assert said(found["pinion"]["cautions"], "more than the 2 % asked for")
+    assert said(found.shafts["pinion"].cautions, "4000 Hz asked for")
+    assert said(found.shafts["pinion"].cautions, "more than the 2 % asked for")
 
 
 def test_the_worse_of_both_shafts_is_told(found):
-    verdicts = found["verdicts"]
-    assert verdicts["harmonic"] == {"verdict": "holds", "shafts": []}
-    assert verdicts["solid"] == {"verdict": "holds with caution", "shafts": ["gear"]}
-    assert verdicts["timoshenko"]["shafts"] == ["pinion", "gear"]
+    verdicts = found.verdicts
+    assert verdicts["harmonic"] == Verdict("holds")
+    assert verdicts["solid"] == Verdict("holds with caution", ("gear",))
+    assert verdicts["timoshenko"].reasons == ("pinion", "gear")
 
 
 def test_what_concerns_the_system(found):
-    assert said(found["cautions"], "pitch angle of 0.391 rad does not match 14 and 45 teeth")
-    assert said(found["cautions"], "the gear has modes with nodal diameters", "n = 2 at 18")
-    assert said(found["facts"], "12 elastic modes up to 4000 Hz", "within 0.001")
-    assert said(found["facts"], "the whole train turns freely")
-    assert said(found["facts"], "twice a damping ratio", "mesh 0.12")
-    assert said(found["facts"], "Assumed, not published: mesh.transmission_error")
-    assert not said(found["cautions"], "loss factor is below")
+    assert said(found.cautions, "pitch angle of 0.391 rad does not match 14 and 45 teeth")
+    assert said(found.cautions, "the gear has modes with nodal diameters", "n = 2 at 18")
+    assert said(found.facts, "12 elastic modes up to 4000 Hz", "within 0.001")
+    assert said(found.facts, "the whole train turns freely")
+    assert said(found.facts, "twice a damping ratio", "mesh 0.12")
+    assert said(found.facts, "Assumed, not published: mesh.transmission_error")
+    assert not said(found.cautions, "loss factor is below")
 
 
 @pytest.fixture
 def no_shafts(monkeypatch):
     """Only what is said of the system, of light shafts whose meshes need no bars."""
-    quiet = {"facts": [], "cautions": [], "faults": [], "records": [], "verdicts": {}}
+    quiet = Check("quiet", (), {})
     monkeypatch.setattr(checked, "check_scene", lambda *_: quiet)
     monkeypatch.setattr(checked, "build", lambda *what, **_: sg.build(*what, order=2, layers=0))
     monkeypatch.setattr(Probe, "solution", lambda probe, *_: probe)
@@ -65,7 +66,7 @@ def test_little_loss_and_a_short_table_are_told(no_shafts):
     table = {"frequency": [10.0, 900.0], "amplitude": [1e-6, 1e-6]}
     mesh = type(TRAIN.mesh)(**TRAIN.mesh.model_dump() | {"transmission_error": table})
     odd = TRAIN.with_changes(mesh=mesh, losses=TRAIN.losses.with_changes(springs=1e-4))
-    cautions = check_train(Assembly(odd))["cautions"]
+    cautions = check_train(Assembly(odd)).cautions
     assert said(cautions, "springs 0.0001", "depend on this number alone")
     assert said(cautions, "given up to 900 Hz", "constant from there to the 4000 Hz")
 
@@ -79,18 +80,18 @@ def test_a_slip_of_a_thousand_in_the_mesh_is_told(no_shafts, key, factor):
     for size, slip in ((factor, True), (factor ** (1 / 3), False)):
         value = {"stiffness": 2.5e8, "transmission_error": 2e-6}[key] * size
         mesh = type(TRAIN.mesh)(**TRAIN.mesh.model_dump() | {key: value})
-        told = check_train(Assembly(TRAIN.with_changes(mesh=mesh)))["cautions"]
+        told = check_train(Assembly(TRAIN.with_changes(mesh=mesh))).cautions
         assert bool(said(told, "probably a wrong unit", key.replace("_", " "))) == slip
 
 
 def test_a_frequency_beyond_the_reduction_is_a_fault(no_shafts):
-    faults = check_train(Assembly(TRAIN, kept=4), 9000.0)["faults"]
+    faults = check_train(Assembly(TRAIN, kept=4), 9000.0).faults
     assert said(faults, "9000 Hz is beyond the reduction")
 
 
 def test_local_harmonics_are_not_called_undriven(no_shafts):
     local = TRAIN.with_changes(mesh=TRAIN.mesh.with_changes(local_harmonics=(2,)))
-    (line,) = said(check_train(Assembly(local))["cautions"], "nodal diameters")
+    (line,) = said(check_train(Assembly(local)).cautions, "nodal diameters")
     assert "n = 3" in line and "n = 2" not in line
 
 

@@ -9,7 +9,7 @@ import pytest
 
 import solidgear as sg
 from solidgear.core.errors import SceneError, SolidgearError
-from solidgear.strength.deflection.train import deflection
+from solidgear.strength.deflection.at_rest import deflection
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.meshes import mesh_bars
 from solidgear.trains.judge.judge import _Judge

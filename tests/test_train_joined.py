@@ -7,7 +7,7 @@ import pytest
 
 import solidgear as sg
 from solidgear.core.errors import SceneError
-from solidgear.strength.deflection.train import deflection
+from solidgear.strength.deflection.at_rest import deflection
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.housing import BOX, mount_rows
 from solidgear.trains.file.operation import OperatingPoint

@@ -11,7 +11,7 @@ from command import command
 import solidgear as sg
 from solidgear.core.errors import SolidgearError
 from solidgear.trains.assembly.assembly import Assembly
-from solidgear.trains.load.life_command import train_lives
+from solidgear.trains.load.lives import train_lives
 from solidgear.trains.load.operation import Operating
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
@@ -30,11 +30,11 @@ def operated(train, *points):
 
 def test_lives_belong_to_the_loads_of_the_equilibrium(train):
     one = operated(train, {"torque": 115.0})
-    found = {bearing.end: bearing for bearing in train_lives(one)}
+    found = {bearing.name: bearing for bearing in train_lives(one)}
     assert list(found) == ["pinion.A", "pinion.B", "gear.C", "gear.D"]
     carried = Operating(Assembly(one)).at(one.operation[0]).equilibrium.load
     for end, bearing in found.items():
-        (own,) = bearing.lives
+        own = bearing.points[0].life
         six = carried[end]
         assert own.life.equivalent.radial == pytest.approx(np.hypot(six[0], six[2]), rel=1e-9)
         low, high = own.range("reference")
@@ -44,7 +44,7 @@ def test_lives_belong_to_the_loads_of_the_equilibrium(train):
         )
     # the pinion's scene has oil, the wheel's has none
     assert found["pinion.A"].kind == "modified" and found["gear.D"].kind == "reference"
-    turns = {end: bearing.lives[0].speed for end, bearing in found.items()}
+    turns = {end: bearing.points[0].life.speed for end, bearing in found.items()}
     assert turns["pinion.A"] == pytest.approx(50 * math.pi)
     assert turns["gear.D"] == pytest.approx(50 * math.pi * 20 / 57)
 
@@ -52,7 +52,7 @@ def test_lives_belong_to_the_loads_of_the_equilibrium(train):
 def test_duty_adds_the_damage_of_points_up(train):
     points = ({"torque": 60.0, "share": 0.9}, {"torque": 200.0, "share": 0.1})
     for bearing in train_lives(operated(train, *points)):
-        light, heavy = (one.life for one in bearing.lives)
+        light, heavy = (point.life.life for point in bearing.points)
         assert heavy.reference < light.reference
         lives = [
             one.modified.life if bearing.kind == "modified" else one.reference
@@ -62,7 +62,7 @@ def test_duty_adds_the_damage_of_points_up(train):
         assert bearing.duty.revolutions == pytest.approx(expected)
     # points without shares are no duty table
     (first, *_) = train_lives(operated(train, {"torque": 60.0}, {"torque": 200.0}))
-    assert first.duty is None and len(first.lives) == 2
+    assert first.duty is None and len(first.points) == 2
 
 
 def test_a_train_without_a_torque_or_without_catalogue_bearings_has_no_lives():

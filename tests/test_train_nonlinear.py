@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.backlash.command import BacklashStudy
 from solidgear.backlash.solver.balance import Balance
 from solidgear.backlash.solver.continuation import follow
 from solidgear.backlash.solver.integrated import Integrated
 from solidgear.backlash.solver.model import remainder
 from solidgear.backlash.solver.motion import sweep
+from solidgear.backlash.study import BacklashStudy
 from solidgear.backlash.train import backlash_model, over_force, parting, teeth_of, with_backlash
 from solidgear.core.errors import SceneError
 from solidgear.trains.assembly.assembly import Assembly

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.backlash.command import BacklashStudy
 from solidgear.backlash.solver.balance import Balance
 from solidgear.backlash.solver.continuation import follow
 from solidgear.backlash.solver.model import remainder
 from solidgear.backlash.solver.motion import steady_motion
+from solidgear.backlash.study import BacklashStudy
 from solidgear.backlash.train import backlash_model, parting, teeth_of, with_backlash
 from solidgear.core.errors import SolidgearError
 from solidgear.trains.assembly.assembly import Assembly

@@ -8,11 +8,10 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.core import as_written
 from solidgear.core.errors import SceneError, SolidgearError
+from solidgear.strength.deflection.at_rest import deflect, deflection
 from solidgear.strength.deflection.misalignment import misalignment
-from solidgear.strength.deflection.shaft import deflect_scene
-from solidgear.strength.deflection.train import deflect_train, deflection
+from solidgear.strength.load import AT_REST
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.file.operation import GRAVITY, OperatingPoint
 from solidgear.trains.load.operation import Operating, at_point
@@ -250,6 +249,11 @@ def test_modes_are_those_of_the_point():
 
 
 # ----------------------------------------------------------------------- displacements
+def alone(scene, model):
+    """Deflection of a shaft under the load of its scene."""
+    return deflection(Assembly.of(scene), AT_REST, model).shafts[0]
+
+
 def simply_bent(lengths, diameters, E, load, at, ends):
     """Deflection under a load on a stepped beam between two springs, by Castigliano's integral."""
     a, b = ends[0][0], ends[1][0]
@@ -278,7 +282,7 @@ def test_deflection_of_a_stepped_shaft_is_that_of_castigliano(folder):
         for b, k in zip(scene.bearings, (2e8, 1.6e8))
     ]
     scene = scene.with_changes(bearings=tuple(soft), load={"z": 1000.0})
-    found = deflect_scene(scene, ["euler"]).shafts[0]
+    found = alone(scene, "euler")
     ends = [(0.020, 2e8), (0.195, 1.6e8)]
     told = simply_bent([0.07, 0.04, 0.11], [0.035, 0.062, 0.035], 206e9, 1000.0, 0.09, ends)
     assert found.ports["p"][2] == pytest.approx(told, rel=1e-8)
@@ -297,7 +301,7 @@ def test_a_solid_deflects_as_the_harmonic_solid_does():
         ],
         port=sg.Port(name="p", y=0.05, lo=0.04, hi=0.06),
     ).with_changes(load={"z": 1000.0, "y": 500.0})
-    models = deflect_scene(scene, ["timoshenko", "harmonic", "solid"]).shafts
+    models = [alone(scene, model) for model in ("timoshenko", "harmonic", "solid")]
     beam, harmonic, solid = (shaft.ports["p"][[1, 2, 3]] for shaft in models)
     # a coarse mesh of the 3D solid is some tenths of a per cent stiff; beams are off by more
     assert solid == pytest.approx(harmonic, rel=1e-2)
@@ -307,7 +311,7 @@ def test_a_solid_deflects_as_the_harmonic_solid_does():
 def test_a_clamped_shaft_deflects_as_its_compliance_says():
     """Held seats are as stiff as Newton's search resolves: a millionth of the shaft's flexibility."""
     scene = sg.load(GEOMETRY / "rotor_disc.toml").with_changes(load={"z": 1000.0, "y": 100.0})
-    found = deflect_scene(scene, ["timoshenko"]).shafts[0]
+    found = alone(scene, "timoshenko")
     body = sg.build(scene, "timoshenko")
     told = sg.condense(body, scene, port="fan").compliance @ np.array(scene.load.six)
     assert found.ports["fan"] == pytest.approx(told, rel=1e-5, abs=1e-6 * np.abs(told).max())
@@ -317,7 +321,7 @@ def test_a_clamped_shaft_deflects_as_its_compliance_says():
 def test_a_shaft_without_bearings_is_refused():
     scene = sg.load(GEOMETRY / "cylinder_free.toml").with_changes(load={"z": 1000.0})
     with pytest.raises(SolidgearError, match="it has no bearing"):
-        deflect_scene(scene, ["euler"])
+        alone(scene, "euler")
 
 
 # ----------------------------------------------------------------------- misalignment
@@ -398,7 +402,7 @@ def test_bars_hold_what_a_finer_mesh_changes(helical):
 def test_verdict_names_the_cheapest_model_that_holds(helical):
     loose = helical.with_changes(ask=helical.ask.with_changes(tolerance=0.5))
     assembly = Assembly(loose, settings={"harmonic": {"order": 2}})
-    found = deflect_train(assembly, OperatingPoint(torque=100.0))
+    found = deflect(assembly, OperatingPoint(torque=100.0))
     standing = {one.model: one.verdict for one in found.standings}
     assert standing["timoshenko"] == "within" and found.cheapest is not None
     assert found.cheapest.model in found.verdict()
@@ -543,14 +547,3 @@ def test_a_motion_that_is_none_is_no_small_number(run):
     told = run("deflect", GEARBOX, "-f", "timoshenko", "--point", "coast")[1]
     rows = map(str.split, told.partition("Displacements")[2].splitlines())
     assert next(row for row in rows if row[:1] == ["pinion.B"])[5] == "0"
-
-
-def test_a_shaft_as_a_train_of_one_deflects_as_the_shaft_alone():
-    scene = as_written("geometry/gearbox_catalogue.toml")
-    by_itself = deflect_scene(scene, ["timoshenko", "harmonic"]).shafts
-    rest = OperatingPoint(torque=0.0, of="shaft")
-    for alone in by_itself:
-        (in_train,) = deflection(Assembly.of(scene), rest, alone.model).shafts
-        # the same body with its statics exact at the ports: only rounding differs
-        scale = np.abs(alone.line[:, :3]).max()
-        assert np.allclose(in_train.line[:, :3], alone.line[:, :3], rtol=0, atol=1e-9 * scale)

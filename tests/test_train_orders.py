@@ -48,6 +48,10 @@ def test_every_mode_is_met_by_every_order_that_reaches_it(assembly, found):
     assert shaft == [f for f in hz if 60 * f <= found.highest_rpm]
 
 
+def test_below_the_first_mode_nothing_is_met(assembly):
+    assert order_map(assembly, *MIX, highest_hz=10.0).crossings == ()
+
+
 def test_the_force_on_a_crossing_is_that_of_the_order(assembly, found):
     drive = Drive(assembly, *MIX)
     by = {(c.line, c.mode): c for c in found.crossings}

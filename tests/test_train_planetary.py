@@ -11,7 +11,7 @@ import scipy.linalg as sla
 
 import solidgear as sg
 from solidgear.core.errors import SceneError
-from solidgear.strength.deflection.train import deflection
+from solidgear.strength.deflection.at_rest import deflection
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.kinematics import train_orders
 from solidgear.trains.assembly.layout import mesh_forces

@@ -14,9 +14,9 @@ from solidgear.bearings.inside import Inside
 from solidgear.bearings.passing import passing
 from solidgear.core.errors import SolidgearError
 from solidgear.trains.assembly.kinematics import SLIP, bearing_orders, settled_angles, train_orders
+from solidgear.trains.response.at_speed import Line, at_speed, explained, turns_of_pinion
 from solidgear.trains.response.measured_chart import outline
 from solidgear.trains.response.spectrum import Spectrum, read_spectrum
-from solidgear.trains.response.speed_command import Line, at_speed, explained, turns_of_pinion
 from tests.charted import words_of
 from tests.command import command, table
 

@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.show import speed_tables
 from solidgear.show.command import say
 from solidgear.show.units import ENGINEERING
+from solidgear.strength.deflection.at_rest import Measured, deflect
 from solidgear.strength.deflection.sheet import meanings
-from solidgear.strength.deflection.train import Measured, deflect_train
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.layout import senses
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.load.operation import Operating
-from solidgear.trains.response.speed_command import Coincidence
+from solidgear.trains.response.at_speed import Coincidence
+from solidgear.trains.response.sheet import coincidences, every_coincidence
 from solidgear.trains.system.equilibrium import without_rounding
 
 GEARBOX, REDUCER = "geometry/gearbox_train.toml", "geometry/reducer.toml"
@@ -74,13 +74,13 @@ def test_what_misalignments_mean_is_said_once_for_all_meshes():
 def test_ten_near_orders_are_shown_and_a_file_has_all():
     near = [Coincidence(f"mesh {k}", "bending 1", 1.0 * k, 1.0, 0.01, 60.0) for k in range(93)]
     found = SimpleNamespace(coincidences=near, within=0.05, shaft="pinion")
-    shown = speed_tables.coincidences(found, 10)
+    shown = coincidences(found, 10)
     assert len(shown.rows) == 10 and "83 more" in shown.note and "near.csv" in shown.note
-    assert len(speed_tables.all_coincidences(found).rows) == 93
-    assert not speed_tables.coincidences(found).note
+    assert len(every_coincidence(found).rows) == 93
+    assert not coincidences(found).note
 
 
 def test_a_deflection_tells_the_sense_of_every_shaft(assembly):
     point = OperatingPoint(torque=100.0, of="input")
-    found = deflect_train(assembly, point, ("timoshenko",))
+    found = deflect(assembly, point, ("timoshenko",))
     assert set(found.as_dict()["senses"]) == {"input", "middle", "output"}

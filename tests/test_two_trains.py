@@ -12,8 +12,7 @@ import pytest
 
 import solidgear as sg
 from solidgear.comparison.two.differences import differences
-from solidgear.comparison.two.two_trains import two_trains
-from solidgear.comparison.two.two_trains_page import others, reactions
+from solidgear.comparison.two.two_trains import others, reactions, two_trains
 from solidgear.core.body import as_supports
 from solidgear.core.errors import SolidgearError
 from solidgear.trains.assembly import assembly as train_assembly
@@ -237,8 +236,8 @@ def test_twice_the_torque_and_transmission_error_double_all_and_move_no_frequenc
         for twice in (1, 2)
     ]
     found = two_trains(shops, ("once", "twice"), (), *EULER, highest_hz=1000.0)
-    assert {name for name, *_ in found.misalignment()} == {"E", "P", "G", "shaft angle"}
-    for _, _, _, change in found.misalignment():
+    assert {number.name for number in found.changes} == {"E", "P", "G", "shaft angle"}
+    for change in (number.change for number in found.changes):
         assert change.relative == pytest.approx(np.sign(change.a), rel=1e-6)
     loads = [
         {b.name: b.radial for shaft in one.loaded.shafts for b in shaft.bearings}
@@ -288,12 +287,12 @@ def test_numbers_of_three_shafts_are_those_of_each_train_alone(three):
     for words in ("Largest force of the mesh middle-output: ", "Largest force of the mesh input-"):
         assert any(one.startswith(words) for one in told["sentences"])
     # at rest torque alone makes the forces, whatever the teeth give
-    changes = {name: change for name, *_, change in found.misalignment()}
+    changes = {number.name: number for number in found.changes}
     assert {"in plane input-middle", "across middle-output"} <= {*changes}
     assert all(change.relative == pytest.approx(0, abs=1e-6) for change in changes.values())
     assert others(found) == [(MESHES[1], "force of the mesh input-middle")]
-    for unit in (" [N]", " [N m]"):
-        shafts = [column.split()[0] for column, _ in reactions(found) if column.endswith(unit)]
+    for unit in ("N", "N m"):
+        shafts = [column.split()[0] for column, _ in reactions(found, unit)]
         assert shafts == sorted(shafts) and {*shafts} == {*told["models"]}
 
 

@@ -33,8 +33,7 @@ from solidgear.core.scene.file import scene_of
 from solidgear.core.scene.paths import entry, label_of, replace_entry
 from solidgear.core.scene.toml_file import parse
 from solidgear.variants.sensitivity.beam import BeamAdjoint
-from solidgear.variants.sensitivity.harmonic import HarmonicAdjoint
-from solidgear.variants.sensitivity.harmonic_motion import Motion
+from solidgear.variants.sensitivity.harmonic import HarmonicAdjoint, Motion
 from solidgear.variants.sensitivity.run import around, numbers
 from validation.campaign.scenes.shafts import random_scene
 from validation.common import toml
@@ -147,10 +146,8 @@ class Moved:
         if self.model != "harmonic":
             self.adjoint.by(low, high, step)
             return self.adjoint.velocity, True
-        motion = Motion(self.adjoint, low, high, step)
-        motion.move()
-        slips = [motion.slip, *motion.bulge]
-        return motion.velocity, all(abs(one).max(initial=0.0) < 1e-9 for one in slips)
+        velocity, slip, bulge = Motion(self.adjoint, low, high, step).moved
+        return velocity, all(abs(rates).max(initial=0.0) < 1e-9 for rates in (slip, *bulge))
 
 
 def compared(seed: int, model: str, folder: Path) -> tuple[list[tuple[float, str]], int, int, dict]:

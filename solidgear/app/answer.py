@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import json
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -15,15 +15,17 @@ from solidgear.core.judge.answer import answer as solve
 from solidgear.core.judge.steps import ABOVE, BELOW
 from solidgear.core.judge.where import error_places
 from solidgear.core.models.kinds import PARTS
-from solidgear.show.command import NOT_REACHED, caution, command, say
+from solidgear.core.plain import plain
+from solidgear.show.command import Progress, caution, command
 from solidgear.show.open_words import columns as ranges
 from solidgear.show.open_words import remark
 from solidgear.show.options import SceneFile, Shown, relative
 from solidgear.show.plot import check_ending
 from solidgear.show.remarks import bearing_cautions, load, open_ranges
 from solidgear.show.settled import sentences
+from solidgear.show.sheet import Sheet, Terminal, present
 from solidgear.show.table import Column, Table, text
-from solidgear.show.units import units_named
+from solidgear.show.units import Units, units_named
 from solidgear.show.where_chart import draw_where, worth_naming
 from solidgear.show.words import bar_of, count, percent, seconds
 
@@ -65,44 +67,67 @@ def answer(
     loaded = load(scene)
     for sentence in bearing_cautions(loaded):
         print(caution(sentence), file=sys.stderr)
-    places: WhereRecord | None = None
-    unplaced = ""
-    with run.progress() as progress:
+    units = units_named(run.units)
+
+    def study(progress: Progress) -> Sheet:
         answered = solve(loaded, tol, ask, progress=progress)
         progress("what the data leave open")
         open_ = open_ranges(loaded)
+        places: WhereRecord | str = ""
         if where or picture is not None:
             progress("where the error comes from")
             try:
                 places = _places(loaded, answered)
             except SolidgearError as error:
-                unplaced = str(error)
-    if places is not None and picture is not None:
-        _draw(places, picture)
-    if run.as_json:
-        out = answered.as_dict() | {"open": open_.model_dump(mode="json")}
-        if where or picture is not None:
-            out["where"] = {"error": unplaced}
-            if places is not None:  # without the mesh and its cells
-                cells = {"model", "points", "cells", "shares"}
-                out["where"] = places.model_dump(exclude=cells)
-        print(json.dumps(out, allow_nan=False))
-    else:
-        say(_values(answered, run.units, open_), _path(answered))
-        say(*sentences(answered), *_of_round_part(loaded, answered))
-        if places is not None:
-            say(_where_table(places), _sentence(places))
-        if unplaced:
-            say(f"Where the error comes from is not known: {unplaced}.")
-        if places is not None and picture is not None:
-            say(f"Picture: {picture}")
-    # the usual question is of what there is; one that names a number wants that number
-    if not answered.reached or answered.missing and (ask or loaded.ask.quantities):
-        raise typer.Exit(NOT_REACHED)
+                places = str(error)
+            else:
+                if picture is not None:
+                    title = f"Error bar of {places.quantity} by cells, order {places.order}"
+                    draw_where(picture, places, title)
+        sheet = answer_sheet(loaded, answered, open_, places, picture, units)
+        # the usual question is of what there is; one that names a number wants that number
+        wanted = bool(ask or loaded.ask.quantities)
+        return replace(sheet, reached=answered.reached and not (answered.missing and wanted))
+
+    present(study, run)
 
 
-def _values(answered: Answered, units: str, open_: OpenNumbers) -> Table:
-    chosen = units_named(units)
+def answer_sheet(
+    scene: Scene,
+    answered: Answered,
+    open_: OpenNumbers,
+    places: WhereRecord | str,
+    picture: Path | None,
+    units: Units,
+) -> Sheet:
+    """Return the sheet of an answer, with the places of its error, or the reason why they are not
+    known; empty where nobody asked.
+    """
+    data = answered.as_dict() | {"open": plain(open_)}
+    closing: list[str | Table] = [*sentences(answered), *_of_round_part(scene, answered)]
+    if isinstance(places, WhereRecord):
+        # without the mesh and its cells
+        cells = {"model", "points", "cells", "shares"}
+        data["where"] = places.model_dump(exclude=cells)
+        total, time = percent(places.total, signed=False), seconds(places.seconds)
+        sentence = f"{places.sentence} (a bound by local problems, {total}; {time} s)."
+        closing += [_where_table(places, units), sentence]
+        if picture is not None:
+            closing.append(f"Picture: {picture}")
+    elif places:
+        data["where"] = {"error": places}
+        closing.append(f"Where the error comes from is not known: {places}.")
+    return Sheet(
+        name="answer",
+        title=scene.title or scene.name,
+        lead="",
+        tables=[_values(answered, units, open_), _path(answered)],
+        data=data,
+        terminal=Terminal(heading=[], closing=closing),
+    )
+
+
+def _values(answered: Answered, units: Units, open_: OpenNumbers) -> Table:
     notes = []
     if any(row.side in (ABOVE, BELOW) for row in answered.values):
         notes.append("error bar with one sign: the exact value lies on that side only")
@@ -112,8 +137,8 @@ def _values(answered: Answered, units: str, open_: OpenNumbers) -> Table:
         )
     columns = [
         text("quantity", lambda row: row.quantity),
-        Column("value", lambda row: "0" if row.zero else chosen.number(row.value, row.unit, 6)),
-        text("unit", lambda row: chosen.unit(row.unit)),
+        Column("value", lambda row: "0" if row.zero else units.number(row.value, row.unit, 6)),
+        text("unit", lambda row: units.unit(row.unit)),
         Column("error bar", bar_of),
         *ranges(open_, lambda row: row.quantity),
         text("error bar by", lambda row: row.how),
@@ -171,29 +196,19 @@ def _places(scene: Scene, answered: Answered) -> WhereRecord:
     return places.model_copy(update={"total": widest.bar})
 
 
-def _where_table(places: WhereRecord) -> Table:
+def _where_table(places: WhereRecord, units: Units) -> Table:
     """Return places of the error with their shares of it, the largest first."""
 
-    def millimetres(value: float) -> str:
-        return f"{1e3 * value:.4g}"
+    def length(value: float) -> str:
+        return f"{units.value(value, 'm'):.4g}"
+
+    unit = units.unit("m")
 
     columns = [
         Column(f"error of {places.quantity}", lambda row: row.what),
-        Column("y, mm", lambda row: row.y, millimetres),
-        Column("r, mm", lambda row: "" if row.r is None else row.r, millimetres),
-        Column("within, mm", lambda row: "" if row.reach is None else row.reach, millimetres),
+        Column(f"y, {unit}", lambda row: row.y, length),
+        Column(f"r, {unit}", lambda row: "" if row.r is None else row.r, length),
+        Column(f"within, {unit}", lambda row: "" if row.reach is None else row.reach, length),
         Column("share", lambda row: row.share, lambda share: f"{100 * share:.1f} %"),
     ]
     return Table("", columns, worth_naming(places.rows))
-
-
-def _sentence(places: WhereRecord) -> str:
-    """Return the sentence on the places with most of the error."""
-    total = percent(places.total, signed=False)
-    return f"{places.sentence} (a bound by local problems, {total}; {seconds(places.seconds)} s)."
-
-
-def _draw(places: WhereRecord, picture: Path) -> None:
-    """Write a picture of the mesh, every cell with its share of the error."""
-    title = f"Error bar of {places.quantity} by cells, order {places.order}"
-    draw_where(picture, places, title)

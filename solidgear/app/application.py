@@ -39,7 +39,7 @@ GROUPS = {
             "List the scenes that come with solidgear, or copy them into a folder.",
         ),
         "check": Entry(
-            "app.check",
+            "trains.judge.check_command",
             "Say which models hold for a scene or train, which do not, and why; solves light "
             "meshes only.",
         ),
@@ -77,7 +77,7 @@ GROUPS = {
             "Draw one mode shape off-screen, or all of them in a page where they can be turned.",
         ),
         "bearing": Entry(
-            "app.bearing",
+            "trains.load.bearing_command",
             "Catalogue bearings: stiffness at load, load of every element, pressure, life; for "
             "a train with an [operation] lives over its points.",
         ),
@@ -120,16 +120,16 @@ GROUPS = {
     },
     "Trains": {
         "system-modes": Entry(
-            "trains.command",
+            "trains.modes.command",
             "Natural frequencies of a train, each with its name and a proven bound.",
         ),
         "response": Entry(
-            "trains.command",
+            "trains.response.command",
             "Steady response to the transmission error: mesh force, reactions, motions, and a "
             "chart.",
         ),
         "receptance": Entry(
-            "trains.response.receptance_command",
+            "trains.response.command",
             "Receptance between any two ports of a train: table, chart, and peaks with their "
             "modes.",
         ),

@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import os
-from collections.abc import Callable
-from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -13,22 +9,17 @@ import typer
 
 from solidgear.comparison.models import check_models
 from solidgear.comparison.models import compare as compared
+from solidgear.comparison.page.sheet import sheet
 from solidgear.comparison.race.command import run_chart
-from solidgear.comparison.two import two_shafts_page, two_trains_page
-from solidgear.comparison.two.differences import differences
-from solidgear.comparison.two.two_shafts import TwoShafts, two_shafts
-from solidgear.comparison.two.two_trains import TwoTrains, two_trains
-from solidgear.core import ELEMENTS, LADDER, SolidgearError, is_train, listed
+from solidgear.comparison.two.command import compare_two
+from solidgear.core import ELEMENTS, LADDER, is_train, listed
 from solidgear.core import load as read
-from solidgear.show.command import caution, command, say
+from solidgear.show.command import Progress, command
 from solidgear.show.folder import held
 from solidgear.show.options import MODEL, SceneFile, Shown, options_by_name, refuse
-from solidgear.show.remarks import load
-from solidgear.show.terminal import closing_lines, final_table, verdict_text
-from solidgear.show.units import units_named
-from solidgear.trains.assembly.shaft import checked_model
+from solidgear.show.sheet import Sheet, present
 from solidgear.trains.judge.command import compare_train
-from solidgear.trains.options import Pair, Reduced
+from solidgear.trains.options import Pair
 
 
 @command
@@ -125,114 +116,17 @@ def compare(
     chosen = options_by_name(settings, LADDER.bodies, "model", "solid.around=32")
     if solid_element:
         chosen.setdefault("solid", {})["element"] = solid_element
-    with held(out):
-        with run.progress() as progress:
+
+    def study(progress: Progress) -> Sheet:
+        with held(out):
             comparison = compared(loaded, names, settings=chosen, progress=progress)
-            drawn = renders and comparison.record.complete
+            complete = comparison.record.complete
+            drawn = renders and complete
             comparison.write_report(out, renders=drawn, units=run.units, progress=progress)
-        if chart and comparison.record.complete:
-            run_chart(loaded, out, quiet=run.as_json)
-    if run.as_json:
-        print(json.dumps(comparison.results, allow_nan=False))
-    else:
-        say(final_table(comparison.record), verdict_text(comparison.record), soft_wrap=False)
-        say(*closing_lines(comparison.record), f"Report: {out / 'report.html'}")
-    if not comparison.record.complete:
-        raise typer.Exit(130)
-    if not comparison.solutions:
-        raise typer.Exit(1)
+            if chart and complete:
+                run_chart(loaded, out, progress=progress)
+        exit_code = 0 if comparison.solutions else 1
+        files = [f"Report: {out / 'report.html'}"]
+        return sheet(comparison.record, files, exit_code if complete else 130)
 
-
-#: where options of one shaft lead
-TRAINS = "for two trains --pinion, --gear and --shaft choose the models"
-
-
-def compare_two(
-    files: list[Path],
-    out: Path,
-    mix: Pair,
-    mesh: str | None,
-    run: Shown,
-    options: dict[str, bool],
-    of_trains: dict[str, bool],
-) -> None:
-    """Compare two trains or two shafts; `options` and `of_trains` say which options of the other
-    kind were given.
-    """
-    if len(files) > 2:
-        raise SolidgearError(
-            f"compare takes one file, or two scenes or two trains; {len(files)} are given"
-        )
-    a, b = map(str, files)
-    trains = is_train(a), is_train(b)
-    if trains[0] != trains[1]:
-        train, shaft = (a, b) if trains[0] else (b, a)
-        raise SolidgearError(
-            f"{train} is a train and {shaft} one shaft: compare two trains, two shafts, or either "
-            "file alone"
-        )
-    if trains[0]:
-        refuse(options, f"one shaft, and {files[0]} is a train: {TRAINS}")
-    else:
-        _refuse_of_two_shafts(options | of_trains)
-    if a == b or (os.path.exists(a) and os.path.exists(b) and os.path.samefile(a, b)):
-        _say_same(a, b, "two trains" if trains[0] else "two shafts", run)
-        return
-    solve = _two_trains(a, b, mix, mesh) if trains[0] else _two_shafts(a, b)
-    with held(out), run.progress() as progress:
-        pair = solve(progress=progress)
-        progress("report")
-        pair.write_report(out, units=run.units)
-    if run.as_json:
-        print(json.dumps(pair.results, allow_nan=False))
-        return
-    units = units_named(run.units)
-    if isinstance(pair, TwoTrains):
-        printed = two_trains_page.printed(pair, units)
-    else:
-        printed = two_shafts_page.printed(pair, units)
-    say(
-        *(f"{train.label}, {train.title}" for train in pair.both),
-        *printed,
-        *map(caution, pair.cautions),
-        f"Report: {out / 'report.html'}",
-        soft_wrap=False,
-    )
-
-
-def _refuse_of_two_shafts(options: dict[str, bool]) -> None:
-    for option in (option for option, present in options.items() if present):
-        raise SolidgearError(
-            f"{option} does not apply to two shafts: both are solved as by answer, to a tenth of "
-            "their tolerance"
-        )
-
-
-def _say_same(a: str, b: str, kind: str, run: Shown) -> None:
-    text = f"{a} is given twice" if a == b else f"{a} and {b} are one file"
-    sentence = f"{text}: nothing differs, so nothing was solved."
-    if run.as_json:
-        print(json.dumps({"kind": kind, "differences": [], "sentences": [sentence]}))
-    else:
-        say(sentence)
-
-
-def _two_trains(a: str, b: str, mix: Pair, mesh: str | None) -> Callable[..., TwoTrains]:
-    """Return the comparison of two train files, to be run."""
-    shops = [Reduced().assembly(Path(path)) for path in (a, b)]
-    models = mix.by_shaft(shops[0].train)
-    for model in models.values():
-        checked_model(model)
-    return partial(two_trains, shops, _names(a, b), differences(a, b), *models.values(), mesh=mesh)
-
-
-def _two_shafts(a: str, b: str) -> Callable[..., TwoShafts]:
-    """Return the comparison of two scene files, to be run."""
-    scenes = [load(Path(path)) for path in (a, b)]
-    return partial(two_shafts, scenes, _names(a, b), differences(a, b))
-
-
-def _names(a: str, b: str) -> tuple[str, str]:
-    """Return names of two files: those without folder and ending, unless they are the same."""
-    short = Path(a).stem, Path(b).stem
-    return short if short[0] != short[1] else (a, b)
+    present(study, run)

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-import json
-from typing import Annotated
+from collections.abc import Mapping, Sequence
+from typing import Annotated, Any
 
 import typer
 
 from solidgear.core import (
     LADDER,
     MOST_MODES,
+    Mode,
+    ModeSet,
+    OpenNumbers,
     Quantity,
+    Settled,
     SolidgearError,
     as_supports,
     bars_of_modes,
@@ -24,20 +28,14 @@ from solidgear.core.judge.completeness import completeness, cut_short, split_apa
 from solidgear.core.judge.hidden import complete_list, less_widest
 from solidgear.core.plain import plain
 from solidgear.core.solve.mixtures import mixtures
-from solidgear.show.command import caution, command, say
+from solidgear.show import open_words
+from solidgear.show.command import Progress, caution, command
 from solidgear.show.options import Run, SceneFile, Solved, options, speed_of
 from solidgear.show.remarks import cautions, load, open_ranges
-from solidgear.show.settled import (
-    SECOND_MESH,
-    bar_lines,
-    beyond,
-    ended,
-    heading,
-    unjudged,
-    without_bar,
-)
-from solidgear.show.terminal import modes_table
-from solidgear.show.words import by_plane
+from solidgear.show.settled import SECOND_MESH, Judged, bar_lines
+from solidgear.show.sheet import Sheet, present
+from solidgear.show.table import Column, Table, text
+from solidgear.show.words import by_plane, hertz, percent
 
 #: rows of a list whose beginning has left the terminal
 MANY = 30
@@ -73,90 +71,147 @@ def modes(
     if n is not None and not 1 <= n <= MOST_MODES:
         raise SolidgearError(f"-n {show(n)}: give 1 to {MOST_MODES} modes")
     loaded = load(scene)
-    body, settled = model.body(loaded, "modes")
-    mode_set = solve(
-        body,
-        loaded,
-        loaded.ask.modes if n is None else n,
-        max_frequency=max_frequency or loaded.ask.max_frequency,
-        count=count,
-    )
-    bounded = LADDER[body.fidelity].bounded
-    if settled is not None and bounded:
-        mode_set = complete_list(loaded, body, as_supports(loaded), mode_set)
-    whole = mode_set.whole if count and not bounded else mode_set
-    bars = bars_of_modes(loaded, body, whole, settled)
-    if settled is None and model.on_two_meshes:
-        bars = coarser_bars(loaded, body, whole, options(model.pairs))
-    evidence = less_widest(mode_set.evidence, bars.values())
-    bars = {name: bar for name, bar in bars.items() if name in mode_set.names}
-    bare = without_bar(mode_set, bars)
-    reason = model.without_bars(bars, settled, loaded, body)
-    reason = reason or unjudged(bare, body.fidelity, second=settled is None)
-    warnings = cautions(loaded, body)
-    open_ = open_ranges(loaded)
+    asked = loaded.ask.modes if n is None else n
     highest_hz = max_frequency or loaded.ask.max_frequency
-    warnings += cut_short(mode_set.modes, n or loaded.ask.modes, highest_hz, option="-n")
-    warnings += spin_caution(loaded, body, mode_set.modes, bars, turns)
-    rows = [
-        {
-            "name": m.name,
-            "family": m.family,
-            "frequency_hz": m.frequency_hz,
-            "multiplicity": m.multiplicity,
-            "error": m.error,
-            "bar": bars.get(m.name),
-            "split": m.split,
-        }
-        for m in mode_set.modes
-    ]
-    if run.as_json:
-        record = {
-            "scene": loaded.name,
-            "fidelity": body.fidelity,
-            "dofs": body.size,
-            "modes": rows,
-            "evidence": evidence,
-            "cautions": warnings,
-            "open": open_.model_dump(mode="json"),
-        }
-        record |= {} if settled is None else plain(settled)
-        record |= {"without_bar": bare, "why_without_bar": reason}
-        print(json.dumps(record, default=float))
-        ended(settled)
-        return
 
-    say(heading(loaded, body, settled), modes_table(mode_set.modes, bars, open_), soft_wrap=False)
-    if len(rows) > MANY:
-        shapes = sum(m.multiplicity for m in mode_set.modes)
-        say(f"{shapes} shapes up to {mode_set.frequency_hz[-1]:.6g} Hz.")
-    planes = by_plane(mode_set.names)
-    if planes:
-        say(planes.strip())
-    e = mode_set.evidence
-    say(*(f"caution: {sentence}" for sentence in split_apart(e)), soft_wrap=False)
-    say(*(f"caution: {mixture.sentence}." for mixture in mixtures(mode_set)))
-    if e["error"] > 1e-6:
-        say(
-            f"caution: rounding leaves errors of {e['error']:.0e} in frequencies, since the "
-            "smallest cells are too stiff beside the shaft; use a coarser mesh.",
-            soft_wrap=False,
+    def study(progress: Progress) -> Sheet:
+        body, settled = model.body(loaded, "modes", progress)
+        mode_set = solve(body, loaded, asked, max_frequency=highest_hz, count=count)
+        bounded = LADDER[body.fidelity].bounded
+        if settled is not None and bounded:
+            mode_set = complete_list(loaded, body, as_supports(loaded), mode_set)
+        whole = mode_set.whole if count and not bounded else mode_set
+        if settled is None and model.on_two_meshes:
+            bars = coarser_bars(loaded, body, whole, options(model.pairs))
+        else:
+            bars = bars_of_modes(loaded, body, whole, settled)
+        evidence = less_widest(mode_set.evidence, bars.values())
+        bars = {name: bar for name, bar in bars.items() if name in mode_set.names}
+        judged = Judged(
+            loaded,
+            body,
+            settled,
+            {Quantity(name): bar for name, bar in bars.items()},
+            model.without_bars(bars, settled, loaded, body),
+            [
+                *cautions(loaded, body),
+                *cut_short(mode_set.modes, asked, highest_hz, option="-n"),
+                *spin_caution(loaded, body, mode_set.modes, bars, turns),
+            ],
+            open_ranges(loaded),
         )
-    if count:
-        say(
-            f"Residual {e['residual']:.1e}, orthogonality {e['orthogonality']:.1e}, rigid modes "
-            f"{e['rigid_modes']}, {e['method']} on {e['backend']}.",
-            soft_wrap=False,
+        return modes_sheet(mode_set, judged, evidence, count)
+
+    present(study, run)
+
+
+def modes_sheet(modes: ModeSet, judged: Judged, proof: dict[str, Any], counted: bool) -> Sheet:
+    """Return the sheet of natural frequencies, with the evidence of a count of modes."""
+    settled, model = judged.settled, judged.body.fidelity
+    bars = {str(name): bar for name, bar in judged.bars.items()}
+    bare = [m.name for m in modes.modes if m.frequency_hz > 0 and m.name not in bars]
+    reason = judged.reason or _unjudged(bare, model, second=settled is None)
+    data = {
+        "scene": judged.scene.name,
+        "fidelity": model,
+        "dofs": judged.body.size,
+        "modes": [
+            {
+                "name": m.name,
+                "family": m.family,
+                "frequency_hz": m.frequency_hz,
+                "multiplicity": m.multiplicity,
+                "error": m.error,
+                "bar": bars.get(m.name),
+                "split": m.split,
+            }
+            for m in modes.modes
+        ],
+        "evidence": proof,
+        "cautions": judged.cautions,
+        "open": judged.open,
+    }
+    evidence = modes.evidence
+    notes = [by_plane(modes.names).strip()]
+    if len(modes.modes) > MANY:
+        shapes = sum(m.multiplicity for m in modes.modes)
+        notes.insert(0, f"{shapes} shapes up to {modes.frequency_hz[-1]:.6g} Hz.")
+    notes += map(caution, split_apart(evidence))
+    notes += [caution(f"{mixture.sentence}.") for mixture in mixtures(modes)]
+    if evidence["error"] > 1e-6:
+        notes.append(
+            f"caution: rounding leaves errors of {evidence['error']:.0e} in frequencies, since the "
+            "smallest cells are too stiff beside the shaft; use a coarser mesh."
         )
-        say(completeness(evidence, body.fidelity), soft_wrap=False)
-    lines = bar_lines(settled, {Quantity(name): bar for name, bar in bars.items()})
+    if counted:
+        notes += [
+            f"Residual {evidence['residual']:.1e}, orthogonality {evidence['orthogonality']:.1e}, "
+            f"rigid modes {evidence['rigid_modes']}, {evidence['method']} on {evidence['backend']}.",
+            completeness(proof, model),
+        ]
+    notes += bar_lines(settled, judged.bars)
     if bars and settled is None:
-        lines.append(SECOND_MESH)
+        notes.append(SECOND_MESH)
     if not bars and reason:
-        lines.append(f"No error bars: {reason}.")
+        notes.append(f"No error bars: {reason}.")
     elif reason:
-        lines.append(f"No error bar: {listed(bare, most=3)}; {reason}.")
-    lines += beyond(bars, settled)
-    say(*lines)
-    say(*map(caution, warnings), soft_wrap=False)
-    ended(settled)
+        notes.append(f"No error bar: {listed(bare, most=3)}; {reason}.")
+    return Sheet(
+        name="modes",
+        title=judged.heading,
+        lead="",
+        tables=[modes_table(modes.modes, bars, judged.open)],
+        data=plain(
+            data
+            | ({} if settled is None else plain(settled))
+            | {"without_bar": bare, "why_without_bar": reason}
+        ),
+        notes=[*filter(None, notes), *_beyond(bars, settled)],
+        cautions=judged.cautions,
+        reached=judged.reached,
+    )
+
+
+def modes_table(modes: Sequence[Mode], bars: Mapping[str, float], open_: OpenNumbers) -> Table:
+    """Return natural frequencies with names and multiplicity, error bars and ranges."""
+
+    def bar(mode: Mode) -> str:
+        width = bars.get(mode.name)
+        return "" if width is None else percent(width, signed=False)
+
+    columns = [
+        text("mode", lambda m: m.name or None),
+        text("family", lambda m: m.family or None),
+        Column("frequency, Hz", lambda m: m.frequency_hz, hertz),
+        Column("shapes", lambda m: m.multiplicity),
+        *([Column("error bar", bar)] if bars else []),
+        *open_words.columns(open_, lambda mode: mode.name),
+    ]
+    return Table("", columns, modes, open_words.remark(open_))
+
+
+def _beyond(bars: Mapping[str, float], settled: Settled | None) -> list[str]:
+    """Return sentences on error bars beyond the tolerance of quantities that are not judged."""
+    if settled is None or not settled.reached:
+        return []
+    wide = {name: bar for name, bar in bars.items() if bar > settled.tolerance}
+    if not wide:
+        return []
+    names = listed((f"{q} +- {percent(bar, signed=False)}" for q, bar in wide.items()), most=3)
+    return [
+        f"Beyond {percent(settled.tolerance, signed=False)}: {names}; --tol holds the first mode "
+        "of every family, and a smaller one narrows these too."
+    ]
+
+
+def _unjudged(names: Sequence[str], model: str, *, second: bool = False) -> str:
+    """Return the reason why some modes have no error bar, `second` by a second mesh; empty without
+    such modes.
+    """
+    if not names:
+        return ""
+    if second:
+        return "the coarser mesh has no such mode, or as many cells around"
+    if LADDER[model].bounded:
+        return "an error bar needs the next mode of the family; raise -n"
+    return "higher modes need finer meshes"

@@ -3,17 +3,23 @@
 from __future__ import annotations
 
 import sys
+import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from solidgear.comparison.page.write import Drawn, render_mode, turn_modes
 from solidgear.core import LADDER, SolidgearError
 from solidgear.core import modes as solve
 from solidgear.show.command import command
+from solidgear.show.folder import prepare
 from solidgear.show.options import Choice, Fixed, SceneFile
+from solidgear.show.page_parts import data_uri
 from solidgear.show.remarks import load
+from solidgear.show.render import Drawn, render_modes
+from solidgear.show.turning import Turned, turned
+from solidgear.show.viewer import Turning
 
 
 @command
@@ -52,3 +58,42 @@ def render(
     if sentence:
         print(f"caution: {sentence}", file=sys.stderr)
     print(path)
+
+
+def render_mode(drawn: Drawn, name: str, path: Path) -> Path:
+    """Draw one mode of one body.
+
+    Raises
+    ------
+    SolidgearError
+        If there is no such mode, or nothing can be drawn here (the sentence says what mends it).
+    """
+    job = drawn.job(name, path)
+    prepare(path.parent)
+    try:
+        (result,) = render_modes([job])
+    except OSError as error:  # the drawing process is handed its shape in a temporary file
+        raise SolidgearError(
+            f"--out {path}: drawing stopped ({error.strerror or error}); "
+            "free some space there and in the folder for temporary files"
+        ) from error
+    if not result.ok:
+        raise SolidgearError(result.reason)
+    return result.path
+
+
+def turn_modes(drawn: Sequence[Drawn], path: Path, title: str, name: str) -> tuple[Path, str]:
+    """Write a page of all modes to turn; return its path and why it has no picture for print."""
+    prepare(path.parent)
+    models: list[Turned] = []
+    for drawing in drawn:
+        drawing.job(name, path)
+        models.append(turned(drawing.body, drawing.modes, drawing.title, models))
+    still, sentence = "", ""
+    with tempfile.TemporaryDirectory(prefix="solidgear-turn-") as folder:
+        try:
+            picture = render_mode(drawn[0], name, Path(folder) / "mode.png")
+            still = data_uri("mode", picture) or ""
+        except SolidgearError as error:
+            sentence = f"no picture for print in {path.name}: {error}"
+    return Turning(tuple(models), title, name).write(path, still=still), sentence

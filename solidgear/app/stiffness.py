@@ -2,27 +2,37 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Mapping
-from typing import Annotated, Any
+from collections.abc import Iterator, Mapping
+from itertools import combinations_with_replacement
+from typing import Annotated
 
 import numpy as np
 import typer
 
-from solidgear.core import COMPLIANCE, DOF_NAMES, STIFFNESS, Port, Quantity, Scene, SolidgearError
+from solidgear.core import (
+    COMPLIANCE,
+    DOF_NAMES,
+    STIFFNESS,
+    Condensed,
+    Port,
+    Quantity,
+    Scene,
+    SolidgearError,
+)
 from solidgear.core.judge.coarser_mesh import static_bars
 from solidgear.core.plain import plain
 from solidgear.core.scene.rules import no_such_point
-from solidgear.core.solve.condensed import Condensed, Coupled
+from solidgear.core.solve.condensed import Coupled
 from solidgear.core.solve.statics import condense
-from solidgear.show.command import caution, command, say
+from solidgear.show.command import Progress, caution, command
 from solidgear.show.open_words import table as open_table
 from solidgear.show.options import SceneFile, Shown, Solved, options
 from solidgear.show.remarks import cautions, load, open_ranges
-from solidgear.show.settled import SECOND_MESH, bar_lines, ended, heading, largest_bar
+from solidgear.show.settled import SECOND_MESH, Judged, bar_lines, largest_bar
+from solidgear.show.sheet import Sheet, Terminal, present
 from solidgear.show.table import Column, Table
 from solidgear.show.terminal import matrix_table
-from solidgear.show.units import units_named
+from solidgear.show.units import Units, units_named
 from solidgear.show.words import plus_minus
 
 
@@ -51,41 +61,20 @@ def stiffness(
         loaded = loaded.with_attachment(attachment)
     names = _points(loaded, port)
     loaded = loaded.with_main_port(names[0])
-    body, settled = model.body(loaded, "stiffness", names[1:])
-    condensed = condense(body, loaded, names[0])
-    coupled = condense(body, loaded, names) if len(names) > 1 else None
-    bars = settled.bars if settled is not None else {}
-    if settled is None and model.on_two_meshes:
-        bars = static_bars(loaded, body, names, options(model.pairs))
-    reason = model.without_bars(bars, settled, loaded, body)
-    warnings = cautions(loaded, body)
-    open_ = open_ranges(loaded, body)
+    units = units_named(run.units)
 
-    if run.as_json:
-        record: dict[str, Any] = {"scene": loaded.name, "fidelity": body.fidelity}
-        at_points = condensed if coupled is None else coupled
-        record |= plain(at_points)
-        record |= {"dofs": body.size, "evidence": at_points.evidence, "cautions": warnings}
-        record |= {"bars": bars} if settled is None else plain(settled)
-        record |= {"why_without_bar": reason}
-        print(json.dumps(record | {"open": open_.model_dump(mode="json")}))
-        ended(settled)
-        return
-    head = heading(loaded, body, settled)
-    if coupled is None:
-        _tell(head, loaded, condensed, run.units)
-    else:
-        _tell_coupled(head, loaded, coupled, run.units)
-        if bars:
-            say(_bars(bars, coupled))
-    if open_.inputs:
-        say(open_table(open_, bars, units_named(run.units)))
-    if settled is None:
-        lines = [f"No error bars: {reason}."] if reason else largest_bar(bars, names[0])
-        say(*lines, *([] if reason else [SECOND_MESH]))
-    say(*bar_lines(settled))
-    say(*map(caution, warnings), soft_wrap=False)
-    ended(settled)
+    def study(progress: Progress) -> Sheet:
+        body, settled = model.body(loaded, "stiffness", progress, names[1:])
+        bars = settled.bars if settled is not None else {}
+        if settled is None and model.on_two_meshes:
+            bars = static_bars(loaded, body, names, options(model.pairs))
+        statics = condense(body, loaded, names if len(names) > 1 else names[0])
+        reason = model.without_bars(bars, settled, loaded, body)
+        open_ = open_ranges(loaded, body)
+        judged = Judged(loaded, body, settled, bars, reason, cautions(loaded, body), open_)
+        return stiffness_sheet(statics, judged, units)
+
+    present(study, run)
 
 
 def _points(scene: Scene, port: str | None) -> tuple[str, ...]:
@@ -103,28 +92,104 @@ def _points(scene: Scene, port: str | None) -> tuple[str, ...]:
     return tuple(names)
 
 
-def _at(port: Port) -> str:
-    """Return the place of a lumped point, mm."""
-    if port.patch is None:
-        return f"y = {1e3 * port.y:.3f}"
-    return "({})".format(", ".join(f"{1e3 * v:.3f}" for v in port.patch.point))
-
-
-def _tell(head: str, scene: Scene, condensed: Condensed, units: str) -> None:
-    say(
-        f"{head}, port {condensed.port!r} at {_at(scene.port)} mm ({condensed.attachment})",
-        matrix_table(condensed.stiffness, "stiffness", units),
-        matrix_table(condensed.compliance, "compliance", units),
-        soft_wrap=False,
+def stiffness_sheet(statics: Condensed | Coupled, judged: Judged, units: Units) -> Sheet:
+    """Return the sheet of one lumped point, or of several."""
+    settled, bars = judged.settled, judged.bars
+    data = {"scene": judged.scene.name, "fidelity": judged.body.fidelity} | plain(statics)
+    data |= {"dofs": judged.body.size, "evidence": plain(statics.evidence)}
+    data |= {"cautions": judged.cautions} | ({"bars": bars} if settled is None else plain(settled))
+    data |= {"why_without_bar": judged.reason, "open": plain(judged.open)}
+    head = judged.heading
+    closing: list[str | Table] = []
+    if isinstance(statics, Condensed):
+        place = _at(judged.scene.port, units)
+        head += f", port {statics.port!r} at {place} ({statics.attachment})"
+        tables = [
+            matrix_table(statics.stiffness, STIFFNESS, units),
+            matrix_table(statics.compliance, COMPLIANCE, units),
+        ]
+        closing += _free(statics)
+        point = statics.port
+    else:
+        places = {port.name: _at(port, units) for port in judged.scene.ports}
+        ports = (
+            f"{name!r} at {places[name]} ({kind})"
+            for name, kind in zip(statics.ports, statics.attachments)
+        )
+        head += f", ports {', '.join(ports)}"
+        tables = _between(statics, units)
+        closing += [*_free_together(statics), *([_bars(bars, statics)] if bars else [])]
+        point = statics.ports[0]
+    if judged.open.inputs:
+        closing.append(open_table(judged.open, bars, units))
+    if settled is not None:
+        closing += bar_lines(settled)
+    elif judged.reason:
+        closing.append(f"No error bars: {judged.reason}.")
+    else:
+        closing += [*largest_bar(bars, point), SECOND_MESH]
+    return Sheet(
+        name="stiffness",
+        title=head,
+        lead="",
+        tables=tables,
+        data=data,
+        cautions=judged.cautions,
+        reached=judged.reached,
+        terminal=Terminal(closing=[*closing, *map(caution, judged.cautions)]),
     )
+
+
+def _at(port: Port, units: Units) -> str:
+    """Return the place of a lumped point."""
+    unit = units.unit("m")
+    decimals = 3 if unit == "mm" else 4
+    place = (port.y,) if port.patch is None else port.patch.point
+    numbers = ", ".join(f"{units.value(v, 'm'):.{decimals}f}" for v in place)
+    return f"y = {numbers} {unit}" if port.patch is None else f"({numbers}) {unit}"
+
+
+def _free(condensed: Condensed) -> Iterator[str]:
+    """Yield sentences on motions that nothing resists."""
     if condensed.free_names:
-        say(f"Free: {', '.join(condensed.free_names)} (stiffness exactly zero).")
+        yield f"Free: {', '.join(condensed.free_names)} (stiffness exactly zero)."
     for motion in condensed.oblique.T:
         moved = [(v, n) for v, n in zip(motion, DOF_NAMES) if abs(v) > 1e-9]
         parts = ", ".join(f"{v:.4g} {n}" for v, n in moved)
         names = " and ".join(n for _, n in moved)
-        line = f"Free: the motion ({parts}), m and rad; {names} have no compliance."
-        say(line)
+        yield f"Free: the motion ({parts}), m and rad; {names} have no compliance."
+
+
+def _between(coupled: Coupled, units: Units) -> list[Table]:
+    """Return the blocks of every pair of points."""
+    kinds = {STIFFNESS: ("load on", "motion of"), COMPLIANCE: ("motion of", "load on")}
+    if not np.isfinite(coupled.stiffness).all():
+        del kinds[STIFFNESS]
+    tables = []
+    for kind, (rows, columns) in kinds.items():
+        for a, b in combinations_with_replacement(coupled.ports, 2):
+            sizes = [np.diag(coupled.between(end, end, kind)).tolist() for end in (a, b)]
+            title = f"{kind}: {rows} {a}, {columns} {b}"
+            matrix = coupled.between(a, b, kind)
+            tables.append(matrix_table(matrix, kind, units, title, sizes))
+    return tables
+
+
+def _free_together(coupled: Coupled) -> Iterator[str]:
+    """Yield sentences on what the blocks hold, and on motions that nothing resists."""
+    several = "both points" if len(coupled.ports) == 2 else "all points"
+    if np.isfinite(coupled.stiffness).all():
+        yield (
+            f"Stiffness is with {several} held but for one motion. Blocks left out are the "
+            "transposed ones."
+        )
+    else:
+        yield "The points move almost as one, so that a stiffness between them has no digits."
+    if coupled.free_names:
+        yield (
+            f"Free: {', '.join(coupled.free_names)} of {several} together; only their relative "
+            "motion is resisted, and has no entry in the compliance."
+        )
 
 
 def _bars(bars: Mapping[Quantity, float], coupled: Coupled) -> Table:
@@ -135,7 +200,6 @@ def _bars(bars: Mapping[Quantity, float], coupled: Coupled) -> Table:
             point = next(iter(name.points), coupled.ports[0])
             key = (name.kind, *sorted(name.pair or (point, point), key=coupled.ports.index))
             largest[key] = max(bar, largest.get(key, 0.0))
-    pairs = [(a, b) for k, a in enumerate(coupled.ports) for b in coupled.ports[k:]]
     columns = [
         Column(
             "largest error bar of a block",
@@ -149,38 +213,4 @@ def _bars(bars: Mapping[Quantity, float], coupled: Coupled) -> Table:
         Column(COMPLIANCE, lambda pair: largest.get((COMPLIANCE, *pair)), plus_minus),
     ]
     note = "couplings: relative to the geometric mean of both diagonal entries"
-    return Table("", columns, pairs, note)
-
-
-def _tell_coupled(head: str, scene: Scene, coupled: Coupled, units: str) -> None:
-    places = {port.name: _at(port) for port in scene.ports}
-    ports = ", ".join(
-        f"{name!r} at {places[name]} mm ({kind})"
-        for name, kind in zip(coupled.ports, coupled.attachments)
-    )
-    say(f"{head}, ports {ports}", soft_wrap=False)
-    pairs = [(a, b) for k, a in enumerate(coupled.ports) for b in coupled.ports[k:]]
-    stiff = bool(np.isfinite(coupled.stiffness).all())
-    for kind in ("stiffness", "compliance") if stiff else ("compliance",):
-        for a, b in pairs:
-            rows = {"stiffness": "load on", "compliance": "motion of"}[kind]
-            columns = {"stiffness": "motion of", "compliance": "load on"}[kind]
-            caption = f"{kind}: {rows} {a}, {columns} {b}"
-            diagonals = [np.diag(coupled.between(point, point, kind)).tolist() for point in (a, b)]
-            say(matrix_table(coupled.between(a, b, kind), kind, units, caption, diagonals))
-    several = "both points" if len(coupled.ports) == 2 else "all points"
-    if stiff:
-        line = (
-            f"Stiffness is with {several} held but for one motion. Blocks left out are the "
-            "transposed ones."
-        )
-    else:
-        line = "The points move almost as one, so that a stiffness between them has no digits."
-    say(line)
-    if coupled.free_names:
-        names = ", ".join(coupled.free_names)
-        line = (
-            f"Free: {names} of {several} together; only their relative motion is resisted, and "
-            "has no entry in the compliance."
-        )
-        say(line)
+    return Table("", columns, list(combinations_with_replacement(coupled.ports, 2)), note)

@@ -8,8 +8,8 @@ from functools import cached_property
 
 import numpy as np
 
+from solidgear.backlash.periodic import Backlash, Largest, Range, range_of
 from solidgear.backlash.solver.run_up import FEWEST_CYCLES, MOST_CYCLES, RunUp, run_up
-from solidgear.backlash.torque import Backlash, Range
 from solidgear.core import SolidgearError
 
 
@@ -27,6 +27,11 @@ class SpeedRun:
         meshes = zip((self.run, *self.run.other_links), self.backlash.meshes)
         return tuple(SpeedRun(self.ramp, run, backlash) for run, backlash in meshes)
 
+    @property
+    def way(self) -> str:
+        """Direction in a word."""
+        return "up" if self.ramp > 0 else "down"
+
     @cached_property
     def frequency_hz(self) -> np.ndarray:
         """Frequency (c,) in the middle of each mesh cycle."""
@@ -38,10 +43,10 @@ class SpeedRun:
         return self.run.swing
 
     @property
-    def loudest(self) -> tuple[float, float]:
-        """Frequency and size of the largest dynamic mesh force."""
+    def loudest(self) -> Largest:
+        """The largest dynamic mesh force."""
         k = int(self.force.argmax())
-        return float(self.frequency_hz[k]), float(self.force[k])
+        return Largest(float(self.frequency_hz[k]), float(self.force[k]))
 
     @cached_property
     def parted(self) -> np.ndarray:
@@ -55,7 +60,7 @@ class SpeedRun:
         do.
         """
         hz = self.frequency_hz[self.parted]
-        return Range(float(hz.min()), float(hz.max())) if len(hz) else None
+        return range_of(hz) if len(hz) else None
 
     @cached_property
     def steady_force(self) -> np.ndarray:
@@ -92,7 +97,7 @@ def ramp_of(rpm: float, teeth: float, low: float, high: float) -> float:
 
 
 def speed_run(
-    backlash: Backlash, ramp: float, progress: Callable[[str], None] | None = None
+    backlash: Backlash, ramp: float, progress: Callable[[str], None] = lambda text: None
 ) -> SpeedRun:
     """Integrate a run from one end of a branch to the other in time, by a ramp of the mesh
     frequency, Hz/s; below zero it falls from the highest.
@@ -101,11 +106,11 @@ def speed_run(
     begin, end = ends.tolist() if ramp > 0 else ends[::-1].tolist()
     point = backlash.points[0 if ramp > 0 else -1]
 
-    word, tenth = "up" if ramp > 0 else "down", -1
+    word, tenth = ("up" if ramp > 0 else "down"), -1
 
     def share(fraction: float) -> None:
         nonlocal tenth
-        if progress and int(10 * fraction) > tenth:
+        if int(10 * fraction) > tenth:
             tenth = int(10 * fraction)
             progress(f"run {word}, {10 * tenth} %")
 

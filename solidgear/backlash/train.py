@@ -23,11 +23,12 @@ from time import process_time
 
 import numpy as np
 
-from solidgear.backlash.apart import largest_multipliers, search_branches
-from solidgear.backlash.solver.continuation import follow
+from solidgear.backlash.periodic import AtForce, Backlash, Teeth
+from solidgear.backlash.solver.apart import search
+from solidgear.backlash.solver.continuation import Branch, follow
 from solidgear.backlash.solver.model import Remainder, remainder
 from solidgear.backlash.solver.motion import Steady, sweep
-from solidgear.backlash.torque import AtForce, Backlash, Teeth
+from solidgear.backlash.solver.stability import multipliers
 from solidgear.core import SceneError, SolidgearError, System
 from solidgear.core.system.gear_mesh import MeshVector, to_gear_frame
 from solidgear.core.system.law import Gap
@@ -53,6 +54,8 @@ FADED = 1e-4
 CYCLE_ORDERS, CYCLE_PLACES = 8, 4096
 #: a row that turns by less than this of the mean one is rounding
 STILL = 1e-12
+#: share of a mean force that the linear one must exceed where branches apart are looked for
+LIVELY = 0.2
 #: rotation about the shaft, of six components
 AXIAL = 4
 
@@ -164,8 +167,8 @@ def backlash_model(
     system, turning, name = assembly.system(*models), turning_line(assembly, pair), pair.name
     force = teeth.mean_force
     if turning is not None:
-        links = {**system.links, name: turning.mean_of(mesh_of(system, name))}
-        system = System(system.parts, links)
+        mean = replace(mesh_of(system, name), row=turning.mean[:6], to_row=turning.mean[6:])
+        system = System(system.parts, {**system.links, name: mean})
         force *= float(turning.mean[AXIAL] / assembly.contacts[name].pinion.vector[AXIAL])
     load = rotor_loads(assembly, torque_of(assembly, name, force))
     system = parting(system, teeth, damped)
@@ -173,7 +176,9 @@ def backlash_model(
     sways = {}
     if turning is not None and len(turning.further):
         # both rows turned as that of the mean line is
-        sways[name] = turning.further_of(mesh_of(system, name)), -turning.orders
+        rows, to_rows = turning.further[:, :6], turning.further[:, 6:]
+        further = replace(mesh_of(system, name), row=rows, to_row=to_rows, law=None)
+        sways[name] = further, -turning.orders
     return remainder(
         system,
         loss=loss,
@@ -234,7 +239,7 @@ def with_backlash(
     teeth: Teeth,
     highest_hz: float | None = None,
     lowest_hz: float | None = None,
-    progress: Callable[[str], None] | None = None,
+    progress: Callable[[str], None] = lambda text: None,
     search_speeds: int = 0,
 ) -> Backlash:
     """Compute the periodic motion of a train whose teeth have backlash, by models of the shafts,
@@ -257,8 +262,8 @@ def with_backlash(
     most = max(assembly.train.ask.max_frequency, highest)
     mix = assembly.models_by_shaft(models)
     model = backlash_model(assembly, models, teeth, most)
-    if progress:
-        progress(f"branch of {' + '.join(mix.values())}")
+    label = " + ".join(mix.values())
+    progress(f"branch of {label}")
     branch = follow(model, 2 * np.pi * lowest, 2 * np.pi * highest, step=STEP)
     backlash = Backlash(
         models=mix,
@@ -270,14 +275,47 @@ def with_backlash(
     )
     if not search_speeds:
         return backlash
-    if progress:
-        progress(f"separate branches of {' + '.join(mix.values())}")
+    progress(f"separate branches of {label}")
     with_branches = search_branches(backlash, search_speeds, STEP)
     return replace(with_branches, seconds=process_time() - begin)
 
 
+def search_branches(backlash: Backlash, count: int, step: float) -> Backlash:
+    """Return the same with the branches apart that are found from starts at so many speeds."""
+    omega = 2 * np.pi * _start_frequencies(backlash, count)
+    results = search(backlash.branch, omega.tolist(), step)
+    branches = tuple(
+        replace(
+            backlash,
+            branch=branch.branch,
+            multiplier=largest_multipliers(branch.branch),
+            periods=branch.periods,
+            end=branch.end,
+        )
+        for branch in results.branches
+    )
+    return replace(backlash, search=results, branches_apart=branches)
+
+
+def largest_multipliers(branch: Branch) -> np.ndarray:
+    """Return the (p,) largest multiplier of each motion."""
+    return np.array([multipliers(point)[0] for point in branch.points])
+
+
+def _start_frequencies(backlash: Backlash, count: int) -> np.ndarray:
+    """Return frequencies in even ratios over those at which the linear force of some mesh exceeds a
+    share of the mean, or over all where the mesh varies, Hz.
+    """
+    hz = backlash.frequency_hz
+    if not backlash.teeth.varies:
+        hz = backlash.linear[0]
+        lively = [mesh.linear[1] > LIVELY * mesh.teeth.mean_force for mesh in backlash.meshes]
+        hz = hz[np.any(lively, axis=0)]
+    return np.geomspace(hz.min(), hz.max(), count) if len(hz) else hz
+
+
 def over_force(
-    backlash: Backlash, count: int, progress: Callable[[str], None] | None = None
+    backlash: Backlash, count: int, progress: Callable[[str], None] = lambda text: None
 ) -> tuple[AtForce, ...]:
     """Return the jumps at so many mean forces of the driven teeth, equally apart, up to that above
     which none part.
@@ -286,8 +324,7 @@ def over_force(
     out = []
     for share in np.arange(1, count + 1) / count:
         force = float(share * most)
-        if progress:
-            progress(f"mean force {force:.0f} N")
+        progress(f"mean force {force:.0f} N")
         mean = backlash.remainder.mean * (force / backlash.teeth.mean_force)
         ends = backlash.branch.omega[0], backlash.branch.omega[-1]
         branch = follow(replace(backlash.remainder, mean=mean), *map(float, ends), step=STEP)
@@ -316,7 +353,7 @@ class InTime:
 
 
 def in_time(
-    backlash: Backlash, count: int, progress: Callable[[str], None] | None = None
+    backlash: Backlash, count: int, progress: Callable[[str], None] = lambda text: None
 ) -> tuple[InTime, ...]:
     """Sweep up and down by integration in time, over so many speeds at which the teeth part, from
     the motions of the branch at both ends.
@@ -329,8 +366,7 @@ def in_time(
     rising_hz = np.linspace(low, high, count)
     out: list[InTime] = []
     for rising, hz in ((True, rising_hz), (False, rising_hz[::-1])):
-        if progress:
-            progress(f"in time, speed {'rising' if rising else 'falling'}")
+        progress(f"in time, speed {'rising' if rising else 'falling'}")
         begin = backlash.branch.at(2 * np.pi * float(hz[0]))[0 if rising else -1].state()
         steady = sweep(backlash.remainder, (2 * np.pi * hz).tolist(), state=begin, steady=FADED)
         out += [_nearest_motion(backlash, motion, rising) for motion in steady]
@@ -351,14 +387,6 @@ class TurningLine:
     mean: np.ndarray  #: (12,) row of the mean line on the pinion, and on the gear
     further: np.ndarray  #: (r, 12) rows by which it turns
     orders: np.ndarray  #: (o, r) how much of each, by orders of the mesh
-
-    def mean_of(self, mesh: RowSpring) -> RowSpring:
-        """Return the teeth along the mean line."""
-        return replace(mesh, row=self.mean[:6], to_row=self.mean[6:])
-
-    def further_of(self, mesh: RowSpring) -> RowSpring:
-        """Return rows by which it turns, between the same ports."""
-        return replace(mesh, row=self.further[:, :6], to_row=self.further[:, 6:], law=None)
 
 
 def orders_of(angle: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

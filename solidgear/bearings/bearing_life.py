@@ -1,17 +1,19 @@
-"""Lives of the catalogue bearings of a scene, with their ranges by unknown inner dimensions."""
+"""Life of a catalogue bearing, with its range by unknown data of the bearings."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from solidgear.bearings.catalogue import catalogue_of
 from solidgear.bearings.catalogued import Catalogued, End
 from solidgear.bearings.life import Life, life
-from solidgear.bearings.solved import AS_STATED, Choice, solved
-from solidgear.core import Bearing, Body, Scene
+from solidgear.bearings.solved import AS_STATED, Choice
+from solidgear.core import Bearing, Scene
+from solidgear.core.plain import plain
 from solidgear.core.scene import Lubrication
 
 #: a bearing and the motion (6,) of its inner ring
@@ -26,51 +28,54 @@ class BearingLife:
     life: Life  #: at the middle of the unknown data
     speed: float  #: rad/s; 0 where none is known
     #: names of unknown data of this bearing and of those that share the load; empty if all are known
-    told: str
+    unknown: str
     ends: tuple[Life, ...]  #: at all corners of the unknown data
 
+    @property
+    def lives(self) -> dict[str, float]:
+        """Lives by kind, revolutions: ``basic``, ``reference`` and, where there is one, ``modified``."""
+        lives = {"basic": self.life.basic, "reference": self.life.reference}
+        if self.life.modified is not None:
+            lives["modified"] = self.life.modified.life
+        return lives
+
     def range(self, kind: str) -> tuple[float, float]:
-        """Return the least and largest life, revolutions, ``basic``, ``reference`` or ``modified``
-        (that also over the cleanliness that a word means); equal where everything is known.
+        """Return the least and largest life of a kind, revolutions (a modified one also over the
+        cleanliness that a word means); equal where everything is known.
         """
         lives = [value for life in (self.life, *self.ends) for value in _lives(life, kind)]
         return min(lives), max(lives)
 
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain data in SI for JSON; infinite lives are None."""
+        life, rated = self.life, self.life.rated
+        data = {
+            "speed": self.speed or None,
+            "basic": life.basic,
+            "reference": life.reference,
+            "modified": life.modified,
+            "no_modified_life": life.without,
+            "range": {kind: self.range(kind) for kind in self.lives},
+            "not_known": self.unknown,
+            "equivalent_load": life.equivalent,
+            "reference_load": life.reference_load,
+            "static_load": life.static_load,
+            "static_safety": life.static_safety,
+            "ratings": {
+                "C": rated.dynamic,
+                "C0": rated.static,
+                "Cu": rated.fatigue,
+                "sources": rated.sources,
+            },
+            "notes": life.notes,
+        }
+        return plain(data)
 
-def _lives(bearing_life: Life, kind: str) -> tuple[float, ...]:
-    if kind != "modified":
-        return (getattr(bearing_life, kind),)
-    return (bearing_life.modified.low, bearing_life.modified.high) if bearing_life.modified else ()
 
-
-def bearing_lives(
-    scene: Scene, body: Body | None = None, speed: float | None = None
-) -> list[BearingLife]:
-    """Compute the life of every catalogue bearing of a scene at its load; `body` is the shaft, needed
-    where bearings settle under the load, and `speed` that of the shaft, rad/s, in place of the speeds
-    of bearings and lubrication.
-
-    Examples
-    --------
-    >>> import solidgear as sg
-    >>> scene = sg.load("geometry/gearbox_catalogue.toml")
-    >>> lives = bearing_lives(scene, sg.build(scene, "timoshenko"))
-    >>> [(bearing.name, round(bearing.life.basic / 1e9, 1)) for bearing in lives]
-    [('A', 13.8), ('B', 23.1)]
-    """
-    label, choices = left_open([scene])
-    states = [solved(scene, body, choice) for choice in (AS_STATED, *choices)]
-    return [
-        life_of(
-            bearing,
-            scene.lubrication,
-            label,
-            speed,
-            [(state.made[bearing.name], state.motion[bearing.name]) for state in states],
-        )
-        for bearing in scene.bearings
-        if bearing.catalogue is not None
-    ]
+def _lives(life: Life, kind: str) -> tuple[float, ...]:
+    if kind == "modified":
+        return (life.modified.low, life.modified.high) if life.modified else ()
+    return (life.basic if kind == "basic" else life.reference,)
 
 
 def left_open(scenes: Iterable[Scene]) -> tuple[str, list[Choice]]:

@@ -43,6 +43,13 @@ _SPHERICAL = {
     "C3": "35-45 35-45 40-55 45-60 55-75 65-90 80-110 100-135 120-160",
     "C4": "45-60 45-60 55-75 60-80 75-100 90-120 110-145 135-180 160-210",
 }
+#: classes by kind; other kinds have none
+TABLES = {
+    "deep_groove": _BALLS,
+    "cylindrical": _ROLLERS,
+    "needle": _ROLLERS,
+    "spherical": _SPHERICAL,
+}
 
 
 def clearance_range(data: Catalogue) -> tuple[float, float]:
@@ -51,12 +58,11 @@ def clearance_range(data: Catalogue) -> tuple[float, float]:
     """
     if not isinstance(data.clearance, str):
         return data.clearance, data.clearance
-    table = {True: _BALLS, False: _ROLLERS}[data.balls]
-    table = _SPHERICAL if data.kind == "spherical" else table
-    if data.nature.holds == "one way":
+    table = TABLES.get(data.kind)
+    if table is None:
+        instead = "a length, or a preload" if data.nature.holds == "one way" else "a length"
         raise SceneError(
-            f"{data.kind.replace('_', ' ')} bearings have no clearance class; write a length, or a "
-            "preload",
+            f"{data.kind.replace('_', ' ')} bearings have no clearance class; write {instead}",
             path=("clearance",),
         )
     bore = data.bore * 1e3

@@ -9,8 +9,11 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
+from solidgear.bearings.bearing_life import BearingLife
 from solidgear.core import SceneError
+from solidgear.core.plain import plain
 from solidgear.core.scene.units import TYPED
 
 
@@ -81,3 +84,62 @@ def _shares(points: Sequence[DutyPoint]) -> list[float]:
     if total == 0:
         raise SceneError("the hours of a duty table sum to zero; at least one point must last")
     return [part / total for part in parts]
+
+
+@dataclass(frozen=True)
+class PointLife:
+    """Life of a bearing at an operating point."""
+
+    label: str  #: of the point
+    life: BearingLife
+    share: float | None = None  #: of the time
+    hours: float | None = None  #: in place of a share
+
+
+@dataclass(frozen=True)
+class LivesOverPoints:
+    """Lives of a bearing at all operating points of a train."""
+
+    name: str  #: shaft and bearing, such as ``pinion.A``
+    points: tuple[PointLife, ...]
+
+    @property
+    def kind(self) -> str:
+        """Kind of life that duty adds up: the modified one where every loaded point has it."""
+        loaded = [p.life for p in self.points if math.isfinite(p.life.life.reference)]
+        modified = loaded and all("modified" in life.lives for life in loaded)
+        return "modified" if modified else "reference"
+
+    @property
+    def duty(self) -> DutyLife | None:
+        """Life over the duty table; None where the points give neither speed nor shares."""
+        single = len(self.points) == 1
+        weighted = single or all(p.share is not None or p.hours is not None for p in self.points)
+        if not weighted or not all(p.life.speed for p in self.points):
+            return None
+        return duty_life(
+            [
+                DutyPoint(
+                    p.life.lives.get(self.kind, p.life.life.reference),
+                    p.life.speed,
+                    1.0 if single else p.share,
+                    None if single else p.hours,
+                )
+                for p in self.points
+            ]
+        )
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain data in SI for JSON; infinite lives are None."""
+        points = [{"at": point.label} | point.life.as_dict() for point in self.points]
+        duty = self.duty
+        over_points = None
+        if duty is not None:
+            over_points = {
+                "hours": duty.hours,
+                "revolutions": duty.revolutions,
+                "of": self.kind,
+                "damage": duty.damage,
+                "worst": duty.worst,
+            }
+        return plain({"bearing": self.name, "points": points, "duty": over_points})

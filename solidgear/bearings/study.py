@@ -3,19 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
+from solidgear.bearings.bearing_life import BearingLife, left_open, life_of
 from solidgear.bearings.catalogue import Catalogue, catalogue_of
 from solidgear.bearings.catalogued import Catalogued
 from solidgear.bearings.row import Contacts
-from solidgear.bearings.solved import Choice, Solved, solved
+from solidgear.bearings.solved import AS_STATED, Choice, Solved, solved
 from solidgear.core import Bearing, Body, Scene, SceneError, SolidgearError, show
+from solidgear.core.plain import plain
 from solidgear.core.scene import BearingLoad
 
 #: why one row of a pair carries nothing
 LOST = "any more: the pair has lost its preload"
+#: why a stiffness has no range
+ALL_GIVEN = "all inner dimensions are given"
+#: soft and stiff ends of the estimated dimensions
+ENDS = (Choice(end="softer"), Choice(end="stiffer"))
 #: factors on the load of the scene
 FACTORS = tuple(float(f) for f in np.geomspace(0.05, 2.0, 21))
 
@@ -27,8 +34,10 @@ class BearingFacts:
     bearing: Bearing  #: with its stiffness there
     made: Catalogued  #: rows made from its data
     motion: np.ndarray  #: (6,) motion of its inner ring
-    #: least and largest diagonal (6,) of the stiffness over the range of estimated dimensions
+    #: least and largest diagonal (6,) of the stiffness over the range of estimated dimensions; None
+    #: where all inner dimensions are given
     spread: tuple[np.ndarray, np.ndarray] | None
+    life: BearingLife
 
     @property
     def name(self) -> str:
@@ -84,24 +93,59 @@ class BearingFacts:
         bare = [k for k, row in enumerate(self.rows) if not row.load.any()]
         if len(bare) == len(self.rows):
             return ("it carries nothing: it has lost its load, and has no stiffness",)
-        why = "under this thrust" if self.data.own_rows > 1 else LOST
+        reason = "under this thrust" if self.data.own_rows > 1 else LOST
         return tuple(
-            f"the row at the {'upper' if k else 'lower'} end of y carries nothing {why}"
+            f"the row at the {'upper' if k else 'lower'} end of y carries nothing {reason}"
             for k in bare
         )
 
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain data in SI for JSON."""
+        rows = [
+            {
+                "azimuth": row.azimuth,
+                "load": row.load,
+                "contact_angle": row.angle,
+                "pressure_inner": row.inner,
+                "pressure_outer": row.outer,
+            }
+            for row in self.rows
+        ]
+        data = {
+            "name": self.name,
+            "kind": self.data.kind,
+            "designation": self.data.designation,
+            "status": self.bearing.status,
+            "support": self.bearing.support or None,
+            "inside": self.inside,
+            "estimated": self.made.estimated,
+            "clearance": self.made.clearance,
+            "load": self.load,
+            "displacement": self.motion,
+            "stiffness": self.stiffness,
+            "spread": self.spread,
+            "no_spread": ALL_GIVEN if self.spread is None else "",
+            "rows": rows,
+            "notes": self.notes,
+            "life": self.life.as_dict(),
+        }
+        return plain(data)
 
-def bearing_facts(scene: Scene, body: Body | None = None) -> list[BearingFacts]:
+
+def bearing_facts(
+    scene: Scene, body: Body | None = None, speed: float | None = None
+) -> list[BearingFacts]:
     """Compute every catalogue bearing of a scene at its load; `body` is the shaft, needed where
-    bearings settle under the load.
+    bearings settle under the load, and `speed` that of the shaft, rad/s, in place of the speeds of
+    bearings and lubrication.
 
     Examples
     --------
     >>> import solidgear as sg
     >>> scene = sg.load("geometry/gearbox_catalogue.toml")
     >>> facts = bearing_facts(scene, sg.build(scene, "timoshenko"))
-    >>> [(fact.name, fact.data.kind, len(fact.rows)) for fact in facts]
-    [('A', 'cylindrical', 1), ('B', 'angular_contact', 2)]
+    >>> [(fact.name, fact.data.kind, round(fact.life.life.basic / 1e9, 1)) for fact in facts]
+    [('A', 'cylindrical', 13.8), ('B', 'angular_contact', 23.1)]
     """
     bearings = [b for b in scene.bearings if b.catalogue is not None]
     if not bearings:
@@ -109,22 +153,26 @@ def bearing_facts(scene: Scene, body: Body | None = None) -> list[BearingFacts]:
             f"{scene.name}: no bearing is described by catalogue data; write [bearing.catalogue] "
             "in place of [bearing.stiffness], as in geometry/gearbox_catalogue.toml"
         )
-    middle = solved(scene, body)
-    ends: dict[str, Solved] = {}
-    if any(made.estimated for made in middle.made.values()):
-        ends = {end: solved(scene, body, Choice(end=end)) for end in ("softer", "stiffer")}
-    return [_facts(bearing.name, middle, ends) for bearing in bearings]
-
-
-def _facts(name: str, middle: Solved, ends: dict[str, Solved]) -> BearingFacts:
-    rows, spread = middle.made[name], None
-    if rows.estimated:
-        # an even number of elements under the load is another bearing than an odd one: the middle
-        # need not lie between
-        solutions = (middle, *ends.values())
-        diagonals = [np.diag(np.array(_named(s, name).matrix)) for s in solutions]
-        spread = (np.min(diagonals, axis=0), np.max(diagonals, axis=0))
-    return BearingFacts(_named(middle, name), rows, middle.motion[name], spread)
+    unknown, corners = left_open([scene])
+    choices = [AS_STATED, *corners]
+    if any(data.estimated for data in map(catalogue_of, bearings) if data is not None):
+        choices += [end for end in ENDS if end not in choices]
+    states = [solved(scene, body, choice) for choice in choices]
+    over_estimates = [states[choices.index(c)] for c in (AS_STATED, *ENDS) if c in choices]
+    facts = []
+    for bearing in bearings:
+        name = bearing.name
+        places = [(state.made[name], state.motion[name]) for state in states[: 1 + len(corners)]]
+        made, motion = places[0]
+        spread = None
+        if made.estimated:
+            # an even number of elements under the load is another bearing than an odd one: the
+            # middle need not lie between
+            diagonals = [np.diag(np.array(_named(s, name).matrix)) for s in over_estimates]
+            spread = (np.min(diagonals, axis=0), np.max(diagonals, axis=0))
+        life = life_of(bearing, scene.lubrication, unknown, speed, places)
+        facts.append(BearingFacts(_named(states[0], name), made, motion, spread, life))
+    return facts
 
 
 def _named(solution: Solved, name: str) -> Bearing:
@@ -136,7 +184,6 @@ class OverLoad:
     """Stiffness of a bearing over the load."""
 
     factors: np.ndarray  #: (n,) on the load of the scene
-    load: np.ndarray  #: (n, 6) load on the bearing
     middle: np.ndarray  #: (n, 6) diagonal of its stiffness
     low: np.ndarray  #: its least value over the range of estimated dimensions
     high: np.ndarray  #: its largest
@@ -148,66 +195,35 @@ def over_load(
     """Compute the stiffness of every catalogue bearing at multiples of the load of the scene;
     `body` is the shaft, needed where bearings settle under the load.
     """
-    names = [b.name for b in scene.bearings if b.catalogue is not None]
-    loads: dict[str, list] = {name: [] for name in names}
-    diagonals: dict[tuple[str, str], list] = {}
-    for end in ("middle", "softer", "stiffer"):
+    diagonals: dict[str, list] = {b.name: [] for b in scene.bearings if b.catalogue is not None}
+    for end in (AS_STATED, *ENDS):
         start = None
         for factor in factors:
-            state = solved(scene, body, Choice(end=end, load=factor), start)
+            state = solved(scene, body, replace(end, load=factor), start)
             start = state.equilibrium
-            for name in names:
-                bearing, motion = state.made[name].bearing, state.motion[name]
-                diagonals.setdefault((name, end), []).append(np.diag(bearing.tangent(motion)))
-                if end == "middle":
-                    loads[name].append(bearing.load(motion))
+            for name, rows in diagonals.items():
+                rows.append(np.diag(state.made[name].bearing.tangent(state.motion[name])))
     curves = {}
-    for name in names:
-        ends = np.array([diagonals[name, end] for end in ("middle", "softer", "stiffer")])
-        at_load = np.array(loads[name])
-        curves[name] = OverLoad(
-            np.array(factors), at_load, ends[0], ends.min(axis=0), ends.max(axis=0)
-        )
+    for name, rows in diagonals.items():
+        ends = np.reshape(rows, (-1, len(factors), 6))
+        low, high = ends.min(axis=0), ends.max(axis=0)
+        curves[name] = OverLoad(np.array(factors), ends[0], low, high)
     return curves
 
 
-def with_load(scene: Scene, load: dict[str, str | float], bearing: str | None) -> Scene:
-    """Return the scene with a load of the components `load` on its port or on the bearing of a
-    name.
-    """
-    new = BearingLoad(**load)
-    if bearing is None:
-        free = tuple(
-            b
-            if b.catalogue is None
-            else b.with_changes(catalogue=b.catalogue.with_changes(load=None))
-            for b in scene.bearings
-        )
-        return scene.with_changes(load=new, bearings=free)
-    catalogues = {b.name: b.catalogue for b in scene.bearings if b.catalogue is not None}
-    if bearing not in catalogues:
-        raise SolidgearError(
-            f"--bearing {bearing}: no bearing of catalogue data has this name; known here: "
-            f"{', '.join(catalogues) or 'none'}"
-        )
-    data = catalogues[bearing].with_changes(load=new, displacement=None)
-    changed = (b.with_changes(catalogue=data) if b.name == bearing else b for b in scene.bearings)
-    return scene.with_changes(bearings=tuple(changed))
-
-
 def loaded_by(scene: Scene, load: str, bearing: str | None = None) -> Scene:
-    """A scene under a load of the command line such as ``x=2 kN, z=-500 N``, on its port or on one
-    of its bearings; components that are none are refused.
+    """Return the scene under a load of the command line such as ``x=2 kN, z=-500 N``, on the port or
+    on a bearing; refuse components that are none.
     """
     try:
-        return with_load(scene, _components(load), bearing)
+        return _with_load(scene, BearingLoad(**_components(load)), bearing)
     except SceneError as error:
         raise SolidgearError(f"--load {show(load)}: {error}") from None
 
 
-def _components(text: str) -> dict[str, str | float]:
-    """Components of a load from ``x=2 kN, z=500``."""
-    found: dict[str, str | float] = {}
+def _components(text: str) -> dict[str, Any]:
+    """Return the components of a load from ``x=2 kN, z=500``."""
+    components: dict[str, Any] = {}
     for part in text.split(","):
         key, sep, value = (piece.strip() for piece in part.partition("="))
         if not sep or not value:
@@ -215,7 +231,27 @@ def _components(text: str) -> dict[str, str | float]:
                 f'--load {show(text)}: write components such as "x=2 kN, z=-500 N, thx=10 N*m"'
             )
         try:
-            found[key] = float(value)
+            components[key] = float(value)
         except ValueError:
-            found[key] = value
-    return found
+            components[key] = value
+    return components
+
+
+def _with_load(scene: Scene, load: BearingLoad, bearing: str | None) -> Scene:
+    """Return the scene with a load on the port, or on the bearing of a name."""
+    catalogues = {b.name: b.catalogue for b in scene.bearings if b.catalogue is not None}
+    if bearing is None:
+        catalogues = {name: data.with_changes(load=None) for name, data in catalogues.items()}
+    elif bearing in catalogues:
+        catalogues = {bearing: catalogues[bearing].with_changes(load=load, displacement=None)}
+    else:
+        raise SolidgearError(
+            f"--bearing {bearing}: no bearing of catalogue data has this name; known here: "
+            f"{', '.join(catalogues) or 'none'}"
+        )
+    bearings = tuple(
+        b.with_changes(catalogue=catalogues[b.name]) if b.name in catalogues else b
+        for b in scene.bearings
+    )
+    on_port = {"load": load} if bearing is None else {}
+    return scene.with_changes(bearings=bearings, **on_port)

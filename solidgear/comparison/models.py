@@ -6,30 +6,27 @@ import functools
 import logging
 import os
 from collections.abc import Callable, Collection
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, overload
 
 from solidgear.comparison.page.write import write_all
-from solidgear.comparison.recording import recorded
+from solidgear.comparison.recording import Findings, recorded
 from solidgear.comparison.two.two_shafts import two_shafts
 from solidgear.core import (
     HARMONIC,
     LADDER,
     Displayed,
-    OpenNumbers,
     Record,
     Scene,
     SolidgearError,
     Solution,
-    WhereRecord,
     change,
     pinned,
     without_axis,
 )
 from solidgear.core.judge.causes import SHOWN, attachment_causes, beam_causes, shoulder_cause
 from solidgear.core.judge.lumped import synthesise_all
-from solidgear.core.judge.record import CauseRecord, GuardRecord, LumpedRecord
 from solidgear.core.judge.study import study
 from solidgear.core.judge.ties import SECTION
 from solidgear.core.judge.where import recorded_places
@@ -185,48 +182,24 @@ def compare(
     models = LADDER.names if models is None else models
     check_models(models)
     options = {m: dict((settings or {}).get(m, {})) for m in LADDER.bodies}
-    findings = _Findings()
-    complete = True
-    open_ = OpenNumbers()
+    findings = Findings()
     overall = Meter()
     with overall.stage("all"), one_run() as run:
         try:
             _run(scene, models, options, findings, progress)
             progress("what the data leave open")
-            open_ = opened(scene)
+            findings.open_ = opened(scene)
         except KeyboardInterrupt:
-            complete = False
+            findings.complete = False
             progress("interrupted; keeping what is there")
-    record = recorded(
-        scene,
-        findings.solutions,
-        findings.failed,
-        findings.causes,
-        findings.lumped,
-        findings.guards,
-        complete,
-    )
-    record.where = findings.where
-    record.open = open_
+    record = recorded(scene, findings)
     record.seconds_total = overall.seconds["all"]
     record.peak_mb = overall.peak_mb
     record.expected_peak_mb = run.expected_mb
     return Comparison(scene, record, findings.solutions)
 
 
-@dataclass
-class _Findings:
-    """Findings of a comparison so far; an interrupt leaves them whole."""
-
-    solutions: dict[str, Solution] = field(default_factory=dict)
-    failed: dict[str, str] = field(default_factory=dict)
-    causes: list[CauseRecord] = field(default_factory=list)
-    lumped: dict[str, LumpedRecord] = field(default_factory=dict)
-    guards: list[GuardRecord] = field(default_factory=list)
-    where: WhereRecord | None = None
-
-
-def _run(scene: Scene, models, options, findings: _Findings, progress: Progress) -> None:
+def _run(scene: Scene, models, options, findings: Findings, progress: Progress) -> None:
     lumped = bool(set(LADDER.of(LUMPED)) & set(models))
     # a model that was named is reported where it does not fit
     bodies = LADDER.fit(scene) if set(models) >= set(LADDER.names) else LADDER.bodies
@@ -271,7 +244,7 @@ def _after_a_solid(model: str, done: Collection[str]) -> bool:
     return model in solids and any(s in done for s in solids if s != model)
 
 
-def _circumference(scene: Scene, model: str, options: dict, findings: _Findings) -> dict:
+def _circumference(scene: Scene, model: str, options: dict, findings: Findings) -> dict:
     """Return the options of a model that divides the circumference into cells, with as many cells
     as the modes need that the harmonic solid found in the range asked for.
     """

@@ -1,11 +1,27 @@
-"""Record of a comparison, built from the solutions."""
+"""Record of a comparison, built from the solutions or read from a file."""
 
 from __future__ import annotations
 
-from dataclasses import asdict
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from typing import Any
 
-from solidgear.core import COMPLIANCE, DOF_NAMES, FIRST_BENDING, LADDER, SCENE, Record, Solution
+from pydantic import ValidationError
+
+from solidgear.core import (
+    COMPLIANCE,
+    DOF_NAMES,
+    FIRST_BENDING,
+    LADDER,
+    SCENE,
+    OpenNumbers,
+    Quantity,
+    Record,
+    Scene,
+    SolidgearError,
+    Solution,
+    WhereRecord,
+)
 from solidgear.core.judge.at_rest import spin_caution
 from solidgear.core.judge.bars import ErrorBar
 from solidgear.core.judge.completeness import completeness, cut_short, split_apart
@@ -15,6 +31,7 @@ from solidgear.core.judge.hidden import COMPLETE, less_widest
 from solidgear.core.judge.lumped import model_facts, model_record
 from solidgear.core.judge.quantities import usual
 from solidgear.core.judge.record import (
+    SCHEMA,
     BarRecord,
     BarSummary,
     CauseRecord,
@@ -31,28 +48,30 @@ from solidgear.core.judge.record import (
     PortRecord,
     VariantRecord,
 )
-from solidgear.core.judge.solving import ENOUGH, Answer, Statics
+from solidgear.core.judge.solving import ENOUGH, Answer
 from solidgear.core.judge.verdict import Judgement, judge, percent, trusted
 from solidgear.core.ladder.model import LUMPED, SOLID
 from solidgear.core.machine.environment import environment
 from solidgear.core.solve.mixtures import mixtures
 
-if TYPE_CHECKING:
-    from solidgear.core import Scene
+
+@dataclass
+class Findings:
+    """Findings of a comparison so far; an interrupt leaves them whole."""
+
+    solutions: dict[str, Solution] = field(default_factory=dict)
+    failed: dict[str, str] = field(default_factory=dict)  #: why models could not be solved
+    causes: list[CauseRecord] = field(default_factory=list)
+    lumped: dict[str, LumpedRecord] = field(default_factory=dict)
+    guards: list[GuardRecord] = field(default_factory=list)
+    where: WhereRecord | None = None
+    open_: OpenNumbers = field(default_factory=OpenNumbers)
+    complete: bool = True  #: False after an interrupt
 
 
-def recorded(
-    scene: Scene,
-    solutions: dict[str, Solution],
-    failed: dict[str, str],
-    causes: list[CauseRecord],
-    lumped: dict[str, LumpedRecord],
-    guards: list[GuardRecord],
-    complete: bool,
-) -> Record:
-    """Build the record of a comparison; `failed` holds the reasons of models that could not be
-    solved, and `complete` is False after an interrupt.
-    """
+def recorded(scene: Scene, findings: Findings) -> Record:
+    """Build the record of a comparison."""
+    solutions, guards = findings.solutions, findings.guards
     trust, _ = trusted(solutions, scene.ask.tolerance, usual(scene))
     # Where nothing may judge, the distances are still reported; they are no judgement.
     reference = trust or next((m for m in LADDER.judges if m in solutions), None)
@@ -63,28 +82,33 @@ def recorded(
     for model in LADDER.bodies:
         if model in solutions:
             models[model] = _model_record(solutions[model], validity[model])
-        elif model in failed:
-            models[model] = ModelRecord(**model_facts(model), valid=False, why_not=failed[model])
+        elif why_not := findings.failed.get(model):
+            models[model] = ModelRecord(**model_facts(model), valid=False, why_not=why_not)
+    ports = _port_records(scene, solutions)
     out = Record(
-        complete=complete,
+        complete=findings.complete,
         scene=scene.as_dict(),
-        port=_port_record(scene, solutions, 0),
-        further_ports=[
-            _port_record(scene, solutions, k) for k in range(1, len(scene.ports)) if solutions
-        ],
-        attachments=_attachments(solutions),
+        port=ports[0],
+        further_ports=ports[1:],
+        attachments={
+            model: {tie: _variant_record(answer) for tie, answer in solution.variants.items()}
+            for model, solution in solutions.items()
+            if solution.variants
+        },
         mac=_mac(solutions, reference),
         deviations=[_deviation_record(gap) for gap in gaps],
-        causes=causes,
-        lumped=lumped,
+        causes=findings.causes,
+        lumped=findings.lumped,
         verdict=verdict,
         guards=guards,
+        where=findings.where,
+        open=findings.open_,
         environment=environment(),
         models=models,
         missing=[LADDER[model].title for model in LADDER.fit(scene) if model not in models],
     )
-    if lumped and reference:
-        _add_lumped(out, solutions[reference], guards, scene.ask.tolerance, scene.ask.lumped)
+    if out.lumped and reference:
+        _add_lumped(out, solutions[reference], scene)
     out.warnings = _warnings(solutions, guards, out.models)
     if listed := solutions.get(reference or next(reversed(solutions), "")):
         error_bars = {str(q): bar.width for q, bar in listed.error_bars.get(SCENE, {}).items()}
@@ -94,17 +118,18 @@ def recorded(
     return out
 
 
-def _port_record(scene: Scene, solutions: dict[str, Solution], k: int) -> PortRecord:
-    port, first = scene.ports[k], next(iter(solutions.values()), None)
-    statics = None if first is None else first.ties[SCENE].statics
-    condensed = None if statics is None else [statics.main, *statics.further.values()][k]
-    return PortRecord(
-        name=port.name,
-        y=port.y,
-        attachment=port.attachment,
-        order=list(DOF_NAMES),
-        free=list(condensed.free_names) if condensed else [],
-    )
+def _port_records(scene: Scene, solutions: dict[str, Solution]) -> list[PortRecord]:
+    """Return all lumped points; before anything is solved the main one."""
+    free: list[list[str]] = [[]]
+    if solutions:
+        statics = next(iter(solutions.values())).ties[SCENE].statics
+        free = [list(at.free_names) for at in (statics.main, *statics.further.values())]
+    return [
+        PortRecord(
+            name=port.name, y=port.y, attachment=port.attachment, order=list(DOF_NAMES), free=names
+        )
+        for port, names in zip(scene.ports, free)
+    ]
 
 
 def _deviation_record(gap: Deviation) -> DeviationRecord:
@@ -112,14 +137,6 @@ def _deviation_record(gap: Deviation) -> DeviationRecord:
     return DeviationRecord(
         band=facts.pop("bar"), **facts, unit=gap.quantity.unit, verdict=gap.verdict
     )
-
-
-def _attachments(solutions: dict[str, Solution]) -> dict[str, dict[str, VariantRecord]]:
-    return {
-        model: {name: _variant_record(answer) for name, answer in solution.variants.items()}
-        for model, solution in solutions.items()
-        if solution.variants
-    }
 
 
 def _warnings(
@@ -132,33 +149,28 @@ def _warnings(
         if about or not notice.models:
             titles = ", ".join(models[m].title for m in about)
             out.append(f"{titles}: {notice.sentence}" if about else notice.sentence)
-    out += [
-        f"{LADDER[m].title}: {part}: {reason}"
-        for m, r in solutions.items()
-        for part, reason in r.failed.items()
-    ]
     for model, solution in solutions.items():
-        out += [f"{LADDER[model].title}: {text}" for text in split_apart(solution.modes.evidence)]
-        out += [
-            f"{LADDER[model].title}: {mixture.sentence}" for mixture in mixtures(solution.modes)
-        ]
+        failed = [f"{part}: {reason}" for part, reason in solution.failed.items()]
+        out += [f"{LADDER[model].title}: {sentence}" for sentence in failed]
+    for model, solution in solutions.items():
+        sentences = [*split_apart(solution.modes.evidence)]
+        sentences += [mixture.sentence for mixture in mixtures(solution.modes)]
+        out += [f"{LADDER[model].title}: {sentence}" for sentence in sentences]
     return out
 
 
-def _add_lumped(
-    record: Record, base: Solution, guards: list[GuardRecord], tolerance: float, synthesis: bool
-) -> None:
+def _add_lumped(record: Record, base: Solution, scene: Scene) -> None:
     """Add the lumped model to the models, and the errors of every synthesis only where they are
     asked for.
     """
-    bar = base.error_bars.get(SCENE, {}).get(FIRST_BENDING)
+    bar, tolerance = base.error_bars.get(SCENE, {}).get(FIRST_BENDING), scene.ask.tolerance
     lumped_model = model_record(
         record.lumped,
         record.models,
         base.quantities.get(FIRST_BENDING),
         tolerance,
         bar.width if bar else None,
-        guards,
+        record.guards,
     )
     if lumped_model is None:
         return
@@ -167,26 +179,25 @@ def _add_lumped(
     verdict = record.verdict
     source = LADDER[lumped_model.source or name]
     masses = f"{lumped_model.variant} masses on the stiffness of the {source.title}"
+    within, only = percent(tolerance), "for first bending and below only"
     if lumped_model.valid and source.family == SOLID:
         verdict.sentences.append(
-            f"A {LADDER[name].title} ({masses}) is within {percent(tolerance)} too, for first "
-            "bending and below only, and costs as much as the solid it is made from."
+            f"A {LADDER[name].title} ({masses}) is within {within} too, {only}, and costs as much "
+            "as the solid it is made from."
         )
     elif lumped_model.valid:
         verdict.cheapest = name
         verdict.sentences = [s for s in verdict.sentences if not s.startswith("Cheapest model")]
-        verdict.sentences.append(
-            f"Cheapest model within {percent(tolerance)}: {LADDER[name].title} "
-            f"({masses}), for first bending and below only."
-        )
+        cheapest = f"{LADDER[name].title} ({masses})"
+        verdict.sentences.append(f"Cheapest model within {within}: {cheapest}, {only}.")
     variants = record.lumped[base.model].variants if base.model in record.lumped else {}
-    if not variants or verdict.trust is None or not synthesis:
+    if not variants or verdict.trust is None or not scene.ask.lumped:
         return
-    errors = [
-        f"{n} {_error(v.frequency_error)}"
-        for n, v in variants.items()
-        if v.feasible and v.frequency_error is not None
-    ]
+    errors = []
+    for name, variant in variants.items():
+        error = variant.frequency_error
+        if variant.feasible and error is not None:
+            errors.append(f"{name} exact" if abs(error) < 1e-9 else f"{name} {100 * error:+.2g} %")
     verdict.sentences.append(
         f"First bending of lumped models made from the {LADDER[base.model].title}: "
         f"{', '.join(errors)}."
@@ -198,69 +209,46 @@ def _add_lumped(
         )
 
 
-def _error(relative: float) -> str:
-    return "exact" if abs(relative) < 1e-9 else f"{100 * relative:+.2g} %"
-
-
 def _model_record(solution: Solution, judgement: Judgement) -> ModelRecord:
-    return ModelRecord(
+    statics, coupled = solution.ties[SCENE].statics, solution.ties[SCENE].statics.coupled
+    bars = solution.error_bars.get(SCENE, {})
+    record = ModelRecord(
         **model_facts(solution.model),
         valid=judgement.valid,
         open=judgement.open,
         why_not=judgement.why_not,
         compliance=solution.condensed.compliance,
         stiffness=solution.condensed.stiffness,
-        points={
-            name: PointRecord.model_validate(condensed)
-            for name, condensed in solution.ties[SCENE].statics.further.items()
-        },
-        coupled=_coupled(solution.ties[SCENE].statics),
+        points={name: PointRecord.model_validate(c) for name, c in statics.further.items()},
         modes=[ModeRecord.model_validate(m) for m in solution.modes.modes],
-        band=_bar_summary(solution),
-        convergence=_convergence(solution),
         dofs=solution.body.size,
         seconds=solution.meter.total(),
         peak_mb=solution.meter.peak_mb,
         backend=solution.condensed.evidence["backend"],
         mesh=solution.body.mesh,
-        evidence=_evidence(solution),
+        evidence=_evidence(solution, bars),
     )
-
-
-def _coupled(statics: Statics) -> CoupledRecord | None:
-    coupled = statics.coupled
-    if coupled is None:
-        return None
-    return CoupledRecord(
-        ports=list(coupled.ports),
-        stiffness=coupled.stiffness,
-        compliance=coupled.compliance,
-        stiffness_error=coupled.evidence["stiffness_error"],
-    )
-
-
-def _bar_summary(solution: Solution) -> BarSummary | None:
-    error_bars = solution.error_bars.get(SCENE, {})
-    if not error_bars:
-        return None
-    method = next(iter(error_bars.values())).method
-    return BarSummary(
-        compliance=max(
-            (b.width for q, b in error_bars.items() if q.kind == COMPLIANCE), default=None
-        ),
-        method=f"{method}, {len(solution.levels)} meshes",
-        each={name: bar.width for name, bar in error_bars.items()},
-    )
-
-
-def _convergence(solution: Solution) -> ConvergenceRecord | None:
-    error_bars = solution.error_bars.get(SCENE, {})
-    if not error_bars:
-        return None
-    return ConvergenceRecord(
-        levels=solution.levels,
-        quantities={name: _bar_record(bar) for name, bar in error_bars.items()},
-    )
+    if coupled is not None:
+        record.coupled = CoupledRecord(
+            ports=list(coupled.ports),
+            stiffness=coupled.stiffness,
+            compliance=coupled.compliance,
+            stiffness_error=coupled.evidence["stiffness_error"],
+        )
+    if bars:
+        method = next(iter(bars.values())).method
+        record.band = BarSummary(
+            compliance=max(
+                (bar.width for q, bar in bars.items() if q.kind == COMPLIANCE), default=None
+            ),
+            method=f"{method}, {len(solution.levels)} meshes",
+            each={name: bar.width for name, bar in bars.items()},
+        )
+        record.convergence = ConvergenceRecord(
+            levels=solution.levels,
+            quantities={name: _bar_record(bar) for name, bar in bars.items()},
+        )
+    return record
 
 
 def _bar_record(bar: ErrorBar) -> BarRecord:
@@ -268,12 +256,10 @@ def _bar_record(bar: ErrorBar) -> BarRecord:
     return BarRecord(gci=facts.pop("width"), **facts)
 
 
-def _evidence(solution: Solution) -> EvidenceRecord:
+def _evidence(solution: Solution, bars: Mapping[Quantity, ErrorBar]) -> EvidenceRecord:
     statics = solution.condensed.evidence
-    error_bars = solution.error_bars.get(SCENE, {})
-    evidence = less_widest(
-        solution.modes.evidence, [bar.width for q, bar in error_bars.items() if q.is_frequency]
-    )
+    widths = [bar.width for q, bar in bars.items() if q.is_frequency]
+    evidence = less_widest(solution.modes.evidence, widths)
     return EvidenceRecord(
         asymmetry=statics["asymmetry"],
         refinement_residual=statics["residual"],
@@ -310,3 +296,33 @@ def _mac(solutions: dict[str, Solution], reference: str | None) -> MacRecord | N
         if model != reference
     }
     return MacRecord(reference=reference, stations=base.stations.tolist(), models=tables)
+
+
+def as_record(data: Mapping[str, Any], name: str = "the results") -> Record:
+    """Return plain data, such as ``results.json`` has it, as a record; parts may be missing, and data
+    without a ``schema`` is taken for current. SolidgearError, which calls it `name`, for data of
+    another version of the layout, or data that is no record.
+
+    Examples
+    --------
+    >>> as_record({"verdict": {"trust": "harmonic"}}).verdict.trust
+    'harmonic'
+    >>> as_record({"schema": 2}, "out/results.json")
+    Traceback (most recent call last):
+    solidgear.core.errors.SolidgearError: out/results.json: written by an older version of solidgear (layout 2; this version reads 4); run solidgear compare again
+    """
+    version = data.get("schema")
+    if version is not None and version != SCHEMA:
+        older = isinstance(version, int) and version < SCHEMA
+        raise SolidgearError(
+            f"{name}: written by {'an older' if older else 'another'} version of solidgear "
+            f"(layout {version}; this version reads {SCHEMA}); run solidgear compare again"
+        )
+    try:
+        return Record.model_validate(data)
+    except ValidationError as error:
+        first = error.errors()[0]
+        place = ".".join(str(part) for part in first["loc"])
+        raise SolidgearError(
+            f"{name}: {place} cannot be read ({first['msg']}); run solidgear compare again"
+        ) from None

@@ -48,6 +48,7 @@ if TYPE_CHECKING:
     from solidgear.core.scene.toml_file import is_train, parse
     from solidgear.core.scene.typed import Model
     from solidgear.core.scene.units import DIMENSIONS, Length, PositiveLength, SignedAngle
+    from solidgear.core.solve.condensed import Condensed
     from solidgear.core.solve.modes import Mode, ModeSet, modes
     from solidgear.core.solve.statics import flexibility
     from solidgear.core.system.system import System
@@ -60,6 +61,7 @@ __all__ = [
     "Body",
     "COMPLIANCE",
     "C_ZZ",
+    "Condensed",
     "DIMENSIONS",
     "DOF_NAMES",
     "Displayed",
@@ -182,6 +184,7 @@ _WHERE = {
     "Length": "solidgear.core.scene.units",
     "PositiveLength": "solidgear.core.scene.units",
     "SignedAngle": "solidgear.core.scene.units",
+    "Condensed": "solidgear.core.solve.condensed",
     "Mode": "solidgear.core.solve.modes",
     "ModeSet": "solidgear.core.solve.modes",
     "modes": "solidgear.core.solve.modes",

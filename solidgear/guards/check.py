@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -22,6 +22,7 @@ from solidgear.core import (
 from solidgear.core.judge.effort import heavy_meshes
 from solidgear.core.judge.record import GuardRecord
 from solidgear.core.ladder.model import LUMPED, SOLID
+from solidgear.core.plain import plain
 from solidgear.core.scene.closed_form import mass_properties, whole_mass
 from solidgear.core.scene.shaft import feature_labels, resolved
 from solidgear.guards import GUARDS, LEVELS, Notice, Probe
@@ -40,6 +41,8 @@ VERDICTS = {
     "avoid": "will not hold",
     "fault": "will not hold",
 }
+#: verdicts from the best to the worst
+BEST = tuple(dict.fromkeys(VERDICTS.values()))
 #: relative error of the mass beside arcs, which coarse elements follow to their order
 FOLLOWED = 1e-6
 #: guards whose answer a comparison finds itself, or that do not concern models
@@ -73,9 +76,61 @@ OF_A_MESH = (
 OF_ANY_BODY = ("linear_elements", "nearly_incompressible")
 
 
+@dataclass(frozen=True)
+class Verdict:
+    """Verdict on a model."""
+
+    verdict: str  #: of ``VERDICTS``
+    reasons: tuple[str, ...] = ()  #: names of guards, or of shafts of a train
+
+
+@dataclass(frozen=True)
+class Check:
+    """Check of a shaft, or of a train with the checks of its shafts."""
+
+    name: str
+    records: tuple[GuardRecord, ...]  #: what every guard says
+    verdicts: dict[str, Verdict]  #: by model
+    shafts: dict[str, Check] = field(default_factory=dict)  #: of a train
+
+    @property
+    def facts(self) -> list[str]:
+        """Sentences that are good to know."""
+        return self._sentences("fact")
+
+    @property
+    def cautions(self) -> list[str]:
+        """Sentences on what will not hold as well as one might think."""
+        return self._sentences("caution", "open", "avoid")
+
+    @property
+    def faults(self) -> list[str]:
+        """Sentences on what must not be used."""
+        return self._sentences("fault")
+
+    def _sentences(self, *levels: str) -> list[str]:
+        return [record.sentence for record in self.records if record.level in levels]
+
+    @property
+    def faulty(self) -> bool:
+        """True for a fault, of a train also in one of its shafts."""
+        return bool(self.faults) or any(check.faulty for check in self.shafts.values())
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain data for JSON."""
+        parts: dict[str, Any] = {side: check.as_dict() for side, check in self.shafts.items()}
+        reasons = "shafts" if parts else "guards"
+        verdicts = {
+            model: {"verdict": verdict.verdict, reasons: verdict.reasons}
+            for model, verdict in self.verdicts.items()
+        }
+        sentences = {"facts": self.facts, "cautions": self.cautions, "faults": self.faults}
+        return plain(sentences | (parts or {"records": self.records}) | {"verdicts": verdicts})
+
+
 @pinned
-def check_scene(scene: Scene, body: Body, probe: Probe | None = None) -> dict:
-    """Return facts, cautions and faults of a scene, in sentences, and a verdict on each model.
+def check_scene(scene: Scene, body: Body, probe: Probe | None = None) -> Check:
+    """Check a scene by every guard, with a verdict on each model.
 
     Parameters
     ----------
@@ -83,14 +138,6 @@ def check_scene(scene: Scene, body: Body, probe: Probe | None = None) -> dict:
         The model asked for; the mesh is compared with the closed form.
     probe : Probe, optional
         Of the plain part of the scene and that body, for solutions that it has or will have.
-
-    Returns
-    -------
-    dict
-        ``facts``, ``cautions`` (will not hold as well as one might think) and ``faults`` (must not
-        be used): lists of sentences; ``records``: the same as dicts of ``guard``, ``level``,
-        ``models`` and ``sentence``; ``verdicts``: by model, ``verdict`` and the names of the guards
-        it rests on.
     """
     probe = probe or Probe(scene.plain, body, whole=scene)
     free = without_axis(scene)
@@ -99,20 +146,10 @@ def check_scene(scene: Scene, body: Body, probe: Probe | None = None) -> dict:
     by_guard += [("features", notice) for notice in _beyond_the_segments(scene)]
     if not free:
         by_guard += [("round_part", notice) for notice in described(scene)]
-    for name in _guards(scene):
-        by_guard += [(name, notice) for notice in _heard(name, probe)]
-    records = [_record(name, notice, notice.models) for name, notice in by_guard]
-
-    def sentences(*levels: str) -> list[str]:
-        return [notice.sentence for _, notice in by_guard if notice.level in levels]
-
-    return {
-        "facts": sentences("fact"),
-        "cautions": sentences("caution", "open", "avoid"),
-        "faults": sentences("fault"),
-        "records": [record.model_dump() for record in records],
-        "verdicts": {model: _verdict(model, records) for model in (*beams(), *_solids(scene))},
-    }
+    by_guard += [(name, n) for name in _guards(scene) for n in _heard(name, probe)]
+    records = tuple(record(name, notice, notice.models) for name, notice in by_guard)
+    verdicts = {model: _verdict(model, records) for model in (*beams(), *_solids(scene))}
+    return Check(scene.name, records, verdicts)
 
 
 def notices(scene: Scene, solutions: dict[str, Solution]) -> list[GuardRecord]:
@@ -127,18 +164,19 @@ def notices(scene: Scene, solutions: dict[str, Solution]) -> list[GuardRecord]:
     if scene.body is not None and probes:
         of_part = [*described(scene), *against_the_part(scene, solutions, probes[-1])]
         for notice in (n for n in of_part if n.level != "fact"):
-            out[notice.sentence] = _record("round_part", notice, _about(notice, solutions))
+            out[notice.sentence] = record("round_part", notice, _about(notice, solutions))
     for name in (n for n in _guards(scene) if n not in NOT_IN_COMPARISONS):
         for probe in probes if name in OF_A_MESH else probes[-1:]:
             for notice in _heard(name, probe):
                 models = _about(notice, solutions)
                 concerned = name not in OF_A_MESH or probe.body.fidelity in notice.models
                 if notice.level != "fact" and concerned and (models or not notice.models):
-                    out.setdefault(notice.sentence, _record(name, notice, models))
+                    out.setdefault(notice.sentence, record(name, notice, models))
     return list(out.values())
 
 
-def _record(guard: str, notice: Notice, models: Iterable[str]) -> GuardRecord:
+def record(guard: str, notice: Notice, models: Iterable[str]) -> GuardRecord:
+    """Return a notice as a record, with the models that are asked about."""
     return GuardRecord(
         guard=guard, level=notice.level, models=list(models), sentence=notice.sentence
     )
@@ -159,20 +197,19 @@ def cautions(scene: Scene, body: Body, name: str | None = None) -> list[str]:
     are of another model.
     """
     model = name or body.fidelity
-    probe, out = Probe(scene.plain, body, whole=scene), []
-    silent = set(NOT_HEARD_ALONE)
+    probe, silent = Probe(scene.plain, body, whole=scene), set(NOT_HEARD_ALONE)
     if LADDER[model].family != BEAM:
         silent.add("beam_against_solid")
     if model != body.fidelity:
         silent.update(OF_A_MESH)
-    for guard in _guards(scene):
-        if guard not in silent:
-            out += [
-                n.sentence
-                for n in _heard(guard, probe)
-                if n.level != "fact" and (not n.models or model in n.models)
-            ]
-    return list(dict.fromkeys(out))
+    sentences = [
+        notice.sentence
+        for guard in _guards(scene)
+        if guard not in silent
+        for notice in _heard(guard, probe)
+        if notice.level != "fact" and (not notice.models or model in notice.models)
+    ]
+    return list(dict.fromkeys(sentences))
 
 
 def _heard(name: str, probe: Probe) -> list[Notice]:
@@ -218,17 +255,13 @@ def _solids(scene: Scene) -> list[str]:
     return [m for m in LADDER.of(SOLID) if m in fit or not LADDER[m].unfit(scene)]
 
 
-def _verdict(model: str, records: list[GuardRecord]) -> dict:
+def _verdict(model: str, records: Iterable[GuardRecord]) -> Verdict:
     relevant = [
         r for r in records if model in r.models or (r.guard == "free_motions" and r.level != "fact")
     ]
     worst = max((r.level for r in relevant), key=LEVELS.index, default="fact")
-    return {
-        "verdict": VERDICTS[worst],
-        "guards": list(
-            dict.fromkeys(r.guard for r in relevant if r.level == worst and worst != "fact")
-        ),
-    }
+    guards = [r.guard for r in relevant if r.level == worst and worst != "fact"]
+    return Verdict(VERDICTS[worst], tuple(dict.fromkeys(guards)))
 
 
 def _beyond_the_segments(scene: Scene) -> Iterator[Notice]:

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Callable
-from contextlib import nullcontext
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 import typer
@@ -16,22 +13,23 @@ from scipy.sparse.csgraph import minimum_spanning_tree
 from scipy.spatial import distance_matrix
 
 from solidgear.core.judge.record import MacTable
+from solidgear.core.plain import plain
 from solidgear.measured.correlate import Correlation
 from solidgear.measured.correlate import correlate as correlated
 from solidgear.measured.data import load_measured
+from solidgear.measured.identify import Identification
 from solidgear.measured.identify import identify as identified
-from solidgear.measured.overlay import overlay
+from solidgear.measured.modal_fit import ModalFit
+from solidgear.measured.overlay import Overlay, overlay
 from solidgear.measured.shapes import SurfacePoints
-from solidgear.show.command import command, say
-from solidgear.show.folder import held
+from solidgear.show.command import Progress, command
 from solidgear.show.mode_charts import mac_panel
-from solidgear.show.options import Run, share
+from solidgear.show.options import Run, relative
 from solidgear.show.packing import Mesh
 from solidgear.show.panel import GREY, INK, PERCENT, Axis, Panel, Series, readout
 from solidgear.show.plot import WIDE, Chart
 from solidgear.show.remarks import load
-from solidgear.show.sheet import Section
-from solidgear.show.sheet_files import write_files
+from solidgear.show.sheet import Section, Sheet, Terminal, present
 from solidgear.show.table import NUMBER, Column, Table, text
 from solidgear.show.turning import Member, Turned, together
 from solidgear.show.viewer import viewer_fragment
@@ -48,9 +46,7 @@ MeasuredFile = Annotated[
 ]
 Tolerance = Annotated[
     float,
-    typer.Option(
-        "--tol", parser=share, metavar="FLOAT", help="Error bar allowed for computed frequencies."
-    ),
+    relative("--tol", "Error bar allowed for computed frequencies."),
 ]
 Out = Annotated[
     Path | None, typer.Option("--out", "-o", help="Folder for a page, data and tables.")
@@ -70,13 +66,17 @@ def correlate(
 ) -> None:
     data = load_measured(measured)
     loaded = load(scene)
-    with held(out) if out else nullcontext(), run.progress() as progress:
+
+    def study(progress: Progress) -> Sheet:
         correlation = correlated(loaded, data, tol, progress)
-        files = _written(out, correlation, progress) if out else []
-    tables = (
-        [pairs(correlation)] if data.responses is None else [peaks(correlation), pairs(correlation)]
-    )
-    _tell(correlation, tables, files, run)
+        if out is None:
+            return correlation_sheet(correlation)
+        progress("responses and shapes at the measuring points")
+        bodies = turned_beside(correlation)
+        viewer = viewer_fragment(bodies) if bodies else ""
+        return correlation_sheet(correlation, overlay(correlation), viewer)
+
+    present(study, run, out)
 
 
 @command
@@ -103,45 +103,93 @@ def identify(
     run: Run,
 ) -> None:
     data = load_measured(measured)
-    with held(out) if out else nullcontext(), run.progress() as progress:
-        identification = identified(
-            scene,
-            data,
-            vary or (),
-            tol=tol,
-            predict=predict,
-            progress=progress,
-            priors=priors,
+
+    def study(progress: Progress) -> Sheet:
+        return identification_sheet(
+            identified(
+                scene,
+                data,
+                vary or (),
+                tol=tol,
+                predict=predict,
+                progress=progress,
+                priors=priors,
+            )
         )
-        files = write_identification(out, identification) if out else []
-    tables = [entries(identification), fitted(identification)] + [predicted(identification)] * bool(
-        identification.predicted
+
+    present(study, run, out)
+
+
+def correlation_sheet(
+    correlation: Correlation, overlay: Overlay | None = None, viewer: str = ""
+) -> Sheet:
+    """Return the sheet of a correlation, with responses where there are any; `viewer` is HTML of
+    shapes.
+    """
+    title = f"{correlation.scene}: measured and computed"
+    table, responses = pairs(correlation), correlation.measured.responses
+    lines = {"pairs": table}
+    off = {"off": partial(off_chart, correlation, title)} if correlation.worst else {}
+    sections = [Section("pairs", "Pairs", charts=off, tables=[table, alone(correlation)])]
+    if correlation.mac is not None:
+        mac = partial(mac_map, correlation, correlation.mac)
+        sections.append(Section("shapes", "Shapes", charts={"mac": mac}))
+    tables = [table]
+    if responses is not None:
+        tables.insert(0, peaks(responses.fit))
+        lines["peaks"] = peaks(responses.fit, overlay)
+        both = {"overlay": partial(overlay_chart, overlay, correlation, title)} if overlay else {}
+        about = overlay.description if overlay else ""
+        sections.append(Section("responses", "Responses", about, both, [lines["peaks"]]))
+    return Sheet(
+        name="correlation",
+        title=title,
+        lead=f"{correlation.title or 'Measured resonances'} beside {correlation.mesh}.",
+        tables=[],
+        data=correlation.results,
+        lines=lines,
+        verdict=correlation.sentences,
+        sections=sections,
+        viewer=viewer,
+        terminal=Terminal([f"{correlation.scene}: {correlation.mesh}"], tables),
+        words={
+            "off": "Difference of each computed frequency from the measured one; grey: two standard "
+            "deviations of the measured and the error bar of the computed one.",
+            "mac": "MAC, the likeness of every measured shape (rows) and every computed mode at the "
+            "measuring points.",
+            "overlay": "Measured (dark) and computed (green, with its band) responses at the same "
+            "points; dots: resonances found.",
+        },
     )
-    _tell(identification, tables, files, run)
 
 
-def _written(out: Path, study: Any, progress: Callable[[str], None]) -> list[Path]:
-    """Write the page of a correlation, with shapes and responses where there are any."""
-    progress("responses and shapes at the measuring points")
-    viewer = turned_beside(study)
-    return write_correlation(out, study, overlay(study), viewer_fragment(viewer) if viewer else "")
+def identification_sheet(identification: Identification) -> Sheet:
+    """Return the sheet of an identification."""
+    lines = {
+        "identified": entries(identification),
+        "fitted": fitted(identification),
+        "predicted": predicted(identification),
+    }
+    lines = {name: table for name, table in lines.items() if table}
+    return Sheet(
+        name="identification",
+        title=f"{identification.scene}: identified",
+        lead=f"From {identification.title or 'measured resonances'}, by {identification.mesh}.",
+        tables=list(lines.values()),
+        data=plain(identification),
+        lines=lines,
+        notes=identification.sentences,
+        terminal=Terminal([f"{identification.scene}: {identification.mesh}"]),
+    )
 
 
-def _tell(study: Any, tables: list, files: list[Path], run: Run) -> None:
-    if run.as_json:
-        print(json.dumps(study.results, allow_nan=False))
-        return
-    say(f"{study.scene}: {study.mesh}", *tables, soft_wrap=False)
-    say(*study.sentences, soft_wrap=False)
-    say(*([f"Written: {', '.join(map(str, files))}"] if files else []), soft_wrap=False)
-
-
-#: looks of pairs by their verdict
+#: looks of both responses, and of pairs by their verdict
 BOTH = {"measured": Series(INK), "computed": Series("#00805e")}
 LOOKS = {"agrees": Series("#00805e"), "differs": Series("#b3305c"), "no band": Series("#0072b2")}
+_unsigned = partial(percent, signed=False)
 
 
-def pairs(correlation: Any) -> Table:
+def pairs(correlation: Correlation) -> Table:
     """Return every measured resonance and its mode."""
     columns = [
         Column("", lambda p: p.number, kind=NUMBER),
@@ -169,7 +217,7 @@ def pairs(correlation: Any) -> Table:
     return Table("Measured and computed", columns, correlation.pairs, note, style="ruled")
 
 
-def entries(identification: Any) -> Table:
+def entries(identification: Identification) -> Table:
     """Return the identified entries."""
     columns = [
         text("entry", lambda e: e.path),
@@ -186,7 +234,7 @@ def entries(identification: Any) -> Table:
     return Table("Identified", columns, identification.entries, note, style="ruled")
 
 
-def fitted(identification: Any) -> Table:
+def fitted(identification: Identification) -> Table:
     """Return the fitted resonances."""
     columns = [
         text("mode", lambda f: f.name),
@@ -199,7 +247,7 @@ def fitted(identification: Any) -> Table:
     return Table("Fitted", columns, identification.fitted, note, style="ruled")
 
 
-def predicted(identification: Any) -> Table:
+def predicted(identification: Identification) -> Table:
     """Return modes beyond the measured ones."""
     columns = [
         text("mode", lambda p: p.name),
@@ -213,56 +261,52 @@ def predicted(identification: Any) -> Table:
     return Table("Predicted, not measured", columns, identification.predicted, note, style="ruled")
 
 
-def _unsigned(value: float) -> str:
-    return percent(value, signed=False)
-
-
-def off_chart(correlation: Any, title: str, width: float = WIDE) -> Chart:
+def off_chart(correlation: Correlation, title: str, width: float = WIDE) -> Chart:
     """Chart differences of all pairs over frequency, each in its band."""
-    paired = [pair for pair in correlation.pairs if pair.relative is not None]
-    khz = [pair.measured.frequency / 1e3 for pair in paired]
-    off = np.array([pair.relative for pair in paired])
-    ends = np.array([pair.band or 0.0 for pair in paired])
-    most = 1.15 * float(np.max(np.abs(off) + ends, initial=1e-6))
+    bands, points = [], []
+    for pair in correlation.pairs:
+        if pair.computed is None or pair.relative is None:
+            continue
+        khz, off, band = pair.measured.frequency / 1e3, pair.relative, pair.band or 0.0
+        bands.append({"x": khz, "y": off - band, "y2": off + band})
+        facts = ("measured", hertz(pair.measured.frequency), "Hz"), ("off", percent(off), "")
+        words = readout(pair.computed.name, *facts)
+        points.append(
+            {"x": khz, "y": off, "name": pair.verdict.partition(",")[0], "readout": words}
+        )
+    end = 1.05 * max(band["x"] for band in bands)
+    most = 1.15 * max(1e-6, *(max(-band["y"], band["y2"]) for band in bands))
     panel = Panel(
-        Axis("measured, kHz", (0.0, 1.05 * max(khz, default=1.0))),
+        Axis("measured, kHz", (0.0, end)),
         Axis("computed over measured, less one", (-most, most), label=PERCENT),
         280.0,
         series=LOOKS,
         legend={"orient": "top"},
     )
-    panel.draw({"type": "rule", "color": GREY}, [{"x": 0.0, "x2": 1.05 * max(khz), "y": 0.0}])
-    bands = [
-        {"x": x, "y": float(y - e), "y2": float(y + e)} for x, y, e in zip(khz, off, ends) if e
-    ]
+    panel.draw({"type": "rule", "color": GREY}, [{"x": 0.0, "x2": end, "y": 0.0}])
+    bands = [band for band in bands if band["y"] < band["y2"]]
     panel.draw({"type": "rule", "color": GREY, "strokeWidth": 2}, bands)
-    rows = []
-    for pair, x, y in zip(paired, khz, off.tolist()):
-        facts = ("measured", hertz(pair.measured.frequency), "Hz"), ("off", percent(y), "")
-        verdict = pair.verdict.partition(",")[0]
-        rows.append(
-            {"x": x, "y": y, "name": verdict, "readout": readout(pair.computed.name, *facts)}
-        )
-    panel.draw({"type": "point", "filled": True, "size": 50}, rows)
+    panel.draw({"type": "point", "filled": True, "size": 50}, points)
     return Chart([[panel]], width, title)
 
 
-def mac_map(correlation: Any, width: float = WIDE) -> Chart:
-    """Chart MAC of every measured shape and every mode."""
-    with_shape = ~np.isnan(correlation.mac).any(axis=1)
-    rows = [
-        f"{hertz(p.measured.frequency)} Hz"
-        for p, drawn in zip(correlation.pairs, with_shape)
-        if drawn
-    ]
-    columns = [mode.name for mode in correlation.computed.barred]
-    table = MacTable(rows=rows, columns=columns, values=correlation.mac[with_shape].tolist())
+def mac_map(correlation: Correlation, mac: np.ndarray, width: float = WIDE) -> Chart:
+    """Chart MAC (n, m) of every measured shape and every mode."""
+    with_shape = ~np.isnan(mac).any(axis=1)
+    table = MacTable(
+        rows=[
+            f"{hertz(pair.measured.frequency)} Hz"
+            for pair, drawn in zip(correlation.pairs, with_shape)
+            if drawn
+        ],
+        columns=[mode.name for mode in correlation.computed.barred],
+        values=mac[with_shape].tolist(),
+    )
     return Chart([[mac_panel(table, "measured", "computed")]], width)
 
 
-def peaks(correlation: Any, overlay: Any = None) -> Table:
+def peaks(fit: ModalFit, overlay: Overlay | None = None) -> Table:
     """Return resonances found in responses."""
-    fit = correlation.measured.responses.fit
     columns = [
         Column("", lambda k: k + 1, kind=NUMBER),
         Column("frequency\nHz", lambda k: fit.frequencies[k], hertz),
@@ -276,13 +320,12 @@ def peaks(correlation: Any, overlay: Any = None) -> Table:
     )
     if overlay is not None:
         constants = overlay.constants
-        size = Column("size", lambda k: constants.get(k + 1), "{:.2f}".format)
-        columns.append(size)
+        columns.append(Column("size", lambda k: constants.get(k + 1), "{:.2f}".format))
         note += " Size: computed modal constant over the measured one, over all responses."
     return Table("Resonances of the responses", columns, range(len(fit.poles)), note, style="ruled")
 
 
-def alone(correlation: Any) -> Table:
+def alone(correlation: Correlation) -> Table:
     """Return resonances measured and not computed, and the reverse."""
     rows = [("measured", "", p.measured.frequency, p.probability) for p in correlation.pairs]
     rows = [row for row, pair in zip(rows, correlation.pairs) if pair.computed is None]
@@ -299,128 +342,67 @@ def alone(correlation: Any) -> Table:
     return Table("Without a partner", columns, rows, note, style="ruled")
 
 
-def overlay_chart(overlay: Any, correlation: Any, title: str, width: float = WIDE) -> Chart:
+def overlay_chart(
+    overlay: Overlay, correlation: Correlation, title: str, width: float = WIDE
+) -> Chart:
     """Chart a response, and the root mean square of all, measured and computed."""
-    k = overlay.loudest
     amplitudes = [np.abs(overlay.measured), np.abs(overlay.computed)]
     if overlay.band is not None:
         amplitudes += [np.maximum(amplitudes[1] - overlay.band, 0.0), amplitudes[1] + overlay.band]
-    parts = [(overlay.names[k], *(values[k] for values in amplitudes))]
-    if len(overlay.names) > 1:
+    k, count = overlay.loudest, len(overlay.names)
+    parts = {overlay.names[k]: [values[k] for values in amplitudes]}
+    if count > 1:
         means = [np.sqrt(np.mean(values**2, axis=0)) for values in amplitudes]
-        parts.append((f"root mean square of all {len(overlay.names)}", *means))
-    panels = [_responses(overlay, correlation, *part, last=part is parts[-1]) for part in parts]
-    return Chart([[panel] for panel in panels], width, title)
+        parts[f"root mean square of all {count}"] = means
+    panels = [
+        [_responses(overlay, correlation, name, part, k == 0, k == len(parts) - 1)]
+        for k, (name, part) in enumerate(parts.items())
+    ]
+    return Chart(panels, width, title)
 
 
 def _responses(
-    overlay: Any,
-    correlation: Any,
+    overlay: Overlay,
+    correlation: Correlation,
     title: str,
-    measured: np.ndarray,
-    computed: np.ndarray,
-    *band: np.ndarray,
+    amplitudes: list[np.ndarray],
+    first: bool,
     last: bool,
 ) -> Panel:
-    khz = overlay.hertz / 1e3
-    low, high = (float(end(measured[measured > 0])) for end in (np.min, np.max))
+    """Return a panel of amplitudes: measured, computed, and the ends of the band where there is one."""
+    khz, measured = overlay.hertz / 1e3, amplitudes[0]
+    low, high = float(measured[measured > 0].min()), float(measured.max())
     panel = Panel(
         Axis("frequency, kHz" if last else "", (float(khz[0]), float(khz[-1]))),
         Axis(f"{overlay.kind}, {overlay.unit}", (max(low, 1e-6 * high) / 2, 3 * high), log=True),
         260.0,
         title=title,
         series=BOTH,
-        legend={"orient": "top", "symbolType": "stroke"}
-        if not last or title[:4] != "root"
-        else None,
+        legend={"orient": "top", "symbolType": "stroke"} if first else None,
     )
-    if band:
-        outlined, floor = outline(khz, band[1] - band[0]), 1e-6 * high
-        places = zip(
-            khz[outlined].tolist(), *(values[outlined].clip(floor).tolist() for values in band)
-        )
-        ends = [{"x": x, "y": low, "y2": high} for x, low, high in places]
-        panel.draw(
-            {"type": "area", "opacity": 0.25, "color": BOTH["computed"].colour, "clip": True}, ends
-        )
-    for name, values in (("measured", measured), ("computed", computed)):
+    if len(amplitudes) > 2:
+        outlined = outline(khz, amplitudes[3] - amplitudes[2])
+        ends = [part[outlined].clip(1e-6 * high).tolist() for part in amplitudes[2:]]
+        band = {"type": "area", "opacity": 0.25, "color": BOTH["computed"].colour, "clip": True}
+        rows = zip(khz[outlined].tolist(), *ends)
+        panel.draw(band, [{"x": x, "y": bottom, "y2": top} for x, bottom, top in rows])
+    for name, values in zip(BOTH, amplitudes):
         outlined = outline(khz, values)
-        rows = [
-            {"x": x, "y": y, "name": name}
-            for x, y in zip(khz[outlined].tolist(), values[outlined].tolist())
-        ]
-        panel.draw({"type": "line", "strokeWidth": 1.3, "clip": True}, rows)
+        points = zip(khz[outlined].tolist(), values[outlined].tolist())
+        line = {"type": "line", "strokeWidth": 1.3, "clip": True}
+        panel.draw(line, [{"x": x, "y": y, "name": name} for x, y in points])
     dots = []
     for pair in correlation.pairs:
         place = int(np.searchsorted(khz, pair.measured.frequency / 1e3).clip(0, len(khz) - 1))
-        counterpart = pair.computed
+        mode = pair.computed
         facts = (
             ("measured", hertz(pair.measured.frequency), "Hz"),
-            ("computed", hertz(counterpart.frequency_hz) if counterpart else "", "Hz"),
+            ("computed", hertz(mode.frequency_hz) if mode else "", "Hz"),
         )
-        words = readout(counterpart.name if counterpart else "no mode", *facts)
+        words = readout(mode.name if mode else "no mode", *facts)
         dots.append({"x": float(khz[place]), "y": float(measured[place]), "readout": words})
     panel.draw({"type": "point", "filled": True, "size": 34, "color": INK}, dots)
     return panel
-
-
-def write_correlation(
-    folder: Path, correlation: Any, overlay: Any = None, viewer: str = ""
-) -> list[Path]:
-    """Write page, data, tables and charts of a correlation, with responses where there are any;
-    `viewer` is HTML of shapes.
-    """
-    title = f"{correlation.scene}: measured and computed"
-    lead = f"{correlation.title or 'Measured resonances'} beside {correlation.mesh}."
-    lines = {"pairs": pairs(correlation)}
-    sections = [
-        Section(
-            "pairs",
-            "Pairs",
-            charts={"off": partial(off_chart, correlation, title)} if correlation.worst else {},
-            tables=[pairs(correlation), alone(correlation)],
-        )
-    ]
-    if correlation.mac is not None:
-        sections.append(Section("shapes", "Shapes", charts={"mac": partial(mac_map, correlation)}))
-    if correlation.measured.responses is not None:
-        lines["peaks"] = peaks(correlation, overlay)
-        drawn = {"overlay": partial(overlay_chart, overlay, correlation, title)} if overlay else {}
-        words = overlay.description if overlay else ""
-        sections.append(Section("responses", "Responses", words, drawn, [lines["peaks"]]))
-    return write_files(
-        folder,
-        "correlation",
-        title,
-        lead,
-        [],
-        correlation.results,
-        lines=lines,
-        charts={},
-        verdict=correlation.sentences,
-        viewer=viewer,
-        sections=sections,
-    )
-
-
-def write_identification(folder: Path, identification: Any) -> list[Path]:
-    """Write page, data and tables of an identification."""
-    title = f"{identification.scene}: identified"
-    lead = f"From {identification.title or 'measured resonances'}, by {identification.mesh}."
-    lines = {"identified": entries(identification), "fitted": fitted(identification)}
-    if identification.predicted:
-        lines["predicted"] = predicted(identification)
-    return write_files(
-        folder,
-        "identification",
-        title,
-        lead,
-        list(lines.values()),
-        identification.results,
-        lines=lines,
-        charts={},
-        notes=identification.sentences,
-    )
 
 
 #: modes that a page has room for
@@ -432,8 +414,6 @@ CORNERS = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0,
 FACES = np.array(
     [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]]
 )
-
-
 #: thickness of a rod over that of a point; places around it, and its sides
 ROD, RING = 0.45, np.exp(2j * np.pi * np.arange(3) / 3)
 SIDES = np.array([[0, 1, 3], [1, 4, 3], [1, 2, 4], [2, 5, 4], [2, 0, 5], [0, 3, 5]])
@@ -458,7 +438,10 @@ def turned_beside(correlation: Correlation) -> tuple[Turned, ...]:
         return ()
     places = SurfacePoints(computed.body, measured.numbers.tolist(), measured.points)
     measured_points = np.any(measured.values != 0, axis=0)
-    moved = [_real(measured.values[numbers[str(mode.name)]]) for mode in modes]
+    shapes_measured = [measured.values[numbers[str(mode.name)]] for mode in modes]
+    # in the phase in which each is largest
+    phases = [np.exp(-0.5j * np.angle(np.sum(shape**2))) for shape in shapes_measured]
+    moved = [np.real(shape * phase) for shape, phase in zip(shapes_measured, phases)]
     vectors = []
     for mode, shape in zip(modes, moved):
         span = np.column_stack([places.motion(vector)[measured_points] for vector in mode.vectors])
@@ -478,11 +461,6 @@ def turned_beside(correlation: Correlation) -> tuple[Turned, ...]:
         hertz = correlation.measured.modes[numbers[turned_shape.name]].frequency
         shapes.append(replace(turned_shape, frequency_hz=hertz, displacement=displacement))
     return Turned("measured", mesh, tuple(shapes)), turned
-
-
-def _real(shape: np.ndarray) -> np.ndarray:
-    """Return a complex shape in the phase in which it is largest."""
-    return np.real(shape * np.exp(-0.5j * np.angle(np.sum(shape**2))))
 
 
 def _mesh(points: np.ndarray) -> Mesh:

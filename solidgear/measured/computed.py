@@ -114,8 +114,10 @@ def computed_up_to(
         body = before.body if same_surface else build(scene, model, **options)
     progress("modes and their error bars")
     listed, bars = _barred(scene, body, limit, options, settled)
-    while LADDER[model].bounded and _largest(listed, bars, highest) > tolerance:
-        if options.get("order", 3) + STEP > HIGHEST:
+    while LADDER[model].bounded and options.get("order", 3) + STEP <= HIGHEST:
+        # the highest mode of a family may have no bar
+        known = [b for m, b in zip(listed, bars) if m.frequency_hz <= highest and math.isfinite(b)]
+        if max(known, default=0.0) <= tolerance:
             break
         options["order"] = options.get("order", 3) + STEP
         progress(f"order {options['order']}: error bars of all modes")
@@ -191,11 +193,3 @@ def _modes(scene: Scene, body: Body, limit: float, count: int = FEW) -> ModeSet:
 
 def _elastic(solved: ModeSet) -> list[Mode]:
     return [mode for mode in solved.modes if mode.frequency_hz > 0]
-
-
-def _largest(listed: list[Mode], bars: list[float], highest: float) -> float:
-    """Return the largest error bar up to a frequency; the highest mode of a family may have none."""
-    finite_bars = [
-        b for m, b in zip(listed, bars) if m.frequency_hz <= highest and math.isfinite(b)
-    ]
-    return max(finite_bars, default=0.0)

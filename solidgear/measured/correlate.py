@@ -13,7 +13,7 @@ import numpy as np
 
 from solidgear.core import BarredMode, Displayed, ModeName, Scene, pinned, without_axis
 from solidgear.core.plain import plain
-from solidgear.measured.alignment import Alignment, Peak
+from solidgear.measured.alignment import Peak
 from solidgear.measured.computed import Computed, computed_up_to
 from solidgear.measured.data import Measured, MeasuredMode
 from solidgear.measured.same_part import FAR_SHIFTS, Common, Likeness, alignment_of
@@ -119,20 +119,13 @@ class Correlation(Displayed):
         """Conclusions."""
         return list(_sentences(self))
 
-    def _damping(self, number: int) -> dict[str, float]:
-        """Return the damping ratio of a resonance found in responses, and the deviation."""
-        responses = self.measured.responses
-        if responses is None:
-            return {}
-        ratio, deviation = (
-            responses.fit.damping[number - 1],
-            responses.fit.deviations[1][number - 1],
-        )
-        return {"damping": float(ratio), "damping_deviation": float(deviation)}
-
     @property
     def results(self) -> dict[str, Any]:
         """Plain data that JSON can hold, Hz."""
+        damping = {}
+        if self.measured.responses is not None:
+            fit = self.measured.responses.fit
+            damping = {"damping": fit.damping, "damping_deviation": fit.deviations[1]}
         return {
             "kind": "correlation",
             "scene": self.scene,
@@ -142,7 +135,7 @@ class Correlation(Displayed):
             "common": plain(self.common),
             "other_part": plain(self.likeness),
             "pairs": [
-                self._damping(pair.number)
+                {key: float(values[pair.number - 1]) for key, values in damping.items()}
                 | {
                     "number": pair.number,
                     "measured_hz": pair.measured.frequency,
@@ -158,7 +151,9 @@ class Correlation(Displayed):
                 }
                 for pair in self.pairs
             ],
-            "mac": None if self.mac is None else [_plain(row) for row in self.mac],
+            "mac": None
+            if self.mac is None
+            else [None if np.isnan(row).any() else row.tolist() for row in self.mac],
             "modes": [mode.name for mode in self.computed.barred],
             "not_measured": [
                 {"mode": mode.name, "computed_hz": mode.frequency_hz, "probability": share}
@@ -236,16 +231,6 @@ def _paired(measured: Measured, computed: Computed) -> Correlation:
     on_points = on_points_of(measured, computed)
     peaks = peaks_of(measured, computed, SPRINGS)
     alignment = alignment_of(*peaks, on_points.likeness if on_points else None)
-    return _correlation(computed.scene, measured, computed, alignment, on_points)
-
-
-def _correlation(
-    scene: Scene,
-    measured: Measured,
-    computed: Computed,
-    alignment: Alignment,
-    on_points: OnPoints | None,
-) -> Correlation:
     barred = computed.barred
     mac = None if on_points is None else on_points.likeness.mac
     pairs = []
@@ -268,7 +253,7 @@ def _correlation(
         if share > POSSIBLE and mode.frequency_hz <= highest
     )
     return Correlation(
-        scene=scene.title or scene.name,
+        scene=computed.scene.title or computed.scene.name,
         title=measured.title,
         pairs=tuple(pairs),
         missed=missed,
@@ -326,8 +311,3 @@ def _sentences(correlation: Correlation) -> Iterator[str]:
             f"{mode.name} at {mode.frequency_hz:.6g} Hz" for mode, _ in correlation.missed
         )
         yield f"Computed and not measured: {missed}."
-
-
-def _plain(row: np.ndarray) -> list[float] | None:
-    """Return a row of MAC as a list; None for a resonance without a shape."""
-    return None if np.isnan(row).any() else row.tolist()

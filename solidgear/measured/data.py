@@ -33,10 +33,9 @@ from pydantic import AfterValidator, BeforeValidator, Field, PrivateAttr, model_
 from solidgear.core import Model, SceneError, Surface, explained, parse, show
 from solidgear.core.scene.units import Frequency, quantity
 from solidgear.measured.alignment import BANDWIDTH
-from solidgear.measured.axis_labels import response
+from solidgear.measured.modal_fit import ResponseFit
 from solidgear.measured.placement import Places, PointsTable
-from solidgear.measured.responses import ResponseFit
-from solidgear.measured.universal import ENDINGS, Responses, Shapes, read_universal
+from solidgear.measured.universal import ENDINGS, Responses, Shapes, read_universal, response_unit
 
 #: resonances of a file
 MOST = 2000
@@ -85,7 +84,7 @@ def _response_unit(value: Any) -> tuple[float, int] | None:
     """
     if not value:
         return None
-    unit = response(value) if isinstance(value, str) else None
+    unit = response_unit(value) if isinstance(value, str) else None
     if unit is None:
         raise SceneError(
             'must be a motion over a force, such as "m/s^2/N" or "g/N"', value=show(value)

@@ -15,7 +15,7 @@ import math
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 import scipy.linalg as sla
@@ -32,14 +32,12 @@ from solidgear.core import (
     pinned,
 )
 from solidgear.core.loading import scene_of
-from solidgear.core.plain import plain
 from solidgear.core.scene.paths import Tables, replace_entry
 from solidgear.measured.computed import Computed, computed_like, computed_up_to
 from solidgear.measured.correlate import DEVIATIONS, SURE, placed_in
 from solidgear.measured.data import Measured
-from solidgear.measured.fit import ALIKE, SAME, End, Fit, best_of
+from solidgear.measured.fit import ALIKE, SAME, End, Fit, best_of, varied_of
 from solidgear.measured.same_part import Likeness
-from solidgear.measured.varied import varied_of
 from solidgear.variants.sensitivity.adjoint import mode_form
 from solidgear.variants.sensitivity.derivatives import Derivatives
 from solidgear.variants.sweep.bench import surface
@@ -72,11 +70,6 @@ class Identified:
     def at_bound(self) -> bool:
         """Return whether a bound holds it where it is."""
         return self.value <= self.low * (1 + EDGE) or self.value >= self.high * (1 - EDGE)
-
-    @property
-    def uninformed(self) -> bool:
-        """Return whether the data add nothing to the prior."""
-        return self.prior is not None and self.deviation > LITTLE * self.prior[1]
 
 
 @dataclass(frozen=True)
@@ -150,11 +143,6 @@ class Identification(Displayed):
         """Conclusions."""
         return list(_sentences(self))
 
-    @property
-    def results(self) -> dict[str, Any]:
-        """Plain data that JSON can hold, SI."""
-        return plain(self)
-
 
 def _sentences(result: Identification) -> Iterator[str]:
     if result.likeness.sentence:
@@ -205,7 +193,7 @@ def _sentences(result: Identification) -> Iterator[str]:
 
 def _prior_sentences(entry: Identified, middle: float, deviation: float) -> Iterator[str]:
     prior = f"{middle:.6g}, known to {100 * deviation:.2g} % beforehand"
-    if entry.uninformed:
+    if entry.deviation > LITTLE * deviation:
         yield f"The data do not determine {entry.path}: it stays as it was, {prior}."
     deviations = abs(math.log(entry.value / middle)) / deviation
     if deviations > FAR:

@@ -7,7 +7,7 @@ of Ewins 2000, Modal Testing, section 4.3).
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -19,7 +19,6 @@ from solidgear.core.solve.coupling import decoupled, groups
 from solidgear.core.solve.supported import Supported
 from solidgear.measured.computed import motions_up_to
 from solidgear.measured.correlate import Correlation
-from solidgear.measured.responses import ResponseFit
 from solidgear.measured.shapes import SurfacePoints
 
 #: of the highest measured frequency: modes up to there count
@@ -93,15 +92,20 @@ def overlay(correlation: Correlation) -> Overlay | None:
     responses, derivatives = fitted.responses, fitted.responses.derivatives
     if not responses.places or not responses.scaled or derivatives is None:
         return None
-    ends = list(zip(responses.points, responses.references))
-    usable = [
-        k
-        for k, pair in enumerate(ends)
+    pairs = {
+        k: pair
+        for k, pair in enumerate(zip(responses.points, responses.references))
         if all(1 <= abs(way) <= 3 and point in responses.places for point, way in pair)
-    ]
-    if not usable:
+    }
+    if not pairs:
         return None
-    places, response_ends = _ends(computed.body, responses.places, [ends[k] for k in usable])
+    usable = list(pairs)
+    points = sorted({point for pair in pairs.values() for point, _ in pair})
+    places = SurfacePoints(computed.body, points, np.array([responses.places[n] for n in points]))
+    labels = sorted({end for pair in pairs.values() for end in pair})
+    ends = [(points.index(point), way) for point, way in labels]
+    # where each response was measured, and where it was driven
+    first, second = np.array([[labels.index(end) for end in pair] for pair in pairs.values()]).T
     limit = BEYOND * correlation.pairs[-1].measured.frequency
     ahead = responses.frequencies > 0
     hertz = responses.frequencies[ahead]
@@ -119,8 +123,8 @@ def overlay(correlation: Correlation) -> Overlay | None:
     for mode, bar in motions:
         constant = np.zeros(len(usable))
         for vector in mode.vectors:
-            along = response_ends.along(places.motion(vector))
-            constant += along[response_ends.first] * along[response_ends.second]
+            moved = _along(places.motion(vector), ends)
+            constant += moved[first] * moved[second]
         number = numbers.get(str(mode.name))
         ratio = usual if number is None else float(fitted.fit.damping[number])
         natural = 2 * np.pi * mode.frequency_hz
@@ -128,37 +132,36 @@ def overlay(correlation: Correlation) -> Overlay | None:
         out += constant[:, None] * unit
         if np.isfinite(bar):
             low, high = natural * (1 - bar), natural * (1 + bar)
-            moved: tuple[float | np.ndarray, ...] = low, high, omega.clip(low, high)
+            tried: tuple[float | np.ndarray, ...] = low, high, omega.clip(low, high)
             error = np.max(
-                [np.abs(_unit(frequency, omega, ratio) - unit) for frequency in moved], axis=0
+                [np.abs(_unit(frequency, omega, ratio) - unit) for frequency in tried], axis=0
             )
             band += np.abs(constant)[:, None] * error
         if number is not None:
-            measured = _constants(fitted, number)[usable]
+            # products of shapes of unit mass, by residues of accelerances (Ewins, eq. 4.30)
+            pole = fitted.fit.poles[number]
+            measured = 2j * pole.imag * fitted.fit.residues[number, usable] / pole**2
             constants[number + 1] = float(
                 abs(np.vdot(measured, constant)) / np.sum(np.abs(measured) ** 2)
             )
     bars = [bar for mode, bar in motions if mode.frequency_hz > 0]
-    stiffer = stiffer_motions(
-        computed.scene, places, response_ends.ends, [mode for mode, _ in motions]
-    )
+    stiffer = stiffer_motions(computed.scene, places, ends, [mode for mode, _ in motions])
     if stiffer is not None:
-        static_rest = stiffer.remaining[response_ends.first, response_ends.second]
+        static_rest = stiffer.remaining[first, second]
         out += static_rest[:, None]
         # a frequency is the root of a stiffness
         static_error = 2 * max(bars, default=np.inf) * np.diag(stiffer.static)
-        sure = np.sqrt(static_error[response_ends.first] * static_error[response_ends.second])
-        same_point = np.equal(
-            *np.array(response_ends.ends)[[response_ends.first, response_ends.second], 0]
-        )
+        sure = np.sqrt(static_error[first] * static_error[second])
+        at = np.array(ends)[:, 0]
+        same_point = at[first] == at[second]
         band += np.where(same_point, np.abs(static_rest), sure)[:, None]
     kind, unit_ = KINDS[derivatives]
-    names = tuple(f"{_end(ends[k][0])} for {_end(ends[k][1])}" for k in usable)
+    names = [f"{n}{'-' if way < 0 else ''}{AXES[abs(way) - 1]}" for n, way in labels]
     return Overlay(
         hertz,
         responses.values[usable][:, ahead],
         out * (1j * omega) ** derivatives,
-        names,
+        tuple(f"{names[j]} for {names[k]}" for j, k in zip(first, second)),
         kind,
         unit_,
         limit,
@@ -174,43 +177,10 @@ def _unit(natural: float | np.ndarray, omega: np.ndarray, ratio: float) -> np.nd
     return 1 / (natural**2 - omega**2 + 2j * ratio * natural * omega)
 
 
-class _Ends(NamedTuple):
-    """Ends of responses: point by place, and direction -3 to 3.
-
-    ``every`` of them once; ``first`` and ``second``, where each response was measured and driven.
-    """
-
-    ends: list[tuple[int, int]]
-    first: np.ndarray
-    second: np.ndarray
-
-    def along(self, motion: np.ndarray) -> np.ndarray:
-        """Return (e,) motions (p, 3) of points along the directions of all ends."""
-        return np.array([np.sign(way) * motion[point, abs(way) - 1] for point, way in self.ends])
-
-
-def _ends(
-    body: Body, points: Mapping[int, Sequence[float]], pairs: list[tuple[tuple[int, int], ...]]
-) -> tuple[SurfacePoints, _Ends]:
-    """Return points of some responses on the surface, and their ends there."""
-    numbers = sorted({point for pair in pairs for point, _ in pair})
-    places = SurfacePoints(body, numbers, np.array([points[n] for n in numbers]))
-    ends = sorted({end for pair in pairs for end in pair})
-    first, second = ([ends.index(pair[side]) for pair in pairs] for side in (0, 1))
-    places_and_ways = [(numbers.index(point), way) for point, way in ends]
-    return places, _Ends(places_and_ways, np.array(first), np.array(second))
-
-
-def _constants(fitted: ResponseFit, number: int) -> np.ndarray:
-    """Return products of shapes of unit mass at both ends of every response, by residues of
-    accelerances (Ewins 2000, Modal Testing, eq. 4.30).
-    """
-    pole = fitted.fit.poles[number]
-    return 2j * pole.imag * fitted.fit.residues[number] / pole**2
-
-
-def _end(end: tuple[int, int]) -> str:
-    return f"{end[0]}{'-' if end[1] < 0 else ''}{AXES[abs(end[1]) - 1]}"
+def _along(motion: np.ndarray, ends: Sequence[tuple[int, int]]) -> np.ndarray:
+    """Return (e,) motions (p, 3) of points along the directions of ends."""
+    points, ways = np.array(ends).T
+    return np.sign(ways) * motion[points, np.abs(ways) - 1]
 
 
 #: waves around of a body of revolution that a force at a point counts with, at least
@@ -248,8 +218,7 @@ def stiffer_motions(
     remaining = static.copy()
     for mode in elastic:
         for vector in mode.vectors:
-            moved = places.motion(vector)
-            along = [np.sign(way) * moved[point, abs(way) - 1] for point, way in ends]
+            along = _along(places.motion(vector), ends)
             remaining -= np.outer(along, along) / (2 * np.pi * mode.frequency_hz) ** 2
     return Stiffer(static, remaining, waves)
 
@@ -275,15 +244,10 @@ def _on_block(
 ) -> np.ndarray:
     """Return (n, e) unit forces at the ends in the unknowns of a block."""
     block = body.block(index)
-    corners = places.corners[[point for point, _ in ends]]
+    points, ways = np.array(ends).T
+    corners = places.corners[points]
     rows = body.geometry.rows(block.name, corners.ravel())  # type: ignore[union-attr]
     rows = rows.reshape(*corners.shape, 3, -1)
-    way = np.array([abs(way) - 1 for _, way in ends])
-    sign = np.sign([way for _, way in ends])
-    along = np.einsum(
-        "ecn,ec->en",
-        rows[np.arange(len(ends)), :, way],
-        places.weights[[point for point, _ in ends]],
-    )
-    along = sign[:, None] * along
+    directed = rows[np.arange(len(ends)), :, np.abs(ways) - 1]
+    along = np.einsum("ecn,ec->en", directed, places.weights[points]) * np.sign(ways)[:, None]
     return (along if block.expand is None else along @ block.expand).T

@@ -73,11 +73,8 @@ class OnPoints:
         self.shapes: list[np.ndarray] = []
         self.more: list[np.ndarray] = []
 
-        def moved(vector: Mapping[int, np.ndarray]) -> np.ndarray:
-            return body.surface(vector).displacement
-
         for mode in computed.modes:
-            motions = [moved(vector) for vector in mode.vectors]
+            motions = [body.surface(vector).displacement for vector in mode.vectors]
             self.shapes.append(
                 np.column_stack([places.interpolate(u)[measured_points] for u in motions])
             )

@@ -1,5 +1,7 @@
-"""Universal files (.unv, .uff) of test equipment: mode shapes and responses on measuring points,
-SI.
+"""Universal files (.unv, .uff) of test equipment: mode shapes and responses on measuring points, SI.
+
+Units stand in dataset 164, else in the labels of axes: ``m/s^2``, ``g``, ``lbf``, ``kHz``. A label
+is free text that equipment writes; an unknown one is ignored.
 """
 
 from __future__ import annotations
@@ -16,7 +18,6 @@ import numpy as np
 
 from solidgear.core import SceneError, SolidgearError, explained
 from solidgear.core.meshing.placing import Placing
-from solidgear.measured.axis_labels import force, frequency, motion
 from solidgear.parts.universal_units import units_of
 
 #: endings of their names
@@ -29,6 +30,27 @@ UNKNOWN = 0
 RESPONSE = 4
 #: dataset 55's analyses: normal modes; complex ones
 NORMAL, COMPLEX = 2, (3, 7)
+#: m of a unit of length, N of one of force, Hz of one of frequency, as labels write them
+LENGTH_LABELS = {
+    "m": 1.0,
+    "mm": 1e-3,
+    "cm": 1e-2,
+    "um": 1e-6,
+    "µm": 1e-6,
+    "μm": 1e-6,
+    "in": 0.0254,
+    "inch": 0.0254,
+    "mil": 2.54e-5,
+    "ft": 0.3048,
+}
+FORCE_LABELS = {"n": 1.0, "mn": 1e-3, "kn": 1e3, "lbf": 4.4482216152605, "lb": 4.4482216152605}
+FREQUENCY_LABELS = {"hz": 1.0, "khz": 1e3, "rad/s": 1 / (2 * math.pi), "rpm": 1 / 60, "cpm": 1 / 60}
+#: m/s^2 of an acceleration in units of free fall
+GRAVITY = dict.fromkeys(("g", "gn", "g0"), 9.80665)
+#: a length, and how often it is over a second
+_MOTION = re.compile(
+    r"(?P<length>[^\W\d]+)(?:/s(?:ec)?(?P<square>\^2|\*\*2|²|2|/s(?:ec)?)?)?", re.I
+)
 _MARK = re.compile(rb"^ {4}-1[ \t]*\r?$", re.MULTILINE)
 
 
@@ -117,18 +139,10 @@ def read_universal(
     with explained(path, {}):
         sets = _datasets(Path(path), UFF)
         kinds = NORMAL, *COMPLEX
-        modes = [
-            dataset
-            for dataset in sets
-            if dataset["type"] == 55 and dataset["analysis_type"] in kinds
-        ]
+        modes = [d for d in sets if d["type"] == 55 and d["analysis_type"] in kinds]
         if modes:
             return _shapes(sets, modes)
-        responses = [
-            dataset
-            for dataset in sets
-            if dataset["type"] == 58 and dataset["func_type"] == RESPONSE
-        ]
+        responses = [d for d in sets if d["type"] == 58 and d["func_type"] == RESPONSE]
         if responses:
             return _responses(sets, responses, response_unit)
         raise SceneError(
@@ -151,7 +165,10 @@ def _shapes(
     missing = [int(k) for k in numbers if int(k) not in places]
     if missing and places:
         raise SceneError(f"gives no position of point {missing[0]} (dataset 15 or 2411)")
-    hertz = [_hertz(mode) for mode in modes]
+    hertz = [
+        float(m["freq"] if m["analysis_type"] == NORMAL else abs(m["eig"]) / (2 * np.pi))
+        for m in modes
+    ]
     order = np.argsort(hertz, kind="stable")
     values = np.array(
         [np.column_stack([modes[k]["r1"], modes[k]["r2"], modes[k]["r3"]]) for k in order]
@@ -182,9 +199,9 @@ def _responses(
         if (dataset["ordinate_spec_data_type"], dataset["orddenom_spec_data_type"]) != kinds:
             raise SceneError(f"has another kind of data in response {k} than in the first")
     labels = [_labels(dataset) for dataset in datasets]
-    hertz = frequency(labels[0][0]) or 1.0
+    hertz = FREQUENCY_LABELS.get(_bare(labels[0][0]), 1.0)
     derivatives = LENGTHS.index(kinds[0]) if kinds[0] in LENGTHS and kinds[1] in FORCES else None
-    if kinds == (UNKNOWN, UNKNOWN) and (by_label := motion(labels[0][1])):
+    if kinds == (UNKNOWN, UNKNOWN) and (by_label := _motion(labels[0][1])):
         derivatives = by_label[1]
     scales = [_scale(sets, kinds, words) for words in labels]
     remarks = list(_remarks(labels, scales))
@@ -195,15 +212,9 @@ def _responses(
         remarks.append(f"Frequencies are in {labels[0][0]}, as the label of their axis says.")
     return Responses(
         np.asarray(axis) * hertz,
-        np.array(
-            [
-                np.multiply(dataset["data"], scale or 1.0)
-                for dataset, scale in zip(datasets, scales)
-            ],
-            complex,
-        ),
-        tuple((dataset["rsp_node"], dataset["rsp_dir"]) for dataset in datasets),
-        tuple((dataset["ref_node"], dataset["ref_dir"]) for dataset in datasets),
+        np.array([np.multiply(d["data"], s or 1.0) for d, s in zip(datasets, scales)], complex),
+        tuple((d["rsp_node"], d["rsp_dir"]) for d in datasets),
+        tuple((d["ref_node"], d["ref_dir"]) for d in datasets),
         _points(sets),
         derivatives,
         _length(sets),
@@ -222,12 +233,6 @@ def _labels(dataset: Mapping[str, Any]) -> tuple[str, str, str]:
     return word("abscissa"), word("ordinate"), word("orddenom")
 
 
-def _labelled(labels: tuple[str, str, str]) -> float | None:
-    """Return SI units in one of a response, by the labels of the axes."""
-    numerator, denominator = motion(labels[1]), force(labels[2])
-    return None if numerator is None or denominator is None else numerator[0] / denominator
-
-
 def _scale(
     sets: Sequence[Mapping[str, Any]], kinds: tuple[int, int], labels: tuple[str, str, str]
 ) -> float | None:
@@ -236,7 +241,8 @@ def _scale(
     """
     units = _units(sets)
     if units is None:
-        return _labelled(labels)
+        by_labels = _motion_over_force(*labels[1:])
+        return by_labels and by_labels[0]
     length, newton = units
     factors = dict.fromkeys(LENGTHS, length) | dict.fromkeys(FORCES, newton)
     return factors.get(kinds[0], 1.0) / factors.get(kinds[1], 1.0)
@@ -247,12 +253,12 @@ def _remarks(
 ) -> Iterator[str]:
     """Yield labels of axes that contradict dataset 164."""
     for words, scale in zip(labels, scales):
-        by_labels = _labelled(words)
-        if by_labels is None or scale is None or math.isclose(scale, by_labels, rel_tol=1e-3):
+        by_labels = _motion_over_force(*words[1:])
+        if by_labels is None or scale is None or math.isclose(scale, by_labels[0], rel_tol=1e-3):
             continue
         yield (
             f"Responses are scaled by dataset 164, {scale:.4g} in SI, but the labels of their "
-            f"axes say {words[1]} over {words[2]}, {by_labels:.4g}: one of them is wrong."
+            f"axes say {words[1]} over {words[2]}, {by_labels[0]:.4g}: one of them is wrong."
         )
         return
 
@@ -277,11 +283,10 @@ def _datasets(path: Path, reader: Callable) -> list[dict[str, Any]]:
 
 def _units(sets: Sequence[Mapping[str, Any]]) -> tuple[float, float] | None:
     """Return units of length and force, m and N; None where dataset 164 is not there."""
-    datasets = [dataset for dataset in sets if dataset["type"] == 164]
-    if not datasets:
-        return None
-    dataset = datasets[0]
-    return units_of(dataset["units_code"], dataset["length"], dataset["force"])
+    for d in sets:
+        if d["type"] == 164:
+            return units_of(d["units_code"], d["length"], d["force"])
+    return None
 
 
 def _length(sets: Sequence[Mapping[str, Any]]) -> float | None:
@@ -306,8 +311,30 @@ def _points(sets: Sequence[Mapping[str, Any]]) -> dict[int, tuple[float, float, 
     }
 
 
-def _hertz(mode: Mapping[str, Any]) -> float:
-    """Return the frequency of a mode; of a complex one from the eigenvalue."""
-    return float(
-        mode["freq"] if mode["analysis_type"] == NORMAL else abs(mode["eig"]) / (2 * np.pi)
-    )
+def response_unit(label: str) -> tuple[float, int] | None:
+    """Return SI units in the unit of a motion over a force, such as ``mm/s^2/N``, and how often the
+    displacement is differentiated in it; None of one that is unknown.
+    """
+    motion, _, force = label.rpartition("/")
+    return _motion_over_force(motion.strip().strip("()"), force)
+
+
+def _motion_over_force(motion: str, force: str) -> tuple[float, int] | None:
+    above, below = _motion(motion), FORCE_LABELS.get(_bare(force))
+    return None if above is None or below is None else (above[0] / below, above[1])
+
+
+def _motion(label: str) -> tuple[float, int] | None:
+    """Return SI units in the unit of a motion, and how often the displacement is differentiated."""
+    word = _bare(label)
+    if word in GRAVITY:
+        return GRAVITY[word], 2
+    parts = _MOTION.fullmatch(word)
+    if parts is None or parts["length"] not in LENGTH_LABELS:
+        return None
+    order = 0 if "/" not in word else 2 if parts["square"] else 1
+    return LENGTH_LABELS[parts["length"]], order
+
+
+def _bare(label: str) -> str:
+    return re.sub(r"\s+", "", label).strip("[]()").lower()

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from rich.status import Status
 
 R = TypeVar("R")
+#: exit code where a check finds what must not be used
+FAULTY = 1
 #: exit code where the tolerance is not reached: the numbers are there, with their bars
 NOT_REACHED = 3
 

@@ -6,13 +6,14 @@ from collections.abc import Collection, Sequence
 
 from solidgear.core import DOF_NAMES
 from solidgear.core.quantity import BLOCK_UNITS
-from solidgear.show.reading import entry, is_nothing
 from solidgear.show.table import Cell, Table
 from solidgear.show.units import Units
 from solidgear.show.words import is_number
 
 #: a row of numbers each for six components
 Rows = Sequence[Sequence[float | None]]
+#: below this share of the geometric mean of its diagonal entries a coupling is next to nothing
+FAINT = 1e-6
 
 
 def block(
@@ -24,21 +25,12 @@ def block(
     sizes: Sequence[Sequence[float | None]] | None = None,
     faint_digits: int = 0,
 ) -> Table:
-    """Return a 6x6 of one point or between two.
+    """Return a 6x6 of one point or between two, with dashes for `free` components and for None.
 
-    Parameters
-    ----------
-    matrix : six rows of six numbers
-        SI, order x y z thx thy thz; a dash for what is None or NaN.
-    kind : {'stiffness', 'compliance'}
-    free : collection of str
-        Components that are shown as a dash.
-    sizes : two lists of six numbers, optional
-        Entries of the diagonal beside which a coupling may be next to nothing, of rows and of
-        columns; by default those of the matrix, whose diagonal is none.
-    faint_digits : int
-        Figures of a coupling that is next to nothing, in units without exponents: there zeros would
-        fill its cell. By default it is a bare zero.
+    `sizes` are the entries of both diagonals, of rows and of columns, beside which a coupling may
+    be next to nothing; by default those of the matrix, whose diagonal is none. `faint_digits` are
+    the figures of such a coupling in units without exponents, where zeros would fill its cell; by
+    default it is a bare zero.
     """
     diagonal = [entry(matrix, k, k) for k in range(6)]
     across, along = sizes or (diagonal, diagonal)
@@ -64,3 +56,17 @@ def block(
         style="matrix",
         over=[tuple(map(units.unit, pair)) for pair in quarters],
     )
+
+
+def entry(matrix: Rows | None, i: int, j: int) -> float | None:
+    """Return one entry of a matrix; None if there is none."""
+    if matrix is None or i >= len(matrix) or j >= len(matrix[i]):
+        return None
+    return matrix[i][j]
+
+
+def is_nothing(value: float | None, first: float | None, second: float | None) -> bool:
+    """Return True where a coupling is negligible beside two entries of its size."""
+    if value is None or first is None or second is None:
+        return False
+    return abs(value) <= FAINT * abs(first * second) ** 0.5

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from solidgear.core import OpenNumbers, Quantity
@@ -78,7 +78,7 @@ def remark(numbers: OpenNumbers) -> str:
     return f"Ranges of {sources}: from {paths}. See: solidgear budget.{''.join(lost + refused)}"
 
 
-def table(numbers: OpenNumbers, bars: dict[Quantity, float], units: Units) -> Table:
+def table(numbers: OpenNumbers, bars: Mapping[Quantity, float], units: Units) -> Table:
     """Return diagonal entries of a stiffness and a compliance, with error bars and ranges."""
     rows = [number for number in numbers.numbers if not number.quantity.is_coupling]
     columns_ = [text("quantity", lambda number: number.quantity)]

@@ -218,7 +218,7 @@ class Solved(Chosen):
         return "model and mesh were given; -f auto has error bars"
 
     def body(
-        self, scene: Scene, ask: str, points: Sequence[str] = ()
+        self, scene: Scene, ask: str, progress: Progress, points: Sequence[str] = ()
     ) -> tuple[Body, Settled | None]:
         """Build the body to solve with, and say how its mesh was chosen.
 
@@ -231,9 +231,9 @@ class Solved(Chosen):
             return build_body(scene, self.name, self.pairs), None
         from solidgear.core import settle  # start-up: for ``auto`` alone
 
-        # A second or less for most scenes: lines are for those who watch.
-        with Progress(quiet=not sys.stderr.isatty()) as progress:
-            settled = settle(scene, self.tol, ask, points=points, progress=progress)
+        # a second or less for most scenes: lines are for those who watch
+        watched = progress if sys.stderr.isatty() else Progress(quiet=True)
+        settled = settle(scene, self.tol, ask, points=points, progress=watched)
         return settled.body, settled
 
 

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -54,7 +54,7 @@ def write_vtu(
     import meshio
 
     path = Path(path)
-    chosen: Any = getattr(modes, "modes", modes)
+    chosen = modes if isinstance(modes, Iterable) else modes.modes
     shapes = dict(_shapes(islice(chosen, most)))
     volume = body.geometry.volume() if body.geometry is not None else None
     if volume is not None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import functools
 import logging
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -27,11 +28,12 @@ class Contents:
 
 
 @functools.cache
-def template(name: str):
-    """Return the template of a page."""
+def template(name: str, folder: Path | None = None):
+    """Return the template of a page, in a folder of its study or here."""
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-    loader = FileSystemLoader(Path(__file__).parent)
+    here = Path(__file__).parent
+    loader = FileSystemLoader([folder or here, here])
     return Environment(
         loader=loader,
         autoescape=True,
@@ -51,3 +53,12 @@ def data_uri(key: str, path: Path) -> str | None:
     if not data.startswith(b"\x89PNG"):
         return None
     return f"data:image/png;base64,{base64.b64encode(data).decode()}"
+
+
+def figures(files: Mapping[str, Path], what: str) -> str:
+    """Return pictures of deformed bodies as HTML, by their captions; `what` begins the text for
+    those who do not see them.
+    """
+    picture = template("parts.html").module.picture
+    drawn = "".join(picture(name, data_uri(name, path), what) for name, path in files.items())
+    return f'<div class="renders">\n{drawn}</div>' if drawn else ""

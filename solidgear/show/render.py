@@ -20,12 +20,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from solidgear.core import whole
+from solidgear.core import SolidgearError, whole
 from solidgear.core.machine.patience import Patience
 from solidgear.show.drawing import ARRAYS
 
 if TYPE_CHECKING:
-    from solidgear.core import Surface
+    from solidgear.core import Body, ModeSet, Surface
 
 PACKAGES = (
     "apt-get install libgl1 libegl1 libegl-mesa0 libglu1-mesa "
@@ -48,6 +48,32 @@ class RenderJob:
     #: factors on the displacement and what is written over each, side by side
     frames: Sequence[tuple[float, str]] = STILL
     along: bool = True  #: one shaft along y, seen across its motion; else a train, seen from above
+
+
+@dataclass(frozen=True, eq=False)
+class Drawn:
+    """A body, its modes, and what it is called in a picture or page."""
+
+    body: Body
+    modes: ModeSet
+    title: str
+
+    def job(self, name: str, path: Path) -> RenderJob:
+        """Return a picture of the mode of that name.
+
+        Raises
+        ------
+        SolidgearError
+            If there is none.
+        """
+        mode = self.modes.named(name)
+        if mode is None:
+            have = ", ".join(m.name for m in self.modes.modes)
+            raise SolidgearError(
+                f"mode {name!r}: the {self.title} has none of that name; it has {have}"
+            )
+        title = f"{self.title}: {mode.name}, {mode.frequency_hz:.1f} Hz"
+        return RenderJob(self.body.surface(mode.vectors[0]), title, path)
 
 
 @dataclass(frozen=True)

@@ -1,12 +1,13 @@
-"""Words on a mesh that a command has chosen by itself: ``-f auto``."""
+"""Numbers of one scene by one model, and words on a mesh that was chosen for them: ``-f auto``."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import typer
 
-from solidgear.core import BEAM, LADDER, Body, ModeSet, Quantity, Scene, Settled, listed
+from solidgear.core import BEAM, LADDER, Body, OpenNumbers, Quantity, Scene, Settled
 from solidgear.core.judge.answer import Answered
 from solidgear.core.judge.quantities import in_words
 from solidgear.core.judge.settle import widest
@@ -17,13 +18,32 @@ from solidgear.show.words import is_number, percent
 SECOND_MESH = "Error bars: from a second, coarser mesh."
 
 
-def heading(scene: Scene, body: Body, settled: Settled | None) -> str:
-    """Return the scene, model, mesh and size."""
-    model = body.fidelity
-    if settled is not None:
-        model = f"{model}, {settled.setting} (auto)"
-    part = f"{body.mesh['solved_part']}, " if "solved_part" in body.mesh else ""
-    return f"{scene.name}: {model}, {part}{body.size} unknowns"
+@dataclass(frozen=True)
+class Judged:
+    """Numbers of a scene by one model: their error bars and what is said beside them."""
+
+    scene: Scene
+    body: Body
+    settled: Settled | None  #: None where model and mesh were given
+    bars: Mapping[Quantity, float]  #: relative
+    reason: str  #: that no number has an error bar; empty where some have one
+    cautions: Sequence[str]
+    open: OpenNumbers
+
+    @property
+    def heading(self) -> str:
+        """Scene, model, mesh and size."""
+        model = self.body.fidelity
+        if self.settled is not None:
+            model = f"{model}, {self.settled.setting} (auto)"
+        mesh = self.body.mesh
+        part = f"{mesh['solved_part']}, " if "solved_part" in mesh else ""
+        return f"{self.scene.name}: {model}, {part}{self.body.size} unknowns"
+
+    @property
+    def reached(self) -> bool:
+        """Return whether the tolerance is kept, if one was asked for."""
+        return self.settled is None or self.settled.reached
 
 
 def bar_lines(settled: Settled | None, bars: Mapping[Quantity, float] | None = None) -> list[str]:
@@ -57,39 +77,6 @@ def largest_bar(bars: Mapping[Quantity, float], point: str, range_: str = "") ->
     main = point if any(name.points for name in bars) else ""
     width = percent(bar, signed=False) if is_number(bar) else "unknown"
     return [f"Largest error bar{range_}: +- {width}, of {in_words(quantity, main)}."]
-
-
-def without_bar(mode_set: ModeSet, bars: Mapping[str, float]) -> list[str]:
-    """Return names of elastic modes without an error bar."""
-    return [m.name for m in mode_set.modes if m.frequency_hz > 0 and m.name not in bars]
-
-
-def beyond(bars: Mapping[str, float], settled: Settled | None) -> list[str]:
-    """Return sentences on error bars beyond the tolerance of quantities that are not judged."""
-    if settled is None or not settled.reached:
-        return []
-
-    wide = {name: bar for name, bar in bars.items() if bar > settled.tolerance}
-    if not wide:
-        return []
-    names = listed((f"{q} +- {percent(bar, signed=False)}" for q, bar in wide.items()), most=3)
-    return [
-        f"Beyond {percent(settled.tolerance, signed=False)}: {names}; --tol holds the first mode "
-        "of every family, and a smaller one narrows these too."
-    ]
-
-
-def unjudged(names: Sequence[str], model: str, *, second: bool = False) -> str:
-    """Return the reason why some modes have no error bar, `second` by a second mesh; empty without
-    such modes.
-    """
-    if not names:
-        return ""
-    if second:
-        return "the coarser mesh has no such mode, or as many cells around"
-    if LADDER[model].bounded:
-        return "an error bar needs the next mode of the family; raise -n"
-    return "higher modes need finer meshes"
 
 
 def ended(settled: Settled | None) -> None:

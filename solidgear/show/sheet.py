@@ -7,80 +7,28 @@ command was asked to.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from solidgear.core import whole
-from solidgear.core.machine.whole_file import write_page
-from solidgear.show.command import NOT_REACHED, Progress, caution, say
-from solidgear.show.folder import held
+from solidgear.core.machine.whole_file import write_page as write_whole
+from solidgear.show.command import NOT_REACHED, Progress, caution, filled, say
+from solidgear.show.folder import begun, held
 from solidgear.show.page_parts import Contents, template
 from solidgear.show.plot import WIDE, Make, page_svg
 from solidgear.show.table import Table
 from solidgear.show.units import in_ascii
 
 if TYPE_CHECKING:
+    from rich.console import RenderableType
+
     from solidgear.show.options import Run
 
-#: what charts say in words, by how their names begin
-WORDS = {
-    "response": "Dynamic mesh force and transmission error of each model.",
-    "orders": (
-        "Orders of the mesh and of both shafts over the speed of the pinion, and the natural "
-        "frequencies they meet. Colour: mesh force along orders of the transmission error."
-    ),
-    "deflection": (
-        "Deflection lines of every shaft in both planes, by every model; dashed lines are bearings."
-    ),
-    "turn_": (
-        "Mesh force of every planet over a turn of its carrier from the file's position on; "
-        "bearings have their stiffness at rest."
-    ),
-    "measured": (
-        "The measured spectrum, its peaks named by their orders at this speed, above the computed "
-        "mesh force. Grey lines: natural frequencies."
-    ),
-    "section_forces": (
-        "Section forces along the shaft; with two components, the dashed line is their resultant."
-    ),
-    "off": (
-        "Difference of each computed frequency from the measured one; grey: two standard "
-        "deviations of the measured and the error bar of the computed one."
-    ),
-    "mac": (
-        "MAC, the likeness of every measured shape (rows) and every computed mode at the "
-        "measuring points."
-    ),
-    "overlay": (
-        "Measured (dark) and computed (green, with its band) responses at the same points; dots: "
-        "resonances found."
-    ),
-    "designs": "The goal in every design solved, each with its error bar.",
-    "sweep": "Natural frequencies and other columns over the number that varies.",
-    "nonlinear": (
-        "Dynamic mesh force over the speed of the pinion: periodic motions with backlash, stable and "
-        "unstable, with the jumps between them, runs through the speeds, and the linear answer. Below: "
-        "contact over the cycle, and the orders of the largest force."
-    ),
-    "housing": (
-        "Loads on the mounts of the housing and accelerations of its points, over all three "
-        "directions."
-    ),
-    "waterfall": (
-        "Spectra of the mesh force along the run, each over 16 to 64 mesh cycles around its speed; grey: "
-        "orders of the mesh."
-    ),
-    "receptance": "Amplitude and phase of the receptance of every model.",
-    "shapes": (
-        "Motions of sections along both shafts in the lowest pairs of modes, in the plane of the "
-        "largest, scaled to one."
-    ),
-    "sensitivities": "Change of the number for one per cent more of each entry.",
-    "shares": "Strain energy of every mode by part.",
-}
+#: files of a chart
+KINDS = ("png", "svg")
 
 
 @dataclass(frozen=True)
@@ -90,21 +38,27 @@ class Section:
     anchor: str
     title: str
     words: str = ""
-    #: by names of letters and underscores, each of no other chart of the page; those in ``WORDS``
-    #: say what is written there, others the title
+    #: by names of letters and underscores, each of no other chart of the page
     charts: Mapping[str, Make] = field(default_factory=dict)
     tables: Sequence[Table] = ()  #: those without rows are left out
     #: SVG by what it says in words, before the charts
     drawings: Mapping[str, bytes | None] = field(default_factory=dict)
+    filed: Collection[str] | None = None  #: charts that are files as well; None: all of them
+    viewer: str = ""  #: HTML of shapes, before the tables
+    notes: Sequence[str] = ()  #: below the tables
 
 
 @dataclass(frozen=True)
 class Terminal:
     """Parts that a terminal shows in another way than the page; None is as on the page."""
 
-    heading: Sequence[str] | None = None  #: in place of title and lead
-    tables: Sequence[Table] | None = None
-    closing: Sequence[str] | None = None  #: in place of notes and cautions
+    heading: Sequence[str | Table] | None = None  #: in place of title and lead
+    tables: Sequence[RenderableType] | None = None
+    closing: Sequence[str | Table] | None = None  #: in place of notes and cautions
+    #: sentences longer than a line: broken at the width, with further lines indented, or whole
+    lines: Literal["broken", "hanging", "whole"] = "broken"
+    results: Sequence[str] | None = None  #: in place of headline and verdict
+    unbroken: Sequence[str] = ()  #: last, a line of any length each
 
 
 @dataclass(frozen=True)
@@ -126,11 +80,17 @@ class Sheet:
     viewer: str = ""  #: HTML of shapes, of the page alone
     reached: bool = True  #: whether every error bar is within the tolerance
     terminal: Terminal = Terminal()
+    exit_code: int = 0  #: of a fault, or of a run that ended early, after its numbers
+    #: what charts say, by file; the title where there is nothing
+    words: Mapping[str, str] = field(default_factory=dict)
+    #: name of its JSON, which then lists all files, where that is not the name of its page
+    json_name: str = ""
+    pictures: Sequence[str] = ()  #: files of its folder that are drawn already
 
 
 def present(study: Callable[[Progress], Sheet], run: Run, out: Path | None = None) -> None:
-    """Solve a study, write its folder if there is one, print its sheet, and exit with code 3 where
-    the tolerance is not reached.
+    """Solve a study, write its folder if there is one, print its sheet, and exit with the code of
+    the sheet, or 3 where the tolerance is not reached.
     """
     with held(out) if out else nullcontext(), run.progress() as progress:
         sheet = study(progress)
@@ -139,27 +99,37 @@ def present(study: Callable[[Progress], Sheet], run: Run, out: Path | None = Non
         print(as_json(sheet))
     else:
         print_sheet(sheet)
-        if files:
-            say(f"Written: {', '.join(map(str, files))}", soft_wrap=False)
-    if not sheet.reached:
+        if sheet.json_name and files:
+            say(f"Report: {files[0]}")
+        elif files:
+            written = f"Written: {', '.join(map(str, files))}"
+            say(written, soft_wrap=sheet.terminal.lines != "broken")
+    exit_code = sheet.exit_code or (0 if sheet.reached else NOT_REACHED)
+    if exit_code:
         import typer  # start-up: pages are written without a command line
 
-        raise typer.Exit(NOT_REACHED)
+        raise typer.Exit(exit_code)
 
 
 def print_sheet(sheet: Sheet) -> None:
     """Print a sheet on the terminal, broken at its width."""
     terminal = sheet.terminal
     heading, tables, closing = terminal.heading, terminal.tables, terminal.closing
+    results = terminal.results
     if heading is None:
-        heading = [sheet.title, sheet.lead]
+        heading = [text for text in (sheet.title, sheet.lead) if text]
     if tables is None:
         tables = sheet.tables
     if closing is None:
         closing = [*sheet.notes, *map(caution, sheet.cautions)]
-    results = [in_ascii(sheet.headline), *sheet.verdict]
-    say(*heading, *(table for table in tables if table), soft_wrap=False)
-    say(*(sentence for sentence in results if sentence), *closing, soft_wrap=False)
+    if results is None:
+        results = [in_ascii(sheet.headline), *sheet.verdict]
+    blocks = [*heading, *(table for table in tables if table)]
+    blocks += [*(sentence for sentence in results if sentence), *closing]
+    if terminal.lines == "hanging":
+        blocks = [filled(block) if isinstance(block, str) else block for block in blocks]
+    say(*blocks, soft_wrap=terminal.lines != "broken")
+    say(*terminal.unbroken)
 
 
 def as_json(sheet: Sheet) -> str:
@@ -169,15 +139,35 @@ def as_json(sheet: Sheet) -> str:
 
 def write_folder(sheet: Sheet, folder: Path) -> list[Path]:
     """Write a page and its data, tables by file name, and charts; return the paths."""
+    with begun(folder) if sheet.json_name else nullcontext():
+        return _written(sheet, folder)
+
+
+def _written(sheet: Sheet, folder: Path) -> list[Path]:
     folder.mkdir(parents=True, exist_ok=True)
+    charts = {**sheet.charts}
+    for s in sheet.sections:
+        charts |= {stem: make for stem, make in s.charts.items() if _is_filed(s, stem)}
+    data = sheet.data
+    if sheet.json_name:
+        names = [f"{sheet.name}.html", *(f"{stem}.csv" for stem in sheet.lines)]
+        names += [f"{stem}.{kind}" for stem in charts for kind in KINDS]
+        names += sheet.pictures
+        data = {**data, "files": names}
+    json_file = folder / f"{sheet.json_name or sheet.name}.json"
+    write_json(json_file, data)  # numbers first: whatever happens to charts, they are there
     files = [table.write(folder / f"{stem}.csv") for stem, table in sheet.lines.items()]
-    files.append(folder / f"{sheet.name}.json")
-    write_json(files[-1], sheet.data)
-    for charts in (sheet.charts, *(section.charts for section in sheet.sections)):
-        for stem, make in charts.items():
-            files += write_charts(folder / stem, make)
-    page = write_sheet(
-        folder / f"{sheet.name}.html",
+    files.append(json_file)
+    for stem, make in charts.items():
+        files += write_charts(folder / stem, make)
+    page = write_page(sheet, folder / f"{sheet.name}.html")
+    return [page, *files]
+
+
+def write_page(sheet: Sheet, path: Path) -> Path:
+    """Write the page of a sheet alone."""
+    return write_sheet(
+        path,
         sheet.title,
         f"{sheet.lead} {sheet.headline}".strip(),
         sheet.tables,
@@ -187,8 +177,12 @@ def write_folder(sheet: Sheet, folder: Path) -> list[Path]:
         verdict=sheet.verdict,
         viewer=sheet.viewer,
         sections=sheet.sections,
+        words=sheet.words,
     )
-    return [page, *files]
+
+
+def _is_filed(section: Section, chart: str) -> bool:
+    return section.filed is None or chart in section.filed
 
 
 def write_json(path: Path, data: Mapping[str, Any]) -> None:
@@ -202,7 +196,7 @@ def write_charts(stem: Path, make: Make) -> list[Path]:
     chart = make(WIDE)
     if chart is None:
         return []
-    files = [stem.with_suffix(f".{kind}") for kind in ("png", "svg")]
+    files = [stem.with_suffix(f".{kind}") for kind in KINDS]
     chart.write(*files)
     return files
 
@@ -219,14 +213,21 @@ def write_sheet(
     cautions: Sequence[str] = (),
     verdict: Sequence[str] = (),
     sections: Sequence[Section] = (),
+    words: Mapping[str, str] | None = None,
 ) -> Path:
     """Write a page without network: conclusions, cautions, charts, HTML of shapes, tables and
     notes.
     """
     from markupsafe import Markup
 
+    captions = words or {}
     drawn = [
-        (s, [table for table in s.tables if table], [*_given(s), *_drawn(s.charts, s.title)])
+        (
+            s,
+            [table for table in s.tables if table],
+            [*_given(s), *_drawn(s.charts, s.title, captions)],
+            Markup(s.viewer),
+        )
         for s in sections
     ]
     page = template("train_sheet.html").render(
@@ -234,23 +235,25 @@ def write_sheet(
         title=title,
         lead=lead,
         tables=[table for table in tables if table],
-        charts=_drawn(charts or {}, title),
+        charts=_drawn(charts or {}, title, captions),
         viewer=Markup(viewer),
         notes=notes,
         cautions=cautions,
         verdict=verdict,
-        sections=[part for part in drawn if part[0].words or part[1] or part[2]],
+        sections=[part for part in drawn if part[0].words or any(part[1:])],
     )
-    return write_page(path, page)
+    return write_whole(path, page)
 
 
-def _drawn(charts: Mapping[str, Make], title: str) -> list[tuple[str, str]]:
+def _drawn(
+    charts: Mapping[str, Make], title: str, words: Mapping[str, str]
+) -> list[tuple[str, str]]:
     """Draw charts for the page with their words, without empty ones."""
     from markupsafe import Markup
 
     drawn = {name: page_svg(name, make) for name, make in charts.items()}
     return [
-        (Markup(svg.decode()), _words(name) or f"{title}.") for name, svg in drawn.items() if svg
+        (Markup(svg.decode()), words.get(name) or f"{title}.") for name, svg in drawn.items() if svg
     ]
 
 
@@ -259,7 +262,3 @@ def _given(section: Section) -> list[tuple[str, str]]:
     from markupsafe import Markup
 
     return [(Markup(svg.decode()), words) for words, svg in section.drawings.items() if svg]
-
-
-def _words(name: str) -> str:
-    return next((words for start, words in WORDS.items() if name.startswith(start)), "")

@@ -9,13 +9,16 @@ import numpy as np
 
 from solidgear.core import DOF_NAMES
 from solidgear.core.quantity import BLOCK_UNITS
-from solidgear.show.reading import mode_of
 from solidgear.show.sketch import draw
 from solidgear.show.table import Table
 from solidgear.show.words import bar_of, percent
 
 if TYPE_CHECKING:
-    from solidgear.core import Body
+    from matplotlib.figure import Figure
+
+    from solidgear.core import Body, Condensed, ModeSet, Scene
+    from solidgear.core.judge.answer import Answered
+    from solidgear.core.solve.condensed import Coupled
 
 #: shapes that a picture shows unless told otherwise
 MOST_SHAPES = 6
@@ -23,11 +26,13 @@ MOST_SHAPES = 6
 SMALL = 0.05
 
 
-def scene(shaft: Any) -> Table:
+def scene(shaft: Scene) -> Table:
     """Return parts of a shaft along its axis."""
-    rows: list[tuple[Any, ...]] = []
+    rows: list[tuple[str | float, ...]] = []
     for s in shaft.segments:
-        rows.append((s.name, "segment", 1e3 * s.y0, 1e3 * s.y1, _diameters(s)))
+        bore = f", bore {_diameters(s.inner0, s.inner1)} mm" if s.inner0 or s.inner1 else ""
+        size = f"diameter {_diameters(s.outer0, s.outer1)} mm{bore}"
+        rows.append((s.name, "segment", 1e3 * s.y0, 1e3 * s.y1, size))
     for f in shaft.features:
         lo, hi = f.span(shaft.segments)
         rows.append((f.name, f.what, 1e3 * lo, 1e3 * hi, f"on {f.segment}"))
@@ -61,18 +66,12 @@ def scene(shaft: Any) -> Table:
     )
 
 
-def _diameters(segment: Any) -> str:
-    outer = (segment.outer0, segment.outer1)
-    inner = (segment.inner0, segment.inner1)
-
-    def ends(pair: tuple[float, float]) -> str:
-        return " to ".join(f"{2e3 * r:.6g}" for r in dict.fromkeys(pair))
-
-    bore = f", bore {ends(inner)} mm" if any(inner) else ""
-    return f"diameter {ends(outer)} mm{bore}"
+def _diameters(first: float, last: float) -> str:
+    """Return diameters by the radii at both ends, mm."""
+    return " to ".join(f"{2e3 * r:.6g}" for r in dict.fromkeys((first, last)))
 
 
-def scene_figure(shaft: Any) -> Any:
+def scene_figure(shaft: Scene) -> Figure | None:
     """Return the dimensioned section of the report."""
     return draw(shaft.as_dict())
 
@@ -91,7 +90,7 @@ def body(free_body: Body) -> Table:
     )
 
 
-def mode_set(modes: Any) -> Table:
+def mode_set(modes: ModeSet) -> Table:
     """Return the natural frequencies."""
     rows = [(m.name, m.frequency_hz, m.multiplicity, m.waves, m.error) for m in modes.modes]
     return Table(
@@ -101,7 +100,7 @@ def mode_set(modes: Any) -> Table:
     )
 
 
-def mode_set_figure(modes: Any, names: Sequence[str] = ()) -> Any:
+def mode_set_figure(modes: ModeSet, names: Sequence[str] = ()) -> Figure:
     """Draw section motions of elastic modes along the shaft: translations, for torsion rotations.
 
     Parameters
@@ -112,8 +111,9 @@ def mode_set_figure(modes: Any, names: Sequence[str] = ()) -> Any:
     from matplotlib.figure import Figure
 
     elastic = [m for m in modes.modes if m.frequency_hz > 0]
-    drawn = [modes.named(name) for name in names] if names else elastic[:MOST_SHAPES]
-    if not drawn or None in drawn:
+    chosen = [modes.named(name) for name in names] if names else elastic[:MOST_SHAPES]
+    drawn = [mode for mode in chosen if mode is not None]
+    if not drawn or len(drawn) < len(chosen):
         raise ValueError(f"no such mode; there are {', '.join(modes.names)}")
     figure = Figure(figsize=(7.0, 0.6 + 1.15 * len(drawn)), layout="constrained")
     axes = figure.subplots(len(drawn), 1, sharex=True, squeeze=False)[:, 0]
@@ -136,18 +136,20 @@ def mode_set_figure(modes: Any, names: Sequence[str] = ()) -> Any:
     return figure
 
 
-def condensed(statics: Any, kind: str = "stiffness") -> Table:
+def condensed(statics: Condensed, kind: str = "stiffness") -> Table:
     """Return the 6x6 at a port, a stiffness or a compliance."""
     return _matrix(statics, kind, f"at {statics.port} ({statics.attachment})", DOF_NAMES, "free")
 
 
-def coupled(statics: Any, kind: str = "compliance") -> Table:
+def coupled(statics: Coupled, kind: str = "compliance") -> Table:
     """Return the matrix between several ports, a stiffness or a compliance."""
     heads = [f"{port} {name}" for port in statics.ports for name in DOF_NAMES]
     return _matrix(statics, kind, f"between {' and '.join(statics.ports)}", heads, "free together")
 
 
-def _matrix(statics: Any, kind: str, place: str, heads: Sequence[str], free: str) -> Table:
+def _matrix(
+    statics: Condensed | Coupled, kind: str, place: str, heads: Sequence[str], free: str
+) -> Table:
     if kind not in BLOCK_UNITS:
         raise ValueError(f"kind {kind!r}: use stiffness or compliance")
     rows = [
@@ -162,7 +164,7 @@ def comparison(compared: Any) -> Table:
     """Return the verdict and first numbers of every model."""
     record, rows = compared.record, []
     for name, model in record.models.items():
-        first = mode_of(model, "bending 1")
+        first = model.mode("bending 1")
         c_zz = model.compliance[2][2] if model.compliance else None
         spent = round(sum(v for v in model.seconds.values() if v is not None), 3)
         rows.append(
@@ -178,7 +180,7 @@ def comparison(compared: Any) -> Table:
     )
 
 
-def answered(answer: Any) -> Table:
+def answered(answer: Answered) -> Table:
     """Return numbers with their error bars."""
     rows = [(v.quantity, v.value, v.unit, bar_of(v)) for v in answer.values]
     words = "within" if answer.reached else "not within"
@@ -205,23 +207,3 @@ def _told(columns: Mapping[str, list], head: str, k: int) -> str:
     if value is None or isinstance(value, str):
         return (value or "-")[:60]
     return f"{value:.6g}" if bar is None else f"{value:.6g} ± {bar:.1g}"
-
-
-def two_shafts(pair: Any) -> Table:
-    """Return numbers of two shafts, their differences and verdicts."""
-    rows = [
-        (
-            change.name,
-            change.change.a,
-            change.change.b,
-            change.unit,
-            percent(change.relative),
-            change.verdict,
-        )
-        for change in pair.changes
-    ]
-    return Table(
-        f"{pair.a.label} beside {pair.b.label}",
-        ("number", "A", "B", "unit", "difference", ""),
-        rows,
-    )

@@ -231,8 +231,8 @@ def exact(value: float) -> str:
     return f"{value:.9g}"
 
 
-def numbers(columns: Mapping[str, Iterable[float]]) -> Table:
-    """Return columns of numbers in SI by their heads, for other programs."""
+def numbers(columns: Mapping[str, Iterable[float | str | None]]) -> Table:
+    """Return columns of numbers in SI and of texts by their heads, for other programs."""
     return Table("", [Column(head, write=exact) for head in columns], list(zip(*columns.values())))
 
 

@@ -73,7 +73,7 @@ class Member(NamedTuple):
     rotation: np.ndarray  #: (3, 3)
     origin: np.ndarray  #: (3,) as of :class:`Turned`
     #: arguments of :meth:`Body.surface`, for every mode one, or the two of a pair
-    vectors: Sequence[Sequence[Any]]
+    vectors: Sequence[Sequence[Mapping[int, np.ndarray]]]
 
 
 def turned(
@@ -85,7 +85,7 @@ def turned(
     """Return surface and elastic mode shapes of a body, with the signs of the models they are
     `like`.
     """
-    chosen: Any = getattr(modes, "modes", modes)
+    chosen = modes if isinstance(modes, Iterable) else modes.modes
     elastic = [mode for mode in chosen if mode.frequency_hz > 0]
     alone = Member(body, np.eye(3), np.zeros(3), [mode.vectors[:2] for mode in elastic])
     labels = [(mode.name, mode.frequency_hz) for mode in elastic]
@@ -124,7 +124,7 @@ def together(
     return replace(bodies[0], along=tuple(bodies[1:]))
 
 
-def _moved(body: Body, vectors: Sequence[Any], mesh: Mesh) -> np.ndarray:
+def _moved(body: Body, vectors: Sequence[Mapping[int, np.ndarray]], mesh: Mesh) -> np.ndarray:
     """Return the displacement of a mode at the points of a mesh, up to a factor."""
     moved = [body.surface(vector).displacement[mesh.source] for vector in vectors]
     return moved[0] if len(moved) == 1 else symmetric(mesh.points, *moved)

@@ -14,6 +14,7 @@ from solidgear.show.words import percent
 
 if TYPE_CHECKING:
     from solidgear.core import Record, WhereRecord
+    from solidgear.core.judge.record import PlaceRecord
 
 #: shares below this are all of one colour
 LEAST = 1e-4
@@ -29,34 +30,28 @@ MOST_PLACES, WORTH_NAMING = 5, 5e-4
 
 
 def draw_where(file: Path, places: WhereRecord, title: str = "") -> None:
-    """Write the picture.
-
-    Parameters
-    ----------
-    file : Path
-        Its ending, ``.png`` or ``.svg``, says what it becomes.
-    places : WhereRecord
-        Cells with their shares, whose magnitudes are drawn; places worth it are named.
-
-    Raises
-    ------
-    SolidgearError
-        For another ending, or a file that cannot be written.
+    """Write the picture as ``.png`` or ``.svg``; SolidgearError for another ending, or a file that
+    cannot be written.
     """
     _chart(places, title, WIDE).write(file)
 
 
 def _chart(record: WhereRecord, title: str, width: float) -> Chart:
     points, cells, shares = map(np.array, (record.points, record.cells, record.shares))
-    places = [p for p in worth_naming(record.rows) if p.y is not None and p.r is not None]
+    spots = [
+        (place, place.y, place.r)
+        for place in worth_naming(record.rows)
+        if place.y is not None and place.r is not None
+    ]
+    places = [place for place, *_ in spots]
     r, y = 1e3 * points
     length, radius = np.ptp(y), r.max()
     stretch = max(1.0, length / (SLENDEREST * radius))
     corners = np.stack([y[cells], r[cells]], axis=-1).transpose(1, 0, 2)
     room = width - 80.0
     scale = min(room / (1.04 * length), HIGHEST / (1.1 * stretch * radius))  # px of a millimetre
-    spots = [(1e3 * scale * p.y, 1e3 * scale * stretch * p.r) for p in places]
-    heights = [height / scale / stretch for height in _raised(spots)]
+    on_paper = [(1e3 * scale * a, 1e3 * scale * stretch * b) for _, a, b in spots]
+    heights = [height / scale / stretch for height in _raised(on_paper)]
     top = max([1.05 * radius, *(height + DIGIT / scale / stretch for height in heights)])
     panel = Panel(
         Axis("y, mm", (y.min() - 0.02 * length, y.max() + 0.02 * length), grid=False),
@@ -68,16 +63,16 @@ def _chart(record: WhereRecord, title: str, width: float) -> Chart:
     legend["values"] = np.geomspace(LEAST, 1.0, 5).tolist()
     _draw(panel, corners, shares, legend | {"gradientLength": min(room, 300.0)})
     numbers = [
-        {"x": 1e3 * place.y, "y": 1e3 * place.r, "y2": height, "text": str(number)}
-        for number, (place, height) in enumerate(zip(places, heights), 1)
+        {"x": 1e3 * along, "y": 1e3 * across, "y2": height, "text": str(number)}
+        for number, ((_, along, across), height) in enumerate(zip(spots, heights), 1)
     ]
     panel.draw("rule", [{key: row[key] for key in ("x", "y", "y2")} for row in numbers])
     labels = [{"x": row["x"], "y": row["y2"], "text": row["text"]} for row in numbers]
     panel.draw({"type": "point", "size": 300, "fill": "#ffffff", "stroke": GREY}, labels)
     panel.draw({"type": "text", "baseline": "middle", "fontWeight": "bold"}, labels)
     names = [
-        f"{number}: {place.what}, y = {1e3 * place.y:.4g} mm, {100 * place.share:.2g} %"
-        for number, place in enumerate(places, 1)
+        f"{number}: {place.what}, y = {1e3 * along:.4g} mm, {100 * (place.share or 0.0):.2g} %"
+        for number, (place, along, _) in enumerate(spots, 1)
     ]
     drawn_as = "" if stretch == 1.0 else f"radius drawn {stretch:.2g} times as large"
     close = _close(points, places)[: int(width / CLOSE)]
@@ -90,7 +85,7 @@ def _chart(record: WhereRecord, title: str, width: float) -> Chart:
     return Chart(rows_of, width, "; ".join(filter(None, (title, drawn_as))), "\n".join(names))
 
 
-def _inset(corners, shares, place: Any, number: int, half: float) -> Panel:
+def _inset(corners, shares, place: PlaceRecord, number: int, half: float) -> Panel:
     """Return cells near a place, so many metres to either side."""
     centre = 1e3 * np.array([place.y, place.r])
     low, high = centre - 1e3 * half, centre + 1e3 * half
@@ -126,7 +121,7 @@ def _words(y: float, r: float, share: float) -> str:
     return readout("cell", ("share of the error", size, ""), *places)
 
 
-def _close(points: np.ndarray, places: Sequence[Any]) -> list[tuple[int, float]]:
+def _close(points: np.ndarray, places: Sequence[PlaceRecord]) -> list[tuple[int, float]]:
     """Return numbers of places with cells too small to be seen, and half the width (m) of an
     inset.
     """
@@ -158,12 +153,6 @@ def where_chart(record: Record, width: float = WIDE) -> Chart | None:
     return _chart(places, "", width)
 
 
-def worth_naming(rows: Sequence[Any]) -> list[Any]:
-    """Return the first few places with a share worth a word.
-
-    Parameters
-    ----------
-    rows : sequence of PlaceRecord
-        Places with a ``share``, the largest first.
-    """
+def worth_naming(rows: Sequence[PlaceRecord]) -> list[PlaceRecord]:
+    """Return the first few places with a share worth a word, of places from the largest down."""
     return [r for r in rows[:MOST_PLACES] if r.share is not None and abs(r.share) >= WORTH_NAMING]

@@ -1,4 +1,4 @@
-"""Options on loads of a train or a shaft at rest, and the scene or train that they give."""
+"""Options on loads of a train or a shaft at rest, and the assembly and point that they give."""
 
 from __future__ import annotations
 
@@ -9,14 +9,18 @@ from typing import Annotated, Any
 import typer
 
 from solidgear.bearings.study import loaded_by
-from solidgear.core import Scene, SceneError, SolidgearError, as_written, is_train, show
+from solidgear.core import SceneError, SolidgearError, as_written, is_train, show
 from solidgear.show.command import Group
 from solidgear.show.options import refuse
+from solidgear.strength.load import AT_REST
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.train import Train
 from solidgear.trains.load.operation import named_point
 from solidgear.trains.loading import load_train
 
+#: modes kept of a shaft alone, whose deflection needs none
+FEW = 6
 AtRestFile = Annotated[
     Path, typer.Argument(help="Train or scene file (TOML), such as geometry/axle_overhung.toml.")
 ]
@@ -53,19 +57,22 @@ class Acting(Group):
         ),
     ] = None
 
-    def read(self, file: Path) -> Scene | tuple[Train, OperatingPoint]:
-        """Return a shaft under its load, or a train and its operating point; refuse options of the
+    def read(self, file: Path) -> tuple[Assembly, OperatingPoint]:
+        """Return a train and its operating point, or a shaft under its load; refuse options of the
         other.
         """
         if is_train(file):
             kind = f"a shaft, and {file} is a train: give --torque"
             refuse({"--load": self.load is not None}, kind)
-            return self._at_point(file)
+            train, point = self._at_point(file)
+            return Assembly(train), point
         of_train = {"--torque": self.torque, "--point": self.point, "--weight": self.weight}
         options = {option: value is not None for option, value in of_train.items()}
         refuse(options, f"a train, and {file} is a shaft: give --load, or [load] in the file")
         scene = as_written(file)
-        return scene if self.load is None else loaded_by(scene, self.load)
+        if self.load is not None:
+            scene = loaded_by(scene, self.load)
+        return Assembly.of(scene, kept=FEW), AT_REST
 
     def _at_point(self, file: Path) -> tuple[Train, OperatingPoint]:
         if self.torque is None:

@@ -28,14 +28,6 @@ MODELS = (
     "lumped-old; a lumped one may name its body, lumped/euler."
 )
 MOST_KEPT = 200
-ShaftSettings = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--set",
-        help="Builder option of the model of one shaft as SIDE.key=value, repeatable: "
-        "pinion.order=3, gear.elements=40; solidgear options lists them.",
-    ),
-]
 
 
 @dataclass(frozen=True)
@@ -153,7 +145,14 @@ class Pair(Group):
 class Mix(Pair):
     """Models of the shafts with their builder options."""
 
-    settings: ShaftSettings = None
+    settings: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set",
+            help="Builder option of the model of one shaft as SIDE.key=value, repeatable: "
+            "pinion.order=3, gear.elements=40; solidgear options lists them.",
+        ),
+    ] = None
 
     def assembly(self, reduced: Reduced, path: Path) -> Assembly:
         """Return the assembly of a train with these builder options."""

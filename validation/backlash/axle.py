@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 import solidgear as sg
-from solidgear.backlash.command import BacklashStudy
+from solidgear.backlash.periodic import Backlash
 from solidgear.backlash.solver.motion import steady_motion
-from solidgear.backlash.torque import Backlash
+from solidgear.backlash.study import BacklashStudy
 from solidgear.backlash.train import FADED, teeth_of, with_backlash
 from solidgear.core.errors import SolidgearError
 from solidgear.trains.assembly.assembly import Assembly

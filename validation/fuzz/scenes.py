@@ -58,7 +58,7 @@ def by_library(path: Path, harmonic: bool = False) -> Iterator[str]:
             body = build(scene, fidelity, **options)
             found = condense(body, scene, scene.port.name)
             values = modes(body, scene, n=scene.ask.modes).frequency_hz
-            checked = check_scene(scene, body) if harmonic else None
+            checked = check_scene(scene, body).as_dict() if harmonic else None
         if not (np.isfinite(found.stiffness).all() and np.isfinite(values).all()):
             raise Finding("a result is not finite")
         record = {"scene": scene.as_dict(), "check": checked, "frequencies": values.tolist()}

@@ -53,7 +53,7 @@ def bearing_sets(drive: Drive, count: int) -> list[dict[str, np.ndarray]]:
 
 def another_set(drive: Drive, bearings: dict[str, np.ndarray]) -> Drive:
     """The same reduced shafts on other bearings."""
-    return Drive(drive.assembly.with_bearings(bearings), *drive.rungs)
+    return Drive(drive.assembly.with_bearings(bearings), *drive.models)
 
 
 def response(heat: Heat) -> None:
@@ -69,7 +69,7 @@ def response(heat: Heat) -> None:
             lambda: Drive(Assembly(sg.load_train(AXLE), settings=mesh), model, model),
         )
         modes = drive.system.modes(8).frequency_hz[1:]
-        again = Drive(drive.assembly, *drive.rungs)
+        again = Drive(drive.assembly, *drive.models)
         clock.stage(f"{len(hz)} frequencies, all reactions", lambda: again.columns(hz))
         chosen = bearing_sets(drive, 1)[0]
         clock.stage("a further set of bearings", lambda: another_set(drive, chosen).columns(hz))

@@ -157,7 +157,7 @@ def answers(body, here) -> dict:
 def cautions(here, body) -> set[str]:
     """What `check_scene` says, without its figures."""
     said = check_scene(here, body)
-    return {re.sub(r"[-+]?\d[\d.e+-]*", "#", s) for s in (*said["cautions"], *said["faults"])}
+    return {re.sub(r"[-+]?\d[\d.e+-]*", "#", s) for s in (*said.cautions, *said.faults)}
 
 
 def compare(here, quick: bool) -> dict:

@@ -9,8 +9,8 @@ from functools import cache
 
 import numpy as np
 
-from solidgear.comparison.two.two_trains import TwoTrains, two_trains
-from solidgear.comparison.two.two_trains_page import Bar, motions, shares_chart
+from solidgear.comparison.two.shares import Bar, shares_chart
+from solidgear.comparison.two.two_trains import TwoTrains, motions, two_trains
 from solidgear.show.plot import Chart
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.page.chart import columns_chart, response_chart
@@ -111,7 +111,7 @@ def moments(width: float) -> Chart | None:
 
 def pinion_motion(width: float) -> Chart | None:
     dofs = ("pinion, x", "pinion, z", "pinion, thx", "pinion, thz")
-    own = [pair for pair in motions(mountings("identified")) if pair[1] in dofs]
+    own = [pair for pair in motions(mountings("identified"), "pinion") if pair[1] in dofs]
     return columns_chart(responses("identified"), own, TEETH, width=width)
 
 

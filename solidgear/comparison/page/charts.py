@@ -6,14 +6,14 @@ terminal run has no use for it.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
 from functools import partial
+from typing import Any
 
-from solidgear.comparison.race.pareto import CHARTED
-from solidgear.core import Record
-from solidgear.core.judge.record import BarRecord, LevelRecord, ModelRecord
-from solidgear.show.mode_charts import mac_chart, mode_chart
+from solidgear.comparison.race.race import CHARTED
+from solidgear.core import COMPLIANCE, Quantity, Record
+from solidgear.core.judge.record import LevelRecord, ModelRecord, ModeRecord, relative_change
+from solidgear.show.mode_charts import mac_panel
 from solidgear.show.panel import (
     GREY,
     PERCENT,
@@ -26,17 +26,9 @@ from solidgear.show.panel import (
     wrapped,
 )
 from solidgear.show.plot import NARROW, WIDE, Chart, in_columns, page_svg
-from solidgear.show.reading import (
-    answer_seconds,
-    headline,
-    is_resolved,
-    model_name,
-    reference_of,
-    relative_change,
-)
 from solidgear.show.sketch_page import sketch_svg
 from solidgear.show.where_chart import where_chart
-from solidgear.show.words import grouped, percent, seconds, small
+from solidgear.show.words import grouped, hertz, percent, seconds, small
 from solidgear.variants.budget.chart import of_record as budget_chart
 
 #: what the meshes differ in -> label of the axis
@@ -45,133 +37,86 @@ AXIS = {
     "order": "1 / order of the elements",
     "dofs": "unknowns",
 }
+#: families of modes along the axis
+FAMILIES = {"bending": 0, "axial": 1, "torsion": 2}
+#: px; height of frequencies, and of differences
+TALL, LOW = 215.0, 130.0
 
 
 def convergence_chart(record: Record, width: float = WIDE) -> Chart | None:
     """Chart the distance from the extrapolated value over mesh size or unknowns, log-log, with
     error bars.
     """
-    quantities = []
-    for key, model in record.models.items():
-        quantities += _quantities(model_name(record, key), model)
-    return (
-        Chart(in_columns([_convergence_panel(quantity) for quantity in quantities], 2), width)
-        if quantities
-        else None
-    )
+    panels = [
+        _convergence(record.name(key), model, quantity)
+        for key, model in record.models.items()
+        for quantity in CHARTED
+    ]
+    drawn = [panel for panel in panels if panel is not None]
+    return Chart(in_columns(drawn, 2), width) if drawn else None
 
 
-@dataclass(frozen=True)
-class _Quantity:
-    """One quantity of one model over its meshes.
-
-    ``along`` is what the meshes differ in: ``h``, ``order`` or ``dofs``; ``spots`` are (place along
-    the axis, distance from the extrapolated value, mesh), ascending.
-    """
-
-    name: str
-    model: ModelRecord
-    quantity: str
-    along: str
-    spots: list[tuple[float, float, LevelRecord]]
-    bar: BarRecord
-
-
-def _quantities(name: str, model: ModelRecord) -> list[_Quantity]:
-    """Return quantities of a model that two meshes or more distinguish."""
-    if model.convergence is None:
-        return []
-    levels = model.convergence.levels
-    along = _distinguished_by(levels)
-    quantities = []
-    for quantity in CHARTED:
-        bar = model.convergence.quantities.get(quantity, BarRecord())
-        if not bar.extrapolated:
+def _convergence(name: str, model: ModelRecord, quantity: Quantity) -> Panel | None:
+    """Draw one quantity of one model over its meshes; None unless two of them distinguish it."""
+    levels = model.convergence.levels if model.convergence else []
+    bar = model.convergence.quantities.get(quantity) if model.convergence else None
+    if bar is None or not bar.extrapolated:
+        return None
+    along = next((a for a in ("h", "order") if all(_place(level, a) for level in levels)), "dofs")
+    colour = model.colour
+    spots: list[dict[str, Any]] = []
+    for level in levels:
+        x, value = _place(level, along), level.quantities.get(quantity)
+        if x is None or value is None:
             continue
-        spots = []
-        for level in levels:
-            place, value = _size(level, along), level.quantities.get(quantity)
-            if place is None or value is None:
-                continue
-            distance = abs(value / bar.extrapolated - 1)
-            if distance > 0:
-                spots.append((_on_axis(along, place), distance, level))
-        if len(spots) >= 2:
-            spots.sort(key=lambda spot: spot[:2])
-            quantities.append(_Quantity(name, model, quantity, along, spots, bar))
-    return quantities
-
-
-def _size(level: LevelRecord, along: str) -> float | None:
-    """Return the value of a mesh along an axis: its size, its order or its unknowns."""
-    if along == "h":
-        return level.h
-    return level.order if along == "order" else level.dofs
-
-
-def _distinguished_by(levels: list[LevelRecord]) -> str:
-    """Return the difference between the meshes: their size if all have one, else their order, else
-    unknowns.
-    """
-    for along in ("h", "order"):
-        if levels and all((_size(level, along) or 0) > 0 for level in levels):
-            return along
-    return "dofs"
-
-
-def _on_axis(along: str, value: float) -> float:
-    """Return sizes in mm, orders as their inverse, so that finer is to the left."""
-    if along == "order":
-        return 1 / value
-    return 1e3 * value if along == "h" else value
-
-
-def _convergence_panel(quantity: _Quantity) -> Panel:
-    xs, ys, _ = zip(*quantity.spots)
-    low, high = min(ys) / 3, max(ys) * 3
-    bar = quantity.bar.gci
-    if bar:
-        low, high = min(low, bar / 3), max(high, bar * 2)
-    ticks = {x: _tick(quantity.along, x) for x in xs}  # at the meshes: three seldom span a decade
-    ends = min(xs) / 1.25, max(xs) * 1.25
+        y = abs(value / bar.extrapolated - 1)
+        if y == 0:
+            continue
+        words = readout(
+            name,
+            (f"{quantity}, from extrapolated", percent(y, signed=False), ""),
+            ("mesh", str(level.mesh.get("element") or ""), ""),
+            ("size h", f"{1e3 * level.h:.3g}" if level.h else "", "mm"),
+            ("unknowns", grouped(level.dofs), ""),
+        )
+        spots.append({"x": x, "y": y, "readout": words})
+    if len(spots) < 2:
+        return None
+    spots.sort(key=lambda spot: (spot["x"], spot["y"]))
+    xs, ys = [spot["x"] for spot in spots], [spot["y"] for spot in spots]
+    low, high = min(ys) / 3, 3 * max(ys)
+    if bar.gci:
+        low, high = min(low, bar.gci / 3), max(high, bar.gci * 2)
+    ticks = {x: _tick(along, x) for x in xs}  # at the meshes: three seldom span a decade
     panel = Panel(
-        Axis(AXIS[quantity.along], ends, log=True, ticks=ticks),
+        Axis(AXIS[along], (min(xs) / 1.25, max(xs) * 1.25), log=True, ticks=ticks),
         Axis("distance from extrapolated", (low, high), log=True, label=PERCENT),
         180,
-        f"{quantity.name}, {quantity.quantity}",
+        f"{name}, {quantity}",
     )
-    if bar:
-        _shade(panel, low, quantity)
-    colour, shape = quantity.model.colour, SHAPES.get(quantity.model.marker, "circle")
-    rows = [
-        {"x": x, "y": y, "readout": _words(quantity, y, level)} for x, y, level in quantity.spots
-    ]
+    if bar.gci:
+        # shaded from the bottom of the panel up
+        panel.draw({"type": "rect", "color": colour, "opacity": 0.12}, [{"y": low, "y2": bar.gci}])
+        panel.draw({"type": "rule", "color": colour, "strokeDash": [5, 3]}, [{"y": bar.gci}])
+        factor = "" if bar.factor is None else f", factor {small(bar.factor)}"
+        label = {"y": bar.gci, "text": f"error bar {percent(bar.gci, signed=False)}{factor}"}
+        panel.draw({"type": "text", "align": "left", "dy": -7, "dx": 4}, [label], x={"value": 0})
     line = {"type": "line", "color": colour, "strokeWidth": 1.5}
-    panel.draw(line, [{"x": x, "y": y} for x, y, _ in quantity.spots])
-    panel.draw({"type": "point", "filled": True, "color": colour, "shape": shape, "size": 55}, rows)
+    panel.draw(line, [{"x": spot["x"], "y": spot["y"]} for spot in spots])
+    point = {"type": "point", "filled": True, "color": colour, "size": 55}
+    panel.draw({**point, "shape": SHAPES.get(model.marker, "circle")}, spots)
     return panel
 
 
-def _words(quantity: _Quantity, distance: float, level: LevelRecord) -> str:
-    """Return words shown at the point of one mesh."""
-    return readout(
-        quantity.name,
-        (f"{quantity.quantity}, from extrapolated", percent(distance, signed=False), ""),
-        ("mesh", str(level.mesh.get("element") or ""), ""),
-        ("size h", f"{1e3 * level.h:.3g}" if level.h else "", "mm"),
-        ("unknowns", grouped(level.dofs), ""),
-    )
-
-
-def _shade(panel: Panel, low: float, quantity: _Quantity) -> None:
-    """Shade the error bar, from the bottom of the panel up."""
-    bar, colour = quantity.bar.gci, quantity.model.colour
-    panel.draw({"type": "rect", "color": colour, "opacity": 0.12}, [{"y": low, "y2": bar}])
-    panel.draw({"type": "rule", "color": colour, "strokeDash": [5, 3]}, [{"y": bar}])
-    factor = "" if quantity.bar.factor is None else f", factor {small(quantity.bar.factor)}"
-    words = f"error bar {percent(bar, signed=False)}{factor}"
-    name = {"type": "text", "align": "left", "dy": -7, "dx": 4}
-    panel.draw(name, [{"y": bar, "text": words}], x={"value": 0})
+def _place(level: LevelRecord, along: str) -> float | None:
+    """Return the place of a mesh on an axis: its size in mm, one over its order, so that finer is
+    to the left, or its unknowns.
+    """
+    if along == "h":
+        return 1e3 * level.h if level.h else None
+    if along == "order":
+        return 1 / level.order if level.order else None
+    return level.dofs
 
 
 def _tick(along: str, x: float) -> str:
@@ -180,70 +125,139 @@ def _tick(along: str, x: float) -> str:
     return f"{x:.3g}" if x < 1e4 else f"{x / 1e3:.3g}k"
 
 
+def mode_chart(record: Record, width: float = WIDE) -> Chart | None:
+    """Chart natural frequencies of all models side by side, and below them their differences from
+    the reference.
+    """
+    modes: dict[str, dict[str, ModeRecord]] = {
+        key: {mode.name: mode for mode in model.modes if (mode.frequency_hz or 0.0) > 0}
+        for key, model in record.models.items()
+        if model.modes
+    }
+    base = modes.get(record.reference or "")
+    # every mode by name, from the reference, else from the last model that has it
+    references: dict[str, ModeRecord] = {}
+    for by_name in (*modes.values(), base or {}):
+        references |= by_name
+    names = sorted(references, key=lambda name: _rank(references[name]))
+    if not names:
+        return None
+    step = 0.7 / len(modes)
+    rows: list[dict[str, Any]] = []
+    for k, (key, by_name) in enumerate(modes.items()):
+        shift = (k - (len(modes) - 1) / 2) * step
+        for i, name in enumerate(names):
+            if name not in by_name:
+                continue
+            hz, change = by_name[name].frequency_hz, None
+            if base is not None and name in base and key != record.reference:
+                change = relative_change(hz, base[name].frequency_hz)
+            words = readout(
+                record.name(key),
+                ("mode", name, ""),
+                ("frequency", hertz(hz), "Hz"),
+                ("from reference", percent(change) if change is not None else "", ""),
+            )
+            place = {"x": i + shift, "y": hz or 0.0, "apart": change}
+            rows.append({**place, "name": record.name(key), "readout": words})
+    series = {}
+    for key in modes:
+        model = record.models[key]
+        series[record.name(key)] = Series(model.colour, SHAPES.get(model.marker, "circle"))
+    pairs = {n for by_name in modes.values() for n, m in by_name.items() if m.multiplicity > 1}
+    labels = {
+        float(i): name + ("\n(pair)" if name in pairs else "") for i, name in enumerate(names)
+    }
+    families = [references[name].family for name in names]
+    legend = {"orient": "top", "columns": 5 if width > NARROW else 2}
+    turned = len(names) > (9 if width > NARROW else 3)
+    relative = base is not None and len(modes) > 1
+    axis = Axis("frequency, Hz", (0.0, 1.06 * max(row["y"] for row in rows)))
+    hidden = dict.fromkeys(labels, "") if relative else labels
+    panels = [_stems(axis, TALL, hidden, families, rows, series, legend, turned)]
+    if relative:
+        differences = [{**row, "y": row["apart"]} for row in rows if row["apart"] is not None]
+        sizes = [0.0, *(row["y"] for row in differences)]
+        reach = 0.08 * (max(sizes) - min(sizes)) or 1.0
+        words, ends = f"against {record.name(record.reference)}", (min(sizes), max(sizes))
+        axis = Axis(words, (ends[0] - reach, ends[1] + reach), label=PERCENT)
+        panels.append(_stems(axis, LOW, labels, families, differences, series, None, turned))
+    return Chart(in_columns(panels, 1), width)
+
+
+def _rank(mode: ModeRecord) -> tuple:
+    """Order along the axis: by family, the usual ones first, then by frequency."""
+    return FAMILIES.get(mode.family, len(FAMILIES)), mode.family, mode.frequency_hz
+
+
+def _stems(
+    axis: Axis,
+    height: float,
+    labels: Mapping[float, str],
+    families: list[str],
+    rows: list[dict[str, Any]],
+    series: Mapping[str, Series],
+    legend: Mapping[str, Any] | None,
+    turned: bool,
+) -> Panel:
+    """Draw a stem with its marker for every row, and a dotted line between families."""
+    along = Axis("", (-0.6, len(labels) - 0.4), ticks=labels, grid=False)
+    panel = Panel(along, axis, height, series=series, legend=legend, turned=turned)
+    ends = [i - 0.5 for i in range(1, len(families)) if families[i] != families[i - 1]]
+    panel.draw({"type": "rule", "color": GREY, "strokeDash": [2, 3]}, [{"x": x} for x in ends])
+    panel.draw({"type": "rule", "color": GREY}, [{"y": 0.0}])
+    stems = [{"x": row["x"], "y": 0.0, "y2": row["y"], "name": row["name"]} for row in rows]
+    panel.draw({"type": "rule", "strokeWidth": 1.4}, stems)
+    points = [{key: row[key] for key in ("x", "y", "name", "readout")} for row in rows]
+    panel.draw({"type": "point", "filled": True, "size": 60}, points)
+    return panel
+
+
+def mac_chart(record: Record, width: float = WIDE) -> Chart | None:
+    """Return MAC matrices against the reference as annotated heat maps."""
+    if record.mac is None:
+        return None
+    reference = record.name(record.mac.reference)
+    panels = [
+        mac_panel(table, record.name(key), reference)
+        for key, table in record.mac.models.items()
+        if table.values and table.values[0]
+    ]
+    return Chart(in_columns(panels, 3), width) if panels else None
+
+
 def cost_chart(record: Record, width: float = WIDE) -> Chart | None:
     """Chart seconds against deviation from the reference, log-log, one point a model.
 
     The reference has no deviation; it stands at its own error bar, hollow, like every deviation that is
     not resolved.
     """
-    spots = {quantity: _spots(record, quantity) for quantity in CHARTED}
-    tolerance = record.verdict.tolerance
-    if tolerance is not None and tolerance <= 0:
-        tolerance = None
-    panels = [_panel(quantity, points, tolerance) for quantity, points in spots.items() if points]
-    return Chart([panels], width) if panels else None
+    panels = [_cost(record, quantity) for quantity in CHARTED]
+    drawn = [panel for panel in panels if panel is not None]
+    return Chart([drawn], width) if drawn else None
 
 
-@dataclass(frozen=True)
-class _Spot:
-    """One model in one panel: a hollow marker is an error bar and no deviation."""
-
-    name: str
-    model: ModelRecord
-    seconds: float
-    error: float
-    hollow: bool
-    remark: str
-
-    @property
-    def rejected(self) -> bool:
-        return self.model.valid is False
-
-
-def _spots(record: Record, quantity: str) -> list[_Spot]:
-    """Return the models with known time and distance from the reference."""
-    out = []
+def _cost(record: Record, quantity: Quantity) -> Panel | None:
+    """Draw the models with known time and distance from the reference; None without any."""
+    spots = []
     for key, model in record.models.items():
-        total = answer_seconds(model)
+        total, row = model.answer_seconds, record.headline(key, quantity)
         if total is None or total <= 0:
             continue
-        name = model_name(record, key)
-        bar = _own_bar(model, quantity) if key == reference_of(record) else None
-        row = headline(record, key, quantity)
-        if bar:
-            out.append(_Spot(name, model, total, bar, True, "own error bar"))
+        bar = None
+        if key == record.reference and model.band:
+            # for compliances that of the worst
+            is_compliance = quantity.kind == COMPLIANCE
+            bar = model.band.compliance if is_compliance else model.bars.get(quantity)
+        if bar and bar > 0:
+            spots.append((key, total, bar, "own error bar"))
         elif row is not None and row.relative:
-            hollow = not is_resolved(row)
-            remark = "not resolved" if hollow else ""
-            out.append(_Spot(name, model, total, abs(row.relative), hollow, remark))
-    return out
-
-
-def _own_bar(model: ModelRecord, quantity: str) -> float | None:
-    """Return the error bar of a quantity, for compliances that of the worst; None where there is
-    none.
-    """
-    if model.band is None:
+            spots.append((key, total, abs(row.relative), "" if row.resolved else "not resolved"))
+    if not spots:
         return None
-    bar = model.band.each.get(quantity)
-    if quantity.startswith("C_"):
-        bar = model.band.compliance
-    return bar if bar is not None and bar > 0 else None
-
-
-def _panel(quantity: str, spots: list[_Spot], tolerance: float | None) -> Panel:
-    times, errors = [spot.seconds for spot in spots], [spot.error for spot in spots]
-    if tolerance is not None:
+    times, errors = [total for _, total, *_ in spots], [error for _, _, error, _ in spots]
+    tolerance = record.verdict.tolerance or 0.0
+    if tolerance > 0:
         errors.append(tolerance)
     panel = Panel(
         # with room for the last name
@@ -256,37 +270,32 @@ def _panel(quantity: str, spots: list[_Spot], tolerance: float | None) -> Panel:
         ),
         230,
     )
-    if tolerance is not None:
+    if tolerance > 0:
         tolerance_line(panel, tolerance)
-    for spot in spots:
-        _draw(panel, spot, quantity)
+    for key, total, error, hollow in spots:
+        name, model = record.name(key), record.models[key]
+        rejected = model.valid is False
+        remarks = ", ".join(filter(None, (hollow, "rejected" if rejected else "")))
+        words = readout(
+            name,
+            (f"{quantity}, from reference", percent(error, signed=False), ""),
+            ("building and solving", seconds(total), "s"),
+            ("unknowns", grouped(model.dofs), ""),
+            ("remark", remarks, ""),
+        )
+        place = {"x": total, "y": error}
+        mark = {
+            "type": "point",
+            "shape": SHAPES["x"] if rejected else SHAPES.get(model.marker, "circle"),
+            "stroke": model.colour,
+            "fill": "#ffffff" if hollow else model.colour,
+            "strokeWidth": 2,
+            "size": 80,
+        }
+        panel.draw(mark, [{**place, "readout": words}])
+        text = {"type": "text", "align": "left", "baseline": "middle", "dx": 10}
+        panel.draw(text, [{**place, "text": name + (f"\n({remarks})" if remarks else "")}])
     return panel
-
-
-def _draw(panel: Panel, spot: _Spot, quantity: str) -> None:
-    remarks = [spot.remark] if spot.remark else []
-    if spot.rejected:
-        remarks.append("rejected")
-    words = readout(
-        spot.name,
-        (f"{quantity}, from reference", percent(spot.error, signed=False), ""),
-        ("building and solving", seconds(spot.seconds), "s"),
-        ("unknowns", grouped(spot.model.dofs), ""),
-        ("remark", ", ".join(remarks), ""),
-    )
-    colour, place = spot.model.colour, {"x": spot.seconds, "y": spot.error}
-    mark = {
-        "type": "point",
-        "shape": SHAPES["x"] if spot.rejected else SHAPES.get(spot.model.marker, "circle"),
-        "stroke": colour,
-        "fill": "#ffffff" if spot.hollow else colour,
-        "strokeWidth": 2,
-        "size": 80,
-    }
-    panel.draw(mark, [{**place, "readout": words}])
-    name = spot.name + (f"\n({', '.join(remarks)})" if remarks else "")
-    text = {"type": "text", "align": "left", "baseline": "middle", "dx": 10}
-    panel.draw(text, [{**place, "text": name}])
 
 
 #: quantity -> colour of its bars
@@ -320,35 +329,34 @@ def _bars(
         legend={"orient": "top", "direction": "horizontal"},
         left=margin,
     )
-    rows = list(_rows(labels, columns))
-    panel.draw({"type": "rect", "strokeWidth": 0}, [bar for bar, _ in rows])
-    panel.draw({"type": "rule", "color": GREY}, [{"x": 0}])
-    for sign, align in ((1, "left"), (-1, "right")):
-        figures = [figure for _, figure in rows if (figure["x"] >= 0) == (sign > 0)]
-        text = {"type": "text", "align": align, "baseline": "middle", "dx": 3 * sign}
-        panel.draw(text, figures)
-    return Chart([[panel]], width)
-
-
-def _rows(labels: list[str], columns: dict[str, list[float | None]]):
-    """Return a bar and a figure for every case and quantity."""
-    thick = 0.8 / max(len(columns), 1)
+    bars: list[dict[str, Any]] = []
+    figures: list[dict[str, Any]] = []
+    thick = 0.8 / len(columns)
     for k, (name, values) in enumerate(columns.items()):
         for i, value in enumerate(values):
             if value is None:
                 continue
             y, change = i + (k - (len(columns) - 1) / 2) * thick, percent(value)
             case = labels[i].replace("\n", " ")
-            words = readout(name, ("case", case, ""), (f"change of {name}", change, ""))
-            bar = {"x": 0.0, "x2": value, "y": y - 0.43 * thick, "y2": y + 0.43 * thick}
-            yield {**bar, "name": name, "readout": words}, {"x": value, "y": y, "text": change}
+            place = {"x": 0.0, "x2": value, "y": y - 0.43 * thick, "y2": y + 0.43 * thick}
+            facts = readout(name, ("case", case, ""), (f"change of {name}", change, ""))
+            bars.append({**place, "name": name, "readout": facts})
+            figures.append({"x": value, "y": y, "text": change})
+    panel.draw({"type": "rect", "strokeWidth": 0}, bars)
+    panel.draw({"type": "rule", "color": GREY}, [{"x": 0}])
+    text = {"type": "text", "baseline": "middle"}
+    right = [figure for figure in figures if figure["x"] >= 0]
+    left = [figure for figure in figures if figure["x"] < 0]
+    panel.draw(text | {"align": "left", "dx": 3}, right)
+    panel.draw(text | {"align": "right", "dx": -3}, left)
+    return Chart([[panel]], width)
 
 
 def cause_chart(record: Record, width: float = WIDE) -> Chart | None:
     """Chart changes by each assumption alone, as horizontal bars."""
     causes = [c for c in record.causes if any(c.quantities.get(q) is not None for q in SHOWN)]
     columns = {name: [cause.quantities.get(name) for cause in causes] for name in SHOWN}
-    labels = [f"{c.cause}, {model_name(record, c.model)}\n({c.change})" for c in causes]
+    labels = [f"{c.cause}, {record.name(c.model)}\n({c.change})" for c in causes]
     return _bars(labels, columns, "relative change when only this is switched", width)
 
 
@@ -364,7 +372,7 @@ def attachment_chart(record: Record, width: float = WIDE) -> Chart | None:
             if tie not in ties:
                 continue
             quantities = ties[tie].quantities
-            labels.append(f"{model_name(record, key)}\n{tie}")
+            labels.append(f"{record.name(key)}\n{tie}")
             for name, column in columns.items():
                 column.append(relative_change(quantities.get(name), average.get(name)))
     return _bars(labels, columns, "relative to averaged ties of the same model", width)

@@ -3,28 +3,22 @@
 from __future__ import annotations
 
 import os
-import tempfile
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TypeVar
 
 from solidgear.comparison.page.html import drawn_charts, write_report
-from solidgear.core import SolidgearError
-from solidgear.show.folder import begun, prepare
+from solidgear.core import FIRST_BENDING, ModeSet, Record, Solution
+from solidgear.show.folder import begun
 from solidgear.show.outputs import OUTPUTS
 from solidgear.show.page_parts import data_uri
-from solidgear.show.reading import model_name
-from solidgear.show.render import Drawing, RenderJob, render_modes
+from solidgear.show.render import Drawing, Drawn, RenderJob, RenderResult
 from solidgear.show.sheet import write_json
 from solidgear.show.turning import Turned, turned
 from solidgear.show.viewer import TURNED, Turning
 
-if TYPE_CHECKING:
-    from solidgear.core import Body, ModeSet, Record, Solution
-    from solidgear.show.render import RenderResult
-
-MODE = "bending 1"
+R = TypeVar("R")
 
 
 def write_all(
@@ -62,12 +56,13 @@ def write_all(
             for model, solution in shapes.items():
                 for output in OUTPUTS:
                     what, target = f"{output.what} of {model}", folder / output.name(model)
-                    _try(record, what, output.write, solution, target)
+                    _try(record, what, partial(output.write, solution, target))
             progress("report")
             drawn = drawn_charts(record, folder)
             _note(record, jobs, drawing.results())
         if renders and shapes:
-            _try(record, "viewer of mode shapes", _write_turned, record, shapes, folder)
+            write = partial(_write_turned, record, shapes, folder)
+            _try(record, "viewer of mode shapes", write)
         record.files = [
             name for name in record.files if name == "report.html" or (folder / name).exists()
         ]
@@ -76,12 +71,12 @@ def write_all(
     return folder
 
 
-def _try(record: Record, name: str, action: Callable[..., Any], *arguments: Any) -> Any:
+def _try(record: Record, name: str, action: Callable[[], R]) -> R | None:
     """Return the result of an action that numbers do not depend on; a failure becomes a warning
     and None.
     """
     try:
-        return action(*arguments)
+        return action()
     except OSError:
         raise
     except Exception as error:
@@ -103,8 +98,8 @@ def _jobs(record: Record, shapes: dict[str, Solution], folder: Path) -> dict[str
             continue
         path = folder / f"mode_{model}.png"
         path.unlink(missing_ok=True)  # whoever made it, it must not pass for this run's
-        drawn = Drawn(solution.body, solution.modes, model_name(record, model))
-        job = _try(record, f"render of {model}", drawn.job, name, path)
+        drawn = Drawn(solution.body, solution.modes, record.name(model))
+        job = _try(record, f"render of {model}", partial(drawn.job, name, path))
         if job is not None:
             jobs[model] = job
     return jobs
@@ -129,7 +124,7 @@ def _write_turned(record: Record, shapes: dict[str, Solution], folder: Path) -> 
     for key, solution in reversed(shapes.items()):
         if solution.body.geometry is None or _drawn_mode(solution.modes) is None:
             continue
-        models.append(turned(solution.body, solution.modes, model_name(record, key), models))
+        models.append(turned(solution.body, solution.modes, record.name(key), models))
         if not still and key in record.images:
             still = data_uri(key, folder / record.images[key]) or ""
     if models:
@@ -139,74 +134,6 @@ def _write_turned(record: Record, shapes: dict[str, Solution], folder: Path) -> 
 
 def _drawn_mode(modes: ModeSet) -> str | None:
     """Return the mode that a report shows: first bending, else the lowest elastic one."""
-    if modes.named(MODE):
-        return MODE
-    for mode in modes.modes:
-        if mode.frequency_hz > 0:
-            return mode.name
-    return None
-
-
-@dataclass(frozen=True, eq=False)
-class Drawn:
-    """A body, its modes, and what it is called in a picture or page."""
-
-    body: Body
-    modes: ModeSet
-    title: str
-
-    def job(self, name: str, path: Path) -> RenderJob:
-        """Return a picture of the mode of that name.
-
-        Raises
-        ------
-        SolidgearError
-            If there is none.
-        """
-        mode = self.modes.named(name)
-        if mode is None:
-            have = ", ".join(m.name for m in self.modes.modes)
-            raise SolidgearError(
-                f"mode {name!r}: the {self.title} has none of that name; it has {have}"
-            )
-        title = f"{self.title}: {mode.name}, {mode.frequency_hz:.1f} Hz"
-        return RenderJob(self.body.surface(mode.vectors[0]), title, path)
-
-
-def render_mode(drawn: Drawn, name: str, path: Path) -> Path:
-    """Draw one mode of one body.
-
-    Raises
-    ------
-    SolidgearError
-        If there is no such mode, or nothing can be drawn here (the sentence says what mends it).
-    """
-    job = drawn.job(name, path)
-    prepare(path.parent)
-    try:
-        (result,) = render_modes([job])
-    except OSError as error:  # the drawing process is handed its shape in a temporary file
-        raise SolidgearError(
-            f"--out {path}: drawing stopped ({error.strerror or error}); "
-            "free some space there and in the folder for temporary files"
-        ) from error
-    if not result.ok:
-        raise SolidgearError(result.reason)
-    return result.path
-
-
-def turn_modes(drawn: Sequence[Drawn], path: Path, title: str, name: str) -> tuple[Path, str]:
-    """Write a page of all modes to turn; return its path and why it has no picture for print."""
-    prepare(path.parent)
-    models: list[Turned] = []
-    for drawing in drawn:
-        drawing.job(name, path)
-        models.append(turned(drawing.body, drawing.modes, drawing.title, models))
-    still, sentence = "", ""
-    with tempfile.TemporaryDirectory(prefix="solidgear-turn-") as folder:
-        try:
-            picture = render_mode(drawn[0], name, Path(folder) / "mode.png")
-            still = data_uri("mode", picture) or ""
-        except SolidgearError as error:
-            sentence = f"no picture for print in {path.name}: {error}"
-    return Turning(tuple(models), title, name).write(path, still=still), sentence
+    if modes.named(FIRST_BENDING):
+        return FIRST_BENDING
+    return next((mode.name for mode in modes.modes if mode.frequency_hz > 0), None)

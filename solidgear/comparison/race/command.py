@@ -10,18 +10,24 @@ from typing import Annotated
 import typer
 
 from solidgear.comparison.page.html import write_report
-from solidgear.comparison.race.cases import plan, setup_seconds
-from solidgear.comparison.race.figure import draw
-from solidgear.comparison.race.pareto import Race
-from solidgear.comparison.race.rows import PICTURE, left_out, records, write_rows
-from solidgear.comparison.race.tables import front_table
-from solidgear.comparison.race.timing import BUDGET, FULL_BUDGET, FULL_SURE, race
+from solidgear.comparison.race.figure import race_chart
+from solidgear.comparison.race.race import PICTURE, Race, write_rows
+from solidgear.comparison.race.sheet import sheet
+from solidgear.comparison.race.timing import (
+    BUDGET,
+    FULL_BUDGET,
+    FULL_SURE,
+    plan,
+    race,
+    setup_seconds,
+)
+from solidgear.comparison.recording import as_record
 from solidgear.core import Record, Scene, SolidgearError
-from solidgear.show.border import as_record
-from solidgear.show.command import Progress, command, say
+from solidgear.show.command import Progress, command
 from solidgear.show.folder import clear_halves, held
 from solidgear.show.options import Run, SceneFile
 from solidgear.show.remarks import load
+from solidgear.show.sheet import Sheet, present
 
 
 @command
@@ -56,32 +62,15 @@ def chart(
     ] = None,
     run: Run,
 ) -> None:
-    raced, reported = run_chart(
-        load(scene), out, full=full, runs=runs, budget=budget, quiet=run.as_json
-    )
-    if run.as_json:
-        record = {
-            "scene": raced.scene["name"],
-            "complete": raced.complete,
-            "reference": raced.reference,
-            "setup": raced.setup,
-            "seconds": raced.seconds,
-            "rows": records(raced),
-        }
-        print(json.dumps(record, allow_nan=False))
-    else:
-        say(*front_table(raced), soft_wrap=False)
-        failed = [row for row in raced.rows if row.status == "failed"]
-        failures = (f"failed: {row.series}, level {row.level}: {row.reason}" for row in failed)
-        say(*failures, soft_wrap=False)
-        if left_out(raced):
-            say(
-                f"left out ({raced.budget:g} s of processor time for the points; reasons in "
-                f"{out / 'rows.csv'}): {left_out(raced)}"
-            )
-        say(f"Chart: {out / PICTURE}" + (f", and in {out / 'report.html'}" if reported else ""))
-    if not raced.complete:
-        raise typer.Exit(130)
+    loaded = load(scene)
+
+    def study(progress: Progress) -> Sheet:
+        race, reported = run_chart(
+            loaded, out, full=full, runs=runs, budget=budget, progress=progress
+        )
+        return sheet(race, out, reported)
+
+    present(study, run)
 
 
 def run_chart(
@@ -91,14 +80,13 @@ def run_chart(
     full: bool = False,
     runs: int = 5,
     budget: float | None = None,
-    quiet: bool = False,
+    progress: Progress,
 ) -> tuple[Race, bool]:
-    """Run and write the chart of a scene, and put it into the report that an earlier comparison of it left
-    there; with whether there was such a report.
+    """Run and write the chart of a scene, and put it into the report that an earlier comparison of
+    it left there; with whether there was such a report.
 
-    SolidgearError for a bad number, a folder that cannot be written, a scene with nothing to chart or a
-    comparison of it by another version of solidgear, before anything is timed; where no case has an
-    answer.
+    SolidgearError for a bad number, a folder that cannot be written, or a comparison by another
+    version of solidgear, before anything is timed; where no case has an answer.
     """
     if runs < 1:
         raise SolidgearError(f"--runs {runs}: give a whole number of at least 1")
@@ -106,23 +94,22 @@ def run_chart(
         raise SolidgearError(f"--budget {budget:g}: give seconds above 0")
     budget = budget or (FULL_BUDGET if full else BUDGET)
     try:
-        with held(out) as folder, Progress(quiet=quiet) as progress:
+        with held(out) as folder:
             clear_halves(folder)
             earlier = _earlier(folder, scene)
             progress("set-up costs, in a fresh interpreter")
-            setup = setup_seconds()
             raced = race(
                 scene,
                 plan(scene, full),
                 runs=runs,
                 budget=budget,
                 sure=FULL_SURE if full else None,
-                setup=setup,
+                setup=setup_seconds(),
                 progress=progress,
                 keep=functools.partial(write_rows, folder=folder),
             )
             progress("chart")
-            draw(raced, folder / PICTURE)
+            race_chart(raced).write(folder / PICTURE)
             if earlier is not None:
                 write_report(earlier, folder)
             return raced, earlier is not None

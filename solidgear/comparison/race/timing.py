@@ -1,13 +1,10 @@
-"""Many discretisations of one scene, solved and timed in turns.
+"""Many discretisations of one scene, solved and timed in turns, the automatic choice among them.
 
 A time runs from the scene in memory to both answers, compliance at the lumped point and modes, on a
 new body; costs that a process pays once (imports, first use of gmsh and MKL) are measured
-separately, and each kind of model runs once unmeasured before.
-
-Answers of the rows of a chart of error against cost, the automatic choice among them.
-
-The cost of the automatic choice is the whole climb, every mesh that was tried included; that of the
-other rows is one mesh, which nobody has shown to be sufficient.
+separately, and each kind of model runs once unmeasured before. The cost of the automatic choice is
+the whole climb, every mesh that was tried included; that of the other rows is one mesh, which
+nobody has shown to be sufficient.
 """
 
 from __future__ import annotations
@@ -16,21 +13,24 @@ import gc
 import json
 import logging
 import math
+import subprocess
+import sys
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from solidgear.comparison.race.cases import AUTO
-from solidgear.comparison.race.pareto import CHARTED, Race, Row
+from solidgear.comparison.race.race import AUTOMATIC, CHARTED, WHOLE, Race, Reference, Row
 from solidgear.core import (
     BEAM,
     FIRST_BENDING,
     LADDER,
     QUANTITIES,
+    Body,
     Quantity,
+    Scene,
     SolidgearError,
     settle,
     synthesise,
@@ -42,14 +42,16 @@ from solidgear.core.judge.refinement import Refinement
 from solidgear.core.judge.solving import Answer, Statics, solve
 from solidgear.core.ladder.model import LUMPED
 from solidgear.core.machine.meter import processor_seconds
+from solidgear.core.machine.patience import Patience
 from solidgear.core.solve.condensed import Condensed
 from solidgear.core.solve.families import FAMILIES
 
-if TYPE_CHECKING:
-    from solidgear.core import Body, Scene
-
-
 log = logging.getLogger(__name__)
+#: name of the automatic choice among models in rows of a chart, and its tolerances
+AUTO = "auto"
+TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4)
+#: s of processor time that a fresh interpreter may take for its imports
+SETUP = 120.0
 #: relative error bar of the reference, below the gaps between models; one of a millionth
 #: takes minutes on a shaft of ten edges
 SURE, FULL_SURE = 3e-4, 1e-6
@@ -64,8 +66,76 @@ CHEAP = (LUMPED, BEAM)
 GROWTH = 3.0
 
 
+def plan(scene: Scene, full: bool = False) -> list[Row]:
+    """List series of every family, uniform and graded, level by level, and the automatic choice by
+    tolerances; of a model that does not fit the scene one row with the reason. With more levels
+    when full, up to solids of several hundred thousand unknowns.
+    """
+    rows = [
+        Row(family, label, level, model.name, options)
+        for model in LADDER
+        if not model.unfit(scene)
+        for family, label, all_options in model.series(scene, full)
+        for level, options in enumerate(all_options, start=1)
+    ]
+    for model in LADDER:
+        if model.concerns(scene) and (reason := model.unfit(scene)):
+            rows.append(Row(model.family, model.heading, 1, model.name, {}, "failed", reason))
+    rows += [
+        Row(AUTOMATIC, AUTOMATIC, level, AUTO, {"tol": tol})
+        for level, tol in enumerate(TOLERANCES, start=1)
+    ]
+    return sorted(rows, key=lambda row: row.level)
+
+
+_SETUP = """
+import json, time
+seconds, start = {}, time.perf_counter()
+def lap(name):
+    global start
+    now = time.perf_counter()
+    seconds[name], start = now - start, now
+from solidgear.core.machine.threads import pin
+pin()
+import numpy, scipy.sparse.linalg, scipy.optimize
+lap("numpy and scipy")
+import solidgear.core.models.harmonic.body, solidgear.core.models.solid.body, solidgear.core.models.beam.body
+import solidgear.core.solve.modes, solidgear.core.scene.file
+lap("solidgear and scikit-fem")
+try:
+    import gmsh
+    gmsh.initialize(["gmsh", "-noenv"], readConfigFiles=False)
+    lap("gmsh, first use")
+    import pypardiso
+    pypardiso.PyPardisoSolver(mtype=2)
+    lap("MKL, first use")
+except Exception:
+    pass
+print(json.dumps(seconds))
+"""
+
+
+def setup_seconds() -> dict[str, float]:
+    """Measure the seconds that a fresh interpreter pays once before the first model, by purpose;
+    empty where none can be started.
+    """
+    try:
+        with subprocess.Popen(
+            [sys.executable, "-c", _SETUP],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            text=True,
+        ) as child:
+            assert child.stdout is not None
+            Patience(SETUP).wait(child)
+            return json.loads(child.stdout.read().splitlines()[-1])
+    except (OSError, ValueError, IndexError) as error:
+        log.info("set-up costs: %s", error)
+        return {}
+
+
 def race(
-    scene,
+    scene: Scene,
     rows: list[Row],
     *,
     runs: int = 5,
@@ -76,29 +146,15 @@ def race(
     keep: Callable[[Race], None] = lambda _: None,
 ) -> Race:
     """Solve a scene in many ways, in turns, so that a noisy spell of the machine hits all equally;
-    rows (:func:`solidgear.comparison.race.cases.plan`) are filled in. After Ctrl-C the finished runs are
-    returned, with ``complete`` False.
+    rows (:func:`plan`) are filled in, and `keep` is called with the race after every run.
 
-    Parameters
-    ----------
-    runs : int
-        Of each case; cases above 8 s of processor time get at most three, above 20 s one.
-    budget : float
-        Seconds of processor time for the rows; the reference is not limited. A level that would not
-        fit in with all its runs, the first of a series with one, is left out, but for beams and
-        lumped models, and the cheapest case where no other has an answer.
-    sure : float, optional
-        Relative error bar that the reference is refined to; 3e-4 by default.
-    setup : dict of str to float, optional
-        Start-up costs of a process, for the record.
-    keep : callable
-        Called with the race after every run, for writing it down.
+    `budget` (processor time, s) is for the rows; the reference, refined to the relative error bar
+    `sure`, is not limited. A level that would not fit in with all its runs, the first of a series
+    with one, is left out, but for beams and lumped models, and the cheapest case where no other has
+    an answer. After Ctrl-C the finished runs are returned, with ``complete`` False.
 
-    Raises
-    ------
-    SolidgearError
-        If the reference fails or has none of the charted quantities with an error bar, or no row
-        has an answer.
+    SolidgearError if the reference fails or has none of the charted quantities with an error bar,
+    or no row has an answer.
     """
     start = time.perf_counter()
     n = max(scene.ask.modes, 10)
@@ -130,25 +186,17 @@ def race(
         while waiting := [row for row in result.rows if row.status == "waiting"]:
             # Cheapest first, so that one large solid does not use up the budget of many small
             # models.
-            row = min(
-                (
-                    r
-                    for r in waiting
-                    if not any(w.series == r.series and w.level < r.level for w in waiting)
-                ),
-                key=lambda r: _guess(r, result, first),
-            )
+            lowest = [row for row in waiting if not any(other.before(row) for other in waiting)]
+            row = min(lowest, key=lambda row: _guess(row, result, first))
             _admit(row, result, first, spent())
             if row.status == "waiting":
                 timed(row, 0)
         for turn in range(1, runs):
             for row in result.rows:
-                if row.status != "ok" or len(row.processor_seconds) >= _most_runs(
-                    row.processor_seconds[0], runs
-                ):
+                if row.status != "ok" or _runs_left(row, runs) <= 0:
                     continue
                 if spent() + row.processor_seconds[0] > budget:
-                    _note(row, f"the budget of {budget:g} s ended after run {len(row.samples)}")
+                    row.note(f"the budget of {budget:g} s ended after run {len(row.samples)}")
                 else:
                     timed(row, turn)
     except KeyboardInterrupt:
@@ -177,7 +225,9 @@ def scaled_error(compliance: np.ndarray, reference: np.ndarray) -> float | None:
     return float(np.abs((a - b) / np.outer(size, size)).max())
 
 
-def _reference(scene, sure: float, n: int, progress) -> tuple[dict, np.ndarray]:
+def _reference(
+    scene: Scene, sure: float, n: int, progress: Callable[[str], None]
+) -> tuple[Reference, np.ndarray]:
     """Solve the model that judges the scene, refined to an error bar; return the record and the
     compliance.
     """
@@ -198,20 +248,20 @@ def _reference(scene, sure: float, n: int, progress) -> tuple[dict, np.ndarray]:
     if model.bounded:  # beams are of revolution, as it is; section ties ask less of its mesh
         progress("reference with section ties")
         like = answer(scene.with_attachment("section"), model.name, settled.options, n).quantities
-    record = {
-        "model": model.title,
-        "options": json.loads(json.dumps(settled.options)),
-        "setting": settled.setting,
-        "unknowns": reference_answer.body.size,
-        "seconds": seconds,
-        "values": {q: values[q] for q in have},
-        "bands": {q: settled.bars[q] for q in have},
-        "like_for_like": {q: like[q] for q in have if q in like},
-    }
+    record = Reference(
+        model=model.title,
+        options=json.loads(json.dumps(settled.options)),
+        setting=settled.setting,
+        unknowns=reference_answer.body.size,
+        seconds=seconds,
+        values={q: values[q] for q in have},
+        bands={q: settled.bars[q] for q in have},
+        like_for_like={q: like[q] for q in have if q in like},
+    )
     return record, reference_answer.statics.main.compliance
 
 
-def _run(scene, row: Row, n: int, reference: dict, compliance: np.ndarray) -> None:
+def _run(scene: Scene, row: Row, n: int, reference: Reference, compliance: np.ndarray) -> None:
     """Run a row once more; the first run fills in the numbers."""
     gc.collect()
     start, began = time.perf_counter(), processor_seconds()
@@ -219,14 +269,14 @@ def _run(scene, row: Row, n: int, reference: dict, compliance: np.ndarray) -> No
         result = answer(scene, row.model, row.options, n)
     except Exception as error:  # whatever stops a model is a finding about it, and the others go on
         row.samples = [time.perf_counter() - start]
-        row.status, row.reason = "failed", _failure(error)
-        log.info(
-            "%s, level %d: %s",
-            row.series,
-            row.level,
-            row.reason,
-            exc_info=not isinstance(error, SolidgearError),
+        known = isinstance(error, SolidgearError)
+        row.status, row.reason = (
+            "failed",
+            str(error) if known else f"{type(error).__name__}: {error}",
         )
+        if isinstance(error, MemoryError):
+            row.reason = "not enough memory"
+        log.info("%s, level %d: %s", row.series, row.level, row.reason, exc_info=not known)
         return
     row.samples.append(time.perf_counter() - start)
     row.processor_seconds.append(processor_seconds() - began)
@@ -234,32 +284,19 @@ def _run(scene, row: Row, n: int, reference: dict, compliance: np.ndarray) -> No
         return
     row.status, values = "ok", result.quantities
     row.unknowns = 6 if row.family == LUMPED else result.body.size
-    row.values = {q: values[q] for q in reference["values"] if q in values}
-    row.errors = {q: abs(v / reference["values"][q] - 1) for q, v in row.values.items()}
-    if row.family in CHEAP and reference["like_for_like"]:
+    row.values = {q: values[q] for q in reference.values if q in values}
+    row.errors = {q: abs(values[q] / v - 1) for q, v in reference.values.items() if q in values}
+    if row.family in CHEAP and reference.like_for_like:
         like = answer(scene.with_attachment("section"), row.model, row.options, n).quantities
         row.like_for_like = {
-            q: abs(like[q] / v - 1) for q, v in reference["like_for_like"].items() if q in like
+            q: abs(like[q] / v - 1) for q, v in reference.like_for_like.items() if q in like
         }
-    missing = [q for q in reference["values"] if q not in values]
+    missing = [q for q in reference.values if q not in values]
     if missing:
-        _note(row, f"found no {' and no '.join(missing)}")
+        row.note(f"found no {' and no '.join(missing)}")
     compliance_error = scaled_error(result.statics.main.compliance, compliance)
     if compliance_error is not None:
-        row.errors["C 6x6"] = compliance_error
-
-
-def _failure(error: Exception) -> str:
-    if isinstance(error, SolidgearError):
-        return str(error)
-    if isinstance(error, MemoryError):
-        return "not enough memory"
-    return f"{type(error).__name__}: {error}"
-
-
-def _note(row: Row, text: str) -> None:
-    if text not in row.reason:
-        row.reason = "; ".join(t for t in (row.reason, text) if t)
+        row.errors[WHOLE] = compliance_error
 
 
 def _kind(row: Row) -> tuple:
@@ -267,7 +304,11 @@ def _kind(row: Row) -> tuple:
 
 
 def _warm_up(
-    scene, chart: Race, n: int, progress, spent: Callable[[], float]
+    scene: Scene,
+    chart: Race,
+    n: int,
+    progress: Callable[[str], None],
+    spent: Callable[[], float],
 ) -> dict[tuple, float]:
     """Run the first case of every kind once, outside the rows: first calls pay for imports and
     caches; return processor seconds by kind, infinite for those that half the budget does not
@@ -294,11 +335,7 @@ def _guess(row: Row, chart: Race, first: dict[tuple, float]) -> float:
     """Estimate the processor seconds of one run of a row, from the levels before it in the series;
     the first level costs as much as the warm-up of that kind did.
     """
-    times = [
-        r.processor_seconds[0]
-        for r in chart.rows
-        if r.series == row.series and r.level < row.level and r.status == "ok"
-    ]
+    times = [r.processor_seconds[0] for r in chart.rows if r.before(row) and r.status == "ok"]
     growth = min(max(times[-1] / times[-2], 1.5), 10.0) if len(times) > 1 else GROWTH
     return times[-1] * growth if times else first.get(_kind(row), 0.0)
 
@@ -307,21 +344,15 @@ def _admit(row: Row, chart: Race, first: dict[tuple, float], spent: float) -> No
     """Leave a row out if the budget would not suffice for it beside all runs of all admitted rows;
     the cheapest is kept where no other has an answer.
     """
-    if any(
-        r.status == "left out" for r in chart.rows if r.series == row.series and r.level < row.level
-    ):
+    if any(r.status == "left out" for r in chart.rows if r.before(row)):
         row.status, row.reason = "left out", "the level before it was left out"
         return
     cheap = any(r.family in CHEAP and r.status == "waiting" for r in chart.rows)
     if row.family in CHEAP or not (cheap or any(r.status == "ok" for r in chart.rows)):
         return
     guess = _guess(row, chart, first)
-    owed = sum(
-        r.processor_seconds[0]
-        * (_most_runs(r.processor_seconds[0], chart.runs) - len(r.processor_seconds))
-        for r in chart.rows
-        if r.status == "ok"
-    )
+    solved = [r for r in chart.rows if r.status == "ok"]
+    owed = sum(r.processor_seconds[0] * _runs_left(r, chart.runs) for r in solved)
     # a series with one point, run once, is worth more than further runs of others
     runs = 1 if row.level == 1 else _most_runs(guess, chart.runs)
     if spent + owed + guess * runs > chart.budget:
@@ -333,6 +364,10 @@ def _admit(row: Row, chart: Race, first: dict[tuple, float], spent: float) -> No
 
 def _most_runs(seconds: float, runs: int) -> int:
     return next((min(most, runs) for limit, most in FEWER_RUNS if seconds > limit), runs)
+
+
+def _runs_left(row: Row, runs: int) -> int:
+    return _most_runs(row.processor_seconds[0], runs) - len(row.processor_seconds)
 
 
 def answer(scene: Scene, model: str, options: dict, n: int) -> Answer:

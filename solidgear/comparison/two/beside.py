@@ -1,35 +1,87 @@
-"""Two trains or two shafts beside each other: numbers, sentences and plain data that both share."""
+"""Two designs of a kind beside each other: their numbers, modes and inputs, and what every kind says
+and shows of them.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import os
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Generic, TypeVar
+from functools import cached_property
+from pathlib import Path
+from typing import Any, ClassVar, Generic, TypeVar
 
 import numpy as np
 
 from solidgear.comparison.two.differences import Difference
-from solidgear.core import BarredMode
+from solidgear.core import COMPLIANCE, BarredMode, Quantity
 from solidgear.core.judge.change import Change, ModePair, Side
-from solidgear.show.words import hertz, percent
+from solidgear.core.machine.environment import environment
+from solidgear.core.plain import plain
+from solidgear.show.command import caution
+from solidgear.show.sheet import Section, Sheet, Terminal, write_folder
+from solidgear.show.table import Cell, Column, Table, text, word
+from solidgear.show.units import ENGINEERING, Units, in_ascii, units_named
+from solidgear.show.words import DASH, hertz, percent, seconds
 
-#: entries of the input that are named in a sentence
-NAMED = 3
-#: letters of an entry in a sentence
-WIDTH = 30
-
+#: entries of the input that are named in a sentence, and letters of each
+NAMED, WIDTH = 3, 30
+#: letters of an entry on a page and in a terminal
+LONG, SHORT = 60, 34
+#: keys of results.json in their order; either kind has some of its own
+KEYS = (
+    "kind shafts trains models mesh tolerance highest_hz differences sentences numbers asked open "
+    "paired modes alone peaks largest responses misalignment at_rest cautions unpublished "
+    "unpublished_lines environment seconds_total"
+).split()
 
 S = TypeVar("S", bound=Side)
 M = TypeVar("M", bound=BarredMode)
 
 
+@dataclass(frozen=True)
+class NumberChange:
+    """A number of both designs."""
+
+    name: str  #: quantity, ``mass``, or a number of the misalignment
+    unit: str  #: SI
+    change: Change
+    #: the difference is relative to this: for couplings the geometric mean of both diagonal
+    #: entries of A, else the number of A
+    scale: float
+    partner: str = ""  #: name of the mode of B where that is another one, else nothing
+
+    @property
+    def relative(self) -> float | None:
+        """Difference over the scale; None where that is zero."""
+        return self.change.difference / self.scale if self.scale else None
+
+    @property
+    def verdict(self) -> str:
+        """``resolved``, ``not resolved`` or ``no band``."""
+        return self.change.verdict
+
+    @property
+    def better(self) -> str:
+        """Letter of the shaft that is stiffer, or higher in frequency, by more than both error
+        bars; empty where neither is.
+        """
+        name = Quantity(self.name)
+        if self.verdict != "resolved" or name.is_coupling:
+            return ""
+        return "B" if (self.change.difference > 0) != (name.kind == COMPLIANCE) else "A"
+
+
 @dataclass(frozen=True, repr=False, eq=False)
 class Beside(Generic[S, M]):
-    """Two of a kind beside each other."""
+    """Two designs of a kind beside each other."""
+
+    kind: ClassVar[str]  #: in words
 
     a: S
     b: S
     inputs: tuple[Difference, ...]  #: differences of their files, or fields
+    changes: tuple[NumberChange, ...]
     modes: tuple[ModePair[M], ...]  #: by frequency
     pairing: str  #: how modes are paired, in words
     seconds: float
@@ -38,6 +90,14 @@ class Beside(Generic[S, M]):
     def both(self) -> tuple[S, S]:
         """Both sides."""
         return self.a, self.b
+
+    @property
+    def by_letter(self) -> dict[str, S]:
+        """Sides by their letters in files."""
+        return {"a": self.a, "b": self.b}
+
+    def __getitem__(self, name: str) -> NumberChange:
+        return next(number for number in self.changes if number.name == name)
 
     @property
     def cautions(self) -> list[str]:
@@ -51,12 +111,102 @@ class Beside(Generic[S, M]):
         ]
         return [*shared, *single]
 
+    @property
+    def sentences(self) -> list[str]:
+        """Conclusions in engineering units."""
+        return self.told()
 
-def decibels(a: float, b: float) -> float | None:
-    """Return the level of an amplitude b over another, dB; None where either is zero."""
-    return float(20 * np.log10(b / a)) if a > 0 and b > 0 else None
+    def told(self, units: Units = ENGINEERING) -> list[str]:
+        """Return the conclusions, with their numbers in the given units."""
+        raise NotImplementedError
+
+    def sheet(self, units: Units = ENGINEERING) -> Sheet:
+        """Return the sheet of terminal, page and JSON."""
+        raise NotImplementedError
+
+    def data(self) -> dict[str, Any]:
+        """Return what JSON holds of this kind alone."""
+        raise NotImplementedError
+
+    @cached_property
+    def results(self) -> dict[str, Any]:
+        """Plain data that JSON can hold, SI."""
+        data = {
+            "kind": self.kind,
+            "differences": self.inputs,
+            "sentences": self.sentences,
+            "paired": self.pairing,
+            "modes": self.modes,
+            "cautions": self.cautions,
+            "environment": environment(),
+            "seconds_total": self.seconds,
+            **self.data(),
+        }
+        return plain({key: data[key] for key in sorted(data, key=KEYS.index)})
+
+    def write_report(self, out: str | os.PathLike, *, units: str = "engineering") -> Path:
+        """Write results.json and report.html into a folder.
+
+        Parameters
+        ----------
+        out : path
+            The folder.
+        units : {'engineering', 'si', 'us'}
+            Units of the page; results.json is SI always.
+
+        Returns
+        -------
+        pathlib.Path
+            The page.
+
+        Raises
+        ------
+        SolidgearError
+            If the folder cannot be written, or units are unknown.
+        """
+        return write_folder(self.sheet(units_named(units)), Path(out))[0]
 
 
+def sheet(
+    pair: Beside[S, M],
+    units: Units,
+    sections: Sequence[Section],
+    printed: Sequence[Table],
+    *,
+    sentences_first: bool = False,
+    closing: Sequence[str] = (),
+    lines: Mapping[str, Table] | None = None,
+    words: Mapping[str, str] | None = None,
+) -> Sheet:
+    """Return the sheet of two designs: sections of the page, tables and last lines of a terminal."""
+    heading = [f"{side.label}, {side.title}" for side in pair.both]
+    verdict = pair.told(units)
+    sentences = [in_ascii(sentence) for sentence in verdict]
+    if sentences_first:
+        heading, sentences = [*heading, *sentences], []
+    return Sheet(
+        name="report",
+        json_name="results",
+        title=" beside ".join(dict.fromkeys(side.title for side in pair.both)),
+        lead=f"solidgear report on {pair.kind}: {'; '.join(side.label for side in pair.both)}.",
+        tables=(),
+        data=pair.results,
+        lines=lines or {},
+        verdict=verdict,
+        notes=[f"Whole run: {seconds(pair.seconds)} s."],
+        cautions=pair.cautions,
+        sections=sections,
+        terminal=Terminal(
+            heading=heading,
+            tables=printed,
+            closing=[*closing, *map(caution, pair.cautions)],
+            results=sentences,
+        ),
+        words=words or {},
+    )
+
+
+# ---------------------------------------------------------------------- inputs
 def inputs(differences: Sequence[Difference]) -> str:
     """Return a sentence on the entries in which two inputs differ."""
     numbers = [d for d in differences if not d.in_words]
@@ -75,6 +225,45 @@ def inputs(differences: Sequence[Difference]) -> str:
     return f"Changed: {'; '.join(changes)}{more}."
 
 
+def input_section(pair: Beside[S, M]) -> Section:
+    """Return the section of the entries that differ."""
+    words = "" if pair.inputs else inputs(pair.inputs)
+    return Section("input", "Input", words, tables=[input_table(pair)])
+
+
+def input_table(pair: Beside[S, M], width: int = LONG) -> Table:
+    """Return entries in which the files differ, each in at most so many letters."""
+    rows = [[difference.path, *difference.texts(width)] for difference in pair.inputs]
+    note = "A dash: not in that file."
+    if any(str(cell).endswith("...") for row in rows for cell in row):
+        note += " Entries that end in dots are whole in results.json."
+    columns = [text("entry"), text("A"), text("B")]
+    return Table("Input that differs", columns, rows, note, style="ruled")
+
+
+# ---------------------------------------------------------------------- modes
+def modes(mode_pairs: Sequence[ModePair[M]], place: str) -> Iterator[str]:
+    """Yield sentences on pairs of modes: which are resolved, which moves most, and which are alone;
+    ``place`` says where partners are missing, such as ``in the other train``.
+    """
+    pairs = [(p, p.change) for p in mode_pairs if p.change is not None]
+    yield from resolved([change for _, change in pairs], "pairs of modes")
+    # a name alone does not make two shapes one, where shapes can be compared
+    by_shape = [pair for pair in pairs if pair[0].mac is not None] or pairs
+    moved = max(by_shape, key=lambda pair: abs(pair[1].relative or 0.0), default=None)
+    if moved is not None and moved[1].verdict != "not resolved":
+        name, change = mode_label(moved[0], "in B "), moved[1]
+        hz = f"from {hertz(change.a)} to {hertz(change.b)} Hz"
+        yield f"Largest change: {name}, {hz} ({percent(change.relative)})."
+    for letter, alone in (
+        ("A", [p.a for p in mode_pairs if p.b is None]),
+        ("B", [p.b for p in mode_pairs if p.a is None]),
+    ):
+        labels = [f"{m.name} ({hertz(m.frequency_hz)} Hz)" for m in alone if m is not None]
+        if labels:
+            yield f"Only in {letter}, without a partner {place}: {', '.join(labels)}."
+
+
 def resolved(changes: Sequence[Change], plural: str) -> Iterator[str]:
     """Yield a sentence on how many changes of numbers called ``plural``, such as ``pairs of
     modes``, exceed their error bars; none where a change has no error bar.
@@ -87,32 +276,54 @@ def resolved(changes: Sequence[Change], plural: str) -> Iterator[str]:
     yield f"{how_many} {count} {plural} changed by more than their error bars."
 
 
-def modes(mode_pairs: Sequence[ModePair[Any]], place: str) -> Iterator[str]:
-    """Yield sentences on pairs of modes: which are resolved, which moves most, and which are alone;
-    ``place`` says where partners are missing, such as ``in the other train``.
-    """
-    pairs = [(p, p.change) for p in mode_pairs if p.change is not None]
-    yield from resolved([change for _, change in pairs], "pairs of modes")
-    # a name alone does not make two shapes one, where shapes can be compared
-    by_shape = [pair for pair in pairs if pair[0].mac is not None] or pairs
-    moved = max(by_shape, key=lambda pair: abs(pair[1].relative or 0.0), default=None)
-    if moved is not None and moved[1].verdict != "not resolved":
-        yield f"Largest change: {_moved(*moved)}."
-    for letter, alone in (
-        ("A", [p.a for p in mode_pairs if p.b is None]),
-        ("B", [p.b for p in mode_pairs if p.a is None]),
-    ):
-        labels = [f"{m.name} ({hertz(m.frequency_hz)} Hz)" for m in alone if m is not None]
-        if labels:
-            yield f"Only in {letter}, without a partner {place}: {', '.join(labels)}."
+def mode_table(pair: Beside[S, M]) -> Table:
+    """Return natural frequencies side by side, with the verdict on each difference."""
+    columns = [
+        text("mode", mode_label),
+        Column("A, Hz", lambda p: p.a and p.a.frequency_hz, hertz),
+        Column("B, Hz", lambda p: p.b and p.b.frequency_hz, hertz),
+        Column("difference", lambda p: p.change and relative(p.change, abs(p.change.a))),
+    ]
+    note = f"Paired {pair.pairing}. "
+    if any(p.change is not None and p.change.band is not None for p in pair.modes):
+        columns.append(Column("both error bars", lambda p: p.change and band(p.change)))
+        columns.append(word("", lambda p: p.verdict))
+        note += (
+            "Both error bars: their sum, relative to A; a smaller difference is not resolved, "
+            "which is not agreement. "
+        )
+    columns.append(Column("MAC", lambda p: p.mac, "{:.2f}".format))
+    note += (
+        "MAC: likeness of both shapes; a dash: paired by name, so that shapes may differ, or "
+        "without a partner."
+    )
+    return Table("Natural frequencies", columns, pair.modes, note, style="ruled")
 
 
-def both_names(a: str, b: str) -> str:
-    """Return the name of a mode, or both of its names where they differ."""
-    return a if a == b else f"{a} (in B {b})"
+def mode_label(pair: ModePair[M], of_b: str = "B: ") -> str:
+    """Return the name of a mode in A, and in B where it is another."""
+    labels = [mode.name for mode in (pair.a, pair.b) if mode is not None]
+    return names(labels[0], labels[-1], of_b)
 
 
-def _moved(pair: ModePair[Any], change: Change) -> str:
-    assert pair.a is not None and pair.b is not None
-    name = both_names(pair.a.name, pair.b.name)
-    return f"{name}, from {hertz(change.a)} to {hertz(change.b)} Hz ({percent(change.relative)})"
+def names(a: str, b: str, of_b: str = "B: ") -> str:
+    """Return a name in A, and in B where it is another."""
+    return a if a == b else f"{a} ({of_b}{b})"
+
+
+def relative(change: Change, scale: float) -> str | Cell:
+    """Return the difference in per cent of a scale, marked where it is within the error bars."""
+    share = percent(change.difference / scale) if scale else DASH
+    return Cell(share, "unresolved") if change.verdict == "not resolved" else share
+
+
+def band(change: Change) -> str | None:
+    """Return the sum of both error bars in per cent of A."""
+    if change.band is None or not change.a:
+        return None
+    return percent(change.band / abs(change.a), signed=False)
+
+
+def decibels(a: float, b: float) -> float | None:
+    """Return the level of an amplitude b over another, dB; None where either is zero."""
+    return float(20 * np.log10(b / a)) if a > 0 and b > 0 else None

@@ -19,7 +19,7 @@ from solidgear.core.scene import file
 from solidgear.core.scene.toml_file import describes_train
 from solidgear.core.scene.units import quantity
 from solidgear.trains.file import reading as train_file
-from solidgear.trains.file.train import SIDES
+from solidgear.trains.file.train import SIDES, Train
 
 if TYPE_CHECKING:
     from solidgear.core import Scene
@@ -73,7 +73,7 @@ def differences(a: str | os.PathLike, b: str | os.PathLike) -> tuple[Difference,
     >>> pairs[1].a, pairs[1].b
     ('pinion_overhung.toml', 'pinion_straddle.toml')
     """
-    return tuple(_Files(os.fspath(a), os.fspath(b)).differences())
+    return tuple(_Tables((os.fspath(a), os.fspath(b))).of_files())
 
 
 def scene_differences(a: Scene, b: Scene) -> tuple[Difference, ...]:
@@ -92,9 +92,21 @@ def scene_differences(a: Scene, b: Scene) -> tuple[Difference, ...]:
 
 
 class _Tables:
-    """Two tables, entry by entry."""
+    """Two tables, entry by entry; of files, with the path of the entry that names them."""
 
-    prefix = ""
+    def __init__(self, files: tuple[str, str] | None = None, prefix: str = ""):
+        self.files, self.prefix = files, prefix
+        self.raw = [parse(path) for path in files or ()]
+        for raw in self.raw:
+            for key in ONE_OR_MORE:
+                if isinstance(raw.get(key), Mapping):
+                    raw[key] = [raw[key]]
+        self.models = [self._model(k) for k in range(len(self.raw))]
+
+    def of_files(self) -> Iterator[Difference]:
+        """Yield the differences of both files."""
+        a, b = self.raw
+        yield from self.differing("", a, b, left_out=("ask",) if self.prefix else ())
 
     def differing(
         self, path: str, a: dict, b: dict, left_out: tuple[str, ...] = ()
@@ -112,6 +124,10 @@ class _Tables:
             yield from self._lists(path, a, b)
         elif not _is_equal(a, b) or self._other_content(key, a, b):
             yield Difference(self.prefix + path, a, b)
+        side, _, key_name = path.rpartition(".")
+        is_shaft = side in SIDES or side.startswith("shaft.")
+        if self.files and key_name == "scene" and is_shaft:
+            yield from _Tables(self._paths(a, b), f"{self.prefix}{side}.").of_files()
 
     def _lists(self, path: str, a: list[dict], b: list[dict]) -> Iterator[Difference]:
         """Yield the differences of lists of tables, by names or numbers."""
@@ -123,41 +139,10 @@ class _Tables:
             yield from self._entries(entry_path, "", first.get(key), second.get(key))
 
     def _is_default(self, a: dict, b: dict, key: str) -> bool:
-        """Return True for a key of one table alone that would change nothing in the other."""
-        return False
-
-    def _other_content(self, key: str, a: Any, b: Any) -> bool:
-        """Return True for one name of two files with different content."""
-        return False
-
-
-class _Files(_Tables):
-    """Two files of the same kind, with the path of the entry that names them."""
-
-    def __init__(self, a: str, b: str, prefix: str = ""):
-        self.files, self.prefix = (a, b), prefix
-        self.raw = [parse(path) for path in self.files]
-        for key in ONE_OR_MORE:
-            for raw in self.raw:
-                if isinstance(raw.get(key), Mapping):
-                    raw[key] = [raw[key]]
-        self.models = [self._model(k) for k in range(2)]
-
-    def differences(self) -> Iterator[Difference]:
-        """Yield the differences of both files."""
-        a, b = self.raw
-        yield from self.differing("", a, b, left_out=("ask",) if self.prefix else ())
-
-    def _model(self, k: int) -> Any:
-        """Return the scene or train of a file; None where it cannot be read alone."""
-        read = train_file.train_of if describes_train(self.raw[k]) else file.scene_of
-        try:
-            return read(self.raw[k], self.files[k])
-        except SceneError:
-            return None
-
-    def _is_default(self, a: dict, b: dict, key: str) -> bool:
-        if key in a and key in b:
+        """Return True for a key of one table of a file alone that would change nothing in the
+        other.
+        """
+        if not self.files or key in a and key in b:
             return False
         k, table, value = (1, b, a[key]) if key in a else (0, a, b[key])
         table[key] = value
@@ -165,20 +150,23 @@ class _Files(_Tables):
         del table[key]
         return unchanged
 
-    def _entries(self, path: str, key: str, a: Any, b: Any) -> Iterator[Difference]:
-        yield from super()._entries(path, key, a, b)
-        first, _, key_name = path.rpartition(".")
-        if key_name == "scene" and (first in SIDES or first.startswith("shaft.")):
-            side = f"{first}."
-            yield from _Files(*self._paths(a, b), self.prefix + side).differences()
+    def _model(self, k: int) -> Train | Scene | None:
+        """Return the scene or train of a file; None where it cannot be read alone."""
+        assert self.files
+        read = train_file.train_of if describes_train(self.raw[k]) else file.scene_of
+        try:
+            return read(self.raw[k], self.files[k])
+        except SceneError:
+            return None
 
     def _paths(self, a: str, b: str) -> tuple[str, str]:
         """Return the paths of files that both files name."""
-        first, second = self.files
+        first, second = self.files or ("", "")
         return str(Path(first).parent / a), str(Path(second).parent / b)
 
     def _other_content(self, key: str, a: Any, b: Any) -> bool:
-        if key not in FILES or not (isinstance(a, str) and isinstance(b, str)):
+        """Return True for one name of two files with different content."""
+        if not self.files or key not in FILES or not (isinstance(a, str) and isinstance(b, str)):
             return False
         files = [Path(path) for path in self._paths(a, b)]
         return all(f.is_file() for f in files) and files[0].read_bytes() != files[1].read_bytes()

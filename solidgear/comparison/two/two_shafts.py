@@ -7,28 +7,23 @@ shape where both shafts are described at the same stations, else to the mode of 
 
 from __future__ import annotations
 
-import math
-import os
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property
-from pathlib import Path
+from functools import partial
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from solidgear.comparison.two import beside
-from solidgear.comparison.two.beside import Beside
+from solidgear.comparison.two.beside import Beside, NumberChange
 from solidgear.comparison.two.differences import Difference, scene_differences
-from solidgear.comparison.two.two_shafts_page import write_two_shafts
 from solidgear.core import (
-    COMPLIANCE,
     LADDER,
     QUANTITIES,
     BarredMode,
     Displayed,
-    ModeSet,
+    Mode,
     OpenNumbers,
     Quantity,
     pinned,
@@ -38,12 +33,19 @@ from solidgear.core.judge.answer import LEAST_TOLERANCE
 from solidgear.core.judge.change import Change, ModePair, all_pairs
 from solidgear.core.judge.correlation import pair_modes
 from solidgear.core.judge.quantities import in_order, judged
-from solidgear.core.machine.environment import environment
 from solidgear.core.plain import plain
 from solidgear.guards.one_shaft import OneShaft, Progress, one_shaft
 from solidgear.show.open_words import interval
-from solidgear.show.units import ENGINEERING, Units, units_named
-from solidgear.show.words import is_number, percent
+from solidgear.show.panel import GREY, Axis, Panel, Series, curve, lines_legend, readout
+from solidgear.show.plot import BETWEEN, NARROW, WIDE, Chart, in_columns
+from solidgear.show.run_tables import pairs_of
+from solidgear.show.sheet import Section, Sheet
+from solidgear.show.sketch import extent
+from solidgear.show.sketch_page import sketch_svg
+from solidgear.show.table import Cell, Column, Table, text, word
+from solidgear.show.units import ENGINEERING, Units
+from solidgear.show.words import hertz, is_number, percent
+from solidgear.trains.page.chart import PAIR
 from solidgear.variants.budget.budget import beside as open_numbers
 
 if TYPE_CHECKING:
@@ -57,46 +59,18 @@ TWINS = {
     for kind in "CK"
     for twin, entry in (("xx", "zz"), ("x,thz", "z,thx"), ("thz", "thx"))
 }
-#: relative; twins closer than this are one number
+#: relative; twins closer than this are one number, and couplings this small beside their scale are
+#: rounding
 SAME = 1e-9
 #: numbers that a sentence names as not resolved
 NAMED = 4
 #: words behind a difference, by its verdict
 DOUBTS = {"resolved": "", "not resolved": "; not resolved", "no band": "; no error bar"}
 NEITHER = "Neither is better in the numbers"
-
-
-@dataclass(frozen=True)
-class NumberChange:
-    """A number of both shafts."""
-
-    name: str  #: quantity, or ``mass``
-    unit: str  #: SI
-    change: Change
-    #: the difference is relative to this: for couplings the geometric mean of both diagonal
-    #: entries of A, else the number of A
-    scale: float
-    partner: str = ""  #: name of the mode of B where that is another one, else nothing
-
-    @property
-    def relative(self) -> float | None:
-        """Difference over the scale; None where that is zero."""
-        return self.change.difference / self.scale if self.scale else None
-
-    @property
-    def verdict(self) -> str:
-        """``resolved``, ``not resolved`` or ``no band``."""
-        return self.change.verdict
-
-    @property
-    def better(self) -> str:
-        """Letter of the shaft that is stiffer, or higher in frequency, by more than both error
-        bars; empty where neither is.
-        """
-        name = Quantity(self.name)
-        if self.verdict != "resolved" or name.is_coupling:
-            return ""
-        return "B" if (self.change.difference > 0) != (name.kind == COMPLIANCE) else "A"
+SHAPES = (
+    "Motions of sections along both shafts in the lowest pairs of modes, in the plane of the "
+    "largest, scaled to one."
+)
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -109,17 +83,18 @@ class TwoShafts(Beside[OneShaft, BarredMode], Displayed):
         Also as ``both``, with their ``cautions``.
     inputs : tuple of Difference
         Entries in which their files, or fields, differ.
+    changes : tuple of NumberChange
+        Mass, entries of C and K at the lumped points, first frequencies.
     modes : tuple of ModePair
         By frequency.
     pairing : str
         How modes are paired, in words.
     """
 
-    shown: ClassVar[str] = "two_shafts"
+    shown: ClassVar[str] = "comparison.two.two_shafts:summary"
+    kind: ClassVar[str] = "two shafts"
 
     tolerance: float  #: relative, that every error bar was brought to
-    #: mass, entries of C and K at the lumped points, first frequencies
-    changes: tuple[NumberChange, ...]
     alone: dict[str, tuple[str, ...]]  #: names of numbers that one shaft alone has, by its letter
     open: tuple[OpenNumbers, OpenNumbers]  #: ranges that the input data of each leave open
 
@@ -140,44 +115,66 @@ class TwoShafts(Beside[OneShaft, BarredMode], Displayed):
         by_name = {number.name: number for number in self.changes}
         return [by_name[name] for name in dict.fromkeys(names) if name in by_name]
 
-    def __getitem__(self, name: str) -> NumberChange:
-        return next(number for number in self.changes if number.name == name)
-
-    @property
-    def sentences(self) -> list[str]:
-        """Conclusions in engineering units."""
-        return self.told()
-
     def told(self, units: Units = ENGINEERING) -> list[str]:
         """Return the conclusions, with their numbers in the given units."""
-        return sentences(self, units)
+        return [
+            *_asked(self, units),
+            beside.inputs(self.inputs),
+            *_numbers(self, units),
+            *beside.modes(self.modes, "among the modes solved of the other"),
+            *_alone(self),
+            *_solved(self),
+        ]
 
-    @cached_property
-    def results(self) -> dict[str, Any]:
-        """Plain data that JSON can hold, SI."""
-        return results(self)
+    def sheet(self, units: Units = ENGINEERING) -> Sheet:
+        """Return the sheet of terminal, page and JSON."""
+        printed = [
+            beside.input_table(self, beside.SHORT),
+            numbers_table(self, units),
+            beside.mode_table(self),
+        ]
+        if self.asks:
+            printed.insert(0, asked_table(self, units))
+        words = {"shapes": SHAPES}
+        sections = _sections(self, units)
+        return beside.sheet(self, units, sections, printed, sentences_first=True, words=words)
 
-    def write_report(self, out: str | os.PathLike, *, units: str = "engineering") -> Path:
-        """Write results.json and report.html into a folder.
+    def data(self) -> dict[str, Any]:
+        """Return what JSON holds of shafts alone."""
+        return {
+            "shafts": {
+                letter: {
+                    "file": shaft.name,
+                    "title": shaft.title,
+                    "scene": shaft.scene.as_dict(),
+                    "solved": shaft.settled,
+                }
+                for letter, shaft in self.by_letter.items()
+            },
+            "tolerance": self.tolerance,
+            "numbers": {number.name: _number(number) for number in self.changes},
+            "asked": {number.name: number.better or None for number in self.asked},
+            "open": dict(zip("ab", self.open)),
+            "alone": {letter.lower(): names for letter, names in self.alone.items()},
+        }
 
-        Parameters
-        ----------
-        out : path
-            The folder.
-        units : {'engineering', 'si', 'us'}
-            Units of the page; results.json is SI always.
 
-        Returns
-        -------
-        pathlib.Path
-            The page.
+def _number(number: NumberChange) -> dict[str, Any]:
+    out = plain(number.change) | {"relative": number.relative, "unit": number.unit}
+    out["scale"] = number.scale
+    if number.partner:
+        out["mode_of_b"] = number.partner
+    return out
 
-        Raises
-        ------
-        SolidgearError
-            If the folder cannot be written, or units are unknown.
-        """
-        return write_two_shafts(self, out, units_named(units))
+
+def summary(pair: TwoShafts) -> Table:
+    """Return numbers of two shafts, their differences and verdicts."""
+    rows = [
+        (n.name, n.change.a, n.change.b, n.unit, percent(n.relative), n.verdict)
+        for n in pair.changes
+    ]
+    heads = ("number", "A", "B", "unit", "difference", "")
+    return Table(f"{pair.a.label} beside {pair.b.label}", heads, rows)
 
 
 @pinned
@@ -196,55 +193,51 @@ def two_shafts(
     tol = max(SHARE * min(s.ask.tolerance for s in scenes), LEAST_TOLERANCE)
     second_points = {port.name for port in second.further_ports}
     points = [port.name for port in first.further_ports if port.name in second_points]
-    a, b = (
-        _settled(scene, tol, letter, name, points, progress)
-        for letter, name, scene in zip("AB", names or [s.name for s in scenes], scenes)
-    )
+    shafts = []
+    for letter, name, scene in zip("AB", names or [s.name for s in scenes], scenes):
+        shafts.append(one_shaft(scene, tol, letter, name, points, progress=progress))
+        shafts[-1].settled.body.cache.clear()
+    a, b = shafts
     pairs, pairing = _paired(a, b)
-    changes = (_mass(a, b), *_statics(a, b), *_frequencies(a, b, pairs))
-    differ = tuple(scene_differences(first, second) if inputs is None else inputs)
-    alone = {
-        shaft.letter: tuple(str(q) for q in in_order(shaft.values) if q not in neighbour.values)
-        for shaft, neighbour in ((a, b), (b, a))
-    }
     progress("what the data leave open")
-    ranges = open_numbers(first), open_numbers(second)
-    spent = perf_counter() - start
     return TwoShafts(
         a=a,
         b=b,
-        inputs=differ,
+        inputs=tuple(scene_differences(first, second) if inputs is None else inputs),
+        changes=tuple(_changes(a, b, pairs)),
         modes=tuple(pairs),
         pairing=pairing,
-        seconds=spent,
         tolerance=tol,
-        changes=changes,
-        alone=alone,
-        open=ranges,
+        alone={
+            shaft.letter: tuple(str(q) for q in in_order(shaft.values) if q not in values)
+            for shaft, values in ((a, b.values), (b, a.values))
+        },
+        open=(open_numbers(first), open_numbers(second)),
+        seconds=perf_counter() - start,
     )
 
 
-def _settled(
-    scene: Scene, tol: float, letter: str, name: str, points: list[str], progress: Progress
-) -> OneShaft:
-    shaft = one_shaft(scene, tol, letter, name, points, progress=progress)
-    shaft.settled.body.cache.clear()
-    return shaft
-
-
-def _mass(a: OneShaft, b: OneShaft) -> NumberChange:
-    bar_a, bar_b = (
-        None if shaft.mass_bar is None else shaft.mass_bar * shaft.mass for shaft in (a, b)
-    )
-    return NumberChange("mass", "kg", Change(a.mass, b.mass, bar_a, bar_b), a.mass)
-
-
-def _statics(a: OneShaft, b: OneShaft) -> Iterable[NumberChange]:
+def _changes(
+    a: OneShaft, b: OneShaft, pairs: Sequence[ModePair[BarredMode]]
+) -> Iterator[NumberChange]:
+    """Yield the mass, entries of C and K, and the first frequencies, each beside that of the
+    partner of the mode.
+    """
+    bar_a, bar_b = (None if s.mass_bar is None else s.mass_bar * s.mass for s in (a, b))
+    yield NumberChange("mass", "kg", Change(a.mass, b.mass, bar_a, bar_b), a.mass)
     for name in in_order(a.values):
         if name.is_frequency or name not in b.values or _twin(a, name) and _twin(b, name):
             continue
         change = Change(a.values[name], b.values[name], a.bar(name), b.bar(name))
         yield NumberChange(str(name), name.unit, change, size(a.values, name))
+    partners = {p.a.name: (p.b.name, p.change) for p in pairs if p.a and p.b and p.change}
+    for name in (q for q in QUANTITIES if q.is_frequency):
+        mode = a.modes.named(name)
+        if mode is None or str(mode.name) not in partners:
+            continue
+        partner, change = partners[str(mode.name)]
+        partner = "" if partner == mode.name else partner
+        yield NumberChange(str(name), "Hz", change, abs(change.a), partner)
 
 
 def _twin(shaft: OneShaft, name: Quantity) -> bool:
@@ -256,20 +249,6 @@ def _twin(shaft: OneShaft, name: Quantity) -> bool:
     return difference <= SAME * size(shaft.values, twin)
 
 
-def _frequencies(
-    a: OneShaft, b: OneShaft, pairs: Sequence[ModePair[BarredMode]]
-) -> Iterable[NumberChange]:
-    """Yield the first frequencies, each beside that of the partner of the mode."""
-    partners = {p.a.name: (p.b.name, p.change) for p in pairs if p.a and p.b and p.change}
-    for name in (q for q in QUANTITIES if q.is_frequency):
-        mode = a.modes.named(name)
-        if mode is None or str(mode.name) not in partners:
-            continue
-        partner_name, change = partners[str(mode.name)]
-        partner = "" if partner_name == mode.name else partner_name
-        yield NumberChange(str(name), "Hz", change, abs(change.a), partner)
-
-
 def _paired(a: OneShaft, b: OneShaft) -> tuple[list[ModePair[BarredMode]], str]:
     """Return modes of both lists with their partners, and in words how they were paired."""
     modes_a, modes_b = (
@@ -277,7 +256,8 @@ def _paired(a: OneShaft, b: OneShaft) -> tuple[list[ModePair[BarredMode]], str]:
     )
     same_shape: list[ModePair[BarredMode]] = []
     words = "by name, since the shafts are not divided at the same places along the axis"
-    if _same_stations(a.modes, b.modes):
+    stations = a.modes.stations, b.modes.stations
+    if stations[0].shape == stations[1].shape and np.allclose(stations[0], stations[1]):
         words = "by the motions of sections along the axis, or by name where no shape is certain"
         for p in pair_modes(b.modes, a.modes):
             partners = [m for m in (p.mode, *p.others) if m is not None and p.certain]
@@ -296,25 +276,7 @@ def _paired(a: OneShaft, b: OneShaft) -> tuple[list[ModePair[BarredMode]], str]:
     return pairs, words
 
 
-def _same_stations(a: ModeSet, b: ModeSet) -> bool:
-    same = a.stations.shape == b.stations.shape
-    return same and bool(np.allclose(a.stations, b.stations))
-
-
-def sentences(shafts: TwoShafts, units: Units = ENGINEERING) -> list[str]:
-    """Return the conclusions: which shaft is better in the numbers asked for, differences of the
-    input, changes of numbers and which are resolved, and how both were solved.
-    """
-    return [
-        *_asked(shafts, units),
-        beside.inputs(shafts.inputs),
-        *_numbers(shafts, units),
-        *beside.modes(shafts.modes, "among the modes solved of the other"),
-        *_alone(shafts),
-        *_solved(shafts),
-    ]
-
-
+# ---------------------------------------------------------------------- sentences
 def _asked(shafts: TwoShafts, units: Units) -> Iterator[str]:
     """Yield a sentence for each number asked for, and one on which shaft is better in how many."""
     if not shafts.asks:
@@ -329,24 +291,23 @@ def _asked(shafts: TwoShafts, units: Units) -> Iterator[str]:
         everything = {1: "the number", 2: "both numbers"}.get(count, f"all {count} numbers")
         share = everything if score[first] == count else f"{score[first]} of {count} numbers"
         second = f" and {last} in {score[last]}" if score[last] else ""
-        better = f"{first} is better in {share}" if score[first] else NEITHER
-        yield f"{better} asked for{second}, if stiffer and higher in frequency is better."
+        best = f"{first} is better in {share}" if score[first] else NEITHER
+        yield f"{best} asked for{second}, if stiffer and higher in frequency is better."
 
 
 def _open_ranges(shafts: TwoShafts, number: NumberChange) -> str:
     """Return the ranges of a number by what the data of both leave open, and whether these exceed
     the difference.
     """
-    records = [numbers.of(number.name) for numbers in shafts.open]
     ranges = {
-        letter: interval(record.total)
-        for letter, record in zip("AB", records)
-        if record is not None
+        letter: record.total
+        for letter, numbers in zip("AB", shafts.open)
+        if (record := numbers.of(number.name)) is not None
     }
     if not ranges:
         return ""
-    words = " and ".join(f"{range_} in {letter}" for letter, range_ in ranges.items())
-    widest = max(abs(end or 0.0) for r in records if r for end in (r.total.low, r.total.high))
+    words = " and ".join(f"{interval(total)} in {letter}" for letter, total in ranges.items())
+    widest = max(abs(end or 0.0) for total in ranges.values() for end in (total.low, total.high))
     more = ", which is more than the difference" if widest > _size(number) else ""
     return f"; range from the data {words}{more}"
 
@@ -379,8 +340,7 @@ def _change_text(number: NumberChange, units: Units) -> str:
         name = f"{number.name}, "
         if change.band:
             bars = f", both error bars {percent(change.band / number.scale, signed=False)}"
-    doubt = DOUBTS[number.verdict]
-    return f"{name}from {values} ({percent(number.relative)}{bars}{doubt})"
+    return f"{name}from {values} ({percent(number.relative)}{bars}{DOUBTS[number.verdict]})"
 
 
 def _alone(shafts: TwoShafts) -> Iterator[str]:
@@ -397,59 +357,188 @@ def _solved(shafts: TwoShafts) -> Iterator[str]:
     by = f"Both by the {titles[0]}"
     if titles[0] != titles[1]:
         by = f"A by the {titles[0]}, B by the {titles[1]}"
-    asked = {shaft.scene.ask.tolerance for shaft in shafts.both}
-    smaller = "the smaller tolerance of both" if len(asked) > 1 else "the tolerance of both"
+    tolerances = {shaft.scene.ask.tolerance for shaft in shafts.both}
+    smaller = "the smaller tolerance of both" if len(tolerances) > 1 else "the tolerance of both"
     yield f"{by}, to error bars of {percent(shafts.tolerance, signed=False)}: a tenth of {smaller}."
     for shaft in shafts.both:
-        if not shaft.settled.reached:
-            yield _not_reached(shaft)
+        largest = shaft.settled.largest
+        if not shaft.settled.reached and largest is None:
+            yield f"{shaft.letter} has no error bars."
+        elif not shaft.settled.reached and largest is not None:
+            name, bar = largest
+            width = percent(bar, signed=False) if is_number(bar) else "unknown"
+            yield f"Not reached by {shaft.letter}: the largest error bar is {width}, of {name}."
     if any(b.catalogue is not None for shaft in shafts.both for b in shaft.scene.bearings):
         yield "Error bars are for mesh and solver, not for open data of catalogue bearings."
 
 
-def _not_reached(shaft: OneShaft) -> str:
-    largest = shaft.settled.largest
-    if largest is None:
-        return f"{shaft.letter} has no error bars."
-    name, bar = largest
-    width = percent(bar, signed=False) if is_number(bar) else "unknown"
-    return f"Not reached by {shaft.letter}: the largest error bar is {width}, of {name}."
-
-
-def results(shafts: TwoShafts) -> dict[str, Any]:
-    """Return all numbers of the page as plain data that JSON can hold, SI."""
-    return {
-        "kind": "two shafts",
-        "shafts": {shaft.letter.lower(): _shaft(shaft) for shaft in shafts.both},
-        "tolerance": shafts.tolerance,
-        "differences": plain(shafts.inputs),
-        "sentences": sentences(shafts),
-        "numbers": {number.name: _number(number) for number in shafts.changes},
-        "asked": {number.name: number.better or None for number in shafts.asked},
-        "open": {
-            letter: numbers.model_dump(mode="json") for letter, numbers in zip("ab", shafts.open)
-        },
-        "paired": shafts.pairing,
-        "modes": plain(shafts.modes),
-        "alone": {letter.lower(): list(names) for letter, names in shafts.alone.items()},
-        "cautions": shafts.cautions,
-        "environment": environment(),
-        "seconds_total": shafts.seconds,
+# ---------------------------------------------------------------------- page
+def _sections(pair: TwoShafts, units: Units) -> list[Section]:
+    scenes = {letter: shaft.scene.as_dict() for letter, shaft in pair.by_letter.items()}
+    longest, thickest = (max(sizes) for sizes in zip(*map(extent, scenes.values())))
+    drawings = {
+        f"{shaft.label}, section through the axis.": sketch_svg(
+            f"shaft_{letter}", scenes[letter], (longest, thickest)
+        )
+        for letter, shaft in pair.by_letter.items()
     }
+    title = "What was asked" if pair.asks else "The usual numbers"
+    solved = [_solution(side) for side in pair.both]
+    machine = pairs_of(pair.results["environment"], "Environment of the run")
+    shapes = {"shapes": partial(shapes_chart, pair, units)}
+    return [
+        Section("asked", title, tables=[asked_table(pair, units)]),
+        beside.input_section(pair),
+        Section("shafts", "Both shafts", "Both to one scale.", drawings=drawings),
+        Section("numbers", "Numbers", tables=[numbers_table(pair, units)]),
+        Section("modes", "Modes", "", shapes, [beside.mode_table(pair)], filed=()),
+        Section("run", "Run", tables=[*solved, machine]),
+    ]
 
 
-def _shaft(shaft: OneShaft) -> dict[str, Any]:
-    return {
-        "file": shaft.name,
-        "title": shaft.scene.title or shaft.scene.name,
-        "scene": shaft.scene.as_dict(),
-        "solved": plain(shaft.settled),
+def asked_table(pair: TwoShafts, units: Units = ENGINEERING) -> Table:
+    """Return numbers asked for: both values, error bars, ranges by open data, and which is better."""
+    columns = _columns(units)
+    note = (
+        "Better: stiffer, or higher in frequency, by more than both error bars; couplings have "
+        "none."
+    )
+    for letter, numbers in zip("AB", pair.open):
+        if numbers.inputs:
+            columns.append(Column(f"open in {letter}", partial(_open, numbers)))
+    if any(numbers.inputs for numbers in pair.open):
+        note += (
+            " Open: range by bearings and other open data of that design, by the Timoshenko beam, "
+            "relative to its number."
+        )
+    columns.append(word("better", lambda number: number.better or "-"))
+    title = "Numbers asked for" if pair.asks else "Usual numbers"
+    return Table(title, columns, pair.asked, note, style="ruled")
+
+
+def _open(numbers: OpenNumbers, number: NumberChange) -> str | None:
+    """Return the range of a number by open data."""
+    record = numbers.of(number.name)
+    return None if record is None else interval(record.total)
+
+
+def numbers_table(pair: TwoShafts, units: Units = ENGINEERING) -> Table:
+    """Return the mass, compliances, stiffnesses and first frequencies side by side."""
+    columns = [*_columns(units), word("", lambda n: None if _alike(n) else n.verdict)]
+    note = (
+        "Differences and error bars are relative to A, for couplings to the geometric mean of "
+        "both diagonal entries of A. Resolved: more than the sum of both error bars; not resolved "
+        "is not agreement. The mass is the shaft's alone, and exact for a round one."
+    )
+    return Table("Numbers", columns, pair.changes, note, style="ruled")
+
+
+def _columns(units: Units) -> list[Column]:
+    """Return columns of both numbers with their error bars."""
+    return [
+        text("number", lambda n: n.name + (f" (B: {n.partner})" if n.partner else "")),
+        Column("A", lambda n: _value(n, n.change.a, units)),
+        Column("B", lambda n: _value(n, n.change.b, units)),
+        text("unit", lambda n: units.unit(n.unit)),
+        Column("difference", _difference),
+        Column("error bar of A", lambda n: _bar(n, n.change.bar_a)),
+        Column("error bar of B", lambda n: _bar(n, n.change.bar_b)),
+    ]
+
+
+def _alike(number: NumberChange) -> bool:
+    """Return True for an exact number that both share."""
+    return number.name == "mass" and number.change.difference == 0
+
+
+def _difference(number: NumberChange) -> str | Cell:
+    if _alike(number):
+        return percent(0.0)
+    return beside.relative(number.change, number.scale or abs(number.change.a))
+
+
+def _value(number: NumberChange, value: float, units: Units) -> str:
+    # a coupling that symmetry forbids is nothing but rounding
+    return "0" if abs(value) <= SAME * number.scale else units.number(value, number.unit, 6)
+
+
+def _bar(number: NumberChange, width: float | None) -> str | None:
+    if number.name == "mass" or not is_number(width) or not number.scale:
+        return None
+    return percent(width / number.scale, signed=False)
+
+
+def _solution(shaft: OneShaft) -> Table:
+    """Return the model, mesh and size."""
+    settled = shaft.settled
+    facts = {
+        "model": settled.rung,
+        "mesh": settled.setting,
+        "unknowns": settled.body.size,
+        "error bars asked for": percent(settled.tolerance, signed=False),
+        "reached": "yes" if settled.reached else "no",
     }
+    return pairs_of(facts, f"Solution of {shaft.label}")
 
 
-def _number(number: NumberChange) -> dict[str, Any]:
-    out = plain(number.change) | {"relative": number.relative, "unit": number.unit}
-    out["scale"] = number.scale if math.isfinite(number.scale) else None
-    if number.partner:
-        out["mode_of_b"] = number.partner
-    return out
+#: components of section motions that show a family
+SHOWN = {"bending": (0, 2), "axial": (1,), "torsion": (4,)}
+#: pairs that are drawn, the lowest
+MOST = 8
+
+
+def shapes_chart(
+    shafts: TwoShafts, units: Units = ENGINEERING, width: float = WIDE
+) -> Chart | None:
+    """Chart motions of sections along both shafts in the lowest pairs of modes, scaled to one."""
+    by_name = [
+        {str(m.name): m for m in shaft.modes.solved if m.family in SHOWN} for shaft in shafts.both
+    ]
+    drawn = [
+        (beside.mode_label(pair), [by_name[0][pair.a.name], by_name[1][pair.b.name]])
+        for pair in shafts.modes
+        if pair.a is not None
+        and pair.b is not None
+        and pair.a.name in by_name[0]
+        and pair.b.name in by_name[1]
+    ]
+    looks = {shaft.label: Series(colour) for shaft, colour in zip(shafts.both, PAIR)}
+    last = max(units.values(shaft.modes.stations, "m").max() for shaft in shafts.both)
+    columns = 2 if width > NARROW and len(drawn) > 1 else 1
+    panels = []
+    for k, (title, partners) in enumerate(drawn[:MOST]):
+        panel = Panel(
+            Axis(f"y in {units.unit('m')}", (0.0, float(last))),
+            Axis("", (-1.1, 1.1)),
+            130.0,
+            title,
+            series=looks,
+            legend=lines_legend(2) if k == 0 else None,
+        )
+        panel.draw({"type": "rule", "color": GREY}, [{"y": 0.0}])
+        lines = _lines(shafts.both, partners)
+        for shaft, mode, line in zip(shafts.both, partners, lines):
+            words = readout(shaft.label, ("frequency", hertz(mode.frequency_hz), "Hz"))
+            along = units.values(shaft.modes.stations, "m")
+            panel.draw("line", curve(along, line, name=shaft.label))
+            panel.read(curve(along, line, readout=words), looks[shaft.label].colour)
+        panels.append(panel)
+    if len(panels) % columns:  # as wide as those above it
+        panels[-1].right += (width + BETWEEN) / columns
+    return Chart(in_columns(panels, columns), width) if panels else None
+
+
+def _lines(shafts: Sequence[OneShaft], modes: Sequence[Mode]) -> list[np.ndarray]:
+    """Return motions of sections of each shaft in the plane of the largest, scaled to one, with the
+    same sign.
+    """
+    lines = []
+    for mode in modes:
+        motions = mode.motions[0][:, SHOWN[mode.family]]
+        line = motions @ np.linalg.svd(motions, full_matrices=False)[2][0]
+        lines.append(line / max(np.abs(line).max(), 1e-300))
+    # along their lengths, which may differ
+    a, b = (shaft.modes.stations / shaft.modes.stations.max() for shaft in shafts)
+    if np.interp(b, a, lines[0]) @ lines[1] < 0:
+        lines[1] = -lines[1]
+    return lines

@@ -1,5 +1,6 @@
 """Cautions that natural frequencies are those at rest, where the speed of a shaft is known: modes
-that spin opens by more than their error bars, or by more than a tolerance where they have none.
+that spin opens by more than their error bars and by a tenth of a per cent; those without bars by
+more than a tolerance.
 """
 
 from __future__ import annotations
@@ -16,6 +17,8 @@ from solidgear.core.solve.spin import spin_openings
 
 #: modes that a sentence names, and the least share of the largest opening for one to be counted
 MOST_NAMED, WORTH_NAMING = 3, 0.1
+#: relative; nobody minds a smaller change of a frequency, however narrow the error bar is
+LEAST_OPENING = 1e-3
 
 
 def spin_caution(
@@ -43,13 +46,13 @@ def opened_words(
     shares: Mapping[str, float], bars: Mapping[str, float | None], tolerance: float, speed_text: str
 ) -> list[str]:
     """Return a sentence on modes by the share of their frequency by which spin opens them, the most
-    first; none where their error bars, or else a tolerance, are wider.
+    first; none where their error bars, or else a tolerance, are wider, or nobody minds it.
     """
     opened = {}
     for name, share in shares.items():
         bar = bars.get(name)
         limit = bar if bar is not None and isfinite(bar) else tolerance
-        if share > limit:
+        if share > max(limit, LEAST_OPENING):
             opened[name] = share
     if not opened:
         return []

@@ -121,6 +121,11 @@ class Side:
         """Letter and name, as in legends."""
         return f"{self.letter}: {self.name}"
 
+    @property
+    def title(self) -> str:
+        """Title of the file; by default the name."""
+        return self.name
+
 
 def all_pairs(
     same_shape: Sequence[ModePair[M]],

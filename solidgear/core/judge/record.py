@@ -20,15 +20,24 @@ from pydantic import (
 )
 from pydantic_core import PydanticUseDefault
 
-from solidgear.core.body.mode_names import ModeName
+from solidgear.core.body.mode_names import ModeName, meant
+from solidgear.core.judge.ties import SCENE, SECTION
+from solidgear.core.ladder.model import BEAM
 from solidgear.core.plain import plain
-from solidgear.core.quantity import Quantity
+from solidgear.core.quantity import COMPLIANCE, Quantity
 
 Number = Annotated[float | None, BeforeValidator(plain)]
 Numbers = Annotated[list[float | None], BeforeValidator(plain)]
 Matrix = Annotated[list[list[float | None]], BeforeValidator(plain)]
 Facts = Annotated[dict[str, Any], BeforeValidator(plain)]
 Quantities = dict[str, Number]
+#: for a model without a name
+NAMELESS = "–"
+
+
+def relative_change(value: float | None, base: float | None) -> float | None:
+    """Return `value` over `base` less one; None where either is missing, or the base is zero."""
+    return None if value is None or not base else value / base - 1
 
 
 class Part(BaseModel):
@@ -211,6 +220,14 @@ class CoupledRecord(Part):
     compliance: Matrix | None = None
     stiffness_error: Number = None
 
+    def block(self, a: str, b: str, kind: str) -> Matrix | None:
+        """Return the 6x6 of two points; None where there is none."""
+        values = matrix_of(self, kind)
+        if values is None or not {a, b} <= set(self.ports):
+            return None
+        i, j = 6 * self.ports.index(a), 6 * self.ports.index(b)
+        return [row[j : j + 6] for row in values[i : i + 6]]
+
 
 class ModelRecord(Part):
     """One model.
@@ -244,6 +261,59 @@ class ModelRecord(Part):
     mesh: Facts = {}
     evidence: EvidenceRecord = EvidenceRecord()
 
+    @property
+    def validity(self) -> str:
+        """``yes``, ``no``, ``open`` (not judged, or too close) or ``unknown``."""
+        if self.valid is True:
+            return "yes"
+        if self.open:
+            return "open"
+        return "no" if self.valid is False else "unknown"
+
+    @property
+    def bars(self) -> Quantities:
+        """Relative error bar of every quantity."""
+        return self.band.each if self.band else {}
+
+    @property
+    def answer_seconds(self) -> float | None:
+        """Seconds for building and solving, without error bars and variants."""
+        spent = [self.seconds.get(stage) for stage in ("build", "statics", "modes")]
+        known = [value for value in spent if value is not None]
+        return sum(known) if len(known) == len(spent) else self.seconds.get("total")
+
+    def value(self, quantity: Quantity) -> float | None:
+        """Return an entry of a matrix, at the main point, a further one or between points."""
+        matrix = None
+        if quantity.pair:
+            if self.coupled is not None:
+                matrix = self.coupled.block(*quantity.pair, quantity.kind)
+        elif quantity.points:
+            point = self.points.get(quantity.points[0])
+            matrix = None if point is None else matrix_of(point, quantity.kind)
+        else:
+            matrix = matrix_of(self, quantity.kind)
+        return None if matrix is None else quantity.of(matrix)
+
+    def first_frequency(self, family: str) -> float | None:
+        """Return the lowest elastic frequency of a family ('bending', 'axial', 'torsion'), Hz."""
+        for mode in self.modes:
+            of_family = family in (mode.family, mode.name.family)
+            if of_family and not mode.name.rigid and mode.frequency_hz is not None:
+                return mode.frequency_hz
+        return None
+
+    def mode(self, name: str) -> ModeRecord | None:
+        """Return the mode that a name such as 'bending 2' means."""
+        modes = sorted(self.modes, key=lambda mode: mode.frequency_hz or 0.0)
+        place = meant(name, [mode.name for mode in modes])
+        return None if place is None else modes[place]
+
+
+def matrix_of(statics: ModelRecord | PointRecord | CoupledRecord, kind: str) -> Matrix | None:
+    """Return a stiffness or a compliance."""
+    return statics.compliance if kind == COMPLIANCE else statics.stiffness
+
 
 class VariantRecord(Part):
     """A model with one attachment at every station."""
@@ -268,6 +338,13 @@ class DeviationRecord(Part):
     band: Number = None
     verdict: str | None = None
     pairing: str = ""
+
+    @property
+    def resolved(self) -> bool:
+        """True unless the deviation lies inside the error bars of both models."""
+        if self.verdict is not None:
+            return self.verdict != "not resolved"
+        return self.band is None or self.relative is None or abs(self.relative) > self.band
 
 
 class CauseRecord(Part):
@@ -438,6 +515,35 @@ class Record(Part):
     left_out: list[str] = []
     files: list[str] | None = None
     shown_in: str = "engineering"
+
+    @property
+    def reference(self) -> str | None:
+        """Key of the model that others are compared with."""
+        return self.verdict.reference or (self.mac.reference if self.mac else None)
+
+    def model(self, key: str | None) -> ModelRecord:
+        """Return the record of a model; an empty one where there is none."""
+        return self.models.get(key or "") or ModelRecord()
+
+    def name(self, key: str | None) -> str:
+        """Return the name of a model in a sentence, its key if it has no title."""
+        return self.model(key).title or key or NAMELESS
+
+    def title(self, key: str) -> str:
+        """Return the name of a model at the beginning of a cell or sentence."""
+        name = self.name(key)
+        return name[:1].upper() + name[1:]
+
+    def headline(self, key: str, quantity: str) -> DeviationRecord | None:
+        """Return the deviation that represents a model: like for like for a beam, as tied for a
+        solid.
+
+        A beam has no seat surface: its fair partner is the solid with section ties. A solid is
+        compared as the scene has it.
+        """
+        rows = [r for r in self.deviations if r.model == key and r.quantity == quantity]
+        tie = SECTION if self.model(key).family == BEAM else SCENE
+        return next((r for r in rows if r.attachment == tie), rows[0] if rows else None)
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain data, as in ``results.json``."""

@@ -88,8 +88,8 @@ def in_real_modes(
     sources = extra if spanned else np.vstack([extra, push])
     # every motion that is looked at, under every source
     pairs = (sources[:, None, :] * np.vstack([observed, extra])[None]).reshape(-1, len(omega))
-    sums = _sums(pairs, omega**2, common.eta, w2).reshape(len(sources), -1, len(w2))
     count, q = len(extra), len(observed)
+    sums = _sums(pairs, omega**2, common.eta, w2).reshape(len(sources), q + count, len(w2))
     extra_sums = sums[:count, :q], sums[:count, q:]
     if spanned:
         moved, stretch = (np.tensordot(weight, part, axes=1) for part in extra_sums)

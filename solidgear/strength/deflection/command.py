@@ -13,9 +13,8 @@ from solidgear.show.options import BY_MODEL, Shown
 from solidgear.show.sheet import Sheet, present
 from solidgear.show.units import units_named
 from solidgear.strength.acting import Acting, AtRestFile
-from solidgear.strength.deflection import shaft, train
-from solidgear.strength.deflection.sheet import scene_sheet, train_sheet
-from solidgear.trains.assembly.assembly import Assembly
+from solidgear.strength.deflection import at_rest
+from solidgear.strength.deflection.sheet import sheet
 
 
 @command
@@ -27,8 +26,8 @@ def deflect(
         list[str] | None,
         typer.Option(
             *BY_MODEL,
-            help="Model of every shaft; repeatable, the finest last. By default rigid (trains "
-            "only), euler, timoshenko and harmonic.",
+            help="Model of every shaft; repeatable, the finest last. By default rigid, "
+            "euler, timoshenko and harmonic.",
         ),
     ] = None,
     out: Annotated[
@@ -37,19 +36,16 @@ def deflect(
     ] = None,
     run: Shown,
 ) -> None:
-    loaded, units = acting.read(file), units_named(run.units)
+    (assembly, point), units = acting.read(file), units_named(run.units)
+    every_point = (
+        acting.torque is None and acting.point is None and len(assembly.train.operation) > 1
+    )
 
     def study(progress: Progress) -> Sheet:
-        if isinstance(loaded, tuple):
-            loaded_train, point = loaded
-            every_point = (
-                acting.torque is None and acting.point is None and len(loaded_train.operation) > 1
-            )
-            deflected = train.deflect_train(
-                Assembly(loaded_train), point, models or train.MODELS, progress, every_point
-            )
-            return train_sheet(deflected, units)
         with explained(file):
-            return scene_sheet(shaft.deflect_scene(loaded, models or shaft.MODELS, progress), units)
+            deflected = at_rest.deflect(
+                assembly, point, models or at_rest.MODELS, progress, every_point
+            )
+        return sheet(deflected, units)
 
     present(study, run, out)

@@ -1,8 +1,8 @@
-"""A shaft at rest under load: the deflection line, and the load and stiffness of its bearings."""
+"""One shaft at rest: the deflection line, and the load and stiffness of its bearings."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,27 +11,33 @@ from solidgear.bearings.catalogue import catalogue_of
 from solidgear.bearings.catalogued import Catalogued
 from solidgear.bearings.life import Life, life
 from solidgear.bearings.row import Contacts
-from solidgear.bearings.solved import AS_STATED, Choice, catalogued_bearings
-from solidgear.core import LADDER, Bearing, Body, Scene, SolidgearError, System, build, rubin
+from solidgear.core import Bearing, Body, Scene, System
 from solidgear.core.frames import shift
 from solidgear.core.solve.naming import Projection
-from solidgear.trains.system.equilibrium import OnBearings, SystemEquilibrium, seats_of
+from solidgear.trains.system.equilibrium import SystemEquilibrium
 
 #: stations of a deflection line
 STATIONS = 81
-#: models of a shaft, the cheapest first
-MODELS = ("euler", "timoshenko", LADDER.judges[0])
-#: name of the shaft in a system of one
-SHAFT = "shaft"
-#: modes kept of a body for statics
-FEW = 6
-#: why numbers have no error bar
-WITHOUT_BAR = "each model is solved on one mesh; solidgear stiffness shows error bars"
 
 
 @dataclass(frozen=True, eq=False)
 class BearingState:
     """A bearing under load; without catalogue data it has no clearance, rows or life."""
+
+    plain_names = (
+        "name",
+        "place",
+        "load",
+        ("radial_load", "radial"),
+        ("load_azimuth", "azimuth"),
+        "moment",
+        ("relative_motion", "relative"),
+        "stiffness",
+        "clearance",
+        "reference_life",
+        "static_safety",
+        ("rows", "elements"),
+    )
 
     name: str
     place: float  #: along the shaft, m
@@ -70,35 +76,28 @@ class BearingState:
             return None
         return float(max(max(np.nanmax(row.inner), np.nanmax(row.outer)) for row in loaded))
 
-    def as_dict(self) -> dict:
-        """Return plain data in SI that JSON can hold."""
-        return {
-            "name": self.name,
-            "place": self.place,
-            "load": self.load.tolist(),
-            "radial_load": self.radial,
-            "load_azimuth": self.azimuth,
-            "moment": self.moment,
-            "relative_motion": self.relative.tolist(),
-            "stiffness": self.stiffness.tolist(),
-            "clearance": self.clearance,
-            "reference_life": None if self.life is None else _finite(self.life.reference),
-            "static_safety": None if self.life is None else _finite(self.life.static_safety),
-            "rows": [
-                {
-                    "azimuth": row.azimuth.tolist(),
-                    "element_load": row.load.tolist(),
-                    "inner_pressure": np.nan_to_num(row.inner).tolist(),
-                    "outer_pressure": np.nan_to_num(row.outer).tolist(),
-                }
-                for row in self.rows
-            ],
-        }
+    @property
+    def reference_life(self) -> float | None:
+        """Basic reference life in revolutions; None without catalogue data."""
+        return None if self.life is None else self.life.reference
 
+    @property
+    def static_safety(self) -> float | None:
+        """Static safety; None without catalogue data."""
+        return None if self.life is None else self.life.static_safety
 
-def _finite(value: float) -> float | None:
-    """Return a number, or None where it is infinite, which JSON cannot hold."""
-    return value if np.isfinite(value) else None
+    @property
+    def elements(self) -> list[dict[str, np.ndarray]]:
+        """Loads and pressures of rolling elements, row by row, in SI."""
+        return [
+            {
+                "azimuth": row.azimuth,
+                "element_load": row.load,
+                "inner_pressure": np.nan_to_num(row.inner),
+                "outer_pressure": np.nan_to_num(row.outer),
+            }
+            for row in self.rows
+        ]
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,92 +119,6 @@ class ShaftDeflection:
             f"bearing {self.name}.{name}: {note}"
             for name, bearing_life in lives
             for note in bearing_life.notes
-        )
-
-    def as_dict(self) -> dict:
-        """Return plain data in SI that JSON can hold."""
-        return {
-            "name": self.name,
-            "model": self.model,
-            "stations": self.stations.tolist(),
-            "line": self.line.tolist(),
-            "ports": {name: motion.tolist() for name, motion in self.ports.items()},
-            "bearings": [bearing.as_dict() for bearing in self.bearings],
-        }
-
-
-@dataclass(frozen=True, eq=False)
-class SceneDeflection:
-    """A shaft at rest under the load of the scene, by several models."""
-
-    title: str
-    port: str  #: the lumped point
-    load: np.ndarray  #: (6,) at the lumped point, N and N m
-    shafts: tuple[ShaftDeflection, ...]  #: one a model, the finest last
-
-    def as_dict(self) -> dict:
-        """Return plain data in SI that JSON can hold."""
-        return {
-            "scene": self.title,
-            "load": self.load.tolist(),
-            "models": {shaft.model: shaft.as_dict() for shaft in self.shafts},
-            "why_without_bar": WITHOUT_BAR,
-        }
-
-
-def deflect_scene(
-    scene: Scene,
-    models: Sequence[str] = MODELS,
-    progress: Callable[[str], None] = lambda text: None,
-) -> SceneDeflection:
-    """Compute the deflection of a shaft under the [load] of the scene, by several models, the finest
-    last; bearings of catalogue data need no stiffness yet.
-
-    Examples
-    --------
-    >>> import solidgear as sg
-    >>> deflection = deflect_scene(sg.load("geometry/gearbox_catalogue.toml"), ["timoshenko"])
-    >>> round(sum(float(b.load[2]) for b in deflection.shafts[0].bearings), 6)
-    1400.0
-    """
-    load, shafts = load_of(scene), []
-    for model in models:
-        progress(model)
-        shafts.append(ShaftAtRest(scene, model).settled())
-    return SceneDeflection(scene.title or scene.name, scene.port.name, load, tuple(shafts))
-
-
-def load_of(scene: Scene) -> np.ndarray:
-    """Return the load (6,) at the lumped point of a scene, N and N m; refuse a scene without load."""
-    if scene.load is None:
-        raise SolidgearError(
-            'there is no load; write [load] with forces at the port, such as z = "2 kN", or give '
-            "--load"
-        )
-    return np.array(scene.load.six)
-
-
-class ShaftAtRest:
-    """A shaft by one model, to be settled under the load of the scene."""
-
-    def __init__(self, scene: Scene, model: str):
-        self.scene, self.model = scene, model
-        self.body = build(scene, model)
-        self.system = System({SHAFT: rubin(self.body, n=FEW)})
-        self.load = self.system.load({f"{SHAFT}.{scene.port.name}": load_of(scene)})
-
-    def settled(self, choice: Choice = AS_STATED) -> ShaftDeflection:
-        """Compute the deflection with the bearings at a choice in the ranges of their data; refuse
-        a shaft that nothing holds.
-        """
-        bearings = {
-            f"{SHAFT}.{name}": rows
-            for name, rows in catalogued_bearings(self.scene, choice).items()
-        }
-        supported = OnBearings(self.system, (seats_of(SHAFT, self.scene, bearings),))
-        state = supported.equilibrium(self.load)
-        return shaft_deflection(
-            SHAFT, self.model, self.scene, self.system, state, self.body, bearings
         )
 
 

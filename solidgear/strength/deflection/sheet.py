@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
 from math import degrees, isfinite
 
 import numpy as np
 
-from solidgear.bearings.life import Life
 from solidgear.core import DOF_NAMES, listed
 from solidgear.show.command import caution
 from solidgear.show.panel import GREY, Axis, Panel, Series, curve, lines_legend, readout
@@ -16,97 +15,83 @@ from solidgear.show.plot import NARROW, WIDE, Chart, Make, in_columns
 from solidgear.show.sheet import Sheet, Terminal
 from solidgear.show.table import Cell, Column, Table, numbers, quantity, text, word
 from solidgear.show.units import ENGINEERING, Units
-from solidgear.strength.deflection.shaft import (
+from solidgear.strength.deflection.at_rest import (
+    MOVED,
     WITHOUT_BAR,
-    BearingState,
-    SceneDeflection,
-    ShaftDeflection,
+    Deflection,
+    Deflections,
+    Measured,
 )
-from solidgear.strength.deflection.train import MOVED, Deflections, Measured, TrainDeflection
+from solidgear.strength.deflection.shaft import BearingState, ShaftDeflection
 from solidgear.trains.assembly.components import FORCE_UNITS
 from solidgear.trains.assembly.layout import senses_sentence
-from solidgear.trains.assembly.turn import PlanetTurn, StageTurn
+from solidgear.trains.assembly.turn import StageTurn
 from solidgear.trains.page.chart import COLOURS
 
 #: per cent; no smaller error bar is shown
 LEAST = 0.01
 #: of the largest of a motion's translations or rotations; less is rounding
-ROUNDING = 1e-9
+ROUNDING = 1e-8
+#: what the charts say
+LINES_SHOWN = (
+    "Deflection lines of every shaft in both planes, by every model; dashed lines are bearings."
+)
+TURN_SHOWN = (
+    "Mesh force of every planet over a turn of its carrier from the file's position on; bearings "
+    "have their stiffness at rest."
+)
+OF_BARS = f"Error bar: of the mesh, by local problems; none below {LEAST:g} % is shown."
 
 
-def scene_sheet(deflected: SceneDeflection, units: Units) -> Sheet:
-    """Return the sheet of a shaft under the load of its scene."""
-    judge = deflected.shafts[-1]
-    load = load_in_words(deflected.load, deflected.port, units)
-    lead = f"Under {load}; numbers by {judge.model}."
-    title = f"{deflected.title}: deflection"
-    by_model = {shaft.model: [shaft] for shaft in deflected.shafts}
-    note = f"No error bars: {WITHOUT_BAR}."
-    return Sheet(
-        name="deflection",
-        title=title,
-        lead=lead,
-        tables=[
-            models(deflected.shafts, deflected.port, note, units),
-            *bearings([judge], units),
-            displacements([judge], units),
-        ],
-        data=deflected.as_dict(),
-        charts={"deflection": partial(deflection_chart, by_model, title, units)},
-        lines={f"deflection_{judge.name}": line(judge)},
-        cautions=judge.notes,
-        terminal=Terminal(heading=[deflected.title, lead]),
-    )
-
-
-def load_in_words(load: Sequence[float] | np.ndarray, port: str, units: Units) -> str:
-    """Return a load (6,) at a port in words, such as ``z 2000 N at pinion``."""
-    parts = [
-        f"{name} {units.text(float(value), si, 4)}"
-        for name, value, si in zip(DOF_NAMES, load, FORCE_UNITS)
-        if value
-    ]
-    return f"{', '.join(parts) or 'no force'} at {port}"
-
-
-def train_sheet(deflected: Deflections, units: Units) -> Sheet:
-    """Return the sheet of a train at an operating point."""
+def sheet(deflected: Deflections, units: Units) -> Sheet:
+    """Return the sheet of a train at an operating point, or of a shaft under its load."""
     judge = deflected.judge
-    point = judge.point
-    force = mesh_forces_in_words(deflected, units)
-    sense = senses_sentence(deflected.senses)
     skew = misalignment(deflected, units)
     turning = over_a_turn(judge.turns, units)
     by_point = over_points(deflected.points, units)
     housed = housing(judge, units)
-    carried = [*bearings(judge.shafts, units), displacements(judge.shafts, units)]
-    flank = "coast" if point.coast else "drive"
-    terminal = Terminal(
-        heading=[
-            f"{deflected.title} at {point.label}",
-            f"Mesh force {force} along the line of action, {flank} flank.",
-            f"{sense[0].upper()}{sense[1:]}.",
-        ],
-        tables=[skew, *carried, *housed, *turning, *by_point],
-        closing=[*judge.notes, *map(caution, deflected.cautions)],
-    )
+    carried = [
+        *motions(deflected, units),
+        *bearings(judge.shafts, units),
+        displacements(judge, units),
+    ]
     title = f"{deflected.title}: deflection"
     by_model = {model.model: model.shafts for model in deflected.solutions}
     charts: dict[str, Make] = {"deflection": partial(deflection_chart, by_model, title, units)}
     charts |= {f"turn_{turn.stage}": partial(turn_chart, turn, units) for turn in judge.turns}
+    words = {"deflection": LINES_SHOWN} | {f"turn_{turn.stage}": TURN_SHOWN for turn in judge.turns}
     lines = {f"deflection_{shaft.name}": line(shaft) for shaft in judge.shafts}
     lines |= {f"turn_{turn.stage}": turn_lines(turn) for turn in judge.turns}
+    if deflected.load is not None:
+        lead = f"{deflected.load.words(units)}; numbers by {judge.model}."
+        heading, cautions = [deflected.title, lead], []
+    else:
+        force, point = mesh_forces_in_words(deflected, units), judge.point
+        lead = f"At {point.label}: {force} along the line of action."
+        sense = senses_sentence(deflected.senses)
+        heading = [
+            f"{deflected.title} at {point.label}",
+            f"Mesh force {force} along the line of action, {'coast' if point.coast else 'drive'} "
+            "flank.",
+            f"{sense[0].upper()}{sense[1:]}.",
+        ]
+        cautions = [sense]
     return Sheet(
         name="deflection",
         title=title,
-        lead=f"At {point.label}: {force} along the line of action.",
+        lead=lead,
         tables=[skew, *turning, *by_point, *housed, *carried],
         data=deflected.as_dict(),
         charts=charts,
         lines=lines,
         headline=deflected.verdict(),
-        cautions=[sense, *judge.notes, *deflected.cautions],
-        terminal=terminal,
+        cautions=[*cautions, *judge.notes, *deflected.cautions],
+        terminal=Terminal(
+            heading=heading,
+            tables=[skew, *carried, *housed, *turning, *by_point],
+            closing=[*judge.notes, *map(caution, deflected.cautions)],
+        ),
+        words=words,
     )
 
 
@@ -121,19 +106,33 @@ def mesh_forces_in_words(deflected: Deflections, units: Units) -> str:
 
 def misalignment(deflected: Deflections, units: Units = ENGINEERING) -> Table:
     """Return misalignment by every model, with error bar and range by bearing data."""
-    judge = deflected.judge
-    columns = [word("of the axes", lambda m: f"{m.name}, {units.unit(m.unit)}")]
-    columns += [Column(model.model, partial(_of, model, units)) for model in deflected.solutions]
-    columns.append(Column("error bar", _bar))
-    if any(m.open is not None for m in judge.misalignment):
-        columns.append(Column("range", lambda m: _range(m, units)))
+    measures = deflected.judge.misalignment
+    columns = [word("of the axes"), *(Column(s.model) for s in deflected.solutions)]
+    columns.append(Column("error bar"))
+    rows: list[list[str | None]] = []
+    for k, m in enumerate(measures):
+        values = [s.misalignment[k].value for s in deflected.solutions]
+        share = percent_of(m.bar, m.value)
+        shown = [units.number(value, m.unit, 3) for value in values]
+        rows.append([f"{m.name}, {units.unit(m.unit)}", *shown, share])
     note = (
-        f"{meanings(judge.misalignment, units)}. Error bar: of the last model's mesh, "
+        f"{meanings(measures, units)}. Error bar: of the last model's mesh, "
         "by local problems; models differ by what their theory leaves out."
     )
-    if any(m.open is not None for m in judge.misalignment):
+    if any(m.open is not None for m in measures):
+        columns.append(Column("range"))
+        for row, m in zip(rows, measures):
+            ends = [units.number(end, m.unit, 3) for end in m.open or ()]
+            row.append(" to ".join(ends) or None)
         note += " Range: by estimated insides and classes of clearance of the bearings."
-    return Table("Misalignment", columns, judge.misalignment, note)
+    return Table("Misalignment", columns, rows, note)
+
+
+def percent_of(bar: float | None, value: float) -> str | None:
+    """Return an error bar in per cent of a value; None without either."""
+    if bar is None or not value:
+        return None
+    return f"± {max(100 * bar / abs(value), LEAST):.2g} %"
 
 
 def meanings(measures: Sequence[Measured], units: Units) -> str:
@@ -154,10 +153,8 @@ def meanings(measures: Sequence[Measured], units: Units) -> str:
 
 def over_a_turn(turns: Sequence[StageTurn], units: Units = ENGINEERING) -> list[Table]:
     """Return the mesh forces of planets over a turn of their carrier, a table for each stage."""
-
-    def force(title: str, of: Callable[[PlanetTurn], float]) -> Column:
-        return quantity(title, "N", units, of, 4)
-
+    heads = ("here", "mean", "least", "largest", "once a turn")
+    columns = [Column("planet"), *(quantity(head, "N", units, digits=4) for head in heads)]
     note = (
         "Force of each planet with the sun, and with the ring alike, since it spins freely; "
         "bearings have their stiffness at this position. Here: at the file's position; once a "
@@ -166,15 +163,8 @@ def over_a_turn(turns: Sequence[StageTurn], units: Units = ENGINEERING) -> list[
     return [
         Table(
             f"Mesh forces over a turn of the carrier ({turn.stage})",
-            [
-                Column("planet", lambda planet: planet.planet),
-                force("here", lambda planet: planet.at),
-                force("mean", lambda planet: planet.mean),
-                force("least", lambda planet: planet.least),
-                force("largest", lambda planet: planet.most),
-                force("once a turn", lambda planet: planet.once),
-            ],
-            turn.planets,
+            columns,
+            [[p.planet, p.at, p.mean, p.least, p.most, p.once] for p in turn.planets],
             note,
         )
         for turn in turns
@@ -189,89 +179,53 @@ def turn_lines(turn: StageTurn) -> Table:
     return numbers({"carrier [rad]": turn.angle, **forces})
 
 
-def over_points(points: Sequence[TrainDeflection], units: Units = ENGINEERING) -> list[Table]:
+def over_points(points: Sequence[Deflection], units: Units = ENGINEERING) -> list[Table]:
     """Return misalignment and radial bearing loads over several operating points; none for one
     point.
     """
     if not points:
         return []
     first = points[0]
-    label = text("at", lambda deflected: deflected.point.label)
-    forces = [
-        quantity("mesh force" + name.removeprefix("mesh"), "N", units, partial(_force, name), 4)
-        for name in first.mesh_forces
-    ]
-    lie = [
-        quantity(m.name, m.unit, units, partial(_lies, k), 3)
-        for k, m in enumerate(first.misalignment)
-    ]
-    widest = [_widest(points, k) for k in range(len(first.misalignment))]
-    bars = [f"{m.name} {bar}" for m, bar in zip(first.misalignment, widest) if bar]
+    lie = [text("at")]
+    for name in first.mesh_forces:
+        lie.append(quantity("mesh force" + name.removeprefix("mesh"), "N", units, digits=4))
+    bars = []
+    for k, m in enumerate(first.misalignment):
+        lie.append(quantity(m.name, m.unit, units, digits=3))
+        at_points = [point.misalignment[k] for point in points]
+        widest = max((m.bar for m in at_points if m.bar is not None), default=None)
+        if share := percent_of(widest, max(abs(m.value) for m in at_points)):
+            bars.append(f"{m.name} {share}")
     note = f"By {first.model}; error bars {', '.join(bars)} at most." if bars else ""
-    ends = [
-        (s, f"{shaft.name}.{b.name}")
-        for s, shaft in enumerate(first.shafts)
-        for b in shaft.bearings
+    ends = [f"{shaft.name}.{b.name}" for shaft in first.shafts for b in shaft.bearings]
+    carried = [text("at"), *(quantity(end, "N", units, digits=4) for end in ends)]
+    lie_rows = [
+        [p.point.label, *p.mesh_forces.values(), *(m.value for m in p.misalignment)] for p in points
     ]
-    carried = [quantity(end, "N", units, partial(_radial, s, end), 4) for s, end in ends]
+    carried_rows = [
+        [p.point.label, *(b.radial for shaft in p.shafts for b in shaft.bearings)] for p in points
+    ]
     return [
-        Table("Misalignment over the operating points", [label, *forces, *lie], points, note),
-        Table("Radial bearing loads over the operating points", [label, *carried], points),
+        Table("Misalignment over the operating points", lie, lie_rows, note),
+        Table("Radial bearing loads over the operating points", carried, carried_rows),
     ]
 
 
-def _force(name: str, deflected: TrainDeflection) -> float:
-    return deflected.mesh_forces[name]
-
-
-def _lies(k: int, deflected: TrainDeflection) -> float:
-    return deflected.misalignment[k].value
-
-
-def _radial(side: int, end: str, deflected: TrainDeflection) -> float:
-    shaft = deflected.shafts[side]
-    return next(b.radial for b in shaft.bearings if f"{shaft.name}.{b.name}" == end)
-
-
-def _widest(points: Sequence[TrainDeflection], k: int) -> str | None:
-    """Return the widest error bar of a number over all points, in per cent of its largest value."""
-    measures = [deflected.misalignment[k] for deflected in points]
-    largest = max(abs(m.value) for m in measures)
-    bars = [m.bar for m in measures if m.bar is not None]
-    return f"± {max(100 * max(bars) / largest, LEAST):.2g} %" if bars and largest else None
-
-
-def _of(deflected: TrainDeflection, units: Units, measured: Measured) -> str:
-    value = next(m.value for m in deflected.misalignment if m.name == measured.name)
-    return units.number(value, measured.unit, 3)
-
-
-def _bar(measured: Measured) -> str | None:
-    if measured.bar is None or not measured.value:
-        return None
-    share = 100 * measured.bar / abs(measured.value)
-    return f"± {max(share, LEAST):.2g} %"
-
-
-def _range(measured: Measured, units: Units) -> str | None:
-    if measured.open is None:
-        return None
-    low, high = (units.number(v, measured.unit, 3) for v in measured.open)
-    return f"{low} to {high}"
-
-
-def displacements(shafts: Sequence[ShaftDeflection], units: Units = ENGINEERING) -> Table:
-    """Return the motion of every lumped point and bearing."""
-    rows = [
-        [f"{shaft.name}.{name}", *_rounded(six)]
-        for shaft in shafts
-        for name, six in shaft.ports.items()
-    ]
+def displacements(deflected: Deflection, units: Units = ENGINEERING) -> Table:
+    """Return the motion of every lumped point and bearing, of a shaft alone with error bars."""
     note = "Relative to the unloaded state, in the axes of each shaft's scene, y along it."
+    rows: list[Sequence[object]] = []
+    for shaft in deflected.shafts:
+        for name, six in shaft.ports.items():
+            rows.append([f"{shaft.name}.{name}", *_rounded(six)])
+            if deflected.load is not None:
+                rows += _bars(deflected, name, units)
+    if deflected.load is not None and deflected.barred:
+        note += f" {OF_BARS}"
     return Table("Displacements", [word("place"), *_six(MOVED, units)], rows, note)
 
 
-def housing(deflected: TrainDeflection, units: Units = ENGINEERING) -> list[Table]:
+def housing(deflected: Deflection, units: Units = ENGINEERING) -> list[Table]:
     """Return loads on the mounts of a housing and its motion; none without one."""
     if not deflected.mounts:
         return []
@@ -287,12 +241,42 @@ def housing(deflected: TrainDeflection, units: Units = ENGINEERING) -> list[Tabl
     ]
 
 
-def models(
-    shafts: Sequence[ShaftDeflection], port: str, note: str, units: Units = ENGINEERING
-) -> Table:
-    """Return the motion of one place by every model."""
-    rows = [[shaft.model, *_rounded(shaft.ports[port])] for shaft in shafts]
-    return Table(f"Motion of {port}", [word("model"), *_six(MOVED, units)], rows, note)
+def motions(deflected: Deflections, units: Units = ENGINEERING) -> list[Table]:
+    """Return the motion of the lumped point of a shaft alone by every model, with error bars and
+    ranges by bearing data; none of a train.
+    """
+    if deflected.load is None:
+        return []
+    rows: list[Sequence[object]] = []
+    port = deflected.load.port
+    for solution in deflected.solutions:
+        rows.append([solution.model, *_rounded([m.value for m in solution.compared])])
+        rows += _bars(solution, port, units)
+    note = f"No error bars: {WITHOUT_BAR}."
+    if any(solution.barred for solution in deflected.solutions):
+        note = f"{OF_BARS} Models differ by what their theory leaves out."
+    ranges = [m.open for m in deflected.judge.compared if m.open is not None]
+    if ranges:
+        least, largest = zip(*ranges)
+        rows += [["least", *_rounded(least)], ["largest", *_rounded(largest)]]
+        note += " Least and largest: by estimated insides and classes of clearance of the bearings."
+    return [Table(f"Motion of {port}", [word("model"), *_six(MOVED, units)], rows, note)]
+
+
+def _bars(deflected: Deflection, place: str, units: Units) -> list[list[str | None]]:
+    """Return a row of the error bars of a place, none less than a share of the largest translation
+    or rotation; no row where it has none.
+    """
+    if not deflected.barred:
+        return []
+    six = deflected.displacement[place]
+    largest = np.abs([m.value for m in six]).reshape(2, 3).max(axis=1)
+    least = np.repeat(LEAST / 100 * largest, 3)
+    bars = [
+        None if m.bar is None else units.number(max(m.bar, size), m.unit, 2)
+        for m, size in zip(six, least)
+    ]
+    return [["error bar", *bars]]
 
 
 def _six(si_units: Sequence[str], units: Units) -> list[Column]:
@@ -313,60 +297,58 @@ def _rounded(
 
 def bearings(shafts: Sequence[ShaftDeflection], units: Units = ENGINEERING) -> list[Table]:
     """Return loads of every bearing, and the elements that carry them in catalogue bearings."""
-    rows = [(f"{s.name}.{b.name}", b) for s in shafts for b in s.bearings]
-    inside = [row for row in rows if row[1].rows]
-    name = word("bearing", lambda row: row[0])
+    by_name = [(f"{shaft.name}.{b.name}", b) for shaft in shafts for b in shaft.bearings]
+    inside = [(name, bearing) for name, bearing in by_name if bearing.rows]
     loads = [
-        name,
-        quantity("radial", "N", units, lambda row: row[1].radial, 4),
-        Column("at, deg", lambda row: f"{degrees(row[1].azimuth):.0f}"),
-        quantity("axial", "N", units, lambda row: float(row[1].load[1]), 4),
-        quantity("moment", "N m", units, lambda row: row[1].moment, 4),
+        word("bearing"),
+        quantity("radial", "N", units, digits=4),
+        Column("at, deg", write=lambda azimuth: f"{azimuth:.0f}"),
+        quantity("axial", "N", units, digits=4),
+        quantity("moment", "N m", units, digits=4),
     ]
     note = "Load of the shaft on the bearing; it acts at an angle from x towards z."
-    if inside:
-        loads += [
-            Column("C0/P0", lambda row: _life(row[1], lambda life: life.static_safety)),
-            Column("L10r, 1e6", lambda row: _life(row[1], lambda life: life.reference / 1e6)),
-        ]
-        note += (
-            " C0/P0: static safety (ISO 76); L10r: basic reference life (ISO/TS 16281) in 1e6 "
-            "revolutions; solidgear bearing shows their ranges and duty tables."
-        )
-    out = [Table("Bearing loads", loads, rows, note)]
-    if inside:
-        carried = [
-            name,
-            word("loaded", lambda row: _elements(row[1])),
-            quantity("largest", "N", units, lambda row: _largest(row[1]), 4),
-            quantity("pressure", "Pa", units, lambda row: row[1].pressure, 4),
-            quantity("clearance", "m moved", units, lambda row: row[1].clearance, 3),
-        ]
-        note = (
-            "Number of loaded elements of all, row by row; largest load of an element; largest "
-            "pressure at both rings, by Hertz or in slices; radial clearance once mounted and "
-            "warm."
-        )
-        out.append(Table("Inside the bearings", carried, inside, note))
-    return out
+    rows: list[list] = [
+        [name, b.radial, degrees(b.azimuth), float(b.load[1]), b.moment] for name, b in by_name
+    ]
+    if not inside:
+        return [Table("Bearing loads", loads, rows, note)]
+    loads += [Column("C0/P0"), Column("L10r, 1e6")]
+    for row, (_, bearing) in zip(rows, by_name):
+        row += [_rated(bearing.static_safety, 1.0), _rated(bearing.reference_life, 1e6)]
+    note += (
+        " C0/P0: static safety (ISO 76); L10r: basic reference life (ISO/TS 16281) in 1e6 "
+        "revolutions; solidgear bearing shows their ranges and duty tables."
+    )
+    elements = [
+        word("bearing"),
+        word("loaded"),
+        quantity("largest", "N", units, digits=4),
+        quantity("pressure", "Pa", units, digits=4),
+        quantity("clearance", "m moved", units, digits=3),
+    ]
+    element_note = (
+        "Number of loaded elements of all, row by row; largest load of an element; largest "
+        "pressure at both rings, by Hertz or in slices; radial clearance once mounted and warm."
+    )
+    carried = [
+        [name, _loaded(b), max(float(row.load.max()) for row in b.rows), b.pressure, b.clearance]
+        for name, b in inside
+    ]
+    return [
+        Table("Bearing loads", loads, rows, note),
+        Table("Inside the bearings", elements, carried, element_note),
+    ]
 
 
-def _life(bearing: BearingState, number: Callable[[Life], float]) -> str | None:
-    if bearing.life is None:
+def _rated(value: float | None, unit: float) -> str | None:
+    if value is None:
         return None
-    value = number(bearing.life)
-    return f"{value:.3g}" if isfinite(value) else "endless"
+    return f"{value / unit:.3g}" if isfinite(value) else "endless"
 
 
-def _elements(bearing: BearingState) -> str | Cell | None:
-    if not bearing.rows:
-        return None
+def _loaded(bearing: BearingState) -> str | Cell:
     counts = ", ".join(f"{n}/{len(row.load)}" for n, row in zip(bearing.loaded, bearing.rows))
     return counts if any(bearing.loaded) else Cell("none", "bad")
-
-
-def _largest(bearing: BearingState) -> float | None:
-    return max((float(row.load.max()) for row in bearing.rows), default=None)
 
 
 def line(shaft: ShaftDeflection) -> Table:

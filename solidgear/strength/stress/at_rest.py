@@ -1,33 +1,32 @@
-"""Stress of the shafts of a scene or of a train at rest, under the loads of their equilibrium.
+"""Stress of the shafts of a train at rest, or of a shaft alone, under the loads of their equilibrium.
 
 A shaft of a train is free but for the loads on its ports: teeth, springs, bearings, the weight of a
-wheel on it. A shaft of a scene has a load at the port and the reactions of the bearings. Both
-settle as plain bodies of revolution: cuts change reactions by next to nothing. Models that are made
+wheel on it. A shaft alone has a load at the port and the reactions of the bearings. Both settle as plain bodies of revolution: cuts change reactions by next to nothing. Models that are made
 for cuts settle with them.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from solidgear.bearings.bearing_life import left_open
 from solidgear.bearings.solved import AS_STATED, Choice
-from solidgear.core import LADDER, Scene, SolidgearError
+from solidgear.core import LADDER, Scene
 from solidgear.core.plain import plain
 from solidgear.core.scene.filleted import filleted
 from solidgear.parts.body_file import BodyFile
-from solidgear.strength.deflection.shaft import ShaftAtRest, load_of
+from solidgear.strength.load import AT_REST, LoadAtPort, load_alone
 from solidgear.strength.stress.notch import ENOUGH
 from solidgear.strength.stress.rating import Conditions
 from solidgear.strength.stress.section_forces import COMPONENTS, SectionForces, forces_of
 from solidgear.strength.stress.shaft import ShaftStress, check_tolerance, local_stress, shaft_stress
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.file.operation import OperatingPoint
-from solidgear.trains.file.train import Train
+from solidgear.trains.file.train import ALONE, Train
 from solidgear.trains.load.operation import Operating, OperatingState
 
 #: default model on which shafts and bearings settle
@@ -52,7 +51,7 @@ class ShaftLoads:
 
 @dataclass(frozen=True)
 class StressedShaft:
-    """Stress of one shaft of a scene or a train."""
+    """Stress of one shaft, alone or of a train."""
 
     name: str
     scene: Scene = field(repr=False)
@@ -81,15 +80,6 @@ class StressSettings:
         check_tolerance(self.tolerance)
 
 
-@dataclass(frozen=True, eq=False)
-class LoadAtPort:
-    """Load of a scene at its port, and torques that the port takes out."""
-
-    port: str
-    load: np.ndarray  #: (6,) N and N m
-    drive: Mapping[str, float]  #: N m, by the place where each enters
-
-
 @dataclass(frozen=True)
 class AtPoint:
     """Operating point of a train, and the mesh force there."""
@@ -100,7 +90,7 @@ class AtPoint:
 
 @dataclass(frozen=True)
 class StressAtRest:
-    """Stress of a shaft under a load, or of both shafts of a train at an operating point."""
+    """Stress of a shaft under its load, or of all shafts of a train at an operating point."""
 
     title: str
     model: str  #: on which shafts and bearings settled
@@ -127,42 +117,49 @@ class StressAtRest:
         return data
 
 
-def stress_of_scene(
-    scene: Scene,
+def stress_at_rest(
+    assembly: Assembly,
+    point: OperatingPoint = AT_REST,
     model: str = MODEL,
-    drive: Mapping[str, float] | None = None,
     asked: StressSettings = StressSettings(),
     progress: Progress = lambda text: None,
+    drive: Mapping[str, float] | None = None,
 ) -> StressAtRest:
-    """Return the stress of a shaft under the [load] of the scene.
+    """Compute the stress of all shafts of a train at an operating point, or of a shaft under the
+    [load] of its scene; shafts and bearings settle on a model, no lumped one, which has no places.
 
-    Torques about the axis, N m, enter at bearings, masses or further points (`drive`); the gear at
-    the port takes them out. Shaft and bearings settle on a model; those of catalogue data need no
-    stiffness yet.
+    Torques about the axis of a shaft alone, N m, enter at bearings, masses or further points
+    (`drive`); the gear at the port takes them out. Bearings of catalogue data need no stiffness yet.
     """
-    file, scene = scene.body, filleted(scene)
-    load, port, drive = load_of(scene), scene.port.name, drive or {}
-    if port in drive:
-        raise SolidgearError(
-            f'the torque at "{port}" enters where the gear takes it out; name the bearing, mass '
-            "or point of the coupling or spline"
-        )
+    load = load_alone(assembly.train, drive)
     progress(model)
-    at_rest = ShaftAtRest(_settling(scene, model), model)
+    train = _with_scenes(assembly.train, filleted)
+    settling = replace(assembly, train=_settling_train(train, model))
+    usual = Operating(settling, model).at(point)
 
     def acting(choice: Choice) -> dict[str, ShaftLoads]:
-        shaft_loads = ShaftLoads({port: load})
-        for bearing in at_rest.settled(choice).bearings:
-            shaft_loads.add(bearing.name, -bearing.load)
-        for name, torque in drive.items():
-            shaft_loads.add(name, np.array([0, 0, 0, 0, torque, 0.0]))
-            shaft_loads.add(port, np.array([0, 0, 0, 0, -torque, 0.0]))
-        return {scene.name: shaft_loads}
+        as_stated = choice == AS_STATED
+        state = usual if as_stated else Operating(settling, model, choice=choice).at(point)
+        loads = _on_shafts(settling, state)
+        if load is not None:
+            for name, torque in load.drive.items():
+                loads[ALONE].add(name, torque * np.eye(6)[4])
+                loads[ALONE].add(load.port, -torque * np.eye(6)[4])
+        return loads
 
-    under = LoadAtPort(port, load, drive)
-    shafts, open_by = _shafts({scene.name: scene}, acting, asked, progress)
-    cautions = (*_file_cautions(file, scene), *_load_cautions(scene, drive))
-    return StressAtRest(scene.title or scene.name, model, under, asked, shafts, open_by, cautions)
+    shafts, open_by = _shafts(train, acting, asked, progress)
+    files = {side: shaft.scene.body for side, shaft in assembly.train.shafts.items()}
+    left_out = [text for k in files for text in _file_cautions(files[k], train.shafts[k].scene)]
+    torque = _torque_cautions(train) if load is None else _load_cautions(train, load)
+    return StressAtRest(
+        title=train.title or train.name,
+        model=model,
+        under=load or AtPoint(point, usual.mesh_force),
+        asked=asked,
+        shafts=shafts,
+        open_by=open_by,
+        cautions=(*left_out, *usual.notes, *settling.data_cautions, *torque),
+    )
 
 
 def _file_cautions(file: BodyFile | None, scene: Scene) -> Iterator[str]:
@@ -184,48 +181,13 @@ def _file_cautions(file: BodyFile | None, scene: Scene) -> Iterator[str]:
         )
 
 
-def _load_cautions(scene: Scene, drive: Mapping[str, float]) -> Iterator[str]:
-    """Yield sentences on loads that do not act on a shaft, and perhaps should."""
-    if not drive:
-        yield ("no torque runs along the shaft; --drive says where one enters")
-    for point in scene.further_ports:
-        if point.name not in drive:
-            yield f'nothing acts at the point "{point.name}"; [load] acts at "{scene.port.name}"'
-
-
-def stress_of_train(
-    train: Train,
-    point: OperatingPoint,
-    model: str = MODEL,
-    asked: StressSettings = StressSettings(),
-    progress: Progress = lambda text: None,
-) -> StressAtRest:
-    """Return the stress of all shafts of a train at an operating point; shafts and bearings settle
-    on a model, no lumped one, which has no places.
-    """
-    progress(model)
-    files = {side: shaft.scene.body for side, shaft in train.shafts.items()}
-    round_parts = {
-        side: shaft.with_changes(scene=filleted(shaft.scene))
-        for side, shaft in train.shafts.items()
-    }
-    train = train.with_changes(shafts=round_parts)
-    assembly = Assembly(_settling_train(train, model))
-    usual = Operating(assembly, model).at(point)
-
-    def acting(choice: Choice) -> dict[str, ShaftLoads]:
-        as_stated = choice == AS_STATED
-        return _on_shafts(
-            assembly, usual if as_stated else Operating(assembly, model, choice=choice).at(point)
-        )
-
-    under = AtPoint(point, usual.mesh_force)
-    shafts, open_by = _shafts(
-        {side: train.shaft(side) for side in train.shafts}, acting, asked, progress
-    )
-    left_out = [text for k in files for text in _file_cautions(files[k], train.shafts[k].scene)]
-    cautions = (*left_out, *usual.notes, *assembly.data_cautions, *_torque_cautions(train))
-    return StressAtRest(train.title or train.name, model, under, asked, shafts, open_by, cautions)
+def _load_cautions(train: Train, load: LoadAtPort) -> Iterator[str]:
+    """Yield sentences on loads that do not act on a shaft alone, and perhaps should."""
+    if not load.drive:
+        yield "no torque runs along the shaft; --drive says where one enters"
+    for point in train.shafts[ALONE].scene.further_ports:
+        if point.name not in load.drive:
+            yield f'nothing acts at the point "{point.name}"; [load] acts at "{load.port}"'
 
 
 def _on_shafts(assembly: Assembly, state: OperatingState) -> dict[str, ShaftLoads]:
@@ -262,29 +224,34 @@ def _settling(scene: Scene, model: str) -> Scene:
 
 def _settling_train(train: Train, model: str) -> Train:
     """Return a train of such shafts, whose teeth act at their ports."""
-    shafts = {
-        side: shaft.with_changes(scene=_settling(shaft.scene, model))
-        for side, shaft in train.shafts.items()
-    }
     meshes = tuple(mesh.with_changes(local_harmonics=()) for mesh in train.meshes)
-    return train.with_changes(meshes=meshes, shafts=shafts)
+    return _with_scenes(train.with_changes(meshes=meshes), lambda scene: _settling(scene, model))
+
+
+def _with_scenes(train: Train, change: Callable[[Scene], Scene]) -> Train:
+    """Return a train whose shafts have changed scenes."""
+    shafts = {
+        side: shaft.with_changes(scene=change(shaft.scene)) for side, shaft in train.shafts.items()
+    }
+    return train.with_changes(shafts=shafts)
 
 
 def _shafts(
-    scenes: Mapping[str, Scene],
+    train: Train,
     acting: Callable[[Choice], dict[str, ShaftLoads]],
     asked: StressSettings,
     progress: Progress,
 ) -> tuple[tuple[StressedShaft, ...], str]:
     """Return the stress of every shaft, and in words which data of bearings are open."""
+    scenes = {side: train.shaft(side) for side in train.shafts}
     usual = acting(AS_STATED)
     open_by, choices = left_open(scenes.values())
     if choices:
         progress("what the data of bearings leave open")
     variants = [acting(choice) for choice in choices]
     shafts = []
-    for name, scene in scenes.items():
-        shaft_loads = usual[name]
+    for side, scene in scenes.items():
+        shaft_loads = usual[side]
         stress = shaft_stress(
             scene,
             shaft_loads.loads,
@@ -293,12 +260,9 @@ def _shafts(
             conditions=asked.conditions,
             progress=progress,
         )
-        forces_by_variant = [
-            forces_of(scene, loads[name].loads, loads[name].gravity) for loads in variants
-        ]
-        shafts.append(
-            StressedShaft(name, scene, shaft_loads, stress, *_ranges(stress, forces_by_variant))
-        )
+        further = [forces_of(scene, loads[side].loads, loads[side].gravity) for loads in variants]
+        name = scene.name if train.is_one_shaft else side
+        shafts.append(StressedShaft(name, scene, shaft_loads, stress, *_ranges(stress, further)))
     return tuple(shafts), open_by
 
 

@@ -15,7 +15,7 @@ from solidgear.show.options import BY_MODEL, MODEL, Choice, Shown, refuse, relat
 from solidgear.show.sheet import Sheet, present
 from solidgear.show.units import units_named
 from solidgear.strength.acting import Acting, AtRestFile
-from solidgear.strength.stress.at_rest import StressSettings, stress_of_scene, stress_of_train
+from solidgear.strength.stress.at_rest import StressSettings, stress_at_rest
 from solidgear.strength.stress.rating import Conditions
 from solidgear.strength.stress.sheet import sheet
 
@@ -91,17 +91,16 @@ def stress(
     run: Shown,
 ) -> None:
     settings = StressSettings(tol, rated.conditions())
-    loaded, units = acting.read(file), units_named(run.units)
-    torques, model = dict(map(_torque, drive or ())), str(fidelity)
+    (assembly, point), units = acting.read(file), units_named(run.units)
+    torques = dict(map(_torque, drive or ()))
+    if not assembly.train.is_one_shaft:
+        instead = "torques come by the springs of engine and load"
+        refuse({"--drive": bool(drive)}, f"a shaft, and {file} is a train: {instead}")
 
     def study(progress: Progress) -> Sheet:
-        if isinstance(loaded, tuple):
-            instead = "torques come by the springs of engine and load"
-            refuse({"--drive": bool(drive)}, f"a shaft, and {file} is a train: {instead}")
-            train, point = loaded
-            return sheet(stress_of_train(train, point, model, settings, progress), units)
         with explained(file):
-            return sheet(stress_of_scene(loaded, model, torques, settings, progress), units)
+            stressed = stress_at_rest(assembly, point, str(fidelity), settings, progress, torques)
+        return sheet(stressed, units)
 
     present(study, run, out)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Any
 
@@ -17,8 +17,9 @@ from solidgear.show.sheet import Sheet, Terminal
 from solidgear.show.table import Cell, Column, Table, quantity, text, word
 from solidgear.show.units import ENGINEERING, Units, plain
 from solidgear.show.words import percent
-from solidgear.strength.deflection.sheet import load_in_words
-from solidgear.strength.stress.at_rest import LoadAtPort, StressAtRest, StressedShaft
+from solidgear.strength.load import LoadAtPort
+from solidgear.strength.stress.at_rest import StressAtRest, StressedShaft
+from solidgear.strength.stress.din743 import LOADS, Load
 from solidgear.strength.stress.rating import Entry, Rating
 from solidgear.strength.stress.section_forces import SectionForces
 from solidgear.strength.stress.shaft import Notch, ShaftStress
@@ -38,9 +39,9 @@ CONVENTION = (
     "Force of the part beyond a cut on the part before it; M about the middle of the section. "
     "Exact statics; loads act at the middle of their seats."
 )
-LOADS = ("tension", "bending", "torsion")
-#: stress on a fillet by what brings it, as attributes of nominal and local stress
-BY = {"tension": "mean", "bending": "amplitude", "torsion": "shear"}
+CHART_SHOWN = (
+    "Section forces along the shaft; with two components, the dashed line is their resultant."
+)
 #: of the largest value of a table: what is less is rounding, or couplings of no weight
 NOTHING = 1e-9
 #: share of a value that is left open from which on it is told
@@ -86,6 +87,7 @@ def sheet(stressed: StressAtRest, units: Units) -> Sheet:
         cautions=stressed.cautions,
         reached=stressed.reached,
         terminal=Terminal(tables=_tables(stressed, units, all_ratings=False)),
+        words={f"section_forces_{name}": CHART_SHOWN for name in shafts},
     )
 
 
@@ -93,10 +95,7 @@ def loads_in_words(stressed: StressAtRest, units: Units) -> str:
     """Return the load, or the operating point, that the shafts are under in words."""
     load = stressed.under
     if isinstance(load, LoadAtPort):
-        words = f"Under {load_in_words(load.load, load.port, units)}"
-        for name, torque in load.drive.items():
-            words += f", and {units.text(torque, 'N m', 4)} from {name} to {load.port}"
-        return words
+        return load.words(units)
     force = units.text(load.mesh_force, "N", 5)
     return f"At {load.point.label}: mesh force {force} along the line of action"
 
@@ -123,7 +122,7 @@ def shaft_tables(
 ) -> list[Table]:
     """Return tables of one shaft without empty ones; `all_ratings` or that of the worst fillet."""
     stress = shaft.found
-    rated = [notch for notch in stress.worst if notch.rating is not None]
+    rated = [(notch.name, notch.rating) for notch in stress.worst if notch.rating is not None]
     out = [
         section_forces(stress.forces, units, shaft.open_moment, stressed.open_by),
         nominal_stress(stress, units),
@@ -131,7 +130,7 @@ def shaft_tables(
         surface_stress(stress, shaft.open, units, stressed.open_by),
         form_factors(stress),
         safeties(stress),
-        *(rating(notch, units) for notch in rated[: None if all_ratings else 1]),
+        *(rating(name, record, units) for name, record in rated[: None if all_ratings else 1]),
     ]
     if len(stressed.shafts) > 1:
         for table in out:
@@ -184,20 +183,17 @@ def section_forces(
     """Return section forces on both sides of every load; `open_` is the range of the largest
     moment, N m.
     """
-    rows = [
-        (y, name, side, six[1], math.hypot(six[0], six[2]), math.hypot(six[3], six[5]), six[4])
-        for y, name, side, six in _sides(forces, forces.names_without_weights)
-    ]
-    force = _of_weight(value for row in rows for value in (row[3], row[4]))
-    moment = _of_weight(value for row in rows for value in (row[5], row[6]))
+    sides = _sides(forces, forces.names_without_weights)
+    q_x, n, q_z, m_x, t, m_z = np.array([side[3] for side in sides]).T
+    force = _without_rounding(np.array([n, np.hypot(q_x, q_z)]))
+    moment = _without_rounding(np.array([np.hypot(m_x, m_z), t]))
+    rows = [[*side[:3], *f, *m] for side, f, m in zip(sides, force.T, moment.T)]
     columns = [
         quantity("y", "m", units),
         text("acts there"),
         word("side"),
-        quantity("N", "N", units, lambda row: force(row[3])),
-        quantity("Q", "N", units, lambda row: force(row[4])),
-        quantity("M", "N m", units, lambda row: moment(row[5])),
-        quantity("T", "N m", units, lambda row: moment(row[6])),
+        *(quantity(name, "N", units) for name in "NQ"),
+        *(quantity(name, "N m", units) for name in "MT"),
     ]
     note = f"{CONVENTION} N is positive in tension; Q and M are sizes of two components."
     if forces.names_without_weights != forces.names:
@@ -208,10 +204,9 @@ def section_forces(
     return Table("Section forces", columns, rows, note)
 
 
-def _of_weight(values: Iterable[float]) -> Callable[[float], float]:
+def _without_rounding(values: np.ndarray) -> np.ndarray:
     """Return values, with zero for those that are rounding beside the largest."""
-    least = NOTHING * max(map(abs, values), default=0.0)
-    return lambda value: value if abs(value) > least else 0.0
+    return np.where(np.abs(values) > NOTHING * np.abs(values).max(initial=0.0), values, 0.0)
 
 
 def components(forces: SectionForces) -> Table:
@@ -240,19 +235,18 @@ def _sides(forces: SectionForces, names: Sequence[str]) -> list[tuple[float, str
 def nominal_stress(shaft_stress: ShaftStress, units: Units = ENGINEERING) -> Table:
     """Return the nominal stress on both sides of every load and joint."""
     loaded = [row for row in shaft_stress.nominal if row.forces.any()]
-    kinds = {"sigma_N": "tension", "sigma_b": "bending", "tau_t": "torsion", "tau_q": "shear"}
-    stresses = [[getattr(row.stress, kind) for kind in kinds.values()] for row in loaded]
-    weighty = _of_weight(value for row in stresses for value in row)
+    stresses = [row.stress for row in loaded]
+    values = np.array([[s.tension, s.bending, s.torsion, s.shear] for s in stresses])
     columns = [
         quantity("y", "m", units),
         text("in"),
         quantity("d", "m", units, digits=4),
         quantity("bore", "m", units, digits=4),
-        *(_stress(head, units) for head in kinds),
+        *(_stress(head, units) for head in ("sigma_N", "sigma_b", "tau_t", "tau_q")),
     ]
     rows = [
-        [row.y, row.segment, 2 * row.section.outer, 2 * row.section.inner, *map(weighty, values)]
-        for row, values in zip(loaded, stresses)
+        [row.y, row.segment, 2 * row.section.outer, 2 * row.section.inner, *four]
+        for row, four in zip(loaded, _without_rounding(values))
     ]
     note = (
         "Plain sections: N/A, M a/I, T a/(2 I). The shaft turns under loads at rest: bending is "
@@ -269,15 +263,19 @@ def _stress(head: str, units: Units, digits: int = 4) -> Column:
 def fillets(stress: ShaftStress, units: Units = ENGINEERING) -> Table:
     """Return places, sizes and remarks of the fillets."""
     columns = [
-        text("fillet", lambda notch: notch.name),
-        quantity("y", "m", units, lambda notch: notch.y),
-        quantity("radius", "m", units, lambda notch: notch.radius, 3),
-        Column("r/d", lambda notch: notch.radius / notch.small, lambda v: plain(v, 3)),
-        Column("D/d", lambda notch: notch.large / notch.small, lambda v: plain(v, 4)),
-        text("to be known", lambda notch: notch.remark or None),
+        text("fillet"),
+        quantity("y", "m", units),
+        quantity("radius", "m", units, digits=3),
+        Column("r/d", write=partial(plain, digits=3)),
+        Column("D/d", write=_factor),
+        text("to be known"),
+    ]
+    rows = [
+        [n.name, n.y, n.radius, n.radius / n.small, n.large / n.small, n.remark or None]
+        for n in stress.notches
     ]
     note = "y: where the fillet meets its cylinder, with section forces and nominal stress there."
-    return Table("Fillets", columns, stress.notches, note)
+    return Table("Fillets", columns, rows, note)
 
 
 def surface_stress(
@@ -296,9 +294,15 @@ def surface_stress(
     ]
     rows = []
     for notch, load in _by_load(stress.notches):
-        surface, bar = (getattr(notch.local, name) for name in (BY[load], f"{BY[load]}_bar"))
-        range_ = _open(open_, units, notch) if open_ and load == "bending" else None
-        rows.append([notch.name, load, getattr(notch.nominal, load), surface, bar, range_])
+        nominal, local = notch.nominal, notch.local
+        shown = {
+            "tension": (nominal.tension, local.mean, local.mean_bar),
+            "bending": (nominal.bending, local.amplitude, local.amplitude_bar),
+            "torsion": (nominal.torsion, local.shear, local.shear_bar),
+        }
+        ends = open_.get(notch.name, ()) if load == "bending" else ()
+        range_ = " to ".join(units.number(end, STRESS, 4) for end in ends)
+        rows.append([notch.name, load, *shown[load], range_ or None])
     note = (
         "Surface: largest stress along the meridian: by bending the amplitude of the turning "
         "shaft, shear force included, so that it is not Kt times nominal; by tension and torsion "
@@ -311,34 +315,18 @@ def surface_stress(
     return Table(title, columns, rows, note)
 
 
-def _open(open_: Mapping[str, tuple[float, float]], units: Units, notch: Notch) -> str:
-    low, high = (units.number(value, STRESS, 4) for value in open_[notch.name])
-    return f"{low} to {high}"
-
-
 def form_factors(stress: ShaftStress) -> Table:
     """Return the form factors and fatigue notch factors of the fillets beside published ones."""
-
-    def published(source: str) -> Column:
-        def factor(row: tuple[Notch, str]) -> float | None:
-            return row[0].published.get(source, {}).get(row[1])  # type: ignore[call-overload]
-
-        return Column(source, factor, _factor)
-
-    def fatigue(head: str, name: str) -> Column:
-        def factor(row: tuple[Notch, str]) -> float | None:
-            return getattr(row[0].fatigue[row[1]], name) if row[0].fatigue else None  # type: ignore[index]
-
-        return Column(head, factor, _factor)
-
-    sources = dict.fromkeys(source for notch in stress.notches for source in notch.published)
-    columns = [
-        text("fillet", lambda row: row[0].name),
-        word("by", lambda row: row[1]),
-        Column("Kt", lambda row: row[0].found.factors[row[1]].value, _factor),
-        Column("error bar", lambda row: _bar(row[0], row[1])),
-        *map(published, sources),
-    ]
+    sources = [*dict.fromkeys(source for notch in stress.notches for source in notch.published)]
+    rows: list[list[str | float | None]] = []
+    for notch, load in _by_load(stress.notches):
+        factor, fatigue = notch.found.factors[load], notch.fatigue.get(load)
+        bar = percent(factor.bar / factor.value, signed=False)
+        published = [notch.published.get(source, {}).get(load) for source in sources]
+        norm = [None, None] if fatigue is None else [fatigue.notch, fatigue.norm_notch]
+        rows.append([notch.name, load, factor.value, bar, *published, *norm])
+    columns = [text("fillet"), word("by"), Column("Kt", write=_factor), Column("error bar")]
+    columns += [Column(source, write=_factor) for source in sources]
     note = (
         "Kt: largest surface stress over nominal stress where the fillet meets its cylinder, by "
         "the harmonic solid around it. "
@@ -349,15 +337,15 @@ def form_factors(stress: ShaftStress) -> Table:
             "tension and bending up to 20 % below elasticity. "
         )
     if any(notch.fatigue for notch in stress.notches):
-        columns += [fatigue("Kf", "notch"), fatigue("norm", "norm_notch")]
+        columns += [Column("Kf", write=_factor), Column("norm", write=_factor)]
         note += (
             "Kf = Kt/n, the support number n by DIN 743-2 and the stress gradient of the solid; "
             "norm: that of its own factor and gradient."
         )
-    return Table("Form factors", columns, _by_load(stress.notches), note.strip())
+    return Table("Form factors", columns, rows, note.strip())
 
 
-def _by_load(notches: Sequence[Notch]) -> list[tuple[Notch, str]]:
+def _by_load(notches: Sequence[Notch]) -> list[tuple[Notch, Load]]:
     return [(notch, load) for notch in notches for load in LOADS]
 
 
@@ -365,20 +353,19 @@ def _factor(value: float) -> str:
     return plain(value, 4)
 
 
-def _bar(notch: Notch, load: str) -> str:
-    factor = notch.found.factors[load]
-    return percent(factor.bar / factor.value, signed=False)
-
-
 def safeties(stress: ShaftStress) -> Table:
     """Return safeties of all fillets that are rated, the least first."""
     columns = [
-        text("fillet", lambda notch: notch.name),
-        Column("S, fatigue", lambda notch: safety(notch.rating.fatigue)),
-        Column("less by the error bar", lambda notch: plain(notch.rating.fatigue_bar, 2)),
-        Column("S, yielding", lambda notch: safety(notch.rating.yielding)),
+        text("fillet"),
+        Column("S, fatigue"),
+        Column("less by the error bar", write=partial(plain, digits=2)),
+        Column("S, yielding"),
     ]
-    rows = [notch for notch in stress.worst if notch.rating is not None]
+    rows = [
+        [notch.name, safety(r.fatigue), r.fatigue_bar, safety(r.yielding)]
+        for notch in stress.worst
+        if (r := notch.rating) is not None
+    ]
     note = (
         f"The norm asks for {LEAST:g} where loads and strength are known. Less by the error bar: "
         "loss of S with Kt at the upper end of its error bar."
@@ -386,37 +373,30 @@ def safeties(stress: ShaftStress) -> Table:
     return Table("Safety by DIN 743", columns, rows, note)
 
 
-def rating(notch: Notch, units: Units = ENGINEERING) -> Table:
+def rating(name: str, record: Rating, units: Units = ENGINEERING) -> Table:
     """Return the rating of one fillet by DIN 743, every factor with its source."""
-    assert notch.rating is not None
-    record: Rating = notch.rating
-    columns = [
-        word("", lambda entry: entry.symbol),
-        text("what", lambda entry: _named(entry, units)),
-        *(Column(load, partial(_value, k, units)) for k, load in enumerate(LOADS)),
-        text("source", _source),
-    ]
+    columns = [word(""), text("what"), *map(Column, LOADS), text("source")]
+    rows = []
+    for entry in record.entries:
+        unit = units.unit(STRESS) if entry.unit == "Pa" else "1/mm" if entry.unit else ""
+        what = f"{entry.what}, {unit}" if unit else entry.what
+        values = [_value(value, entry.unit, units) for value in entry.values]
+        rows.append([entry.symbol, what, *values, _source(entry)])
     note = (
         f"Safety against fatigue {safety(record.fatigue)}, against yielding "
         f"{safety(record.yielding)}, by nominal stress without shear forces, as in the norm."
     )
     if record.assumed:
         note += f" Assumed, since not given: {', '.join(record.assumed)}."
-    return Table(f"DIN 743 at {notch.name}", columns, list(record.entries), note)
+    return Table(f"DIN 743 at {name}", columns, rows, note)
 
 
-def _named(entry: Entry, units: Units) -> str:
-    unit = units.unit(STRESS) if entry.unit == "Pa" else "1/mm" if entry.unit else ""
-    return f"{entry.what}, {unit}" if unit else entry.what
-
-
-def _value(place: int, units: Units, entry: Entry) -> str | None:
-    value = entry.values[place]
+def _value(value: float | None, unit: str, units: Units) -> str | None:
     if value is None:
         return None
-    if entry.unit == "Pa":
+    if unit == "Pa":
         return units.number(value, STRESS, 4)
-    return plain(1e-3 * value if entry.unit else value, 4)
+    return plain(1e-3 * value if unit else value, 4)
 
 
 def _source(entry: Entry) -> str | Cell:
@@ -453,11 +433,6 @@ def section_chart(
     width: float = WIDE,
 ) -> Chart:
     """Chart the section forces over the length of a shaft, one kind below the other.
-
-    Parameters
-    ----------
-    width : float
-        px.
 
     Examples
     --------

@@ -75,8 +75,9 @@ class Assembly:
     settings: Mapping[str | tuple[str, str], Mapping] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, scene: Scene) -> Assembly:
-        """Return the assembly of one shaft, whose models have the meshes of the shaft alone.
+    def of(cls, scene: Scene, kept: int = KEPT) -> Assembly:
+        """Return the assembly of one shaft, whose models have the meshes of the shaft alone; with
+        any number of modes that are `kept` it is exact at rest.
 
         Examples
         --------
@@ -85,7 +86,7 @@ class Assembly:
         >>> list(assembly.system("timoshenko").parts), list(assembly.system("timoshenko").links)
         (['shaft'], ['shaft.1', 'shaft.2'])
         """
-        return cls(Train.of(scene), settings=dict.fromkeys(MESH, {}))
+        return cls(Train.of(scene), kept=kept, settings=dict.fromkeys(MESH, {}))
 
     def __post_init__(self):
         if self.reduction not in REDUCTIONS:

@@ -12,8 +12,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from solidgear.core import HARMONIC, SolidgearError, build, pinned
-from solidgear.guards import Probe
-from solidgear.guards.check import check_scene
+from solidgear.guards import Notice, Probe
+from solidgear.guards.check import BEST, Check, Verdict, check_scene, record
+from solidgear.guards.notice import Notices
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.housing import housing_facts
 from solidgear.trains.assembly.layout import senses, senses_sentence
@@ -38,35 +39,40 @@ ALONE = (
     "guards judge each shaft alone; run solidgear compare to see which shaft needs the solid in "
     "mesh, and from which frequency on"
 )
-#: verdicts in the order in which the worst of two is chosen
-WORST = ("will not hold", "uncertain", "holds with caution", "holds")
+#: name of the guard of what concerns the train as a whole
+TRAIN = "train"
 
 
 @pinned
-def check_train(assembly: Assembly, max_frequency: float | None = None) -> dict:
-    """Return ``facts``, ``cautions`` and ``faults`` (sentences) of a train up to a frequency, Hz,
-    the checks of each shaft under its name as of :func:`solidgear.guards.check.check_scene`,
-    and ``verdicts`` by model, the worst of all shafts.
+def check_train(assembly: Assembly, max_frequency: float | None = None) -> Check:
+    """Check a train up to a frequency, Hz, and each of its shafts by every guard; the verdict on a
+    model is the worst of all shafts.
 
     Examples
     --------
     >>> import solidgear as sg
-    >>> found = check_train(Assembly(sg.load_train("geometry/axle_overhung.toml")))
-    >>> found["pinion"]["verdicts"]["timoshenko"]["verdict"], found["faults"]
+    >>> train_check = check_train(Assembly(sg.load_train("geometry/axle_overhung.toml")))
+    >>> train_check.shafts["pinion"].verdicts["timoshenko"].verdict, train_check.faults
     ('will not hold', [])
     """
     train = assembly.train
     limit = max_frequency or train.ask.max_frequency
-    by_shaft: dict = {}
+    shafts: dict[str, Check] = {}
     light = Assembly(train, assembly.reduction, assembly.kept)
     for side in train.shafts:
         scene = assembly.scenes[side]
         ask = scene.ask.with_changes(max_frequency=limit, tolerance=train.ask.tolerance)
         scene = scene.with_changes(ask=ask)
         probe = Probe(scene.plain, build(scene.plain, JUDGE, **HARMONIC), whole=scene)
-        by_shaft[side] = check_scene(scene, probe.body, probe)
+        shafts[side] = check_scene(scene, probe.body, probe)
         light.set_body(side, JUDGE, probe.solution(JUDGE).body)
-    faults: list[str] = []
+    records = tuple(record(TRAIN, notice, ()) for notice in _notices(assembly, light, limit))
+    return Check(train.name, records, _worst_verdicts(shafts), shafts)
+
+
+def _notices(assembly: Assembly, light: Assembly, limit: float) -> Notices:
+    """Yield notices on a train as a whole; `light` has the light solids of the guards."""
+    train = assembly.train
     facts = [*_facts(assembly, limit), *housing_facts(train)]
     facts += [line for contact in assembly.contacts.values() for line in wrench_lines(contact)]
     # those of the shafts stand with their guards
@@ -79,13 +85,12 @@ def check_train(assembly: Assembly, max_frequency: float | None = None) -> dict:
     try:
         facts += _system_facts(light, limit)
     except SolidgearError as error:
-        faults.append(str(error))
+        yield Notice("fault", (), str(error))
     for side in train.shafts:
         cautions += _undriven_caution(light, side, limit)
     facts += [*unpublished_lines(train.unpublished()), ALONE]
-    return {"facts": facts, "cautions": cautions, "faults": faults, **by_shaft} | {
-        "verdicts": _worst_verdicts({side: by_shaft[side]["verdicts"] for side in train.shafts})
-    }
+    yield from (Notice("caution", (), sentence) for sentence in cautions)
+    yield from (Notice("fact", (), sentence) for sentence in facts)
 
 
 def _facts(assembly: Assembly, limit: float) -> Iterator[str]:
@@ -179,15 +184,15 @@ def _undriven_caution(assembly: Assembly, side: str, limit: float) -> Iterator[s
         )
 
 
-def _worst_verdicts(verdicts: dict[str, dict]) -> dict:
+def _worst_verdicts(shafts: dict[str, Check]) -> dict[str, Verdict]:
     """Return by model the worst of the verdicts on all shafts and the shafts that have it."""
-    first, *further = verdicts.values()
-    out = {}
-    for model in first:
-        if any(model not in verdicts_of_shaft for verdicts_of_shaft in further):
+    models = [*next(iter(shafts.values())).verdicts]
+    verdicts = {}
+    for model in models:
+        if any(model not in check.verdicts for check in shafts.values()):
             continue
-        by_side = {side: of_shaft[model]["verdict"] for side, of_shaft in verdicts.items()}
-        worst = min(by_side.values(), key=WORST.index)
+        by_side = {side: check.verdicts[model].verdict for side, check in shafts.items()}
+        worst = max(by_side.values(), key=BEST.index)
         sides = [side for side in by_side if by_side[side] == worst]
-        out[model] = {"verdict": worst, "shafts": sides if worst != WORST[-1] else []}
-    return out
+        verdicts[model] = Verdict(worst, () if worst == BEST[0] else tuple(sides))
+    return verdicts

@@ -2,24 +2,21 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
-from contextlib import nullcontext
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from solidgear.show.command import caution, command, say
-from solidgear.show.folder import held
+from solidgear.show.command import Progress, command
+from solidgear.show.folder import begun
 from solidgear.show.options import Shown, refuse
-from solidgear.show.table import Column, Table, text
-from solidgear.show.viewer import viewer_fragment
+from solidgear.show.sheet import Sheet, present, write_json
+from solidgear.show.units import units_named
+from solidgear.trains.judge.comparison import Pictures
 from solidgear.trains.judge.comparison import compare_train as compared
-from solidgear.trains.modes.modes import unpublished_lines
+from solidgear.trains.judge.sheet import comparison_sheet, shapes
 from solidgear.trains.options import Reduced, TrainFile, mix
-from solidgear.trains.page.page import write_train
-from solidgear.trains.page.tables import mix_words
 
 
 @command
@@ -68,53 +65,18 @@ def _judged(
     *,
     renders: bool,
 ) -> None:
-    assembly = reduced.assembly(train)
-    with held(out) if out else nullcontext(), run.progress() as progress:
+    assembly, units = reduced.assembly(train), units_named(run.units)
+
+    def study(progress: Progress) -> Sheet:
         comparison = compared(assembly, reduced.max_frequency, more, progress)
-        results = comparison.results()
-        if out:
-            progress("report")
-            draw = comparison.pictures if renders else None
-            viewer = viewer_fragment(comparison.turned(), first=next(iter(comparison.loud), ""))
-            write_train(
-                results,
-                comparison.drawn,
-                comparison.marks,
-                comparison.orders,
-                out,
-                draw,
-                run.units,
-                viewer,
-            )
-    if run.as_json:
-        print(json.dumps(results, allow_nan=False))
-        return
-    verdict = comparison.verdict
-    heading = f"{verdict.train}, up to {verdict.highest_hz:g} Hz"
-    say(heading, *comparison.top.sentences(), _verdict_table(verdict), soft_wrap=False)
-    say(*verdict.sentences(), *unpublished_lines(verdict.unpublished))
-    say(*map(caution, verdict.cautions))
-    if out:
-        say(f"Report: {out / 'report.html'}")
+        if out is None:
+            return comparison_sheet(comparison, units)
+        progress("report")
+        with begun(out) as folder:
+            # numbers first: whatever happens to pictures, they are there; without a list of files,
+            # since the folder is begun again when all of it is written
+            write_json(folder / "results.json", comparison.results())
+            pictures = comparison.pictures(folder) if renders else Pictures()
+        return comparison_sheet(comparison, units, pictures, shapes(comparison, pictures, out))
 
-
-def _verdict_table(verdict):
-    def end(hz: float | None) -> str:
-        return f"{verdict.highest_hz:.0f}+" if hz is None else f"{hz:.0f}"
-
-    def off(mix) -> str:
-        if mix.error is None:
-            return f"{mix.mode} gone" if mix.mode else ""
-        digits = 1 if abs(mix.error) < 0.0995 else 0
-        return f"{mix.mode} {100 * mix.error:+.{digits}f} %"
-
-    columns = [
-        text(" + ".join(verdict.mixes[0].models), lambda m: mix_words(m.mix)),
-        Column(f"modes\n{100 * verdict.tolerance:g} %", lambda m: end(m.modes_to_hz)),
-        Column(f"force\n{verdict.decibels:g} dB", lambda m: end(m.force_to_hz)),
-        Column(f"force\n{100 * verdict.tolerance:g} %", lambda m: end(m.close_to_hz)),
-        text("first mode off", off),
-        text("by", lambda m: m.cause),
-        Column("s", lambda m: f"{m.seconds:.1f}"),
-    ]
-    return Table("Within the tolerance up to, in Hz", columns, verdict.mixes, style="bare")
+    present(study, run, out)

@@ -5,7 +5,8 @@ file.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from time import perf_counter
 from typing import Any
@@ -31,6 +32,14 @@ from solidgear.trains.response.response import TrainResponse
 PICTURES = 4
 
 
+@dataclass(frozen=True)
+class Pictures:
+    """Pictures of modes in a folder."""
+
+    files: dict[str, str] = field(default_factory=dict)  #: by what they show
+    left_out: list[str] = field(default_factory=list)  #: why some could not be drawn
+
+
 @dataclass(frozen=True, eq=False)
 class TrainComparison:
     """Findings about a train."""
@@ -40,12 +49,18 @@ class TrainComparison:
     modes: TrainModes  #: of the judge
     orders: OrderMap  #: of the judge
     seconds: float  #: the whole run
+    environment: dict[str, Any] = field(default_factory=environment)
+
+    @property
+    def judge(self) -> TrainResponse:
+        """Response with all shafts solid."""
+        return self.verdict.responses[0]
 
     @property
     def top(self) -> Loudest:
         """Largest dynamic mesh force by the judge."""
         assembly = self.assembly
-        return loudest(self.verdict.responses[0], self.modes.modes, assembly.train, assembly.scenes)
+        return loudest(self.judge, self.modes.modes, assembly.train, assembly.scenes)
 
     @property
     def drawn(self) -> list[TrainResponse]:
@@ -63,7 +78,7 @@ class TrainComparison:
     def loud(self) -> list[str]:
         """Names of the modes that make peaks of the judge's mesh force, that of the largest first."""
         names = {mode.name for mode in self.modes.modes}
-        peaks = sorted(self.verdict.responses[0].peaks, key=lambda peak: -peak.force)
+        peaks = sorted(self.judge.peaks, key=lambda peak: -peak.force)
         return [*dict.fromkeys(peak.mode for peak in peaks if peak.mode in names)]
 
     @property
@@ -72,18 +87,14 @@ class TrainComparison:
         names = [mode.name for mode in self.modes.modes]
         return sorted(names.index(name) + 1 for name in self.loud[:PICTURES])
 
-    def pictures(self, folder: Path) -> dict[str, Any]:
-        """Draw the loudest modes into a folder; return files by their captions, and reasons for
-        pictures left out.
-        """
-        renders = (
-            draw_modes(self.assembly, JUDGE, folder=folder, numbers=self.loudest)
-            if self.loudest
-            else {}
-        )
+    def pictures(self, folder: Path) -> Pictures:
+        """Draw the loudest modes into a folder."""
+        if not self.loudest:
+            return Pictures()
+        renders = draw_modes(self.assembly, JUDGE, folder=folder, numbers=self.loudest)
         files = {label: render.path.name for label, render in renders.items() if render.ok}
         reasons = sorted({render.reason for render in renders.values() if not render.ok})
-        return {"pictures": files, "left_out": reasons}
+        return Pictures(files, reasons)
 
     def turned(self) -> list[Turned]:
         """Return the judge's modes and those of all shafts as the best beams, to be turned side by
@@ -91,17 +102,22 @@ class TrainComparison:
         """
         return turning_pair(self.assembly, (JUDGE,), (MIXED[-2],), self.verdict.highest_hz)
 
+    @cached_property
+    def data(self) -> dict[str, Any]:
+        """Train as plain data."""
+        return train_data(self.assembly)
+
     def results(self) -> dict[str, Any]:
         """Return plain data for JSON: all numbers of the page."""
         return {
             "kind": "train",
-            "train": train_data(self.assembly),
+            "train": self.data,
             "verdict": self.verdict.as_dict() | {"sentences": self.verdict.sentences()},
             "loudest": self.top.as_dict(),
             "modes": self.modes.as_dict() | {"notes": self.modes.notes()},
-            "peaks": plain(self.verdict.responses[0].peaks),
+            "peaks": plain(self.judge.peaks),
             "crossings": plain(self.orders.crossings),
-            "environment": environment(),
+            "environment": self.environment,
             "seconds_total": self.seconds,
         }
 

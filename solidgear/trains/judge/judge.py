@@ -95,8 +95,7 @@ class Departure:
     @property
     def to_hz(self) -> float:
         """Frequency up to which modes and force hold, Hz, infinite for everywhere."""
-        ends = [hz for hz in (self.modes_to_hz, self.force_to_hz) if hz is not None]
-        return min(ends, default=np.inf)
+        return min(_end(self.modes_to_hz), _end(self.force_to_hz))
 
     @property
     def mix(self) -> tuple[str, ...]:
@@ -297,12 +296,13 @@ def _with_cause(departures: dict[tuple[str, ...], Departure], mix: tuple[str, ..
 
 def _further(a: Departure, b: Departure) -> bool:
     """Check whether mix a holds clearly further than b, in modes or in force."""
+    modes = _end(a.modes_to_hz) > FURTHER * _end(b.modes_to_hz)
+    return modes or _end(a.force_to_hz) > FURTHER * _end(b.force_to_hz)
 
-    def end(hz):
-        return np.inf if hz is None else hz
 
-    modes = end(a.modes_to_hz) > FURTHER * end(b.modes_to_hz)
-    return modes or end(a.force_to_hz) > FURTHER * end(b.force_to_hz)
+def _end(hz: float | None) -> float:
+    """Return a frequency up to which a mix holds, infinite for everywhere."""
+    return np.inf if hz is None else hz
 
 
 class _Judge:
@@ -323,13 +323,12 @@ class _Judge:
         """Return the departure of a mix."""
         modes_to, mode, error = self._first_mode(*models)
         by_shaft = self.assembly.models_by_shaft(models)
-        unknowns = sum(self.assembly.shaft_model(*shaft).unknowns for shaft in by_shaft.items())
-        seconds = self.assembly.build_seconds(*models)
+        bodies = [self.assembly.shaft_model(*shaft) for shaft in by_shaft.items()]
         force_to, close_to = self._force(*models)
         return Departure(
             models=by_shaft,
-            unknowns=unknowns,
-            seconds=seconds,
+            unknowns=sum(body.unknowns for body in bodies),
+            seconds=self.assembly.build_seconds(*models),
             modes_to_hz=modes_to,
             mode=mode,
             error=error,
@@ -338,7 +337,10 @@ class _Judge:
             cause="",
         )
 
-    def _first_mode(self, *models: str):
+    def _first_mode(self, *models: str) -> tuple[float | None, str, float | None]:
+        """Return the first mode that a mix misses: frequency, name, and relative error if it has a
+        counterpart.
+        """
         system = self.assembly.system(*models)
         modes, motions = modes_and_motions(self.assembly, system, self.highest * BEYOND)
         mix_hz, judge_hz = (solved.frequency_hz[solved.rigid :] for solved in (modes, self.found))

@@ -178,17 +178,18 @@ class Operating:
         begin = None
         if start is not None and start.point.coast == point.coast:
             begin = start.equilibrium
+        alone = assembly.train.is_one_shaft
         try:
             solved = seated.equilibrium(total, begin)
         except SolidgearError as error:
-            raise SolidgearError(f"at {point.label}: {error}") from None
+            raise SolidgearError(str(error) if alone else f"at {point.label}: {error}") from None
         solved = _engine_still(solved, seated.system, assembly.train)
         if loop_shares := loop_forces(assembly, seated.system, solved.coordinates, point.label):
             forces = {name: {**forces, **loop_shares}[name] for name in assembly.contacts}
             notes.append(LOOP)
+        place = "" if alone else f"at {point.label} "
         notes += [
-            f"at {point.label} bearing {end} carries no load within its clearance, so it has no "
-            "stiffness"
+            f"{place}bearing {end} carries no load within its clearance, so it has no stiffness"
             for end in solved.lost
         ]
         return OperatingState(

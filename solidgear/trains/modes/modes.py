@@ -23,6 +23,8 @@ from solidgear.trains.modes.naming import OVALISING, driven, mode_names
 
 #: a frequency whose bound is above this is not resolved by the reduction
 RESOLVED = 1e-3
+#: relative, of a frequency
+ROUNDING = 1e-9
 
 
 @dataclass(frozen=True)
@@ -72,6 +74,11 @@ class TrainModes:
         out = plain(self)
         return {"train": out.pop("train")} | out.pop("models") | out
 
+    @property
+    def has_mesh_bars(self) -> bool:
+        """Whether any mode has the error bar of a mesh."""
+        return any(mode.mesh is not None for mode in self.modes)
+
     def heading(self) -> list[str]:
         """Return the title of the train, and the reduction in words."""
         kept = ", ".join(f"{side} {n} of {self.unknowns[side]}" for side, n in self.kept.items())
@@ -86,13 +93,13 @@ class TrainModes:
 
     def notes(self) -> list[str]:
         """Return notes on the numbers."""
-        lines, meshed = [], any(mode.mesh is not None for mode in self.modes)
+        lines = []
         if self.rigid == 1 and not self.free:
             lines.append("The whole train turns freely: one motion at exactly 0 Hz.")
         lines += list(self.free)
         lines += [*self._still(), *self.local, *filter(None, [self.turn, self.hidden])]
         bound = "Bound: largest relative error by the reduction, proven"
-        if meshed:
+        if self.has_mesh_bars:
             bound += "; mesh: error bar of the harmonic shafts' meshes, by local problems."
         else:
             bound += "; it does not include the shafts' meshes."
@@ -198,34 +205,34 @@ def train_modes(
     for stage in assembly.stages.values():
         solved = replace(solved, energy=stage.strained(solved.energy))
     most = solved.dominant()
+    highest_listed = min(limit, float(solved.frequency_hz[-1]) * (1 + ROUNDING))
     elastic = len(solved.frequency_hz) - solved.rigid
     bars = mesh_bars(assembly, system, by_shaft, elastic + 1)
     mesh_errors: list[float | None] = [None] * len(names)
+    hidden = ""
     if bars is not None:
         mesh_errors[solved.rigid :] = bars[:elastic].tolist()
-    modes = []
-    for k, (name, hz) in enumerate(zip(names, solved.frequency_hz)):
-        strained = "" if hz == 0 else f"{most[k]} {100 * solved.energy[most[k]][k]:.0f} %"
-        rpm = 60 * float(hz) / train.per_turn(train.drivers[0])
-        bound = float(solved.error_bound[k])
-        modes.append(
-            TrainMode(
-                name=name,
-                frequency_hz=float(hz),
-                rpm=rpm,
-                strained=strained,
-                bound=bound,
-                driven=bool(is_driven[k]),
-                mesh=mesh_errors[k],
-            )
+        hidden = _mode_below_limit(omega[elastic:], bars[elastic:], limit)
+    per_turn = train.per_turn(train.drivers[0])
+    modes = tuple(
+        TrainMode(
+            name=name,
+            frequency_hz=float(hz),
+            rpm=60 * float(hz) / per_turn,
+            strained="" if hz == 0 else f"{most[k]} {100 * solved.energy[most[k]][k]:.0f} %",
+            bound=float(solved.error_bound[k]),
+            driven=bool(is_driven[k]),
+            mesh=mesh_errors[k],
         )
-    undriven_modes = {}
-    for side, model in by_shaft.items():
-        if model == JUDGE:
-            driven_waves = tuple(waves_of(system.parts[side]))
-            undriven_modes[side] = undriven(
-                assembly.shaft_model(side, model).body, limit, driven_waves
-            )
+        for k, (name, hz) in enumerate(zip(names, solved.frequency_hz))
+    )
+    undriven_modes = {
+        side: undriven(
+            assembly.shaft_model(side, model).body, limit, (*waves_of(system.parts[side]),)
+        )
+        for side, model in by_shaft.items()
+        if model == JUDGE
+    }
     return TrainModes(
         train=train.called,
         models=by_shaft,
@@ -236,21 +243,19 @@ def train_modes(
             side: assembly.shaft_model(side, model).unknowns for side, model in by_shaft.items()
         },
         seconds=assembly.build_seconds(*models),
-        modes=tuple(modes),
+        modes=modes,
         rigid=solved.rigid,
         free=free_motions(assembly, system),
         contact=tuple(
             line for contact in assembly.contacts.values() for line in wrench_lines(contact)
         ),
         unpublished=train.unpublished(),
-        cautions=(*assembly.cautions, *spin_cautions(assembly, system, by_shaft, limit)),
+        cautions=(*assembly.cautions, *spin_cautions(assembly, system, by_shaft, highest_listed)),
         undriven={side: families for side, families in undriven_modes.items() if families},
         local=local_lines(assembly, system),
         speeds=train.reference,
         turn=frequencies_over_a_turn(assembly, by_shaft, names),
-        hidden=""
-        if bars is None
-        else _mode_below_limit(omega[elastic : elastic + 1], bars[elastic:], limit),
+        hidden=hidden,
     )
 
 

@@ -158,24 +158,25 @@ def mode_pairs(
     shape are paired by name up to a frequency, Hz, and all of them where not `by_shape`.
     """
     first, second = modes
-    hz = [
-        np.array([mode.frequency_hz for mode in modes_of_train])
-        for modes_of_train in (first, second)
-    ]
     pairs: list[SeenPair] = []
     if by_shape:
         # a mode that moves no port has no shape to be paired by
-        driven_a, driven_b = (
-            [k for k, mode in enumerate(modes_of_train) if mode.driven] for modes_of_train in modes
-        )
-        driven_motions = motions[0][:, driven_a], motions[1][:, driven_b]
-        similarity = mac(driven_motions[0], driven_motions[1])
-        pairing = partners(hz[0][driven_a], driven_motions[0], hz[1][driven_b], driven_motions[1])
+        (a, hz_a, moved_a), (b, hz_b, moved_b) = map(_driven, modes, motions)
+        similarity = mac(moved_a, moved_b)
         pairs = [
-            ModePair(first[driven_a[k]], second[driven_b[j]], float(similarity[k, j]))
-            for k, j in pairing.items()
+            ModePair(a[k], b[j], float(similarity[k, j]))
+            for k, j in partners(hz_a, moved_a, hz_b, moved_b).items()
         ]
     return all_pairs(pairs, first, second, _motion, highest if by_shape else math.inf)
+
+
+def _driven(
+    modes: Sequence[SeenMode], motions: np.ndarray
+) -> tuple[list[SeenMode], np.ndarray, np.ndarray]:
+    """Return the modes that move ports, their frequencies, Hz, and their motions."""
+    numbers = [k for k, mode in enumerate(modes) if mode.driven]
+    chosen = [modes[k] for k in numbers]
+    return chosen, np.array([mode.frequency_hz for mode in chosen]), motions[:, numbers]
 
 
 def _motion(mode: SeenMode) -> str:

@@ -40,27 +40,17 @@ def system_surface(assembly: Assembly, system: System, models: Sequence[str], sh
     >>> drawn.points.shape == drawn.displacement.shape
     True
     """
-    points: list[np.ndarray] = []
-    displacement: list[np.ndarray] = []
-    faces: list[np.ndarray] = []
-    triangles: list[np.ndarray] = []
-    lines: list[np.ndarray] = []
+    points, moved, faces, triangles, lines = [], [], [], [], []
     start = 0
     for side, (body, turn, origin) in _bodies(assembly, system, models).items():
         drawn = body.surface(system.expand(side, shape))
         points.append(drawn.points @ turn.T + origin)
-        displacement.append(drawn.displacement @ turn.T)
+        moved.append(drawn.displacement @ turn.T)
         faces.append(drawn.faces + start)
         triangles.append(drawn.triangles + start)
         lines.append(drawn.lines + start)
         start += len(drawn.points)
-    return Surface(
-        points=np.vstack(points),
-        displacement=np.vstack(displacement),
-        faces=np.vstack(faces),
-        triangles=np.vstack(triangles),
-        lines=np.vstack(lines),
-    )
+    return Surface(*(np.vstack(parts) for parts in (points, moved, faces, triangles, lines)))
 
 
 def _bodies(
@@ -122,15 +112,11 @@ def turning_pair(
     names_b = mode_names(assembly, system_b, modes_b)
     chosen = []
     for j, frequency in enumerate(hz_b):
+        k = modes_b.rigid + j
         if j in partner:
-            chosen.append((modes_b.rigid + j, names_a[modes_a.rigid + partner[j]]))
+            chosen.append((k, names_a[modes_a.rigid + partner[j]]))
         elif frequency <= limit:
-            chosen.append(
-                (
-                    modes_b.rigid + j,
-                    f"{names_b[modes_b.rigid + j]}, {_title(assembly, second)} alone",
-                )
-            )
+            chosen.append((k, f"{names_b[k]}, {_title(assembly, second)} alone"))
     return [base, _turning(assembly, second, system_b, modes_b, chosen, [base])]
 
 

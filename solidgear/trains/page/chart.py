@@ -5,7 +5,7 @@ a receptance.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -23,6 +23,8 @@ from solidgear.show.plot import BETWEEN, NARROW, WIDE, Chart, in_columns
 from solidgear.show.units import ENGINEERING, Units, plain
 from solidgear.show.words import hertz
 from solidgear.trains.page.tables import turned
+from solidgear.trains.response.receptance import TrainReceptance
+from solidgear.trains.response.response import TrainResponse
 
 COLOURS = ("#00805e", "#0072b2", "#c98a00", "#b3305c", "#5a3e8c", "#444444", "#1f9bb8", "#8a6d3b")
 #: of two responses beside each other, told apart by everyone
@@ -41,7 +43,7 @@ PANELS = (
 
 
 def response_chart(
-    responses: Sequence[Any],
+    responses: Sequence[TrainResponse],
     title: str,
     teeth: float | None,
     band: float | None,
@@ -71,39 +73,31 @@ def response_chart(
     words = f"mesh frequency in Hz{_cut(responses[0], first)}"
     for k, (column, name, si) in enumerate(PANELS):
         unit, top = units.unit(si), k == 0
-        sizes = [units.values(np.abs(r.columns[column]), si) for r in responses]
-        curves = [
-            _Curve(r.label, r.frequency_hz, size, ((name, unit, size),))
-            for r, size in zip(responses, sizes)
-        ]
+        curves = _amplitudes(responses, column, name, si, units)
         height = 340.0 if top else 200.0
-        ends = _ends([s[r.frequency_hz >= first] for r, s in zip(responses, sizes)])
+        ends = _ends([line.y[line.hz >= first] for line in curves])
         panel = Panel(
             Axis("" if top else words, (first, last), log=True),
             Axis(f"{name} in {unit}", _with_room(ends, height) if top else ends, log=True),
             height,
             series=models,
-            legend=_legend(width) if top else None,
+            legend=lines_legend(3 if width > NARROW else 1) if top else None,
             upper=_speed(teeth, (first, last)) if top and teeth else None,
         )
         if band is not None:
-            _shade(panel, responses[0].frequency_hz, sizes[0], band)
+            _shade(panel, curves[0], band)
         _curves(panel, curves, teeth, width)
         if top:
             dots = {"type": "rule", "strokeDash": [2, 3], "strokeWidth": 1.4}
             lines = [{"x": hz, "y": ends[0], "y2": ends[1], "name": n} for n, hz in marks.items()]
             panel.draw(dots, [line for line in lines if line["name"] in models])
-            tops = [
-                _tops([(p.frequency_hz, p.force, p.mode) for p in r.peaks], "N", units)
-                for r in responses
-            ]
-            _peaks(panel, responses, tops, teeth, (name, unit), width)
+            _peaks(panel, responses, si, units, teeth, name, width)
         panels.append(panel)
     return Chart(in_columns(panels, 1), width, title)
 
 
 def columns_chart(
-    responses: Sequence[Any],
+    responses: Sequence[TrainResponse],
     columns: Sequence[tuple[str, str]],
     teeth: float | None,
     units: Units = ENGINEERING,
@@ -117,22 +111,16 @@ def columns_chart(
     for k, (column, title) in enumerate(moving):
         si = column.partition(" [")[2].rstrip("]")
         si = f"{si} moved" if si in ("m", "rad") else si
-        drawn = [r for r in responses if column in r.columns]
-        sizes = [units.values(np.abs(r.columns[column]), si) for r in drawn]
-        low, high = _ends(sizes)
-        unit = units.unit(si)
+        curves = _amplitudes(responses, column, title, si, units)
+        low, high = _ends([line.y for line in curves])
         panel = Panel(
             Axis("mesh frequency in Hz" if k >= len(moving) - in_row else "", ends, log=True),
-            Axis(unit, (max(low, high / DEEPEST), high), log=True),
+            Axis(units.unit(si), (max(low, high / DEEPEST), high), log=True),
             140.0,
             title,
             series=models,
-            legend=_legend(width) if k == 0 else None,
+            legend=lines_legend(3 if width > NARROW else 1) if k == 0 else None,
         )
-        curves = [
-            _Curve(r.label, r.frequency_hz, size, ((title, unit, size),))
-            for r, size in zip(drawn, sizes)
-        ]
         _curves(panel, curves, teeth, width / in_row / 2)
         panels.append(panel)
     if len(panels) % in_row:  # as wide as those above it
@@ -140,7 +128,7 @@ def columns_chart(
     return Chart(in_columns(panels, in_row), width) if panels else None
 
 
-def _cut(response: Any, first: float) -> str:
+def _cut(response: TrainResponse, first: float) -> str:
     """Return a remark on the part below the axis; empty if there is none."""
     if first <= response.frequency_hz[0]:
         return ""
@@ -150,7 +138,7 @@ def _cut(response: Any, first: float) -> str:
 
 
 def receptance_chart(
-    receptances: Sequence[Any],
+    receptances: Sequence[TrainReceptance],
     title: str,
     teeth: float,
     units: Units = ENGINEERING,
@@ -168,7 +156,7 @@ def receptance_chart(
         Axis(f"receptance in {unit}", _with_room(_ends(sizes), 360.0), log=True),
         360.0,
         series=models,
-        legend=_legend(width),
+        legend=lines_legend(3 if width > NARROW else 1),
         upper=_speed(teeth, ends),
     )
     turns = {float(v): str(v) for v in (-180, -90, 0, 90, 180)}
@@ -189,8 +177,7 @@ def receptance_chart(
             for receptance, value, size, angle in zip(receptances, values, sizes, phases)
         ]
         _curves(panel, curves, teeth, width, 180.0 if panel is phase else np.inf)
-    tops = [_tops(receptance.peaks, receptance.unit, units) for receptance in receptances]
-    _peaks(amplitude, receptances, tops, teeth, ("receptance", unit), width)
+    _peaks(amplitude, receptances, receptances[0].unit, units, teeth, "receptance", width)
     return Chart(in_columns([amplitude, phase], 1), width, title)
 
 
@@ -203,14 +190,25 @@ class _Curve(NamedTuple):
     read: tuple[tuple[str, str, np.ndarray], ...]
 
 
-def _models(curves: Sequence[Any], colours: Sequence[str] = COLOURS) -> dict[str, Series]:
+def _amplitudes(
+    responses: Sequence[TrainResponse], column: str, name: str, si: str, units: Units
+) -> list[_Curve]:
+    """Return the amplitude of a column of those responses that have it."""
+    out = []
+    for response in responses:
+        if column in response.columns:
+            size = units.values(np.abs(response.columns[column]), si)
+            read = ((name, units.unit(si), size),)
+            out.append(_Curve(response.label, response.frequency_hz, size, read))
+    return out
+
+
+def _models(
+    curves: Sequence[TrainResponse | TrainReceptance], colours: Sequence[str] = COLOURS
+) -> dict[str, Series]:
     """Return models by their labels, the colours in turn."""
     colours = colours if len(curves) == len(PAIR) else COLOURS
     return {item.label: Series(colours[k % len(colours)]) for k, item in enumerate(curves)}
-
-
-def _legend(width: float) -> dict[str, Any]:
-    return lines_legend(3 if width > NARROW else 1)
 
 
 def _speed(teeth: float, ends: tuple[float, float]) -> Axis:
@@ -265,44 +263,39 @@ def _figure(name: str, value: float) -> str:
     return f"{value:.1f}" if name == "phase" else plain(float(value), 4)
 
 
-def _shade(panel: Panel, hz: np.ndarray, size: np.ndarray, band: float) -> None:
+def _shade(panel: Panel, line: _Curve, band: float) -> None:
     """Draw the tolerance in decibels around a curve."""
-    factor, inside = 10 ** (band / 20), hz >= panel.x.ends[0]
-    ends = ((size[inside] / factor).tolist(), (size[inside] * factor).tolist())
+    factor, inside = 10 ** (band / 20), line.hz >= panel.x.ends[0]
     rows = [
-        {"x": x, "y": low, "y2": high, "name": f"{band:g} dB around it"}
-        for x, low, high in zip(hz[inside].tolist(), *ends)
+        {"x": x, "y": y / factor, "y2": y * factor, "name": f"{band:g} dB around it"}
+        for x, y in zip(line.hz[inside].tolist(), line.y[inside].tolist())
     ]
     panel.draw({"type": "area", "opacity": 0.7}, rows)
 
 
-def _tops(peaks: Sequence[tuple[float, float, str]], si: str, units: Units) -> list:
-    """Return peaks (Hz, size, mode), their sizes in the units chosen."""
-    return [(hz, units.value(size, si), mode) for hz, size, mode in peaks]
-
-
 def _peaks(
     panel: Panel,
-    models: Sequence[Any],
-    tops: Sequence[list],
+    models: Sequence[TrainResponse | TrainReceptance],
+    si: str,
+    units: Units,
     teeth: float | None,
-    names: tuple[str, str],
+    name: str,
     width: float,
 ) -> None:
     """Draw the peaks of every model, and names of the first model's that do not overlap."""
-    for model, peaks in zip(models, tops):
+    for model in models:
         rows = []
-        for hz, size, mode in peaks:
-            facts = ("peak of", mode, ""), (names[0], plain(float(size), 4), names[1])
-            words = _words(model.label, float(hz), teeth, *facts)
-            rows.append({"x": hz, "y": size, "readout": words})
+        for hz, size, mode in model.peaks:
+            y = units.value(size, si)
+            facts = ("peak of", mode, ""), (name, plain(y, 4), units.unit(si))
+            rows.append({"x": hz, "y": y, "readout": _words(model.label, hz, teeth, *facts)})
         panel.read(rows, panel.series[model.label].colour)
     first, last = panel.x.ends
     pixel = np.log(last / first) / (width - panel.beside - panel.right)
     labelled, before = [], -np.inf
-    for hz, size, mode in tops[0]:
+    for hz, size, mode in models[0].peaks:
         if hz >= first and np.log(hz) - before >= APART * pixel:
             before = np.log(hz)
-            labelled.append({"x": hz, "y": size, "text": f"{mode}  {hz:.0f} Hz"})
+            labelled.append({"x": hz, "y": units.value(size, si), "text": f"{mode}  {hz:.0f} Hz"})
     look = {"type": "text", "angle": -90, "align": "left", "baseline": "middle", "dx": 7}
     panel.draw(look | {"fontSize": 10}, labelled)

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 
 from solidgear.bearings.words import catalogue, load_row, speed_row, without_column
 from solidgear.core import Quantity, Record
-from solidgear.show.reading import entry
+from solidgear.show.matrices import entry
 from solidgear.show.table import Column, Table, given, text, word
 from solidgear.show.units import ENGINEERING, Units
 from solidgear.show.words import DASH, engineering, is_number, short_percent
@@ -127,8 +127,8 @@ def _own_material(material: Mapping, default: Mapping, units: Units) -> str:
     if material.get("name"):
         return str(material["name"])
     modulus = f"{units.given(material.get('E'), 'Pa')} {units.unit('Pa')}"
-    density = units.given(material.get("density"), "kg/m³")
-    return f"E {modulus}, nu {material.get('nu')}, density {density} kg/m³"
+    density = f"{units.given(material.get('density'), 'kg/m³')} {units.unit('kg/m³')}"
+    return f"E {modulus}, nu {material.get('nu')}, density {density}"
 
 
 def bearings(scene: Mapping, units: Units = ENGINEERING) -> Table:
@@ -206,16 +206,19 @@ def features(scene: Mapping, units: Units = ENGINEERING) -> Table:
 def masses(scene: Mapping, units: Units = ENGINEERING) -> Table:
     """Return the rigid masses on ports."""
 
-    def several(name: str, si: str) -> Callable[[Mapping], str]:
-        return lambda mass: ", ".join(units.given(v, si) for v in mass.get(name, ()))
+    def several(head: str, name: str, si: str) -> Column:
+        return Column(
+            f"{head}, {units.unit(si)}",
+            lambda mass: ", ".join(units.given(v, si) for v in mass.get(name, ())),
+        )
 
     columns = [
         Column("mass", lambda mass: str(mass.get("name", ""))),
         Column("moves with", lambda mass: str(mass.get("on") or "own seat")),
         given("y", "m", units, lambda mass: mass.get("y")),
-        Column("mass, kg", lambda mass: units.given(mass.get("mass"), "kg")),
-        Column("inertia x, y, z, kg m²", several("inertia", "kg m²")),
-        Column(f"offset, {units.unit('m')}", several("offset", "m")),
+        given("mass", "kg", units, lambda mass: mass.get("mass")),
+        several("inertia x, y, z", "inertia", "kg m²"),
+        several("offset", "offset", "m"),
     ]
     note = "Inertia about the centre of mass; offset of that centre from the station."
     return Table("Rigid masses", columns, scene.get("masses") or [], note)

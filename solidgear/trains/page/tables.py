@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from math import degrees
 from typing import Any
 
-from solidgear.show.table import NUMBER, Cell, Column, Table, quantity, text, word
-from solidgear.show.units import ENGINEERING, GROUP, Units, engineering
-from solidgear.show.words import DASH, grouped, hertz, percent, seconds, whole
-
-#: relative; no frequency is shown with a smaller bound, whatever the proof says
-ROUNDING = 1e-12
+from solidgear.show.table import Cell, Column, Table, quantity, text, word
+from solidgear.show.units import ENGINEERING, Units, engineering
+from solidgear.show.words import DASH, hertz, percent, whole
+from solidgear.trains.assembly.orders import Crossing
+from solidgear.trains.file.layout import PerTurn
+from solidgear.trains.response.response import TrainResponse
 
 
 def facts(train: Mapping[str, Any], units: Units = ENGINEERING, title: str = "Train") -> Table:
@@ -55,7 +55,8 @@ def _housing(box: Mapping[str, Any], units: Units) -> list[list[str]]:
         return f"at ({', '.join(units.given(v, 'm') for v in point)}) {units.unit('m')}"
 
     alone = ", ".join(f"{hz:.1f}" for hz in box["alone_hz"])
-    carries = f"{box['mass']:.4g} kg {place(box['centre'])}, carries {', '.join(box['carries'])}"
+    mass = f"{units.value(box['mass'], 'kg'):.4g} {units.unit('kg')}"
+    carries = f"{mass} {place(box['centre'])}, carries {', '.join(box['carries'])}"
     rows = [
         ["housing, elastic" if box["elastic"] else "housing, rigid", carries, "housing"],
         ["housing alone on its mounts", f"{alone} Hz", ""],
@@ -69,11 +70,11 @@ def _housing(box: Mapping[str, Any], units: Units) -> list[list[str]]:
     return rows
 
 
-def housing_columns(response: Any) -> list[tuple[str, str]]:
+def housing_columns(columns: Iterable[str]) -> list[tuple[str, str]]:
     """Return columns of a response for its housing, with their titles."""
     return [
         (column, column.partition(" [")[0])
-        for column in response.columns
+        for column in columns
         if column.startswith("mount ")
         and " force [" in column
         or column.startswith("housing ")
@@ -81,10 +82,10 @@ def housing_columns(response: Any) -> list[tuple[str, str]]:
     ]
 
 
-def housing(response: Any, units: Units = ENGINEERING) -> Table:
+def housing(response: TrainResponse, units: Units = ENGINEERING) -> Table:
     """Return the largest loads of mounts and accelerations of the housing over a response."""
     rows = []
-    for column, name in housing_columns(response):
+    for column, name in housing_columns(response.columns):
         size = abs(response.columns[column])
         si, top = column.partition(" [")[2].rstrip("]"), int(size.argmax())
         rows.append((name, units.text(float(size[top]), si, 4), response.frequency_hz[top]))
@@ -100,8 +101,8 @@ def housing(response: Any, units: Units = ENGINEERING) -> Table:
 def material_words(material: Mapping[str, Any], units: Units) -> str:
     """Return a material by its name, where it has one, and its constants."""
     modulus = f"{units.given(material.get('E'), 'Pa')} {units.unit('Pa')}"
-    density = units.given(material.get("density"), "kg/m³")
-    words = f"E = {modulus}, nu = {material.get('nu', DASH)}, density = {density} kg/m³"
+    density = f"{units.given(material.get('density'), 'kg/m³')} {units.unit('kg/m³')}"
+    words = f"E = {modulus}, nu = {material.get('nu', DASH)}, density = {density}"
     return f"{material['name']}: {words}" if material.get("name") else words
 
 
@@ -187,94 +188,6 @@ def _error(table: Mapping[str, Any] | None, units: Units) -> str:
     return f"a table from {low:g} to {high:g} Hz, up to {most} {unit}"
 
 
-def verdict(judged: Mapping[str, Any]) -> Table:
-    """Return every mix of models: the frequency up to which it agrees, why, and its cost."""
-
-    def end(key: str) -> Callable[[Mapping], str]:
-        beyond = f"{judged['highest_hz']:.0f}+"
-        return lambda mix: beyond if mix[key] is None else whole(mix[key])
-
-    tolerance = f"{100 * judged['tolerance']:g} %"
-    columns = [
-        Column(" + ".join(judged["cheapest"]), lambda mix: _mix(mix, judged["cheapest"])),
-        Column(f"modes within {tolerance}, Hz", end("modes_to_hz")),
-        Column(f"mesh force within {judged['decibels']:g} dB, Hz", end("force_to_hz")),
-        Column(f"mesh force within {tolerance}, Hz", end("close_to_hz")),
-        text("first mode off", _off),
-        text("because of", lambda mix: mix["cause"] or None),
-        Column("unknowns", lambda mix: mix["unknowns"], grouped),
-        Column("build and reduce, s", lambda mix: mix["seconds"], seconds),
-    ]
-    return Table(
-        f"Frequency up to which every mix of models agrees with {every(judged['cheapest'])} shafts "
-        "solid, cheapest first",
-        columns,
-        judged["mixes"],
-        "Cause: the shaft whose replacement by the solid helps most; for a lumped model, the "
-        "assumption. Any peak or dip that moves a little leaves the tolerance in force.",
-    )
-
-
-def every(shafts: Collection[str]) -> str:
-    """Return "both" or "all", for shafts."""
-    return "both" if len(shafts) == 2 else f"all {len(shafts)}"
-
-
-def mix_words(mix: Sequence[str]) -> str:
-    """Return models of the shafts in turn, in short."""
-    return f"{'both' if len(mix) == 2 else 'all'} {mix[0]}" if len({*mix}) == 1 else " + ".join(mix)
-
-
-def _mix(mix: Mapping[str, Any], cheapest: Mapping[str, str]) -> str:
-    models = {side: mix[side] for side in cheapest}
-    name = mix_words([*models.values()])
-    return f"{name}, cheapest" if models == cheapest else name
-
-
-def _off(mix: Mapping[str, Any]) -> str | None:
-    if not mix["mode"]:
-        return None
-    difference = (
-        "no counterpart" if mix["error"] is None else percent(mix["error"]).replace(" ", GROUP)
-    )
-    return f"{mix['mode']}: {difference}"
-
-
-def modes(
-    system: Mapping[str, Any],
-    title: str = "Natural frequencies, both shafts solid",
-    numbered: bool = False,
-) -> Table:
-    """Return the natural frequencies of a train, for a page or, numbered, for a terminal."""
-    rows, speeds = system["modes"], system["speeds"]
-    missing = "" if numbered else None
-
-    def bound(mode: Mapping[str, Any]) -> str:
-        return "exact" if mode["frequency_hz"] == 0 else f"{max(mode['bound'], ROUNDING):.0e}"
-
-    def mesh(mode: Mapping[str, Any]) -> Any:
-        return missing if mode["mesh"] is None else mode["mesh"]
-
-    columns = [
-        word("mode", lambda m: m["name"]),
-        Column("Hz", lambda m: m["frequency_hz"], lambda hz: f"{hz:.2f}"),
-        Column(f"{speeds} rpm", lambda m: m["rpm"], whole),
-        text("most strain energy", lambda m: m["strained"] or missing),
-        Column("bound", bound),
-        Column("mesh", mesh, lambda share: f"{share:.0e}"),
-    ]
-    if not numbered:
-        note = (
-            f"{speeds.capitalize()} rpm: the speed at which its teeth mesh at this frequency. Bound: "
-            "largest error by the reduction. Mesh: largest error by the meshes of harmonic solids."
-        )
-        return Table(title, columns, rows, note)
-    meshed = any(mode["mesh"] is not None for mode in rows)
-    numbers = {id(mode): number for number, mode in enumerate(rows, start=1)}
-    counted = Column("", lambda m: numbers[id(m)], kind=NUMBER)
-    return Table("", [counted, *columns[: 6 if meshed else 5]], rows, style="ruled")
-
-
 def peaks(
     tops: Sequence[tuple[float, float, str]],
     name: str,
@@ -296,21 +209,19 @@ def peaks(
     )
 
 
-def turned(teeth: Any) -> str:
+def turned(teeth: float | None) -> str:
     """Return the shaft of speeds: the pinion unless the teeth name another."""
-    return str(getattr(teeth, "of", "pinion"))
+    return teeth.of if isinstance(teeth, PerTurn) else "pinion"
 
 
-def crossings(
-    rows: list[Mapping[str, Any]], units: Units = ENGINEERING, shaft: str = "pinion"
-) -> Table:
+def crossings(rows: Sequence[Crossing], units: Units = ENGINEERING, shaft: str = "pinion") -> Table:
     """Return the table of crossings of order lines and natural frequencies."""
     columns = [
-        text("order", lambda c: c["line"]),
-        text("mode", lambda c: c["mode"]),
-        Column("Hz", lambda c: c["frequency_hz"], hertz),
-        Column(f"{shaft} rpm", lambda c: c["rpm"], whole),
-        quantity("mesh force", "N", units, lambda c: c["force"], 4),
+        text("order", lambda crossing: crossing.line),
+        text("mode", lambda crossing: crossing.mode),
+        Column("Hz", lambda crossing: crossing.frequency_hz, hertz),
+        Column(f"{shaft} rpm", lambda crossing: crossing.rpm, whole),
+        quantity("mesh force", "N", units, lambda crossing: crossing.force, 4),
     ]
     note = "A dash: the transmission error has no such order."
     return Table("Where orders meet natural frequencies", columns, rows, note)

@@ -8,12 +8,13 @@ times the motion of the seats: all six components, the whole row and not the dia
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from solidgear.core import DOF_NAMES, SolidgearError, System, as_supports, show
+from solidgear.core import DOF_NAMES, Scene, SolidgearError, System, as_supports, show
 from solidgear.core.system.modes import SystemModes
 from solidgear.core.system.steady import SteadyState, peaks, stands_out
 from solidgear.trains.assembly.assembly import Assembly
@@ -23,10 +24,10 @@ from solidgear.trains.assembly.stages import mesh_row, phases_of
 from solidgear.trains.file.housing import HOUSING
 from solidgear.trains.file.planetary import error_of
 from solidgear.trains.file.tables import ErrorTable
+from solidgear.trains.file.train import Train
 from solidgear.trains.modes.modes import refuse_unresolved
 from solidgear.trains.modes.naming import mode_names
 from solidgear.trains.response.response import OrderCurve, Peak
-from solidgear.trains.response.speeds import highest_speed
 
 #: unit of accelerations
 ACCELERATION = "m/s²"
@@ -40,6 +41,8 @@ NEAR, LEAST_NEAR = 4.0, 0.02
 NO_MODE = "none near: several together"
 #: peaks of a mesh force; a train has some tens of modes in any range
 MOST_PEAKS = 400
+#: rpm of a rad/s
+RPM = 30 / np.pi
 #: points between the neighbours of the top of a peak
 TOP = 17
 
@@ -63,12 +66,11 @@ class Drive:
             raise SolidgearError(
                 f"damping {show(damping, 30)} is unknown; use one of {', '.join(DAMPING)}"
             )
-        self.assembly, self.rungs, self.damping = assembly, models, damping
+        self.assembly, self.models, self.damping = assembly, models, damping
         self.system: System = assembly.system(*models)
         self.pair = assembly.train.named_mesh(mesh)
         self._named: dict[int, tuple[SystemModes, list[str]]] = {}
-        loss = assembly.loss_factors()
-        kind = damping
+        loss, kind = assembly.loss_factors(), damping
         if damping == "literal":
             loss = {name: eta / 2 for name, eta in loss.items()}
             kind, matched_hz = "viscous", 1 / (2 * np.pi)
@@ -196,7 +198,6 @@ class Drive:
         refuse_unresolved(self.assembly, self.system, highest_hz)
         first = float(self.system.elastic[0][0] / (2 * np.pi))
         lowest = lowest_hz or min(BEGIN * first, highest_hz / 100)
-
         motions_of = motions_of or self._peak_motions
         points = self.steady.grid(lowest, highest_hz, motions_of)
         tops = peaks(np.abs(motions_of(points)[:, -1]))
@@ -338,3 +339,32 @@ def housing_amplitudes(drive: Drive, frequency_hz: np.ndarray) -> list[np.ndarra
 def _magnitude(values: np.ndarray) -> np.ndarray:
     """Return the (f,) size of the first three components."""
     return np.linalg.norm(values[:, :3], axis=1).astype(complex)
+
+
+@dataclass(frozen=True)
+class GivenSpeed:
+    """A speed of the engine's shaft in the files."""
+
+    rpm: float  #: zero where all that is given stands still
+    source: str  #: where it stands
+
+
+def highest_speed(train: Train, scenes: Mapping[str, Scene]) -> GivenSpeed | None:
+    """Return the highest speed that the files of a train and of the shafts give; None where none does."""
+    return max(_speeds(train, scenes), key=lambda speed: speed.rpm, default=None)
+
+
+def _speeds(train: Train, scenes: Mapping[str, Scene]) -> Iterator[GivenSpeed]:
+    """Yield the speeds that the files give, and the place of each in the files."""
+    for point in train.operation:
+        if (speed := point.speed_of(train.reference, train.turns)) is not None:
+            source = f"operation {point.name!r}" if point.name else "the operation"
+            yield GivenSpeed(abs(speed) * RPM, source)
+    for side, turns_of_shaft in train.turns.items():
+        turns, oil = 1 / turns_of_shaft, scenes[side].lubrication
+        if oil is not None and oil.speed:
+            yield GivenSpeed(abs(turns * oil.speed) * RPM, f"lubrication of the {side}")
+        for bearing in scenes[side].bearings:
+            if bearing.catalogue is not None and bearing.catalogue.speed:
+                speed = abs(turns * bearing.catalogue.speed) * RPM
+                yield GivenSpeed(speed, f"bearing {bearing.name!r} of the {side}")

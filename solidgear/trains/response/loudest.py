@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import inf
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -13,9 +14,10 @@ from solidgear.core import Scene
 from solidgear.core.plain import plain
 from solidgear.trains.file.train import PerTurn, Train
 from solidgear.trains.modes.modes import TrainMode
+from solidgear.trains.response.drive import highest_speed
 from solidgear.trains.response.response import OrderCurve, TrainResponse, figures
-from solidgear.trains.response.speeds import highest_speed
 
+_force = attrgetter("force")
 #: relative, of frequencies that are the same
 SAME = 1e-9
 HEIGHT = "height depends on losses, without error bar"
@@ -145,11 +147,7 @@ def loudest(
     unreached = [top for c in response.orders for top in _top(c, hz, hz > c.order * limit)]
     # a range that begins beyond the speeds has its first point alone
     top = max(reached or unreached, key=_force)
-    larger = max(
-        (candidate for candidate in unreached if candidate.force > top.force),
-        key=_force,
-        default=None,
-    )
+    larger = max((t for t in unreached if t.force > top.force), key=_force, default=None)
     peaks = (
         Top(p.frequency_hz, p.force, c.order, p.mode)
         for c in response.orders
@@ -171,10 +169,6 @@ def loudest(
         parting=response.parting,
         what=f"force of the {pair.name}" if pair.label else "mesh force",
     )
-
-
-def _force(top: Top) -> float:
-    return top.force
 
 
 def _top(curve: OrderCurve, frequency_hz: np.ndarray, mask: np.ndarray) -> Iterator[Top]:

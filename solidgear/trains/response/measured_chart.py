@@ -9,9 +9,12 @@ import numpy as np
 
 from solidgear.show.panel import GREY, INK, Axis, Panel, Series, curve, read_places, readout
 from solidgear.show.plot import NARROW, WIDE, Chart
-from solidgear.show.speed_tables import line_place
 from solidgear.show.units import ENGINEERING, Units, plain
 from solidgear.show.words import hertz
+from solidgear.trains.assembly.shaft import mix_label
+from solidgear.trains.response.at_speed import AtSpeed, MeasuredPeak
+from solidgear.trains.response.response import TrainResponse
+from solidgear.trains.response.spectrum import Spectrum
 
 #: looks of a peak by what it is called after
 MARKS = {
@@ -29,24 +32,22 @@ NAMES = 0.32
 
 
 def measured_chart(
-    at_speed: Any, response: Any, title: str, units: Units = ENGINEERING, width: float = WIDE
+    speed: AtSpeed,
+    spectrum: Spectrum,
+    response: TrainResponse,
+    title: str,
+    units: Units = ENGINEERING,
+    width: float = WIDE,
 ) -> Chart:
     """Chart the measured spectrum with the orders of its peaks, above the computed mesh force."""
-    last = float(at_speed.spectrum.frequency_hz[-1])
-    ends = (0.0, min(last, max(float(response.frequency_hz[-1]), _last_peak(at_speed))))
-    return Chart(
-        [[_measured(at_speed, ends, width)], [_computed(at_speed, response, ends, units)]],
-        width,
-        title,
-    )
+    last = float(spectrum.frequency_hz[-1])
+    last_peak = max((peak.frequency_hz for peak in speed.peaks), default=0.0) * 1.02
+    ends = (0.0, min(last, max(float(response.frequency_hz[-1]), last_peak)))
+    panels = [_measured(speed, spectrum, ends, width), _computed(speed, response, ends, units)]
+    return Chart([[panel] for panel in panels], width, title)
 
 
-def _last_peak(at_speed: Any) -> float:
-    return max((peak.frequency_hz for peak in at_speed.peaks), default=0.0) * 1.02
-
-
-def _measured(at_speed: Any, ends: tuple[float, float], width: float) -> Panel:
-    spectrum, narrow = at_speed.spectrum, width <= NARROW
+def _measured(speed: AtSpeed, spectrum: Spectrum, ends: tuple[float, float], width: float) -> Panel:
     inside = spectrum.frequency_hz <= ends[1]
     hz, size = spectrum.frequency_hz[inside], spectrum.amplitude[inside]
     low, high = _room(size, spectrum.in_decibels)
@@ -59,21 +60,21 @@ def _measured(at_speed: Any, ends: tuple[float, float], width: float) -> Panel:
             log=not spectrum.in_decibels,
         ),
         300.0,
-        title=f"Measured: {spectrum.name}, at {at_speed.rpm:.6g} rpm of the pinion",
+        title=f"Measured: {spectrum.name}, at {speed.rpm:.6g} rpm of the {speed.shaft}",
         series=MARKS,
-        legend={"orient": "top", "columns": 2 if narrow else 5},
+        legend={"orient": "top", "columns": 2 if width <= NARROW else 5},
     )
-    _modes(panel, at_speed, ends, name=False)
+    _modes(panel, speed, ends, name=False)
     outlined = outline(hz, size)
     panel.draw(
         {"type": "line", "color": INK, "strokeWidth": 1}, curve(hz[outlined], size[outlined])
     )
     rows = []
-    for peak in (p for p in at_speed.peaks if p.frequency_hz <= ends[1]):
+    for peak in (p for p in speed.peaks if p.frequency_hz <= ends[1]):
         facts = (
             ("frequency", hertz(peak.frequency_hz), "Hz"),
             ("amplitude", plain(peak.amplitude, 4), spectrum.unit),
-            ("order at", line_place(peak.line) or "", "Hz"),
+            ("order at", peak.line.place if peak.line else "", "Hz"),
             ("also within the bar of", ", ".join(peak.others[:3]), ""),
         )
         words = readout(peak.name, *facts)
@@ -81,11 +82,11 @@ def _measured(at_speed: Any, ends: tuple[float, float], width: float) -> Panel:
             {"x": peak.frequency_hz, "y": peak.amplitude, "name": _kind(peak), "readout": words}
         )
     panel.draw({"type": "point", "filled": True, "size": 34}, rows)
-    _names(panel, at_speed.peaks, ends, width)
+    _names(panel, speed.peaks, ends, width)
     return panel
 
 
-def _kind(peak: Any) -> str:
+def _kind(peak: MeasuredPeak) -> str:
     """Return the series of a peak."""
     if peak.line is None:
         return "not ours"
@@ -119,7 +120,9 @@ def outline(x: np.ndarray, y: np.ndarray, columns: int = COLUMNS) -> np.ndarray:
     return np.unique([0, len(x) - 1, *np.ravel(ends)])
 
 
-def _names(panel: Panel, peaks: Sequence[Any], ends: tuple[float, float], width: float) -> None:
+def _names(
+    panel: Panel, peaks: Sequence[MeasuredPeak], ends: tuple[float, float], width: float
+) -> None:
     """Draw names over the largest peaks; those that would overlap are left to the table."""
     pixel = (ends[1] - ends[0]) / (width - panel.beside - panel.right)
     labels: list[dict[str, Any]] = []
@@ -131,7 +134,9 @@ def _names(panel: Panel, peaks: Sequence[Any], ends: tuple[float, float], width:
     panel.draw(look | {"fontSize": 10}, labels)
 
 
-def _computed(at_speed: Any, response: Any, ends: tuple[float, float], units: Units) -> Panel:
+def _computed(
+    speed: AtSpeed, response: TrainResponse, ends: tuple[float, float], units: Units
+) -> Panel:
     hz, force = response.frequency_hz, units.values(np.abs(response.force), "N")
     inside = (hz <= ends[1]) & (force > 0)
     hz, force = hz[inside], force[inside]
@@ -141,13 +146,11 @@ def _computed(at_speed: Any, response: Any, ends: tuple[float, float], units: Un
         Axis("frequency in Hz", ends),
         Axis(f"mesh force in {unit}", (low, high), log=True),
         240.0,
-        title=f"Computed: mesh force, {', '.join(f'{side} {rung}' for side, rung in response.models.items())}; "
+        title=f"Computed: mesh force, {mix_label(response.models)}; "
         "dashed orders of the mesh, grey natural frequencies",
     )
-    _modes(panel, at_speed, ends, name=True)
-    orders = [
-        line for line in at_speed.lines if line.kind == "mesh" and line.frequency_hz <= ends[1]
-    ]
+    _modes(panel, speed, ends, name=True)
+    orders = [line for line in speed.lines if line.kind == "mesh" and line.frequency_hz <= ends[1]]
     dashed = {"type": "rule", "color": LINE, "strokeDash": [6, 4]}
     panel.draw(dashed, [{"x": line.frequency_hz} for line in orders])
     for align, aside in (("left", 3), ("right", -3)):  # the last name stays on the paper
@@ -166,9 +169,9 @@ def _computed(at_speed: Any, response: Any, ends: tuple[float, float], units: Un
     return panel
 
 
-def _modes(panel: Panel, at_speed: Any, ends: tuple[float, float], name: bool) -> None:
+def _modes(panel: Panel, speed: AtSpeed, ends: tuple[float, float], name: bool) -> None:
     """Draw natural frequencies as upright lines; where named, they can be read at their feet."""
-    inside = [(mode, hz) for mode, hz in at_speed.modes if hz <= ends[1]]
+    inside = [(mode, hz) for mode, hz in speed.modes if hz <= ends[1]]
     panel.draw({"type": "rule", "color": MODE}, [{"x": hz} for _, hz in inside])
     if name:
         low = panel.y.ends[0]

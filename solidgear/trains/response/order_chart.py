@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from solidgear.show.panel import INK, Axis, Panel, read_places, readout
 from solidgear.show.plot import NARROW, WIDE, Chart
 from solidgear.show.units import ENGINEERING, Units, plain
 from solidgear.show.words import hertz
+from solidgear.trains.assembly.orders import OrderLine, OrderMap
 
 #: widest line, pt, and how many decades of force below the largest are told apart
 WIDEST, DECADES = 5.0, 2.0
@@ -23,7 +22,7 @@ PLAIN, SHAFTS = "#666666", ("#b3305c", "#5a3e8c", "#2b7a5d", "#8a5a00")
 
 
 def order_chart(
-    orders: Any, title: str, teeth: float, units: Units = ENGINEERING, width: float = WIDE
+    orders: OrderMap, title: str, teeth: float, units: Units = ENGINEERING, width: float = WIDE
 ) -> Chart:
     """Chart order lines and natural frequencies; the upper axis needs the teeth per turn of the
     speed's shaft.
@@ -59,7 +58,7 @@ def _rounds(high: float) -> np.ndarray:
     return np.arange(0.0, high, step)
 
 
-def _mode_names(panel: Panel, orders: Any, letter: int) -> None:
+def _mode_names(panel: Panel, orders: OrderMap, letter: int) -> None:
     """Draw names right of their lines, separated where frequencies are close."""
     order = sorted(orders.modes, key=lambda mode: mode.frequency_hz)
     shares = np.array([mode.frequency_hz / orders.highest_hz for mode in order])
@@ -79,16 +78,8 @@ def _mode_names(panel: Panel, orders: Any, letter: int) -> None:
 
 
 def spread(places: np.ndarray, distance: float) -> np.ndarray:
-    """Return ascending places moved as little as possible so that neighbours are `distance` apart
-    and below 1.
-
-    Parameters
-    ----------
-    places : (n,) ndarray
-
-    Returns
-    -------
-    (n,) ndarray
+    """Return ascending places (n,) moved as little as possible so that neighbours are `distance`
+    apart and below 1.
 
     Examples
     --------
@@ -108,7 +99,7 @@ def spread(places: np.ndarray, distance: float) -> np.ndarray:
     return np.minimum(out, below)
 
 
-def _crossings(panel: Panel, orders: Any, units: Units) -> None:
+def _crossings(panel: Panel, orders: OrderMap, units: Units) -> None:
     """Draw every crossing with its mode; a ring where there is a force."""
     for excited in (True, False):
         rows = [
@@ -129,7 +120,7 @@ def _crossings(panel: Panel, orders: Any, units: Units) -> None:
 
 
 def _facts(
-    orders: Any, rpm: float, hz: float, force: float | None, units: Units
+    orders: OrderMap, rpm: float, hz: float, force: float | None, units: Units
 ) -> list[tuple[str, str, str]]:
     """Return the words on a place of an order; no force where there is none."""
     size = "" if force is None else plain(units.value(float(force), "N"), 4)
@@ -140,54 +131,60 @@ def _facts(
     ]
 
 
-def _line(panel: Panel, line: Any, orders: Any, largest: float, units: Units) -> None:
+def _line(panel: Panel, line: OrderLine, orders: OrderMap, largest: float, units: Units) -> None:
     """Draw an order, as wide and dark as its force, and its name."""
     kind, number = line.name.split()[0], int(line.name.split()[-1])
     shafts = [*dict.fromkeys(order_line.name.split()[0] for order_line in orders.lines)]
     shafts = [name for name in shafts if name != "mesh"]
-    own_colour = PLAIN if kind == "mesh" else SHAFTS[shafts.index(kind) % len(SHAFTS)]
+    kind_colour = PLAIN if kind == "mesh" else SHAFTS[shafts.index(kind) % len(SHAFTS)]
     end = min(orders.highest_rpm, 60 * orders.highest_hz / line.per_turn)
-    if line.force is None:
+    speeds, forces, places = np.linspace(0, end, PLACES), None, [*range(PLACES)]
+    if line.rpm is None or line.force is None:
         dash = [6, 4] if kind == "mesh" else [2, 3]
         ends = [{"x": rpm, "y": rpm * line.per_turn / 60} for rpm in (0.0, end)]
         panel.draw(
-            {"type": "line", "color": own_colour, "strokeDash": dash, "strokeWidth": 1}, ends
+            {"type": "line", "color": kind_colour, "strokeDash": dash, "strokeWidth": 1}, ends
         )
-        speeds, forces = np.linspace(0, end, PLACES), [None] * PLACES
     else:
         speeds, forces = line.rpm, line.force
-        _pieces(panel, line, largest, units)
+        places = read_places(speeds, forces, PLACES)
+        _pieces(panel, line.per_turn, speeds, forces, largest, units)
     rows = []
-    places = range(PLACES) if line.force is None else read_places(speeds, forces, PLACES)
     for k in places:
         rpm = float(speeds[k])
-        facts = _facts(orders, rpm, rpm * line.per_turn / 60, forces[k], units)
+        force = None if forces is None else forces[k]
+        facts = _facts(orders, rpm, rpm * line.per_turn / 60, force, units)
         words = readout(line.name, *facts)
         rows.append({"x": rpm, "y": rpm * line.per_turn / 60, "readout": words})
-    panel.read(rows, own_colour)
+    panel.read(rows, kind_colour)
     # names are staggered: lines of one kind run close together
     steps = -0.06 if kind == "mesh" else 0.13
     share = (0.93 if kind == "mesh" else 0.67) + steps * (number % 3)
-    colour = INK if kind == "mesh" else own_colour
+    colour = INK if kind == "mesh" else kind_colour
     name = {"type": "text", "align": "right", "color": colour, "dx": -4, "dy": -6}
     place = {"x": share * end, "y": share * end * line.per_turn / 60}
     panel.draw(name, [{**place, "text": line.name}])
 
 
-def _pieces(panel: Panel, line: Any, largest: float, units: Units) -> None:
-    """Draw a line in pieces, each in the colour and width of its force."""
-    ends = np.unique(
-        [*read_places(line.rpm, line.force, PIECES), *np.flatnonzero(line.force == largest)]
-    )
-    rpm, force = line.rpm[ends], line.force[ends]
+def _pieces(
+    panel: Panel,
+    per_turn: float,
+    speeds: np.ndarray,
+    forces: np.ndarray,
+    largest: float,
+    units: Units,
+) -> None:
+    """Draw an order in pieces, each in the colour and width of the force there."""
+    ends = np.unique([*read_places(speeds, forces, PIECES), *np.flatnonzero(forces == largest)])
+    rpm, force = speeds[ends], forces[ends]
     middle = np.sqrt(force[:-1] * force[1:])
     share = 1 + np.log10(np.maximum(middle / largest, 10**-DECADES)) / DECADES
     rows = [
         {
             "x": rpm[k],
             "x2": rpm[k + 1],
-            "y": rpm[k] * line.per_turn / 60,
-            "y2": rpm[k + 1] * line.per_turn / 60,
+            "y": rpm[k] * per_turn / 60,
+            "y2": rpm[k + 1] * per_turn / 60,
             "force": units.value(float(middle[k]), "N"),
             "strokeWidth": round(0.8 + (WIDEST - 0.8) * float(share[k]), 2),
         }

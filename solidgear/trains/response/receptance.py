@@ -90,9 +90,8 @@ def receptance(
     force_unit = FORCE_UNITS[_component(from_)]
     if " " in force_unit:
         force_unit = f"({force_unit})"
-    rungs = assembly.models_by_shaft(models)
     return TrainReceptance(
-        models=rungs,
+        models=assembly.models_by_shaft(models),
         damping=damping,
         from_=from_,
         to=to,

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from solidgear.trains.assembly.shaft import mix_label
 
 
-@dataclass(frozen=True)
-class Peak:
+class Peak(NamedTuple):
     """A peak of the mesh force."""
 
     frequency_hz: float

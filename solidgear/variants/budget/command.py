@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Annotated
 
@@ -10,11 +9,12 @@ import typer
 
 from solidgear.core import SolidgearError, listed
 from solidgear.core.judge.answer import asked_for
-from solidgear.show.command import command, say
+from solidgear.show.command import Progress, command
 from solidgear.show.open_words import budget as budget_table
 from solidgear.show.options import Run, SceneFile
 from solidgear.show.plot import check_ending
 from solidgear.show.remarks import load
+from solidgear.show.sheet import Sheet, Terminal, present
 from solidgear.variants.budget.budget import budget as solve_budget
 from solidgear.variants.budget.chart import budget_chart
 
@@ -44,18 +44,23 @@ def budget(
         check_ending(out)
     loaded = load(scene)
     names = asked_for(loaded, ask) if ask else ()
-    with run.progress() as progress:
+
+    def study(progress: Progress) -> Sheet:
         ranges = solve_budget(loaded, samples=samples, seed=seed, progress=progress)
-    absent = [name for name in names if ranges.of(name) is None]
-    if absent:
-        raise SolidgearError(f"--ask: no range is known for {listed(absent)}")
-    if out is not None:
+        absent = [name for name in names if ranges.of(name) is None]
+        if absent:
+            raise SolidgearError(f"--ask: no range is known for {listed(absent)}")
         chart = budget_chart(ranges, asked=names)
-        if chart is not None:
+        if out is not None and chart is not None:
             chart.write(out)
-    if run.as_json:
-        print(json.dumps({"scene": loaded.name, **ranges.model_dump(mode="json")}, allow_nan=False))
-        return
-    say(budget_table(ranges, names))
-    if out is not None:
-        say(f"Chart: {out}")
+        return Sheet(
+            name="budget",
+            title="",
+            lead="",
+            tables=[budget_table(ranges, names)],
+            data={"scene": loaded.name, **ranges.model_dump(mode="json")},
+            notes=[] if out is None else [f"Chart: {out}"],
+            terminal=Terminal(heading=()),
+        )
+
+    present(study, run)

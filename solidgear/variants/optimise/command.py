@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-import json
-from contextlib import nullcontext
 from functools import partial
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
-from solidgear.show.command import NOT_REACHED, command, say
-from solidgear.show.folder import held
+from solidgear.show.command import command
 from solidgear.show.options import AUTO, BY_MODEL, AutoChoice, Run, relative
 from solidgear.show.panel import GREY, Axis, Panel, Series, readout
 from solidgear.show.plot import WIDE, Chart
-from solidgear.show.sheet_files import write_files
+from solidgear.show.sheet import Sheet, Terminal, present
 from solidgear.show.table import NUMBER, Column, Table, text
+from solidgear.variants.optimise.optimise import Design, Optimum
 from solidgear.variants.optimise.optimise import optimise as optimised
 
 
@@ -60,26 +58,43 @@ def optimise(
     ] = None,
     run: Run,
 ) -> None:
-    with held(out) if out else nullcontext(), run.progress() as progress:
-        optimum = optimised(
-            scene,
-            vary or (),
-            goal,
-            keep or (),
-            keep_sum=keep_sum or (),
-            model=None if model == AUTO else str(model),
-            tol=tol,
-            progress=progress,
-        )
-        files = write_optimum(out, optimum) if out else []
-    if run.as_json:
-        print(json.dumps(optimum.results, allow_nan=False))
-    else:
-        say(optimum.scene, designs(optimum), *optimum.sentences, soft_wrap=False)
-        if files:
-            say(f"Written: {', '.join(map(str, files))}", soft_wrap=False)
-    if optimum.best is None:
-        raise typer.Exit(NOT_REACHED)
+    present(
+        lambda progress: optimum_sheet(
+            optimised(
+                scene,
+                vary or (),
+                goal,
+                keep or (),
+                keep_sum=keep_sum or (),
+                model=None if model == AUTO else str(model),
+                tol=tol,
+                progress=progress,
+            )
+        ),
+        run,
+        out,
+    )
+
+
+def optimum_sheet(optimum: Optimum) -> Sheet:
+    """Return the sheet of a search."""
+    title = f"{optimum.scene}: {optimum.goal}"
+    how = "the cheapest mesh whose bars are within the tolerance"
+    if optimum.model:
+        how = f"the {optimum.model} model, without error bars"
+    return Sheet(
+        name="optimum",
+        title=title,
+        lead=f"Every design solved by {how}.",
+        tables=[designs(optimum)],
+        data=optimum.results,
+        charts={"designs": partial(designs_chart, optimum, title)},
+        lines={"designs": designs(optimum)},
+        notes=optimum.sentences,
+        reached=optimum.best is not None,
+        terminal=Terminal(heading=[optimum.scene]),
+        words={"designs": "The goal in every design solved, each with its error bar."},
+    )
 
 
 KEPT, MISSED, BEST = "keeps every limit", "misses a limit", "best"
@@ -90,7 +105,7 @@ LOOKS = {
 }
 
 
-def designs(optimum: Any) -> Table:
+def designs(optimum: Optimum) -> Table:
     """Return the table of all designs in the order in which they were solved."""
     labels = list(optimum.path[0].values)
     columns = [
@@ -107,27 +122,30 @@ def designs(optimum: Any) -> Table:
     return Table("Designs", columns, rows, note, style="ruled")
 
 
-def _remark(optimum: Any, design: Any) -> str:
+def _remark(optimum: Optimum, design: Design) -> str:
     if design.status != "ok":
-        return str(design.status)[:60]
-    look = _look(optimum, design)
-    return "" if look == KEPT else look
+        return design.status[:60]
+    return _look(optimum, design).replace(KEPT, "")
 
 
-def _look(optimum: Any, design: Any) -> str:
-    if optimum.best is not None and design.number == optimum.best.number:
+def _look(optimum: Optimum, design: Design) -> str:
+    if design is optimum.best:
         return BEST
     return KEPT if design.kept else MISSED
 
 
-def designs_chart(optimum: Any, title: str, width: float = WIDE) -> Chart:
+def designs_chart(optimum: Optimum, title: str, width: float = WIDE) -> Chart:
     """Draw the goal over the one entry that varies, or over the number of the design."""
-    solved = [design for design in optimum.path if design.value is not None]
+    solved = [
+        (design, design.value, design.bar or 0.0)
+        for design in optimum.path
+        if design.value is not None
+    ]
     labels = list(optimum.path[0].values)
     over = labels[0] if len(labels) == 1 else "design"
-    x = [d.values[over] if len(labels) == 1 else d.number for d in solved]
-    low = min(d.value - (d.bar or 0.0) for d in solved)
-    high = max(d.value + (d.bar or 0.0) for d in solved)
+    x = [d.values[over] if len(labels) == 1 else d.number for d, _, _ in solved]
+    low = min(value - bar for _, value, bar in solved)
+    high = max(value + bar for _, value, bar in solved)
     room = 0.08 * (high - low) or abs(high)
     edge = 0.03 * (max(x) - min(x)) or 1.0
     panel = Panel(
@@ -138,39 +156,16 @@ def designs_chart(optimum: Any, title: str, width: float = WIDE) -> Chart:
         legend={"orient": "top"},
     )
     bars = [
-        {"x": place, "y": design.value - design.bar, "y2": design.value + design.bar}
-        for place, design in zip(x, solved)
-        if design.bar
+        {"x": place, "y": value - bar, "y2": value + bar}
+        for place, (_, value, bar) in zip(x, solved)
+        if bar
     ]
     panel.draw({"type": "rule", "color": GREY, "strokeWidth": 2}, bars)
-    rows = []
-    for place, design in zip(x, solved):
-        facts = [(label, f"{value:.6g}", "") for label, value in design.values.items()]
-        goal = (optimum.goal.name, f"{design.value:.6g}", "")
-        rows.append(
-            {
-                "x": place,
-                "y": design.value,
-                "name": _look(optimum, design),
-                "readout": readout(f"design {design.number}", *facts, goal),
-            }
-        )
-    panel.draw({"type": "point", "filled": True, "size": 60}, rows)
+    points = []
+    for place, (design, value, _) in zip(x, solved):
+        numbers = {**design.values, optimum.goal.name: value}
+        facts = [(label, f"{number:.6g}", "") for label, number in numbers.items()]
+        words = readout(f"design {design.number}", *facts)
+        points.append({"x": place, "y": value, "name": _look(optimum, design), "readout": words})
+    panel.draw({"type": "point", "filled": True, "size": 60}, points)
     return Chart([[panel]], width, title)
-
-
-def write_optimum(folder: Path, optimum: Any) -> list[Path]:
-    """Write page, data, table and chart of a search into a folder."""
-    title = f"{optimum.scene}: {optimum.goal}"
-    lead = "Every design solved by the cheapest mesh whose bars are within the tolerance."
-    return write_files(
-        folder,
-        "optimum",
-        title,
-        lead,
-        [designs(optimum)],
-        optimum.results,
-        lines={"designs": designs(optimum)},
-        charts={"designs": partial(designs_chart, optimum, title)},
-        notes=optimum.sentences,
-    )

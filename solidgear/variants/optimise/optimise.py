@@ -31,11 +31,10 @@ from solidgear.core.judge.change import Change
 from solidgear.core.plain import plain
 from solidgear.core.scene.units import quantity, si_factor
 from solidgear.variants.sweep.design import Design as SweepDesign
-from solidgear.variants.sweep.entries import Entry, assignment
+from solidgear.variants.sweep.entries import Entry, amount, assignment, in_si, plain_number
 from solidgear.variants.sweep.file_task import without_bars
 from solidgear.variants.sweep.file_variants import SceneVariants, scene_variants
 from solidgear.variants.sweep.scene_task import MOST_MODES, STATICS, SceneTask
-from solidgear.variants.sweep.spans import amount, in_si, plain_number
 
 
 @dataclass(frozen=True)
@@ -114,10 +113,19 @@ def _sentences(optimum: Optimum) -> Iterator[str]:
     if not solved:
         yield f"No design could be solved; the file as it is: {optimum.path[0].status}."
         return
-    if best is None:
+    if best is None or best.value is None:
         limits = ", ".join(map(str, optimum.keep))
         yield f"No design of {solved} keeps {limits}, error bars included."
-        yield from _nearest_miss(optimum)
+        missing = {
+            design.number: max(wish.missing(design.row) for wish in optimum.keep)
+            for design in optimum.path
+            if design.status == "ok"
+        }
+        closest = min(missing, key=lambda number: missing[number])
+        yield (
+            f"The nearest misses by {100 * missing[closest]:.3g} % of the limit, at "
+            f"{_listed_values(optimum.path[closest])} (SI)."
+        )
         return
     yield f"{optimum.goal}: {_with_bar(best.value, best.bar)} (SI) at {_listed_values(best)}."
     if optimum.how:
@@ -138,7 +146,12 @@ def _sentences(optimum: Optimum) -> Iterator[str]:
                 f"No gain is claimed over {file}: the difference is within the error bars; a "
                 "smaller --tol narrows them."
             )
-    count = sum(design is not best and _as_good(optimum, design) for design in optimum.path)
+    changes = [
+        Change(design.value, best.value, design.bar, best.bar)
+        for design in optimum.path
+        if design is not best and design.kept and design.value is not None
+    ]
+    count = sum(change.verdict == "not resolved" for change in changes)
     if count:
         designs = "designs are" if count > 1 else "design is"
         yield f"{count} more {designs} as good within the error bars."
@@ -152,28 +165,6 @@ def _with_bar(value: float | None, bar: float | None) -> str:
 
 def _listed_values(design: Design) -> str:
     return ", ".join(f"{label} = {value:.6g}" for label, value in design.values.items())
-
-
-def _as_good(optimum: Optimum, design: Design) -> bool:
-    """True if error bars do not distinguish a design from the best."""
-    best = optimum.best
-    if best is None or not design.kept or design.value is None or best.value is None:
-        return False
-    return Change(design.value, best.value, design.bar, best.bar).verdict == "not resolved"
-
-
-def _nearest_miss(optimum: Optimum) -> Iterator[str]:
-    misses = [
-        (max(wish.missing(design.row) for wish in optimum.keep), design)
-        for design in optimum.path
-        if design.status == "ok"
-    ]
-    if misses:
-        short, design = min(misses, key=lambda pair: pair[0])
-        yield (
-            f"The nearest misses by {100 * short:.3g} % of the limit, at {_listed_values(design)} "
-            "(SI)."
-        )
 
 
 #: of a range: distance of two designs that are the same, and of an optimum at the end from the end
@@ -282,7 +273,11 @@ class _Search:
             keep=self.keep,
             path=tuple(self.designs),
             best=best,
-            at_end=() if best is None else self._at_end(best),
+            at_end=tuple(
+                entry.label
+                for entry, x in zip(self.entries, self.places[best.number] if best else ())
+                if min(x, 1 - x) <= AT_END
+            ),
             how=how,
             model=self.task.model,
         )
@@ -317,20 +312,17 @@ class _Search:
         goal = self.goal.value(row)
         kept = row["status"] == "ok" and all(wish.missing(row) <= 0 for wish in self.keep)
         if row["status"] == "ok" and goal is None:
-            self._refuse_goal(row)
+            modes = [str(v) for k, v in row.items() if k.startswith("mode") and k != "model" and v]
+            names = [*map(str, STATICS), "mass", *modes]
+            raise SolidgearError(
+                f"--goal {self.goal}: a design has no {self.goal.name}"
+                f"{nearest(self.goal.name, names)}; it has {', '.join(names)}"
+            )
         value, bar = goal or (None, None)
         design = Design(number, self.variants.varied(0), value, bar, kept, row["status"], row)
         self.designs.append(design)
         self.places.append(place.copy())
         return design
-
-    def _refuse_goal(self, row: dict[str, Any]) -> None:
-        modes = [str(v) for k, v in row.items() if k.startswith("mode") and k != "model" and v]
-        names = [*map(str, STATICS), "mass", *modes]
-        raise SolidgearError(
-            f"--goal {self.goal}: a design has no {self.goal.name}{nearest(self.goal.name, names)}; "
-            f"it has {', '.join(names)}"
-        )
 
     def _place_of_file(self) -> np.ndarray:
         """Return the coordinates of the file in the ranges; not a number beyond them."""
@@ -344,12 +336,6 @@ class _Search:
             x = (value - low) / (high - low)
             out.append(x if 0 <= x <= 1 else math.nan)
         return np.array(out)
-
-    def _at_end(self, best: Design) -> tuple[str, ...]:
-        place = self.places[best.number]
-        return tuple(
-            entry.label for entry, x in zip(self.entries, place) if min(x, 1 - x) <= AT_END
-        )
 
 
 def _between(entry: Entry, x: float) -> float:
@@ -553,20 +539,20 @@ def limit_of(text: str) -> Wish:
         raise SolidgearError(
             f'--keep {show(text, 40)}: write NUMBER < VALUE, such as "C_zz < 5 um/kN" or "f1 > 600 Hz"'
         )
-    name = match["name"]
-    return Wish(name, match["sense"] == ">", _limit_in_si(name, match["value"], text))
+    try:
+        limit = _limit_in_si(match["name"], match["value"])
+    except SceneError as error:
+        raise SolidgearError(f"--keep {show(text, 40)}: {error}") from None
+    return Wish(match["name"], match["sense"] == ">", limit)
 
 
-def _limit_in_si(name: str, value: str, text: str) -> float:
+def _limit_in_si(name: str, value: str) -> float:
     if (number := plain_number(value)) is not value:
         return float(number)
     static = next((q for q in STATICS if str(q) == name), None)
-    try:
-        if static is None:
-            return quantity(value, "mass" if name == "mass" else "frequency")
+    if static is not None:
         return _static_in_si(value, static.unit)
-    except SceneError as error:
-        raise SolidgearError(f"--keep {show(text, 40)}: {error}") from None
+    return quantity(value, "mass" if name == "mass" else "frequency")
 
 
 def _static_in_si(value: str, si_unit: str) -> float:

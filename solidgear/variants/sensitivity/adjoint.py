@@ -13,12 +13,24 @@ needed.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from solidgear.core import COMPLIANCE, Body, Mode, Quantity, SolidgearError, Supports, flexibility
+from solidgear.core import (
+    COMPLIANCE,
+    Bearing,
+    Body,
+    Mode,
+    Port,
+    Quantity,
+    Scene,
+    SolidgearError,
+    Supports,
+    flexibility,
+)
+from solidgear.core.scene import PointMass
 from solidgear.core.solve.statics import condense
 
 
@@ -140,3 +152,64 @@ def _loaded(body: Body, supports: Supports, load_rows: np.ndarray, load: Sequenc
         if u.any():
             vectors[index] = u
     return State(vectors, forces, motions)
+
+
+#: places of a seat
+SEAT = ("y", "lo", "hi")
+
+
+def rates(
+    low: Sequence[object], high: Sequence[object], names: Sequence[str], step: float
+) -> np.ndarray:
+    """Return the rates (things, names) of some numbers of segments, seats or others from a scene to
+    another; refuse a shaft that takes another form.
+    """
+    if len(low) != len(high):
+        raise SolidgearError("the shaft takes another form there")
+    a, b = (
+        np.array([[getattr(thing, name) for name in names] for thing in things])
+        for things in (low, high)
+    )
+    return (b - a) / step
+
+
+def line_velocities(
+    scene: Scene,
+    stations: Sequence[tuple[Port | Bearing | PointMass, str]],
+    segments: np.ndarray,
+    seats: np.ndarray,
+    followed: Mapping[str, Sequence[str]],
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return places along the axis that nodes follow, ascending, and their velocities: ends of
+    segments, and those places of seats that are `followed` by their attachment; refuse places of
+    one line that move apart. Rates are those of :func:`rates`, of segments by shape.
+    """
+    marks = {0.0: 0.0} | {s.y1: moved[1] for s, moved in zip(scene.segments, segments)}
+    tol = 1e-9 * scene.length
+    for (station, attachment), moved in zip(stations, seats):
+        for name in followed[attachment]:
+            place, rate = getattr(station, name), moved[SEAT.index(name)]
+            near = next((mark for mark in marks if abs(mark - place) < tol), None)
+            if near is None:
+                marks[place] = rate
+            elif attachment != "average" and abs(marks[near] - rate) > 1e-6 * max(1.0, abs(rate)):
+                raise SolidgearError(
+                    f"{station.name} is tied ({attachment}) at a line of the mesh that does not move"
+                )
+    places = np.array(sorted(marks))
+    return places, np.array([marks[place] for place in places])
+
+
+def in_plane(body: Body, index: int, six: np.ndarray) -> np.ndarray:
+    """Return the components (p, c) of all ports in the plane that a block is written in."""
+    block = body.block(index)
+    _, signs = block.mirror or (index, (1.0,) * len(block.components))
+    return six.reshape(-1, 6)[:, list(block.components)] * signs
+
+
+def shared_blocks(body: Body, pair: tuple[State, State]) -> Iterator[tuple[int, list[np.ndarray]]]:
+    """Yield the blocks in which both states of a pair move, with their unknowns on the mesh."""
+    for index in pair[0].vectors.keys() & pair[1].vectors.keys():
+        block = body.block(index)
+        shapes = [state.vectors[index] for state in pair]
+        yield index, [u if block.expand is None else block.expand @ u for u in shapes]

@@ -13,7 +13,7 @@ from dataclasses import fields
 
 import numpy as np
 
-from solidgear.core import Body, SolidgearError
+from solidgear.core import Body, Scene, SolidgearError
 from solidgear.core.models.beam.body import (
     matrices,
     pieces,
@@ -26,30 +26,26 @@ from solidgear.core.models.beam.body import (
 from solidgear.core.models.beam.element import MATTER, SHAPE, Elements, Section, owners
 from solidgear.core.models.beam.shoulder import hinges
 from solidgear.core.scene.shaft import attached_stations
-from solidgear.variants.sensitivity.adjoint import Form
+from solidgear.variants.sensitivity.adjoint import (
+    SEAT,
+    Form,
+    in_plane,
+    line_velocities,
+    rates,
+    shared_blocks,
+)
 
 #: imaginary step: its square is negligible beside 1
 STEP = 1e-30
-SEAT = ("y", "lo", "hi")
+#: places of seats that nodes follow
+FOLLOWED = {"section": ("y",), "rigid": ("lo", "hi"), "average": ()}
 HINGE = ("bend", "stretch", "twist")
 
 
 class BeamAdjoint:
-    """Derivatives of numbers of a beam, each array (..., forms).
+    """Derivatives of numbers of a beam, each array (..., forms)."""
 
-    Attributes
-    ----------
-    nodes : (n, f) ndarray
-        By places of nodes, which follow the ends of segments, rigid seats and sections.
-    segments, materials : (s, 6, f) and (s, 3, f) ndarray
-        By :data:`SHAPE` and :data:`MATTER`.
-    seats : (p, 3, f) ndarray
-        By :data:`SEAT`.
-    steps : (k, 3, f) ndarray
-        By compliances of shoulders.
-    velocity : (n,) ndarray
-        Of the nodes, at the last call of :meth:`by`.
-    """
+    velocity: np.ndarray  #: (n,) of the nodes, at the last call of :meth:`by`
 
     def __init__(self, scene, body: Body, forms: Sequence[Form]):
         self.scene, self.body = scene, body
@@ -60,10 +56,11 @@ class BeamAdjoint:
         self.hinges = hinges(scene.segments) if body.mesh["shoulder"] else ()
         self.soft = softening(self.places, self.hinges)
         f, s = len(forms), len(scene.segments)
+        #: by places of nodes, which follow the ends of segments, rigid seats and sections
         self.nodes = np.zeros((len(self.places), f))
         self.segments, self.materials = np.zeros((s, len(SHAPE), f)), np.zeros((s, len(MATTER), f))
         self.seats = np.zeros((len(self.stations), len(SEAT), f))
-        self.steps = np.zeros((len(self.hinges), len(HINGE), f))
+        self.steps = np.zeros((len(self.hinges), len(HINGE), f))  # compliances of shoulders
         by_family = self._matrices(self.elements, self.soft)
         self.shape = {name: part[2] for name, part in by_family.items()}
         self.dofs = unknowns(by_family, len(self.places))
@@ -84,20 +81,14 @@ class BeamAdjoint:
     def _families(self, forms: Sequence[Form]) -> list[_Family]:
         pairs: dict[str, list] = {}
         for k, form in enumerate(forms):
-            for a, b in form.pairs:
-                for index in a.vectors.keys() & b.vectors.keys():
-                    block = self.body.block(index)
-                    name = block.name.partition("_")[0]
-                    _, signs = block.mirror or (index, (1.0,) * len(block.components))
-                    columns = list(block.components)
-                    states = []
-                    for state in (a, b):
-                        u = state.vectors[index]
-                        u = u if block.expand is None else block.expand @ u
-                        forces = state.forces.reshape(-1, 6)[:, columns] * signs
-                        motions = state.motions.reshape(-1, 6)[:, columns] * signs
-                        states.append((u, forces, motions))
-                    pairs.setdefault(name, []).append((k, form.scale, a.eigenvalue, *states))
+            for pair in form.pairs:
+                for index, shapes in shared_blocks(self.body, pair):
+                    states = [
+                        (u, *(in_plane(self.body, index, six) for six in (s.forces, s.motions)))
+                        for s, u in zip(pair, shapes)
+                    ]
+                    name = self.body.block(index).name.partition("_")[0]
+                    pairs.setdefault(name, []).append((k, form.scale, pair[0].eigenvalue, *states))
         return [_Family(name, members, len(forms)) for name, members in pairs.items()]
 
     def _gather(self, families: list[_Family]) -> None:
@@ -190,48 +181,25 @@ class BeamAdjoint:
                 self.nodes[inside] += rates
                 self.seats[p, 0] -= rates.sum(axis=0)
 
-    def by(self, low, high, step: float) -> np.ndarray:
+    def by(self, low: Scene, high: Scene, step: float) -> np.ndarray:
         """Compute the derivatives (f,) along the way from one scene to another; refuse a shaft that
         takes another form, and places of one line that move apart.
         """
-
-        def rate(things, names) -> np.ndarray:
-            a, b = (
-                np.array([[getattr(thing, name) for name in names] for thing in things(scene)])
-                for scene in (low, high)
-            )
-            if a.shape != b.shape:
-                raise SolidgearError("the shaft takes another form there")
-            return (b - a) / step
-
-        segments = rate(lambda scene: scene.segments, SHAPE)
-        seats = rate(lambda scene: scene.stations, SEAT)
-        matter = rate(lambda scene: [s.material for s in scene.segments], MATTER)
+        segments = rates(low.segments, high.segments, SHAPE, step)
+        seats = rates(low.stations, high.stations, SEAT, step)
+        before, after = ([s.material for s in scene.segments] for scene in (low, high))
+        matter = rates(before, after, MATTER, step)
         out = np.einsum("sk,skf->f", segments, self.segments)
         out += np.einsum("sk,skf->f", matter, self.materials)
         out += np.einsum("pk,pkf->f", seats, self.seats)
         if self.body.mesh["shoulder"]:
-            bends = rate(lambda scene: hinges(scene.segments), HINGE).reshape(-1, len(HINGE))
+            bends = rates(hinges(low.segments), hinges(high.segments), HINGE, step)
             if len(bends) != len(self.hinges):
                 raise SolidgearError("a step opens there, with another derivative to either side")
-            out += np.einsum("hk,hkf->f", bends, self.steps)
-        self.velocity = self._along(segments, seats)
+            out += np.einsum("hk,hkf->f", bends.reshape(-1, len(HINGE)), self.steps)
+        lines, moved = line_velocities(self.scene, self.stations, segments, seats, FOLLOWED)
+        self.velocity = np.interp(self.places, lines, moved)
         return out + self.velocity @ self.nodes
-
-    def _along(self, segments: np.ndarray, seats: np.ndarray) -> np.ndarray:
-        """Return the velocity (n,) of the nodes."""
-        marks = {0.0: 0.0} | {s.y1: v[1] for s, v in zip(self.scene.segments, segments)}
-        tol = 1e-9 * self.scene.length
-        for (station, how), rates in zip(self.stations, seats):
-            for name in {"section": SEAT[:1], "rigid": SEAT[1:], "average": ()}[how]:
-                place, rate = getattr(station, name), rates[SEAT.index(name)]
-                near = next((m for m in marks if abs(m - place) < tol), None)
-                if near is None:
-                    marks[place] = rate
-                elif abs(marks[near] - rate) > 1e-6 * max(1.0, abs(rate)):
-                    raise SolidgearError(f"{station.name} moves away from a place that stays")
-        places = np.array(sorted(marks))
-        return np.interp(self.places, places, [marks[m] for m in places])
 
 
 class _Family:

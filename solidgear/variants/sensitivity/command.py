@@ -3,24 +3,21 @@ and files."""
 
 from __future__ import annotations
 
-import json
-from collections.abc import Sequence
-from contextlib import nullcontext
 from functools import partial
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
-from solidgear.show.command import command, say
-from solidgear.show.folder import held
+from solidgear.show.command import Progress, command
 from solidgear.show.options import Fixed, SceneFile, Shown, options
 from solidgear.show.panel import PERCENT, Axis, Panel, Series, readout, wrapped
 from solidgear.show.plot import NARROW, WIDE, Chart
-from solidgear.show.sheet_files import write_files
+from solidgear.show.sheet import Sheet, Terminal, present
 from solidgear.show.table import Column, Table, text
 from solidgear.show.units import Units, units_named
 from solidgear.show.words import percent
+from solidgear.variants.sensitivity.run import Derivative, OfNumber, Sensitivities
 from solidgear.variants.sensitivity.run import sensitivities as derive
 
 
@@ -52,18 +49,32 @@ def sensitivities(
     run: Shown,
 ) -> None:
     builder_options = options(fixed.settings)
-    with held(out) if out else nullcontext(), run.progress() as progress:
+
+    def study(progress: Progress) -> Sheet:
         result = derive(scene, fixed.name, of, by, progress=progress, **builder_options)
-        units = units_named(run.units)
-        files = write(out, result, units) if out else []
-    if run.as_json:
-        print(json.dumps(result.as_dict(), allow_nan=False))
-        return
-    say(f"{result.title}, by the {result.model} model")
-    say(*(table(number, units) for number in result.of))
-    say(*notes(result), soft_wrap=False)
-    if files:
-        say(f"Written: {', '.join(map(str, files))}")
+        return sensitivities_sheet(result, units_named(run.units))
+
+    present(study, run, out)
+
+
+def sensitivities_sheet(result: Sensitivities, units: Units) -> Sheet:
+    """Return the sheet of the derivatives of some numbers."""
+    charts = {
+        f"sensitivities_{k}": partial(chart, number) for k, number in enumerate(result.of, start=1)
+    }
+    without = [f"No derivative by {path}: {reason}." for path, reason in result.without.items()]
+    return Sheet(
+        name="sensitivities",
+        title=f"{result.title}: sensitivities",
+        lead=f"By the {result.model} model.",
+        tables=[table(number, units) for number in result.of],
+        data=result.as_dict(),
+        charts=charts,
+        lines={"sensitivities": lines(result)},
+        notes=[*result.notes, *without],
+        terminal=Terminal(heading=[f"{result.title}, by the {result.model} model"]),
+        words=dict.fromkeys(charts, "Change of the number for one per cent more of each entry."),
+    )
 
 
 #: most rows of a table and bars of a chart; further entries move the number little
@@ -75,24 +86,24 @@ BAR, NAMES, NARROW_NAMES = 20.0, 250.0, 172.0
 UP, DOWN = "a larger entry raises it", "a larger entry lowers it"
 
 
-def strongest(of: Any) -> list[Any]:
+def strongest(number: OfNumber) -> list[Derivative]:
     """Return the derivatives by the entries that move a number most."""
-    return [derivative for derivative in of.derivatives if derivative.elasticity][:MOST]
+    return [derivative for derivative in number.derivatives if derivative.elasticity][:MOST]
 
 
-def table(of: Any, units: Units, rows: Sequence[Any] | None = None) -> Table:
+def table(number: OfNumber, units: Units) -> Table:
     """Return the table of the entries that move one number."""
-    shown = strongest(of) if rows is None else rows
+    shown = strongest(number)
     columns: list[Column] = [
         text("entry of the file", lambda d: d.path),
         text("as written", lambda d: d.written),
         Column("for 1 % more", lambda d: d.elasticity / 100, percent),
-        Column("by its unit", lambda d: _by_unit(d, of.unit, units)),
+        Column("by its unit", lambda d: _by_unit(d, number.unit, units)),
     ]
     distances = [d.apart / 100 for d in shown if d.apart is not None]
     if max(distances, default=0.0) >= LEAST:
         columns.append(Column("mesh", lambda d: d.apart and d.apart / 100, _mesh))
-    others = [d for d in of.derivatives if d not in shown]
+    others = [d for d in number.derivatives if d not in shown]
     without_effect = sum(not d.elasticity for d in others)
     note = []
     if distances and max(distances) < LEAST:
@@ -102,11 +113,11 @@ def table(of: Any, units: Units, rows: Sequence[Any] | None = None) -> Table:
         note.append(f"{len(others) - without_effect} more move it by {most} or less.")
     if without_effect:
         note.append(f"Without effect: {without_effect}.")
-    value = units.text(of.value, of.unit)
-    return Table(f"What would move {of.name} ({value})", columns, shown, " ".join(note))
+    value = units.text(number.value, number.unit)
+    return Table(f"What would move {number.name} ({value})", columns, shown, " ".join(note))
 
 
-def _by_unit(derivative: Any, unit: str, units: Units) -> str:
+def _by_unit(derivative: Derivative, unit: str, units: Units) -> str:
     """Return a derivative by one unit of the file, to four digits with its sign."""
     value = units.value(derivative.by_unit, unit) or 0.0
     return f"{value:+.4g} {units.unit(unit)} per {derivative.unit or '1 in SI'}"
@@ -118,7 +129,7 @@ def _mesh(share: float) -> str:
     return f"+- {percent(share, signed=False)}"
 
 
-def lines(result: Any) -> Table:
+def lines(result: Sensitivities) -> Table:
     """Return the table of all derivatives for other programs, in SI."""
     heads = (
         "number",
@@ -153,9 +164,9 @@ def lines(result: Any) -> Table:
     return Table("sensitivities", [Column(head, write=repr) for head in heads], rows)
 
 
-def chart(of: Any, width: float = WIDE) -> Chart | None:
+def chart(number: OfNumber, width: float = WIDE) -> Chart | None:
     """Draw bars of the change of one number for one per cent of each entry."""
-    rows = strongest(of)
+    rows = strongest(number)
     if not rows:
         return None
     left = NAMES if width > NARROW else NARROW_NAMES
@@ -163,7 +174,7 @@ def chart(of: Any, width: float = WIDE) -> Chart | None:
     thick = max(BAR, 15.0 * max(name.count("\n") + 1 for name in names.values()) + 2)
     top = 1.05 * abs(rows[0].elasticity) / 100
     panel = Panel(
-        Axis(f"change of {of.name} for 1 % more", (-top, top), label=PERCENT),
+        Axis(f"change of {number.name} for 1 % more", (-top, top), label=PERCENT),
         Axis("", (len(rows) - 0.5, -0.5), ticks=names, grid=False),
         thick * len(rows),
         series={UP: Series("#0072b2"), DOWN: Series("#b3305c")},
@@ -187,27 +198,3 @@ def chart(of: Any, width: float = WIDE) -> Chart | None:
     ]
     panel.draw({"type": "rect", "strokeWidth": 0}, bars)
     return Chart([[panel]], width)
-
-
-def write(folder: Path, result: Any, units: Units) -> list[Path]:
-    """Write page, CSV, JSON and charts into a folder."""
-    charts = {
-        f"sensitivities_{k}": partial(chart, number) for k, number in enumerate(result.of, start=1)
-    }
-    return write_files(
-        folder,
-        "sensitivities",
-        f"{result.title}: sensitivities",
-        f"By the {result.model} model.",
-        [table(number, units) for number in result.of],
-        result.as_dict(),
-        lines={"sensitivities": lines(result)},
-        charts=charts,
-        notes=notes(result),
-    )
-
-
-def notes(result: Any) -> list[str]:
-    """Return sentences on entries held, accuracy of derivatives, and entries without any."""
-    without = [f"No derivative by {path}: {why}." for path, why in result.without.items()]
-    return [*result.notes, *without]

@@ -14,8 +14,7 @@ from solidgear.core import Body, Scene, SolidgearError, as_supports, build, cone
 from solidgear.core.scene import STEEL
 from solidgear.variants.sensitivity.adjoint import Form, change_by_bodies, change_by_supports
 from solidgear.variants.sensitivity.beam import BeamAdjoint
-from solidgear.variants.sensitivity.harmonic import HarmonicAdjoint
-from solidgear.variants.sensitivity.harmonic_motion import Motion
+from solidgear.variants.sensitivity.harmonic import HarmonicAdjoint, Motion
 from solidgear.variants.sweep.bench import surface
 
 #: largest distance of a mesh from the middle of two others, relative to their own

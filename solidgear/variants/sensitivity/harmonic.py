@@ -7,6 +7,9 @@ with the velocities of any number of parameters (the volume form of the shape de
 Choi and Komkov, Design Sensitivity Analysis of Structural Systems, 1986, ch. 3).
 It is the exact derivative of the discrete number on the moving mesh.
 
+Nodes follow the ends of segments, seats and sections along the axis, linearly between them, and the
+surfaces across it, linearly between the mesh lines that run from joint to joint.
+
 Where surfaces of two segments meet without a step but move differently, the nodes between take the
 mean, and motion of the surface beyond that is added as the energy on it.
 """
@@ -15,18 +18,27 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from skfem import ElementQuad1
 
-from solidgear.core import Body, SolidgearError, coned
+from solidgear.core import TOUCH, Body, Scene, SolidgearError, coned
 from solidgear.core.kernel.assembly import reference
 from solidgear.core.meshing.bands import radial_bands
+from solidgear.core.models.beam.element import SHAPE
 from solidgear.core.models.harmonic.blocks import Work
 from solidgear.core.models.harmonic.families import TORSION, Family, family_of
 from solidgear.core.scene.shaft import attached_stations
-from solidgear.variants.sensitivity.adjoint import Form
+from solidgear.variants.sensitivity.adjoint import (
+    SEAT,
+    Form,
+    in_plane,
+    line_velocities,
+    rates,
+    shared_blocks,
+)
 
 
 @dataclass
@@ -60,8 +72,7 @@ class HarmonicAdjoint:
         self.sides = {1: self.flat.outer, 0: self.flat.inner}
         self.rings = rings(scene, self.flat)
         pairs = [pair for form in forms for pair in form.pairs]
-        owner = [k for k, form in enumerate(forms) for _ in form.pairs]
-        scale = [form.scale for form in forms for _ in form.pairs]
+        owner = [(k, form.scale) for k, form in enumerate(forms) for _ in form.pairs]
         self.pushes = [self._empty() for _ in forms]
         for family, columns, uses in self._families(pairs):
             states = _States(
@@ -71,8 +82,8 @@ class HarmonicAdjoint:
                 first=np.array([i for _, i, _ in uses]),
                 second=np.array([j for _, _, j in uses]),
                 lam=np.array([pairs[k][0].eigenvalue for k, _, _ in uses]),
-                scale=np.array([scale[k] for k, _, _ in uses]),
-                pushes=[self.pushes[owner[k]] for k, _, _ in uses],
+                scale=np.array([owner[k][1] for k, _, _ in uses]),
+                pushes=[self.pushes[owner[k][0]] for k, _, _ in uses],
             )
             states.volume()
             states.ports()
@@ -94,18 +105,15 @@ class HarmonicAdjoint:
         family, and (pair, column of the first state, column of its second).
         """
         groups: dict[Family, tuple[list, dict, list]] = {}
-        for k, (a, b) in enumerate(pairs):
-            for index in a.vectors.keys() & b.vectors.keys():
-                block = self.body.block(index)
-                family = family_of(block.name)
+        for k, pair in enumerate(pairs):
+            for index, shapes in shared_blocks(self.body, pair):
+                family = family_of(self.body.block(index).name)
                 columns, numbers, uses = groups.setdefault(family, ([], {}, []))
-                for state in (a, b):
+                for state, u in zip(pair, shapes):
                     if (id(state), index) not in numbers:
                         numbers[id(state), index] = len(columns)
-                        u = state.vectors[index]
-                        u = u if block.expand is None else block.expand @ u
                         columns.append((state, index, self.work.geometry.whole(family, u)))
-                uses.append((k, numbers[id(a), index], numbers[id(b), index]))
+                uses.append((k, *(numbers[id(state), index] for state in pair)))
         for family, (columns, _, uses) in groups.items():
             yield family, columns, uses
 
@@ -252,21 +260,15 @@ class _States:
                 continue
             rows = self.work.mean(self.family, station, attachment)
             for k, (state, index, _) in enumerate(self.columns):
-                force = self._in_plane(state.forces, index, p)
+                force = in_plane(self.adjoint.body, index, state.forces)[p]
                 self.residual[..., k] -= (force @ rows).reshape(-1, 3)
-
-    def _in_plane(self, six: np.ndarray, index: int, p: int) -> np.ndarray:
-        """Return the components of a port in the plane that this family is written in."""
-        block = self.adjoint.body.blocks[index]
-        _, signs = block.mirror or (index, (1.0,) * len(block.components))
-        return np.array(signs) * six[[6 * p + c for c in block.components]]
 
     def _row(self, p: int, forced: int, displaced: int, push: Push, scale: float) -> None:
         """Add derivatives by one port under the forces of one column and the displacement of another."""
         station, attachment = self.adjoint.stations[p]
         state, index, _ = self.columns[forced]
-        force = self._in_plane(state.forces, index, p)
-        moved = self._in_plane(self.columns[displaced][0].motions, index, p)
+        force = in_plane(self.adjoint.body, index, state.forces)[p]
+        moved = in_plane(self.adjoint.body, index, self.columns[displaced][0].motions)[p]
         if attachment == "rigid":
             if self.family.waves == 1:
                 self._rigid(p, station, forced, moved, push, scale)
@@ -344,3 +346,106 @@ def rings(scene, flat) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:
             ]
         out.append((t, *ends))
     return out
+
+
+#: places of seats that lines of the mesh follow
+FOLLOWED = {"section": ("y",), "rigid": ("lo", "hi"), "average": ("lo", "hi")}
+
+
+class Motion:
+    """Motion of nodes, seats and materials of a harmonic body with one parameter, from the scene a
+    little before and after it; refused where places of one mesh line move apart and a rigid or
+    section port lies there.
+    """
+
+    def __init__(self, adjoint: HarmonicAdjoint, low: Scene, high: Scene, step: float):
+        self.low, self.high, self.step = coned(low), coned(high), step
+        self.adjoint = adjoint
+        self.segment = rates(self.low.segments, self.high.segments, SHAPE, step)
+        self.station = rates(self.low.stations, self.high.stations, SEAT, step)
+        if len(self.segment) != len(adjoint.scene.segments):
+            raise SolidgearError("the shaft takes another form there")
+
+    def radial(self, axial: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the radial velocity (4, m) of the corners of cells by their segment, and the mean
+        (n,) at the nodes.
+        """
+        adjoint, flat, scene = self.adjoint, self.adjoint.flat, self.adjoint.scene
+        by_segment = np.zeros(flat.cells.shape)
+        for k, s in enumerate(scene.segments):
+            cells = np.flatnonzero(flat.segment == k)
+            corner = flat.cells[:, cells]
+            t, left, right = adjoint.rings[k]
+            y0, y1, *_ = self.segment[k]
+            rate = (1 - t) * self._across(k, 0, left) + t * self._across(k, 1, right)
+            # a node that slides along a cone follows it
+            slope = (right - left) / s.length
+            by_segment[:, cells] = rate + slope * (axial[corner] - (1 - t) * y0 - t * y1)
+        count, total = np.zeros((2, flat.points.shape[1]))
+        for k in range(len(scene.segments)):
+            # once a segment, however many cells of it meet there
+            cells = np.flatnonzero(flat.segment == k)
+            nodes, first = np.unique(flat.cells[:, cells].ravel(), return_index=True)
+            count[nodes] += 1
+            total[nodes] += by_segment[:, cells].ravel()[first]
+        return by_segment, total / count
+
+    def _across(self, k: int, end: int, r: np.ndarray) -> np.ndarray:
+        """Return the radial velocity on an end of a segment, at radii r."""
+        segments = self.adjoint.scene.segments
+        sides = [(k, end)] + [(j, 1 - end) for j in (k + 2 * end - 1,) if 0 <= j < len(segments)]
+        marks: dict[float, float] = {}
+        for j, side_end in sides:
+            for name, column in (("inner", 4), ("outer", 2)):
+                place = getattr(segments[j], f"{name}{side_end}")
+                if not any(abs(place - m) < TOUCH for m in marks):
+                    marks[place] = self.segment[j, column + side_end]
+        marks.setdefault(0.0, 0.0)
+        places = np.array(sorted(marks))
+        return np.interp(r, places, [marks[m] for m in places])
+
+    def derivative(self, push: Push) -> float:
+        """Return the derivative of a number by the parameter, without actions on ports."""
+        if not self.segment.any() and not self.station.any():
+            return self._matter(push)
+        velocity, slip, bulge = self.moved
+        total = float((push.nodes * velocity).sum() + push.planes @ self.station[:, 0])
+        total += float((push.ends * slip).sum())
+        total += sum(float((rates * out).sum()) for rates, out in zip(push.surface, bulge))
+        return total + self._matter(push)
+
+    @cached_property
+    def moved(self) -> tuple[np.ndarray, np.ndarray, list[np.ndarray]]:
+        """Velocity of the nodes, and beyond it the slip of seat ends and the bulge of surfaces."""
+        adjoint, flat = self.adjoint, self.adjoint.flat
+        lines, moved = line_velocities(
+            adjoint.scene, adjoint.stations, self.segment, self.station, FOLLOWED
+        )
+        axial = np.interp(flat.points[1], lines, moved)
+        by_segment, mean = self.radial(axial)
+        seats = self.station[:, 1:] - np.array(
+            [np.interp([s.lo, s.hi], lines, moved) for s, _ in adjoint.stations]
+        )
+        averaged = np.array([a == "average" for _, a in adjoint.stations])
+        slip = np.where(averaged[:, None], seats, 0.0)
+        beyond = by_segment - mean[flat.cells]
+        outer, bore = beyond[[1, 2]][:, adjoint.sides[1]], beyond[[0, 3]][:, adjoint.sides[0]]
+        surface_y = flat.points[1][flat.cells[[1, 2]][:, adjoint.sides[1]]]
+        bulging = {float(y) for y in surface_y[np.abs(outer) > 1e-9]}
+        tol = 1e-9 * adjoint.scene.length
+        for s, attachment in adjoint.stations:
+            if attachment != "section" and any(s.lo - tol <= y <= s.hi + tol for y in bulging):
+                raise SolidgearError(f"the surface under {s.name} splits in two")
+        return np.array([mean, axial]), slip, [outer.T, bore.T]
+
+    def _matter(self, push: Push) -> float:
+        out = 0.0
+        for k, segments in enumerate(zip(self.low.segments, self.high.segments)):
+            a, b = (segment.material for segment in segments)
+            if a == b:
+                continue
+            mu = [m.shear_modulus for m in (a, b)]
+            lame = [2 * g * m.nu / (1 - 2 * m.nu) for g, m in zip(mu, (a, b))]
+            out += push.lame[k] * (lame[1] - lame[0]) + push.shear[k] * (mu[1] - mu[0])
+            out += push.density[k] * (b.density - a.density)
+        return out / self.step

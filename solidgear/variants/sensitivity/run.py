@@ -36,7 +36,7 @@ from solidgear.core.scene.file import scene_of
 from solidgear.core.scene.paths import Keys, Tables, entries, entry, label_of, replace_entry
 from solidgear.variants.sensitivity.adjoint import Form, entry_form, mode_form
 from solidgear.variants.sensitivity.derivatives import Derivatives
-from solidgear.variants.sweep.spans import amount, in_si
+from solidgear.variants.sweep.entries import amount, in_si
 
 #: numbers by default
 USUAL = ("bending 1", "C_zz")

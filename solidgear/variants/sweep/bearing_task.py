@@ -1,15 +1,22 @@
 """Rows of a sweep of bearings alone: the body once, its reduction once, then a small problem a row,
 with statics at the lumped point and the first modes.
+
+The error of a mesh depends on the bearings: the stiffer they are, the more of the compliance is
+the shaft's.  So the mesh is judged on the scene and at both ends of everything that varies, and the
+finest that one of these needs serves all.
 """
 
 from __future__ import annotations
 
+import math
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Hashable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Any, ClassVar
+
+import numpy as np
 
 from solidgear.bearings.solved import waiting
 from solidgear.core import (
@@ -17,16 +24,23 @@ from solidgear.core import (
     LADDER,
     Body,
     Quantity,
+    Scene,
+    SceneError,
+    Settled,
     SolidgearError,
+    bars_of_modes,
     build,
     listed,
     modes,
+    settle,
     size,
 )
 from solidgear.core.models.limits import number
 from solidgear.core.reduction.moments import LEVELS, Reduced, reduce
 from solidgear.core.solve.statics import condense
 from solidgear.variants.sweep.bearing_variants import BearingVariants, SeatedShaft
+from solidgear.variants.sweep.bench import surface
+from solidgear.variants.sweep.curves import Curves, curves_of
 from solidgear.variants.sweep.file_task import BARS, BOUND, Task, without_bars
 from solidgear.variants.sweep.ritz import Seats, ritz_modes
 from solidgear.variants.sweep.rows import RowFile
@@ -45,25 +59,21 @@ KEPT = 50
 
 @dataclass(frozen=True)
 class SweptBearings:
-    """Account of a sweep of bearings."""
+    """Account of a sweep of bearings; numbers are zero where nothing was left to do."""
 
     path: Path
     total: int  #: number of variants
     skipped: int  #: rows that were there before
-    refused: int = 0  #: variants without numbers, of this run
-    full: int = 0  #: variants whose modes were solved on the body itself, of this run
-    #: unknowns, seats, basis: of the body; seats on it; unknowns of the largest small problem. Zero
-    #: if there was nothing left to do.
-    unknowns: int = 0
-    seats: int = 0
-    basis: int = 0
-    #: seconds_once, seconds_each: wall seconds for body and reduction, and per variant of this run
-    seconds_once: float = 0.0
-    seconds_each: float = 0.0
-    #: reasons why variants were refused, and how many for that reason, of this run
-    whys: dict[str, int] = field(default_factory=dict)
-    #: sentence on the load at which the stiffness of catalogue bearings is taken
-    settling: str = ""
+    refused: int  #: variants without numbers, of this run
+    full: int  #: variants whose modes were solved on the body itself, of this run
+    unknowns: int  #: of the body
+    seats: int  #: on the body
+    basis: int  #: unknowns of the largest small problem
+    seconds_once: float  #: wall seconds for body and reduction
+    seconds_each: float  #: wall seconds per variant of this run
+    whys: dict[str, int]  #: reasons why variants were refused, and how many for that, of this run
+    settling: str  #: sentence on the load at which the stiffness of catalogue bearings is taken
+    curves: Curves | None = field(repr=False)  #: where one number varies
 
 
 @dataclass(eq=False)
@@ -76,7 +86,9 @@ class BearingTask(Task[SweptBearings]):
     model: str
     options: Mapping[str, Any]  #: of the builder of the model
     n: int  #: elastic shapes, twins counted twice
-    tolerance: float  #: relative error of frequencies against the same body solved in full
+    #: relative error of frequencies against the same body solved in full: a variant whose bound
+    #: exceeds it makes the basis larger, and where that does not do it is solved in full
+    tolerance: float
     #: relative error bars of the mesh by the names of numbers and modes; None where it has none
     bars: Mapping[str, float] | None = None
     judged_on: int = 0  #: number of bearing sets that these are the largest over
@@ -177,7 +189,9 @@ class BearingTask(Task[SweptBearings]):
         numbers: dict[str, Any] = {
             "how": "reduced",
             BOUND: shapes.error_bound,
-            BARS: self._words_on_bars,
+            BARS: without_bars(self.model)
+            if self.bars is None
+            else f"of the mesh: the largest over {self.judged_on} bearing sets",
             "rigid_modes": supports.unresisted(frame).shape[1],
         }
         for kind, matrix in (("K", static.stiffness), ("C", static.compliance)):
@@ -187,22 +201,15 @@ class BearingTask(Task[SweptBearings]):
 
     def _seats_at(self, basis: Reduced, ports: tuple[int, ...]) -> Seats:
         key = (basis.level, *ports)
-        seats = self._seats.get(key)
-        if seats is None:
+        if key not in self._seats:
             if len(self._seats) >= KEPT:
                 self._seats.clear()
-            seats = self._seats[key] = Seats(basis, ports)
-        return seats
+            self._seats[key] = Seats(basis, ports)
+        return self._seats[key]
 
     @cached_property
     def _seats(self) -> dict[tuple[int, ...], Seats]:
         return {}
-
-    @property
-    def _words_on_bars(self) -> str:
-        if self.bars is None:
-            return without_bars(self.model)
-        return f"of the mesh: the largest over {self.judged_on} bearing sets"
 
     def _bars_of_statics(self, numbers: Mapping[str, Any]) -> dict[str, float]:
         """Return the error bars of the entries of a row, in their units."""
@@ -270,19 +277,20 @@ class BearingTask(Task[SweptBearings]):
 
     def result(self, file: RowFile, skipped: int, seconds: tuple[float, float]) -> SweptBearings:
         total, (once, rows) = len(self.variants), seconds
-        account = SweptBearings(file.path, total, skipped, settling=_settling(self.variants))
-        if self.body is None:
-            return account
-        return replace(
-            account,
+        return SweptBearings(
+            file.path,
+            total,
+            skipped,
             refused=self.whys.total(),
             full=self.full,
-            unknowns=self.body.size,
+            unknowns=0 if self.body is None else self.body.size,
             seats=self.seats,
-            basis=self.bases[-1].size,
-            seconds_once=once,
-            seconds_each=rows / (total - skipped),
+            basis=max((basis.size for basis in self.bases), default=0),
+            seconds_once=0.0 if self.body is None else once,
+            seconds_each=0.0 if self.body is None else rows / (total - skipped),
             whys=dict(self.whys),
+            settling=_settling(self.variants),
+            curves=curves_of(file.by_column, self.variants),
         )
 
 
@@ -311,27 +319,8 @@ def bearing_task(
     bars: Mapping[str, float] | None = None,
     judged_on: int = 0,
 ) -> BearingTask:
-    """Statics and first modes of many bearing sets on one body.
-
-    Parameters
-    ----------
-    model, options
-        As for :func:`solidgear.core.ladder.build`.
-    n : int, optional
-        Elastic shapes, twins counted twice; as many as the scene asks for by default.
-    tolerance : float
-        Relative error of frequencies against the same body solved in full. A variant whose bound
-        exceeds it makes the basis larger, and where that does not do it is solved in full.
-    bars : mapping of str to float, optional
-        Relative, of the mesh, by the names of numbers and modes, as of
-        :func:`solidgear.variants.sweep.command.bars_of_rows`; bars stand in columns beside numbers.
-    judged_on : int
-        Bearing sets that these are the largest over.
-
-    Raises
-    ------
-    SolidgearError
-        Values that no variant can have; too many seats are refused by the run.
+    """Return the task of statics and first modes of many bearing sets on one body; parameters as of
+    :class:`BearingTask`, by default as many elastic shapes as the scene asks for.
 
     Examples
     --------
@@ -345,3 +334,90 @@ def bearing_task(
     number("sweep", "tolerance", tolerance, above=0, below=1)
     variants.first_sound()
     return BearingTask(variants, model, dict(options or {}), n, tolerance, bars, judged_on)
+
+
+#: bearing sets, beside that of the scene, on which a mesh is judged
+MOST = 8
+#: modes beyond those of a row, which error bars of the last of a family need
+SPARE = 6
+
+
+def settled_for_sweep(
+    variants: BearingVariants,
+    tol: float | None = None,
+    *,
+    progress: Callable[[str], None] = lambda _: None,
+) -> Settled:
+    """Return the cheapest body whose error bars are within a tolerance on the scene and at the ends
+    of a sweep: the finest mesh that one of these bearing sets needs, with the largest error bar of
+    each quantity over all of them. The tolerance is relative, that of the scene by default.
+
+    Examples
+    --------
+    >>> from solidgear.variants.sweep.bearing_variants import bearing_variants
+    >>> scales = ["bearing.A.scale=log:0.1:10:9"]
+    >>> variants = bearing_variants("geometry/shaft_stepped.toml", scales)
+    >>> settled = settled_for_sweep(variants, 0.05)
+    >>> settled.judged_on, settled.reached
+    (3, True)
+    """
+    scenes = [variants.scene, *_ends(variants)]
+    each: list[Settled] = []
+    last: dict[Hashable, Settled] = {}
+    for k, scene in enumerate(scenes, start=1):
+        numbered = partial(_numbered, progress, k, len(scenes))
+        # bearings that sit where others did are other springs on the same body
+        body = surface(scene)
+        last[body] = settle(scene, tol, "all", before=last.get(body), progress=numbered)
+        each.append(last[body])
+    finest = max(each, key=lambda settled: settled.body.size)
+    bars: dict[Quantity, float] = {}
+    for settled in each:
+        for quantity, bar in settled.bars.items():
+            bars[quantity] = max(bar, bars.get(quantity, 0.0))
+    return replace(
+        finest,
+        bars=bars,
+        reached=all(settled.reached for settled in each),
+        judged_on=len(each),
+    )
+
+
+def bars_of_rows(variants: BearingVariants, settled: Settled, n: int) -> dict[str, float]:
+    """Return relative error bars of the numbers of rows and of `n` natural frequencies by their names:
+    the largest over the scene and the ends of a sweep, on the mesh that was settled on.
+    """
+    bars: dict[str, float] = {str(name): bar for name, bar in settled.bars.items()}
+    everywhere: set[str] | None = None
+    for scene in [variants.scene, *_ends(variants)]:
+        body = build(scene, settled.rung, **settled.options)
+        shapes = modes(body, scene, n + SPARE, ovalising=False)
+        of_scene = {
+            str(name): bar for name, bar in bars_of_modes(scene, body, shapes, settled).items()
+        }
+        everywhere = {*of_scene} if everywhere is None else everywhere & {*of_scene}
+        for name, bar in of_scene.items():
+            bars[name] = max(bar, bars.get(name, 0.0))
+    assert everywhere is not None
+    everywhere |= {*map(str, settled.bars)}
+    return {name: bar for name, bar in bars.items() if name in everywhere and math.isfinite(bar)}
+
+
+def _ends(variants: BearingVariants) -> list[Scene]:
+    """Return the variants with the lowest and the highest value of every entry that varies."""
+    # the ends of all at once first, then of one after the other
+    ranks = variants.values.argsort(axis=0).argsort(axis=0).sum(axis=1)
+    wanted = [int(ranks.argmin()), int(ranks.argmax())]
+    for column in variants.values.T:
+        wanted += [int(np.argmin(column)), int(np.argmax(column))]
+    out: list[Scene] = []
+    for index in list(dict.fromkeys(wanted))[:MOST]:
+        try:
+            out.append(variants.variant(index))
+        except SceneError:
+            continue  # its row will say why
+    return out
+
+
+def _numbered(progress: Callable[[str], None], k: int, count: int, text: str) -> None:
+    progress(f"bearing set {k} of {count}: {text}")

@@ -153,7 +153,9 @@ class BearingVariants(SceneVariants):
         :meth:`variant`.
         """
         scene = self.variant(index)
-        return scene, as_supports(scene).on_stations(scene.stations, _port_name)
+        return scene, as_supports(scene).on_stations(
+            scene.stations, lambda s: seat_name(s) if isinstance(s, Bearing) else s.name
+        )
 
     def shaft(self) -> SeatedShaft:
         """Return the shaft with the seats of all placements that can be solved; SolidgearError if
@@ -172,12 +174,9 @@ class BearingVariants(SceneVariants):
                     f"{varying.label}: a rigid seat stiffens the shaft, so it cannot move in one "
                     "body; use attachment 'average' or 'section'"
                 )
-        seats = {
-            seat_name(b): b.with_changes(name=seat_name(b))
-            for scene in placed
-            for b in scene.bearings
-        }
-        ordered = sorted(seats.values(), key=lambda b: b.y)
+        seats = {seat_name(b): b for scene in placed for b in scene.bearings}
+        named = [b.with_changes(name=name) for name, b in seats.items()]
+        ordered = sorted(named, key=lambda b: b.y)
         masses = (mass for mass in self.scene.masses if mass.on is None)
         return SeatedShaft(
             self.scene.segments,
@@ -247,11 +246,6 @@ def settled_anew(scene: Scene) -> Scene:
         raise
     except SolidgearError as error:
         raise SceneError(str(error)) from None
-
-
-def _port_name(station: Port | Bearing | PointMass) -> str:
-    """Return the port of a station in the shaft of a sweep, whose seats bearings share."""
-    return seat_name(station) if isinstance(station, Bearing) else station.name
 
 
 def seat_name(bearing: Bearing) -> str:

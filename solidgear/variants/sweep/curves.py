@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from solidgear.core import SolidgearError, listed
-from solidgear.variants.sweep.entries import Entry
+from solidgear.variants.sweep.entries import Entry, in_si
 from solidgear.variants.sweep.file_variants import POINT, FileVariants
-from solidgear.variants.sweep.spans import in_si
 
 #: rows that curves are made of
 MOST_CURVED = 5000
@@ -73,15 +72,14 @@ class Curves:
         lists = self.frequencies, self.misalignment, self.radial, self.axial, self.peak_force
         return not any(lists)
 
+    @property
+    def on_terminal(self) -> bool:
+        """True where the table of the rows has numbers beside the one that varies."""
+        return bool(self.frequencies or self.mesh_force or self.peak_hz)
+
 
 def chartable(variants: FileVariants) -> Entry:
-    """Return the one entry that curves go over; refuse a sweep without one before it begins.
-
-    Raises
-    ------
-    SolidgearError
-        If there are several, its values are words, or there are too many.
-    """
+    """Return the one entry that curves go over; refuse several, words and too many values."""
     several = [entry for entry in variants.entries if len(entry.values) > 1]
     if len(several) != 1:
         labels = listed(entry.label for entry in several) or "none"
@@ -100,15 +98,19 @@ def chartable(variants: FileVariants) -> Entry:
 
 
 def curves_of(
-    columns: Mapping[str, list[Any]], variants: FileVariants, misalignments: Sequence[str] = ()
+    read: Callable[[], Mapping[str, list[Any]]],
+    variants: FileVariants,
+    misalignments: Sequence[str] = (),
 ) -> Curves | None:
     """Return the curves of the columns of all rows, over the torque where operating points vary; None
-    of a sweep that has none. `misalignments` names the numbers of the misalignment of a train.
+    of a sweep that has none, whose columns are not read. `misalignments` names the numbers of the
+    misalignment of a train.
     """
     try:
         entry = chartable(variants)
     except SolidgearError:
         return None
+    columns = read()
     of_points = entry.label == POINT
     over = "torque" if of_points else entry.label
     x = _numbers(columns[over])

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -16,6 +16,7 @@ import numpy as np
 from solidgear.core import SolidgearError
 from solidgear.core.scene.paths import Tables
 from solidgear.variants.sweep.entries import (
+    MOST,
     Entry,
     KeptSum,
     Owner,
@@ -23,7 +24,6 @@ from solidgear.variants.sweep.entries import (
     entries_of_table,
     kept_sums,
 )
-from solidgear.variants.sweep.spans import product, sample
 
 #: from the entries that were asked for to those that vary beside them, such as operating points
 Further = Callable[[tuple[Entry, ...]], tuple[Entry, ...]]
@@ -57,14 +57,7 @@ class Design:
         *,
         example: str,
     ) -> DesignPoints:
-        """Return the points of the design on files by their names; an error shows the `example`.
-
-        Raises
-        ------
-        SolidgearError
-            For texts and tables that cannot be read, designs that exclude each other, and too many
-            variants.
-        """
+        """Return the points of the design on files by their names; an error shows the `example`."""
         rows = None
         if self.table is None:
             varied = entries_of(self.vary, files, owner)
@@ -124,3 +117,25 @@ def _one_at_a_time(varied: tuple[Entry, ...]) -> np.ndarray:
             rows.append([math.nan] * len(varied))
             rows[-1][k] = value
     return np.array(rows, float)
+
+
+def product(axes: Sequence[Entry]) -> np.ndarray:
+    """Return (variants, axes) all combinations, the last axis running fastest."""
+    total = int(np.prod([float(len(axis.values)) for axis in axes]))
+    if total > MOST:
+        raise SolidgearError(
+            f"{total} variants are more than the {MOST} a sweep takes; use fewer values, or draw some with --sample"
+        )
+    return np.array(list(itertools.product(*(axis.values for axis in axes))), float)
+
+
+def sample(axes: Sequence[Entry], count: int, seed: int) -> np.ndarray:
+    """Return (count, axes) a Latin hypercube over the ranges of the axes."""
+    if not 1 <= count <= MOST:
+        raise SolidgearError(f"--sample {count}: give a whole number from 1 to {MOST}")
+    if seed < 0:
+        raise SolidgearError(f"--seed {seed}: must not be negative")
+    from scipy.stats import qmc
+
+    u = qmc.LatinHypercube(d=len(axes), seed=seed).random(count)
+    return np.column_stack([axis.draw(u[:, k]) for k, axis in enumerate(axes)])

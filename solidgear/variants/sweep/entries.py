@@ -20,7 +20,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from solidgear.core import SceneError, SolidgearError, near, nearest
+import numpy as np
+
+from solidgear.core import DIMENSIONS, SceneError, SolidgearError, near, nearest
 from solidgear.core.errors import did_you_mean
 from solidgear.core.scene.paths import (
     Keys,
@@ -32,8 +34,11 @@ from solidgear.core.scene.paths import (
     replace_entry,
 )
 from solidgear.core.scene.text_keys import is_text
-from solidgear.variants.sweep.spans import Span, amount, in_si, spread
+from solidgear.core.scene.units import quantity
 
+_NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)", re.S)
+#: More variants than this are a slip of the keyboard.
+MOST = 10_000_000
 #: from a path to the file that holds it, by its name among all, and the path within
 Owner = Callable[[str], tuple[str, str]]
 
@@ -52,9 +57,14 @@ class Place(NamedTuple):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Entry(Span):
+class Entry:
     """One entry of a file that varies, or several with one value."""
 
+    label: str  #: name of its column, such as ``bearing.2.position``
+    values: tuple[float, ...]
+    #: how values between the listed ones are drawn: along a line, along its logarithm, or not at
+    #: all
+    spacing: str
     places: tuple[Place, ...]
     in_file: object = None  #: value that the file holds at the first of them
     unit: str = ""  #: of the values of a range, as the user wrote it; empty of plain numbers
@@ -76,6 +86,14 @@ class Entry(Span):
     def is_in(self, file: str) -> bool:
         """True if any of them stands in a file."""
         return any(place.file == file for place in self.places)
+
+    def draw(self, u: np.ndarray) -> np.ndarray:
+        """Return (n,) values for numbers between 0 and 1."""
+        if self.spacing == "list":
+            places = np.minimum((u * len(self.values)).astype(int), len(self.values) - 1)
+            return np.array(self.values)[places]
+        a, b = self.values[0], self.values[-1]
+        return a + (b - a) * u if self.spacing == "linear" else a * (b / a) ** u
 
     def written(self, value: float) -> str | float | bool:
         """Return a value as it is written into a file."""
@@ -120,13 +138,8 @@ def assignment(text: str, form: str) -> tuple[str, str]:
 def entries_of(
     texts: Iterable[str], files: Mapping[str, Tables], owner: Owner
 ) -> tuple[Entry, ...]:
-    """Read all ``PATH=VALUES`` texts of a study over files, by their names.
-
-    Raises
-    ------
-    SolidgearError
-        A text that cannot be read, a name that a list of the file does not have, or the same entry
-        twice.
+    """Read all ``PATH=VALUES`` texts of a study over files, by their names; refuse unknown entries
+    and the same twice.
     """
     out: list[Entry] = []
     for text in texts:
@@ -152,11 +165,6 @@ def entries_of_table(
     """Read a CSV file with paths as heads and a variant a row: entries, and the values of its rows.
 
     Cells hold the text to be written into the file; an empty one leaves an entry as it is.
-
-    Raises
-    ------
-    SolidgearError
-        A file that cannot be read, has no rows, or a head as :func:`entries_of`.
     """
     try:
         with path.open(newline="", encoding="utf-8-sig") as file:
@@ -251,12 +259,8 @@ class KeptSum:
 def kept_sums(
     texts: Iterable[str], files: Mapping[str, Tables], owner: Owner, varied: Sequence[Entry]
 ) -> tuple[KeptSum, ...]:
-    """Read all ``PATH+PATH`` texts of sums that are kept.
-
-    Raises
-    ------
-    SolidgearError
-        Fewer than two entries, of more than one file, no numbers, or none or all of them vary.
+    """Read all ``PATH+PATH`` texts of sums that are kept: numbers of one file, of which all but one
+    vary.
     """
     out = []
     moved = {(place.file, place.keys) for entry in varied for place in entry.places}
@@ -317,33 +321,40 @@ def explained(error: SceneError, path: str, files: Mapping[str, Tables]) -> str:
 
 
 def _range(spec: str) -> dict[str, Any]:
-    """Return the fields of an entry that goes over a range."""
+    """Return the fields of an entry that goes over a range, ``a:b:n`` or ``log:a:b:n``."""
+    spacing, parts = "linear", [part.strip() for part in spec.split(":")]
+    if parts[0] == "log":
+        spacing, parts = "log", parts[1:]
+    if len(parts) != 3:
+        raise SceneError('values are "a:b:n", "log:a:b:n" or a list "a,b,c"')
     units: list[str] = []
-    ends: list[str] = []
-
-    def read(text: str) -> float:
-        match = amount(text)
+    ends: list[float] = []
+    whole = True
+    for part in parts[:2]:
+        match = amount(part)
         if match is None:
-            raise SceneError(f"{text!r} is not a number, with or without a unit")
+            raise SceneError(f"{part!r} is not a number, with or without a unit")
         number, unit = match.groups()
-        ends.append(number)
         units.append(unit)
-        value, first = in_si(text if unit else float(number)), units[0]
+        whole &= re.fullmatch(r"[+-]?\d+", number) is not None
+        value, first = in_si(part if unit else float(number)), units[0]
         of_first = in_si(f"1 {first}") if first else 1.0
         if value is None or of_first is None:
             raise SceneError(f"{unit!r} is not a known unit")
         if bool(unit) != bool(first):
             raise SceneError("give both ends with a unit, or none")
-        return float(number) if unit == first else value / of_first
-
-    values, spacing = spread(spec, read)
-    integers = all(re.fullmatch(r"[+-]?\d+", end) for end in ends)
-    integers &= all(value == int(value) for value in values)
+        ends.append(float(number) if unit == first else value / of_first)
+    if not parts[2].isdecimal() or not 2 <= int(parts[2]) <= MOST:
+        raise SceneError(f"a:b:n needs a whole number n of 2 or more values, not {parts[2]!r}")
+    if spacing == "log" and not ends[0] * ends[1] > 0:
+        raise SceneError("a logarithmic range needs both ends above zero")
+    between = np.linspace if spacing == "linear" else np.geomspace
+    values = between(ends[0], ends[1], int(parts[2])).tolist()
     return {
         "values": tuple(dict.fromkeys(values)),
         "spacing": spacing,
         "unit": units[0],
-        "integers": integers,
+        "integers": whole and all(value == int(value) for value in values),
     }
 
 
@@ -373,3 +384,38 @@ def _word(text: str, as_text: bool) -> str | float | bool:
             continue
         return number
     return text
+
+
+def in_si(value: object) -> float | None:
+    """Return a number, or a text with a unit, in SI; None for any other value.
+
+    Examples
+    --------
+    >>> in_si("20 mm"), in_si("3000 rpm") == in_si("50 Hz"), in_si("concave"), in_si(20)
+    (0.02, False, None, 20.0)
+    """
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
+        return float(value)
+    if not isinstance(value, str):
+        return None
+    if not (match := amount(value)) or not match[2]:
+        return None
+    for dimension in DIMENSIONS:
+        try:
+            return quantity(value, dimension)
+        except SceneError:
+            continue
+    return None
+
+
+def amount(word: object) -> re.Match[str] | None:
+    """Match number and unit of a text."""
+    return _NUMBER.fullmatch(word.strip()) if isinstance(word, str) else None
+
+
+def plain_number(text: str) -> str | float:
+    """Return a number where a text is one, else the text."""
+    try:
+        return float(text)
+    except ValueError:
+        return text

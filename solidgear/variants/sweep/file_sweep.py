@@ -38,7 +38,9 @@ def sweep(
     file : path
         Of the scene or train.
     vary : str or iterable of str
-        ``PATH=VALUES``: any entry of the file, such as ``segment.neck.diameter=30 mm:40 mm:5``.
+        ``PATH=VALUES``: any number or word of the file, such as
+        ``segment.neck.diameter=30 mm:40 mm:5``; of a train also of the scene of a shaft, such as
+        ``pinion.bearing.2.position=140 mm:160 mm:5``. Every rule of the file applies.
     sample, seed : int
         Points of a Latin hypercube in place of all combinations.
     one_at_a_time : bool
@@ -49,12 +51,26 @@ def sweep(
         ``PATH+PATH``: sums that stay what they are in the file.
     out : path, optional
         Keeps the rows; the same sweep goes on from there.
-    jobs, dask, overwrite, progress
-        As of :func:`solidgear.variants.sweep.file_task.run`; `progress` is called with the number of
-        rows that are there, of rows in all, and the present step.
+    jobs : int
+        Processes on this machine (joblib), at most eight for each processor.
+    dask : str, optional
+        Address of a Dask scheduler, whose workers have solidgear installed.
+    overwrite : bool
+        Discard rows that are there.
+    progress : callable
+        Called with the number of rows that are there, of rows in all, and the present step.
     **how
-        Of a shaft those of :func:`solidgear.variants.sweep.scene_task.scene_task`, of a train those
-        of :func:`solidgear.variants.sweep.train_task.train_task`, such as ``model`` and ``n``.
+        Of a shaft and of a train: `n`, the natural frequencies of a row.
+
+        Of a shaft: `model`, the cheapest mesh within the tolerance by default, variant by variant
+        (rows of a model that is given have no error bars); `options` of its builder; `tolerance`,
+        relative, that of the scene by default.
+
+        Of a train: `pinion` and `gear`, models as of ``system-modes``, and `models` of shafts by
+        any name; `ask`, some of ``system-modes``, ``response`` and ``deflect``; `max_frequency` in
+        Hz; `point`, an operating point by its name or number; `every_point`, a row for each of
+        them; `mesh`, whose transmission error drives the train; `local_harmonics` of every mesh;
+        `reduction`, `kept` and `settings` as of an assembly.
 
     Returns
     -------

@@ -8,7 +8,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, ClassVar, Generic, Protocol, TypeVar
+from typing import Any, ClassVar, Generic, TypeVar
 
 import numpy as np
 
@@ -35,6 +35,7 @@ def without_bars(model: str) -> str:
 
 #: result of a task
 R = TypeVar("R")
+Rows = list[dict[str, Any]]
 
 
 class Task(Generic[R]):
@@ -168,12 +169,16 @@ class FileTask(Task[Swept]):
         return Swept(
             columns,
             varied=tuple(self.variants.columns),
-            curves=curves_of(columns, self.variants, self.misalignments),
+            curves=curves_of(lambda: columns, self.variants, self.misalignments),
             path=file.path,
             skipped=skipped,
             seconds=sum(seconds),
             cautions=self.cautions,
         )
+
+
+#: takes a task and lists of variants; yields their rows in order
+Workers = Callable[[Task, Sequence[Sequence[int]]], Iterator[Rows]]
 
 
 def run(
@@ -185,25 +190,8 @@ def run(
     overwrite: bool = False,
     progress: Progress = lambda done, total, text: None,
 ) -> R:
-    """Solve the variants whose rows are not there yet, and return the result of the task.
-
-    Parameters
-    ----------
-    out : path
-        ``.csv`` or ``.parquet``. Rows already there from the same sweep are kept and not solved
-        again.
-    jobs : int
-        Processes on this machine (joblib), at most eight for each processor.
-    dask : str, optional
-        Address of a Dask scheduler, whose workers have solidgear installed.
-    overwrite : bool
-        Discard rows that are there.
-
-    Raises
-    ------
-    SolidgearError
-        A file that belongs to another sweep, is being written by one or cannot be written. A variant
-        that is refused is no error: its row says why.
+    """Solve the variants whose rows are not there yet, and return the result of the task; parameters
+    as of :func:`solidgear.sweep`. A variant that is refused is no error: its row says why.
     """
     start = time.perf_counter()
     number("sweep", "jobs", jobs, least=1, whole=True)
@@ -226,44 +214,12 @@ def run(
         return task.result(file, skipped, (ready - start, time.perf_counter() - ready))
 
 
-Rows = list[dict[str, Any]]
-
-
-class RowSolver(Protocol):
-    """Task that turns variants into rows; sent to other processes."""
-
-    def rows(self, indices: Iterable[int]) -> Rows:
-        """Return the rows of some variants."""
-
-
-#: takes a task and lists of variants; yields their rows in order
-Workers = Callable[[RowSolver, Sequence[Sequence[int]]], Iterator[Rows]]
-
-
 def workers(jobs: int = 1, dask: str | None = None) -> Workers:
-    """Return the workers that were asked for.
-
-    Raises
-    ------
-    SolidgearError
-        If the package it takes is not installed, there is no cluster at that address, or so many
-        processes would only stand in each other's way.
-    """
+    """Return the workers that were asked for; refuse those without their package or cluster."""
     if dask:
         return _dask(dask)
-    return _in_this_process if jobs == 1 else _joblib(jobs)
-
-
-def _rows(task: RowSolver, part: Sequence[int]) -> Rows:
-    return task.rows(part)
-
-
-def _in_this_process(task: RowSolver, parts: Sequence[Sequence[int]]) -> Iterator[Rows]:
-    for part in parts:
-        yield task.rows(part)
-
-
-def _joblib(jobs: int) -> Workers:
+    if jobs == 1:
+        return lambda task, parts: map(task.rows, parts)
     most = 8 * usable_cores()
     if jobs > most:
         raise SolidgearError(
@@ -275,14 +231,10 @@ def _joblib(jobs: int) -> Workers:
         raise SolidgearError(
             f"--jobs {jobs} needs joblib: pip install 'solidgear[sweep]', or use --jobs 1"
         ) from None
-
-    def run(task: RowSolver, parts: Sequence[Sequence[int]]) -> Iterator[Rows]:
-        # the task is sent with every part as places fall free, with a basis enlarged meanwhile
-        yield from Parallel(n_jobs=jobs, return_as="generator")(
-            delayed(_rows)(task, part) for part in parts
-        )
-
-    return run
+    # the task is sent with every part as places fall free, with a basis enlarged meanwhile
+    return lambda task, parts: Parallel(n_jobs=jobs, return_as="generator")(
+        delayed(Task.rows)(task, part) for part in parts
+    )
 
 
 def _dask(address: str) -> Workers:
@@ -299,14 +251,14 @@ def _dask(address: str) -> Workers:
             f"--dask {address}: no Dask scheduler answers there ({type(error).__name__})"
         ) from None
 
-    def run(task: RowSolver, parts: Sequence[Sequence[int]]) -> Iterator[Rows]:
+    def rows_of(task: Task, parts: Sequence[Sequence[int]]) -> Iterator[Rows]:
         with client:
             shared = client.scatter(task, broadcast=True)
-            futures = [client.submit(_rows, shared, part, pure=False) for part in parts]
+            futures = [client.submit(Task.rows, shared, part, pure=False) for part in parts]
             try:
                 for future in futures:
                     yield future.result()
             finally:
                 client.cancel(futures)
 
-    return run
+    return rows_of

@@ -129,12 +129,8 @@ class FileVariants(Generic[T]):
 
     # --------------------------------------------------------------------------------- refusals
     def first_sound(self) -> tuple[int, T]:
-        """Return the number and the scene or train of the first variant that no rule refuses.
-
-        Raises
-        ------
-        SolidgearError
-            If there is none, with the entry that is refused whatever its value, if there is one.
+        """Return the number and the scene or train of the first variant that no rule refuses; if there
+        is none, raise an error on the entry that is refused whatever its value, if there is one.
         """
         refusal: Exception | None = None
         for index in dict.fromkeys(np.linspace(0, len(self) - 1, TRIED).astype(int).tolist()):

@@ -38,13 +38,8 @@ DAMAGED = (sqlite3.SQLITE_NOTADB, sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_ERROR)
 
 
 class RowFile:
-    """Rows of one sweep, to be used in a ``with`` statement by one process at a time.
-
-    Raises
-    ------
-    SolidgearError
-        For another suffix, a missing package, a folder that cannot be written, a file that another
-        process is writing, rows of another plan, or a file that is no database of rows.
+    """Rows of one sweep, to be used in a ``with`` statement by one process at a time; refuses rows of
+    another plan.
     """
 
     def __init__(
@@ -144,7 +139,7 @@ class RowFile:
 
     def _refuse_other(self, plan: str) -> None:
         """Refuse rows of another plan, with the names in which it differs."""
-        text = self._fact("plan") or "{}"
+        text = self._value("SELECT value FROM facts WHERE name = 'plan'") or "{}"
         if text == plan:
             return
         a, b = json.loads(text), json.loads(plan)
@@ -162,16 +157,14 @@ class RowFile:
         )
 
     def _value(self, query: str) -> Any:
-        return self._db.execute(query).fetchall()[0][0]
-
-    def _fact(self, name: str) -> str | None:
-        row = self._db.execute("SELECT value FROM facts WHERE name = ?", (name,)).fetchone()
+        """Return the one value of a query; None without any."""
+        row = self._db.execute(query).fetchone()
         return None if row is None else row[0]
 
     @property
     def basis(self) -> int | None:
         """Level of the basis that rows of bearings begin with; None as long as it is unknown."""
-        level = self._fact("basis")
+        level = self._value("SELECT value FROM facts WHERE name = 'basis'")
         return None if level is None else int(level)
 
     @basis.setter
@@ -182,7 +175,9 @@ class RowFile:
     # ---------------------------------------------------------------------------------- writing
     def append(self, rows: Iterable[Mapping[str, Any]]) -> None:
         """Add rows; all are on the disk when this returns, or none."""
-        lines = [(row["variant"], self._line(row)) for row in rows]
+        lines = [
+            (row["variant"], _csv_line(map(_field, map(row.get, self.columns)))) for row in rows
+        ]
         with self._writing():
             with self._db:
                 self._db.execute("BEGIN")
@@ -231,9 +226,6 @@ class RowFile:
 
     def _lines(self) -> Iterator[str]:
         return (line for (line,) in self._db.execute("SELECT line FROM rows ORDER BY variant"))
-
-    def _line(self, row: Mapping[str, Any]) -> str:
-        return _csv_line(_field(row.get(name)) for name in self.columns)
 
     # --------------------------------------------------------------------------------- refusals
     @contextmanager

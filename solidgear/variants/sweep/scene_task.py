@@ -130,30 +130,8 @@ def scene_task(
     options: Mapping[str, Any] | None = None,
     n: int | None = None,
 ) -> SceneTask:
-    """Return the task of statics and natural frequencies of variants of a scene, with error bars.
-
-    Parameters
-    ----------
-    scene : Path
-        Of the scene file.
-    design : Design
-        Entries that vary: any number or word of the file, such as
-        ``segment.neck.diameter=30 mm:40 mm:5``. The change is made to the tables of the file, and
-        every rule of the file applies.
-    model : str, optional
-        None for the cheapest mesh whose error bars are within the tolerance, variant by variant;
-        rows of a model that is given have none.
-    tolerance : float, optional
-        Relative; that of the scene by default.
-    options : mapping, optional
-        Of the builder of a model that is given.
-    n : int, optional
-        Natural frequencies of a row; as many as the scene asks for by default.
-
-    Raises
-    ------
-    SolidgearError
-        A path or a value that no variant can have, and too many variants.
+    """Return the task of statics and natural frequencies of variants of a scene, with error bars;
+    parameters as of :func:`solidgear.sweep`.
 
     Examples
     --------

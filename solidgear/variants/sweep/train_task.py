@@ -3,32 +3,41 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, field
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from solidgear.core import Scene, SolidgearError, nearest, show
+from solidgear.core import Scene, SolidgearError, listed, nearest, parse, show
+from solidgear.core.loading import scene_of
 from solidgear.core.models.limits import number
+from solidgear.core.scene.file import KEYS
+from solidgear.core.scene.paths import Tables, with_entry
 from solidgear.strength.deflection.misalignment import measured_names, misalignment
 from solidgear.trains.assembly.assembly import KEPT
 from solidgear.trains.assembly.layout import contacts
 from solidgear.trains.assembly.shaft import JUDGE, LUMPED, checked_model
 from solidgear.trains.assembly.turn import over_a_turn, stages_over_a_turn
+from solidgear.trains.file.housing import HOUSING
 from solidgear.trains.file.operation import OperatingPoint
-from solidgear.trains.file.train import Train
-from solidgear.trains.load.operation import SHAFT, OperatingState, with_settled_bearings
+from solidgear.trains.file.reading import train_of
+from solidgear.trains.file.train import SHORT, SIDES, Train
+from solidgear.trains.load.operation import (
+    SHAFT,
+    named_point,
+    with_settled_bearings,
+)
 from solidgear.trains.modes.modes import refuse_unresolved
 from solidgear.trains.modes.parting import joint_name, parting_frequency, teeth_relief
 from solidgear.trains.response.drive import Drive
 from solidgear.variants.sweep.bench import Bench
 from solidgear.variants.sweep.curves import force_of, misaligned
 from solidgear.variants.sweep.design import Design
+from solidgear.variants.sweep.entries import Entry, Place
 from solidgear.variants.sweep.file_task import BARS, BOUND, FileTask
-from solidgear.variants.sweep.file_variants import tables_for_plan
-from solidgear.variants.sweep.train_variants import TrainVariants, train_variants
+from solidgear.variants.sweep.file_variants import MAIN, POINT, FileVariants, tables_for_plan
 
 #: kinds of numbers of a row, by the commands that show the same of one train
 MODES, RESPONSE, DEFLECTION = "system-modes", "response", "deflect"
@@ -44,6 +53,10 @@ PEAKS = 3
 PARTS = "parts_from_hz"
 #: loads of a bearing, N, N and N m
 LOADS = ("radial", "axial", "moment")
+#: table of operating points
+OPERATION = "operation"
+#: scenes that are kept
+SCENES = 500
 
 
 @dataclass(frozen=True)
@@ -91,7 +104,10 @@ class TrainTask(FileTask):
         if train.operation and DEFLECTION in self.ask:
             out |= dict.fromkeys(map(misaligned, self.misalignments), float)
             out |= {once(stage.called): float for stage in stages_over_a_turn(train)}
-            out |= dict.fromkeys(_loads(train), float)
+            for side, shaft in train.shafts.items():
+                for b in shaft.scene.bearings:
+                    if b.catalogue is not None or np.any(b.stiffness):
+                        out |= {f"{side}.{b.name}.{load}": float for load in LOADS}
         if train.operation:
             out["unloaded"] = str
         if MODES in self.ask:
@@ -167,7 +183,10 @@ class TrainTask(FileTask):
                 out[misaligned(measure.name)] = float(measure.row @ deflected.coordinates)
             for turn in over_a_turn(operating.assembly, deflected, deflected.models):
                 out[once(turn.stage)] = max(planet.once for planet in turn.planets)
-            out |= _bearing_loads(deflected)
+            for end, load in deflected.equilibrium.load.items():
+                # across the shaft, along it and against tilting
+                loads = np.hypot(load[0], load[2]), load[1], np.hypot(load[3], load[5])
+                out |= {f"{end}.{name}": float(value) for name, value in zip(LOADS, loads)}
         return at_rest, out
 
     # ------------------------------------------------------------------------------ moving
@@ -224,43 +243,8 @@ def train_task(
     local_harmonics: Sequence[int] = (),
     settings: Mapping[Any, Mapping] | None = None,
 ) -> TrainTask:
-    """Natural frequencies, mesh force and misalignment of many variants of a train.
-
-    Parameters
-    ----------
-    train : Path
-        Of the train file.
-    design : Design
-        Entries that vary: any number or word of the train file, or of the scene of a shaft, such as
-        ``pinion.bearing.2.position=140 mm:160 mm:5``. The change is made to the tables of the file,
-        and every rule of the file applies.
-    pinion, gear : str, optional
-        Models of the shafts of these names, as of ``system-modes``; ``harmonic`` by default.
-    models : mapping of str to str, optional
-        Models of shafts by any name.
-    mesh : str, optional
-        Whose transmission error drives the train; the first by default.
-    ask : iterable of str
-        Kinds of numbers of a row: some of ``system-modes``, ``response`` and ``deflect``; all by
-        default.
-    n : int, optional
-        Elastic modes of a row; those up to the highest frequency by default.
-    max_frequency : float, optional
-        Hz; that of the file by default.
-    point : str, optional
-        Operating point of all rows, by its name or number; the first by default, or the one that
-        varies.
-    every_point : bool
-        A row for each operating point of the file.
-    reduction, kept, settings
-        As for :class:`solidgear.trains.assembly.assembly.Assembly`.
-    local_harmonics : sequence of int
-        Of every mesh, in place of those of the file.
-
-    Raises
-    ------
-    SolidgearError
-        A path or a value that no variant can have, and too many variants.
+    """Return the task of natural frequencies, mesh force and misalignment of variants of a train;
+    parameters as of :func:`solidgear.sweep`.
 
     Examples
     --------
@@ -270,7 +254,13 @@ def train_task(
     >>> [row["status"] for row in task.rows(range(3))], task.bench.made
     (['ok', 'ok', 'ok'], 2)
     """
-    kinds = _kinds(ask)
+    asked = set(ask)
+    for word in asked.difference(ASKED):
+        raise SolidgearError(
+            f"--ask {show(word, 40)}: give one or more of {', '.join(ASKED)}{nearest(word, ASKED)}"
+        )
+    if not asked:
+        raise SolidgearError(f"--ask: name one or more of {', '.join(ASKED)}")
     by_side = {"pinion": pinion, "gear": gear}
     chosen = {side: model for side, model in by_side.items() if model is not None}
     chosen |= models or {}
@@ -288,7 +278,7 @@ def train_task(
     return TrainTask(
         variants,
         models={side: chosen.get(side, JUDGE) for side in usual.shafts},
-        ask=kinds,
+        ask=tuple(word for word in ASKED if word in asked),
         n=n,
         max_frequency=max_frequency,
         reduction=reduction,
@@ -297,20 +287,6 @@ def train_task(
         mesh=mesh,
         first=first,
     )
-
-
-def _kinds(ask: Iterable[str]) -> tuple[str, ...]:
-    """Return the kinds of numbers of rows, in the usual order."""
-    kinds = list(ask)
-    for word in kinds:
-        if word not in ASKED:
-            raise SolidgearError(
-                f"--ask {show(word, 40)}: give one or more of "
-                f"{', '.join(ASKED)}{nearest(word, ASKED)}"
-            )
-    if not kinds:
-        raise SolidgearError(f"--ask: name one or more of {', '.join(ASKED)}")
-    return tuple(word for word in ASKED if word in kinds)
 
 
 def statics_of(model: str) -> str:
@@ -326,22 +302,191 @@ def once(stage: str) -> str:
     return f"once_a_turn_{stage.replace(' ', '_')}"
 
 
-def _loads(train: Train) -> Iterator[str]:
-    """Yield the columns of the loads of every bearing."""
-    for side, shaft in train.shafts.items():
-        for name in _loaded_bearings(shaft.scene):
-            yield from (f"{side}.{name}.{load}" for load in LOADS)
+@dataclass(frozen=True)
+class TrainVariants(FileVariants[Train]):
+    """Points of a sweep of a train; bearings that settle with it have no stiffness yet. Files are named
+    by side, that of the train by an empty name; the last entry may be the operating points.
+    """
+
+    #: operating point of all rows, by its name or number; the first by default
+    point: str | None = None
+    _scenes: dict[tuple, Scene] = field(default_factory=dict, repr=False, compare=False)
+
+    def operating_point(self, index: int, train: Train) -> OperatingPoint | None:
+        """Return the operating point of a variant; None for a train without any."""
+        if not train.operation and self.point is None:
+            return None
+        if self.entries[-1].label == POINT:
+            return train.operation[int(self.values[index, -1])]
+        return train.operation[0] if self.point is None else named_point(train, self.point)
+
+    def beside_operation(self, index: int) -> tuple[float, ...]:
+        """Return the values of all entries that are not of an operating point."""
+        row = _ranked(self.values[index]).tolist()
+        return tuple(value for entry, value in zip(self.entries, row) if not _of_operation(entry))
+
+    def in_turn(self, numbers: Iterable[int]) -> list[int]:
+        """Return variants in an order in which those of the same shafts stand together, and operating
+        points of the same train.
+        """
+        sides = [file for file in self.files if file != MAIN]
+        cost = {file: k for k, file in enumerate((*sides, MAIN))}
+        ranks = [len(cost) if _of_operation(entry) else cost[entry.file] for entry in self.entries]
+        order = np.argsort(ranks, kind="stable")
+        return sorted(numbers, key=lambda k: (*_ranked(self.values[k, order]).tolist(), k))
+
+    def scenes_in_turn(self) -> Iterator[tuple[str, Tables]]:
+        """Yield the tables of the scenes that a shaft has in turn, by the names of their files."""
+        for entry in self.entries:
+            if entry.file == MAIN and entry.keys[-1] == "scene":
+                for word in entry.words:
+                    yield str(word), parse(str(self.path.parent / str(word)))
+
+    def checked_variant(self, index: int) -> Train:
+        train = self.variant(index)
+        self.operating_point(index, train)
+        contacts(train)
+        return train
+
+    def read(self, varied: Sequence[Entry], row: Sequence[float]) -> Train:
+        def of_side(side: str, path: Path, alone: bool) -> Scene:
+            key = (
+                side,
+                str(path),
+                alone,
+                *(repr(value) for entry, value in zip(varied, row) if entry.is_in(side)),
+            )
+            if key not in self._scenes:
+                if len(self._scenes) >= SCENES:
+                    self._scenes.clear()
+                usual = path == self.path.parent / str(shafts_in(self.files[MAIN])[side]["scene"])
+                tables = self.put(side, varied, row, None if usual else parse(str(path)))
+                self._scenes[key] = scene_of(tables, path, alone)
+            return self._scenes[key]
+
+        return train_of(self.put(MAIN, varied, row), str(self.path), of_side)
 
 
-def _loaded_bearings(scene: Scene) -> list[str]:
-    """Return the names of the bearings of a shaft that can carry a load."""
-    return [b.name for b in scene.bearings if b.catalogue is not None or np.any(b.stiffness)]
+def train_variants(
+    path: Path,
+    design: Design,
+    *,
+    point: str | None = None,
+    every_point: bool = False,
+    local_harmonics: Sequence[int] = (),
+) -> TrainVariants:
+    """Return the points of a sweep of a train; parameters as of :func:`solidgear.sweep`."""
+    tables = parse(str(path))
+    if isinstance(tables.get("mesh"), list):
+        tables["mesh"] = [*map(_with_name, tables["mesh"])]
+    shafts, many = shafts_in(tables), "shaft" in tables
+    files = {MAIN: tables} | {side: _scene(path, table) for side, table in shafts.items()}
+
+    def points(varied: tuple[Entry, ...]) -> tuple[Entry, ...]:
+        return (_every_point(tables, varied, point),) if every_point else ()
+
+    design_points = design.points(
+        files,
+        partial(_owner, [*shafts], many, HOUSING in tables),
+        points,
+        example="mesh.stiffness=log:1e8 N/m:1e9 N/m:5",
+    )
+    varied = design_points.entries
+    point = point or _varied_point(tables, varied)
+    if local_harmonics:
+        meshes = tables.get("mesh")
+        places = [(k,) for k in range(len(meshes))] if isinstance(meshes, list) else [()]
+        for place in places:
+            keys = ("mesh", *place, "local_harmonics")
+            files[MAIN] = with_entry(files[MAIN], keys, list(local_harmonics))
+    return TrainVariants(
+        path, files, varied, design_points.values, design_points.sums, design, point
+    )
 
 
-def _bearing_loads(state: OperatingState) -> dict[str, float]:
-    """Return the load of every bearing: across the shaft, along it and against tilting."""
-    out: dict[str, float] = {}
-    for end, load in state.equilibrium.load.items():
-        values = np.hypot(load[0], load[2]), load[1], np.hypot(load[3], load[5])
-        out |= {f"{end}.{name}": float(value) for name, value in zip(LOADS, values)}
-    return out
+def shafts_in(tables: Tables) -> dict[str, Any]:
+    """Return the tables of the shafts of a train file, by name; their reader refuses wrong ones."""
+    shafts = tables.get("shaft", {side: tables.get(side) for side in SIDES})
+    return dict(shafts) if isinstance(shafts, Mapping) else {}
+
+
+def _with_name(mesh: Any) -> Any:
+    """Return a mesh of several with the name that it has without one."""
+    between = mesh.get("between") if isinstance(mesh, Mapping) else None
+    if not isinstance(between, list) or mesh.get("name"):
+        return mesh
+    return {**mesh, "name": "-".join(str(end).partition(".")[0] for end in between)}
+
+
+def _scene(path: Path, table: Any) -> Tables:
+    """Return the tables of the scene of a shaft; none where the train file does not name it, which its
+    reader refuses.
+    """
+    name = table.get("scene") if isinstance(table, Mapping) else None
+    return parse(str(path.parent / name)) if isinstance(name, str) else {}
+
+
+def _owner(shafts: Sequence[str], many: bool, housed: bool, path: str) -> tuple[str, str]:
+    """Return the file of a path and the path within: keys of scenes are in that of the shaft."""
+    if many:
+        path = path.removeprefix("shaft.")
+    first, _, within = path.partition(".")
+    if first in shafts and within.partition(".")[0] in KEYS:
+        return first, within
+    if many and first in shafts:
+        return MAIN, f"shaft.{path}"
+    of_train = {*Train.model_fields, *shafts, *SHORT, "mesh"} - ({HOUSING} if not housed else set())
+    if first in KEYS and first not in of_train:
+        raise SolidgearError(
+            f"--vary {path}: belongs to the scene of a shaft; say which: "
+            + " or ".join(f"{side}.{path}" for side in shafts)
+        )
+    return MAIN, path
+
+
+def _points(tables: Tables) -> list[Any]:
+    table = tables.get(OPERATION, [])
+    return table if isinstance(table, list) else [table]
+
+
+def _every_point(tables: Tables, varied: Sequence[Entry], point: str | None) -> Entry:
+    """Return the operating points of a file as an entry that varies."""
+    if point is not None or any(map(_of_operation, varied)):
+        raise SolidgearError(
+            "--every-point takes every operating point: give no --point and vary none"
+        )
+    points = _points(tables)
+    if not points:
+        raise SolidgearError("the file has no operating point; write [operation] with a torque")
+    names = [str(table.get("name", k)) for k, table in enumerate(points, start=1)]
+    if len(set(names)) < len(names):
+        names = [str(k) for k in range(1, len(points) + 1)]
+    values = tuple(map(float, range(len(points))))
+    return Entry(
+        label=POINT,
+        places=(Place(MAIN, OPERATION, (OPERATION,)),),
+        values=values,
+        spacing="list",
+        words=tuple(names),
+    )
+
+
+def _varied_point(tables: Tables, varied: Sequence[Entry]) -> str | None:
+    """Return the operating point that varies, by its number; None where none does."""
+    if len(_points(tables)) < 2:
+        return None
+    torques = [entry for entry in varied if _of_operation(entry) and entry.label != POINT]
+    numbers = {entry.keys[1] for entry in torques}
+    if len(numbers) > 1:
+        labels = listed(entry.label for entry in torques)
+        raise SolidgearError(f"{labels} are in several operating points; choose one by --point")
+    return str(int(numbers.pop()) + 1) if numbers else None
+
+
+def _of_operation(entry: Entry) -> bool:
+    return entry.file == MAIN and entry.keys[0] == OPERATION
+
+
+def _ranked(values: np.ndarray) -> np.ndarray:
+    """Return values that can be compared: that of the file before all others."""
+    return np.where(np.isnan(values), -np.inf, values)

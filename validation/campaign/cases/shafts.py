@@ -213,8 +213,8 @@ def outcome(
     out = {name: _model(record, comparison.solutions.get(name)) for name, record in records.items()}
     said = {}
     if check:
-        found = check_scene(scene, build(scene, "timoshenko"))
-        said = {name: verdict["verdict"] for name, verdict in found["verdicts"].items()}
+        verdicts = check_scene(scene, build(scene, "timoshenko")).verdicts
+        said = {name: verdict.verdict for name, verdict in verdicts.items()}
     return {"models": out, "check": said}
 
 

@@ -1,154 +1,29 @@
-"""A train at a speed: options of `response`, orders in Hz, those near natural frequencies, the orders
-that peaks of a measured spectrum belong to, and what is printed of them."""
+"""A train at a speed: its orders in Hz, those near natural frequencies, and the orders that peaks of a
+measured spectrum belong to."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from math import pi
-from pathlib import Path
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
-import typer
 
-from solidgear.core import SceneError, SolidgearError, show
+from solidgear.core import SolidgearError
 from solidgear.core.plain import plain
-from solidgear.core.scene.units import quantity
-from solidgear.show import speed_tables
-from solidgear.show.command import Group, say
+from solidgear.show.words import hertz
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.kinematics import SLIP, angles_of, settled_angles, train_orders
 from solidgear.trains.file.train import PerTurn, Train
 from solidgear.trains.load.operation import Operating
 from solidgear.trains.modes.modes import TrainMode
-from solidgear.trains.response.spectrum import Spectrum, read_spectrum
-
-#: rows of tables on a terminal
-MOST, MOST_NEAR = 30, 10
-
-
-@dataclass(frozen=True)
-class Speed(Group):
-    """Options of `response` that speak of one speed."""
-
-    speed: Annotated[
-        str | None,
-        typer.Option(
-            "--speed",
-            help='Speed such as "3000 rpm": orders of shafts, mesh and catalogue bearings in Hz, '
-            "and those near natural frequencies. By default the operating point's speed.",
-        ),
-    ] = None
-    of: Annotated[
-        str | None,
-        typer.Option(
-            "--of", help="Shaft of --speed: pinion or gear; by default the engine's shaft."
-        ),
-    ] = None
-    measured: Annotated[
-        Path | None,
-        typer.Option(
-            "--measured",
-            help="Spectrum at this speed (CSV: frequency in Hz, amplitude), drawn over the "
-            "computed mesh force; every peak is listed with its order.",
-        ),
-    ] = None
-    fit_speed: Annotated[
-        float | None,
-        typer.Option(
-            "--fit-speed",
-            help="Fit the speed within this share, such as 0.03, to the mesh order in the spectrum.",
-        ),
-    ] = None
-    within: Annotated[
-        float | None,
-        typer.Option(
-            "--within", help="Share of a natural frequency within which an order is listed; 0.05."
-        ),
-    ] = None
-
-    def asked(self, train: Train) -> Asked:
-        """Return these options checked for a train."""
-        return Asked(train, self)
-
-
-class Asked:
-    """Options of one speed, checked before anything is solved.
-
-    Raises
-    ------
-    SolidgearError
-        For a speed that is none, a spectrum that cannot be used, or options that need others.
-    """
-
-    def __init__(self, train: Train, speed: Speed):
-        self.train, self.fit = train, speed.fit_speed
-        self.within = NEAR if speed.within is None else speed.within
-        self.turns, self.told = 0.0, ""
-        if speed.speed is not None:
-            shaft = speed.of or train.reference
-            self.turns, self.told = (
-                _turns(train, speed.speed, shaft),
-                f"{speed.speed} of the {shaft}",
-            )
-            if shaft != train.reference:
-                self.told += f", {60 * self.turns:.6g} rpm of the {train.reference}"
-        elif train.point is not None and train.point.speed:
-            turns = train.point.speed_of(train.reference, train.turns) or 0.0
-            self.turns, self.told = turns / (2 * pi), train.point.label
-        else:
-            for option, value in (
-                ("--measured", speed.measured),
-                ("--within", speed.within),
-                ("--of", speed.of),
-            ):
-                if value is not None:
-                    raise SolidgearError(f'{option} needs a speed; add --speed "3000 rpm"')
-        refuse_share("--within", speed.within)
-        refuse_share("--fit-speed", speed.fit_speed)
-        if speed.fit_speed is not None and speed.measured is None:
-            raise SolidgearError("--fit-speed needs a spectrum; add --measured spectrum.csv")
-        self.spectrum = None if speed.measured is None else read_spectrum(speed.measured)
-
-    def found(self, modes: Iterable[TrainMode]) -> AtSpeed | None:
-        """Return orders at the speed; nothing without one."""
-        if not self.turns:
-            return None
-        how = self.within, self.spectrum, self.fit
-        return at_speed(self.train, modes, self.turns, self.told, *how)
-
-
-def _turns(train: Train, text: str, shaft: str) -> float:
-    try:
-        speed = quantity(text, "speed")
-    except SceneError:
-        raise SolidgearError(
-            f'--speed {show(text, 40)}: write a number and a unit, such as "3000 rpm" or '
-            '"314 rad/s"'
-        ) from None
-    try:
-        return turns_of_pinion(train, speed, shaft)
-    except SolidgearError as error:
-        raise SolidgearError(f"--speed {show(text, 40)} --of {show(shaft, 40)}: {error}") from None
-
-
-def say_at_speed(orders: AtSpeed) -> None:
-    """Print orders at a speed, those near natural frequencies, and measured peaks."""
-    say(speed_tables.first_lines(orders.lines))
-    near = speed_tables.coincidences(orders, MOST_NEAR)
-    say(near if near else f"{near.title}: none.")
-    if orders.spectrum is not None:
-        peaks = speed_tables.measured(orders, MOST)
-        say(peaks if peaks else f"{peaks.title}: none stands out of the noise.")
-    say(*orders.notes())
-
+from solidgear.trains.response.spectrum import Spectrum
 
 NOT_OURS = "not ours"
 #: share of a natural frequency within which an order is listed
 NEAR = 0.05
 #: kinds of orders in the sequence of the tables: those that excite most come first
-TOLD = ("mesh", "shaft", "sideband")
+RANKS = ("mesh", "shaft", "sideband")
 ROLLING = (
     "Orders of teeth are exact and have no error bar. Orders of bearings assume pure rolling; "
     f"their error bars cover {100 * SLIP:g} % of slip either way, and both ends of an estimated "
@@ -172,6 +47,13 @@ class Line:
     def exact(self) -> bool:
         """Whether teeth alone give it."""
         return self.low_hz == self.high_hz
+
+    @property
+    def place(self) -> str:
+        """Frequency, Hz, or the ends of its error bar."""
+        if self.exact:
+            return hertz(self.frequency_hz)
+        return f"{hertz(self.low_hz)} to {hertz(self.high_hz)}"
 
 
 @dataclass(frozen=True)
@@ -317,14 +199,13 @@ def at_speed(
         hz, low, high = order.at(turns)
         lines.append(Line(order.kind, order.name, order.source, hz, low, high))
     mode_list = tuple((m.name, m.frequency_hz) for m in modes if m.frequency_hz > 0 and m.driven)
-    coincidences = _coincidences(lines, mode_list, turns, within)
     return AtSpeed(
         rpm=60 * turns,
         speed=speed,
         within=within,
         lines=tuple(lines),
         modes=mode_list,
-        coincidences=coincidences,
+        coincidences=_coincidences(lines, mode_list, turns, within),
         spectrum=spectrum,
         peaks=tuple(explained(lines, hz, amplitude, width) for hz, amplitude, width in tops),
         covered=None if spectrum is None else _covered(lines, spectrum),
@@ -351,21 +232,14 @@ def _coincidences(
 ) -> tuple[Coincidence, ...]:
     ranked = []
     for line in lines:
-        rank = TOLD.index(line.kind) if line.kind in TOLD else len(TOLD)
+        rank = RANKS.index(line.kind) if line.kind in RANKS else len(RANKS)
         for name, hz in modes:
-            difference = line.frequency_hz / hz - 1
-            if abs(difference) <= within:
+            off = line.frequency_hz / hz - 1
+            if abs(off) <= within:
                 rpm = 60 * turns * hz / line.frequency_hz
-                coincidence = Coincidence(
-                    line=line.name,
-                    mode=name,
-                    line_hz=line.frequency_hz,
-                    mode_hz=hz,
-                    off=difference,
-                    rpm=rpm,
-                )
-                ranked.append((rank, abs(difference), coincidence))
-    return tuple(coincidence for *_, coincidence in sorted(ranked, key=lambda row: row[:2]))
+                near = Coincidence(line.name, name, line.frequency_hz, hz, off, rpm)
+                ranked.append((rank, abs(off), near))
+    return tuple(near for *_, near in sorted(ranked, key=lambda row: row[:2]))
 
 
 def _fitted(
@@ -403,16 +277,14 @@ def explained(
     ]
     # orders of teeth alone lie within the resolution, where a wide bar holds almost anything
     candidates.sort(key=lambda line: (not line.exact, abs(line.frequency_hz - hz)))
-    if not candidates:
-        return MeasuredPeak(hz, amplitude, resolution, None, ())
-    names = tuple(line.name for line in candidates[1:])
-    return MeasuredPeak(hz, amplitude, resolution, candidates[0], names)
+    line, names = next(iter(candidates), None), tuple(line.name for line in candidates[1:])
+    return MeasuredPeak(hz, amplitude, resolution, line, names)
 
 
 def _covered(lines: Sequence[Line], spectrum: Spectrum) -> float:
     """Return the share of the lines of a spectrum on which a peak would be assigned to an order."""
     hz, resolution = spectrum.frequency_hz, spectrum.resolution_hz
-    explained_lines = np.zeros(len(hz), bool)
+    covered = np.zeros(len(hz), bool)
     for line in lines:
-        explained_lines |= (hz >= line.low_hz - resolution) & (hz <= line.high_hz + resolution)
-    return float(resolution[explained_lines].sum() / resolution.sum())
+        covered |= (hz >= line.low_hz - resolution) & (hz <= line.high_hz + resolution)
+    return float(resolution[covered].sum() / resolution.sum())

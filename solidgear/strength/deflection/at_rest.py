@@ -1,11 +1,13 @@
-r"""Deflection and misalignment of a train at an operating point, by any model, with error bars.
+r"""Deflection of the shafts of a train at an operating point, or of a shaft under its load, by any
+model, with error bars.
 
 A quantity a'q of the state at rest has an error bar where a shaft is a harmonic solid: the flexibility at
 the ports lies between F and F + M (:mod:`solidgear.core.bounds.harmonic`), so that with the forces f on
 the ports at rest, and those, g, which a unit load on the quantity would bring about on the bearings'
 tangents,
 
-    |error| <= sqrt(f'M f) sqrt(g'M g),      summed over the shafts
+    |error| <= sqrt(f'M f) sqrt(g'M g),      summed over the shafts and their axial, torsional and
+                                             bending parts, which M does not couple
 
 (Cauchy and Schwarz in the energy of the local problems; second order in M is left out).  Beams are
 exact in their theory and have no error bar; the harmonic solid shows what their theory leaves out.
@@ -25,9 +27,11 @@ from solidgear.core import DOF_NAMES, SolidgearError, System, coned, listed, pin
 from solidgear.core.bounds.harmonic import HarmonicBounds, harmonic_bounds, with_tail
 from solidgear.core.bounds.safety import LOCAL
 from solidgear.core.judge.deviations import WITHIN, gap_verdict
+from solidgear.core.plain import plain
 from solidgear.core.system.system import port_forces
-from solidgear.strength.deflection.misalignment import misalignment
+from solidgear.strength.deflection.misalignment import Measure, misalignment
 from solidgear.strength.deflection.shaft import ShaftDeflection, shaft_deflection
+from solidgear.strength.load import AT_REST, LoadAtPort, load_alone
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.components import FORCE_UNITS
 from solidgear.trains.assembly.housing import BOX, housing_motion, mount_rows
@@ -36,16 +40,21 @@ from solidgear.trains.assembly.shaft import JUDGE, LUMPED, RIGID, mix_label
 from solidgear.trains.assembly.turn import StageTurn, over_a_turn
 from solidgear.trains.file.housing import HOUSING
 from solidgear.trains.file.operation import OperatingPoint
+from solidgear.trains.file.train import ALONE, Train
 from solidgear.trains.load.operation import Operating, OperatingState, with_settled_bearings
 
 #: models that a deflection is solved with, the cheapest first
 MODELS = (RIGID, "euler", "timoshenko", JUDGE)
 MOVED = ("m moved",) * 3 + ("rad moved",) * 3
+#: why numbers of a shaft alone have no error bar
+WITHOUT_BAR = f"they come with the model {JUDGE}, which is not among the models"
 
 
 @dataclass(frozen=True)
 class Measured:
-    """A number of a deflected train, with error bar and range over open data."""
+    """A number of deflected shafts, with error bar and range over open data."""
+
+    plain_names = ("value", "bar", "open", ("unit", "si_unit"))
 
     name: str
     unit: str
@@ -58,23 +67,25 @@ class Measured:
     mesh: str = ""
     face: float | None = None  #: width that a meaning over the face is of, m
 
-    def as_dict(self) -> dict[str, Any]:
-        """Return plain data in SI for JSON."""
-        unit = self.unit.split()[0]
-        return {"value": self.value, "bar": self.bar, "open": self.open, "unit": unit}
+    @property
+    def si_unit(self) -> str:
+        """Unit in SI."""
+        return self.unit.split()[0]
 
 
 @dataclass(frozen=True, eq=False)
-class TrainDeflection:
-    """A train at rest at one operating point, by one model of each shaft."""
+class Deflection:
+    """A train at rest at one operating point, or a shaft alone, by one model of each shaft."""
 
     point: OperatingPoint
+    load: LoadAtPort | None  #: of a shaft alone
     models: dict[str, str]  #: by shaft
     mesh_forces: dict[str, float]  #: N, along the line of action, by mesh
     misalignment: tuple[Measured, ...]
     #: of every lumped point, by its shaft, or of one with several gears by shaft and point, six
     #: components; rotations about the axis are against the port of the engine's spring. With a
-    #: housing also of its centre of mass, in the axes of the train.
+    #: housing also of its centre of mass, in the axes of the train. Of a shaft alone, of all its
+    #: places.
     displacement: dict[str, tuple[Measured, ...]]
     shafts: tuple[ShaftDeflection, ...]
     notes: tuple[str, ...]
@@ -84,42 +95,52 @@ class TrainDeflection:
     turns: tuple[StageTurn, ...] = ()  #: of planetary stages
 
     @property
-    def mesh_force(self) -> float:
-        """Force of the first mesh, N."""
-        return next(iter(self.mesh_forces.values()))
-
-    @property
     def model(self) -> str:
         """The model of all shafts, or of each."""
         equal = len({*self.models.values()}) == 1
         return next(iter(self.models.values())) if equal else mix_label(self.models)
 
-    def as_dict(self) -> dict:
+    @property
+    def compared(self) -> tuple[Measured, ...]:
+        """Numbers by which models are compared: the misalignment, or the motion of the lumped point
+        of a shaft alone.
+        """
+        return self.misalignment if self.load is None else self.displacement[self.load.port]
+
+    @property
+    def barred(self) -> bool:
+        """Whether the meshes of the model have error bars."""
+        return any(m.bar is not None for m in self.compared)
+
+    def as_dict(self) -> dict[str, Any]:
         """Return plain data in SI for JSON."""
+        by_place = {place: _by_name(six) for place, six in self.displacement.items()}
+        solved = {"notes": self.notes, "seconds": self.seconds}
+        if self.load is not None:
+            return plain(self.shafts[0]) | plain({"displacement": by_place, **solved})
         data = {
-            "point": self.point.model_dump(mode="json"),
+            "point": self.point,
             **self.models,
-            "mesh_force": self.mesh_force,
+            "mesh_force": next(iter(self.mesh_forces.values())),
             "mesh_forces": self.mesh_forces,
-            "misalignment": {m.name: m.as_dict() for m in self.misalignment},
-            "displacement": _components_as_dict(self.displacement),
-            "shafts": {shaft.name: shaft.as_dict() for shaft in self.shafts},
-            "turns": {turn.stage: turn.as_dict() for turn in self.turns},
-            "notes": list(self.notes),
-            "seconds": self.seconds,
+            "misalignment": _by_name(self.misalignment),
+            "displacement": by_place,
+            "shafts": {shaft.name: shaft for shaft in self.shafts},
+            "turns": {turn.stage: turn for turn in self.turns},
+            **solved,
         }
-        return data | ({"mounts": _components_as_dict(self.mounts)} if self.mounts else {})
+        if self.mounts:
+            data["mounts"] = {place: _by_name(six) for place, six in self.mounts.items()}
+        return plain(data)
 
 
-def _components_as_dict(places: dict[str, tuple[Measured, ...]]) -> dict:
-    return {
-        place: {m.name: m.as_dict() for m in components} for place, components in places.items()
-    }
+def _by_name(measures: Sequence[Measured]) -> dict[str, Measured]:
+    return {measure.name: measure for measure in measures}
 
 
 @dataclass(frozen=True)
 class Standing:
-    """A model of all shafts against the judge, for the misalignment."""
+    """A model of all shafts against the judge, for the numbers that are compared."""
 
     model: str
     verdict: str  #: ``within``, ``open`` or ``beyond`` the tolerance
@@ -129,34 +150,50 @@ class Standing:
 
 @dataclass(frozen=True, eq=False)
 class Deflections:
-    """A train at one operating point, by several models."""
+    """A train at one operating point, or a shaft under its load, by several models."""
 
     title: str
-    tolerance: float  #: of the misalignment, relative
-    solutions: tuple[TrainDeflection, ...]  #: the judge last
+    tolerance: float  #: of the numbers that are compared, relative
+    solutions: tuple[Deflection, ...]  #: the judge last
     standings: tuple[Standing, ...]
     cautions: tuple[str, ...]
     senses: dict[str, str]  #: in which each shaft turns, ``+y`` or ``-y`` of its scene
-    points: tuple[TrainDeflection, ...] = ()
+    points: tuple[Deflection, ...] = ()
     planets: tuple[str, ...] = ()  #: meshes that stand for one of each planet
 
     @property
-    def judge(self) -> TrainDeflection:
+    def judge(self) -> Deflection:
         """The finest model that was solved."""
         return self.solutions[-1]
+
+    @property
+    def load(self) -> LoadAtPort | None:
+        """Load of a shaft alone; None for a train."""
+        return self.judge.load
 
     @property
     def cheapest(self) -> Standing | None:
         """The cheapest model within the tolerance; None where only the judge is."""
         return next((standing for standing in self.standings if standing.verdict == WITHIN), None)
 
+    @property
+    def why_without_bar(self) -> str:
+        """Reason why no number has an error bar; empty where some have one."""
+        return "" if any(solution.barred for solution in self.solutions) else WITHOUT_BAR
+
     def verdict(self) -> str:
-        """Return a sentence on the cheapest model for the misalignment."""
-        if not self.judge.misalignment:
+        """Return a sentence on the cheapest model for the misalignment, or for the motion of the
+        lumped point of a shaft alone.
+        """
+        if not self.judge.compared:
             return "No gears mesh, whose misalignment could judge the models."
         if not self.standings:
             return "One model was solved, so that none is judged."
-        demand = f"{100 * self.tolerance:g} % of the misalignment at {self.judge.point.label}"
+        demand = f"{100 * self.tolerance:g} % of the "
+        if self.load is None:
+            demand += f"misalignment at {self.judge.point.label}"
+        else:
+            demand += f"motion of {self.load.port}"
         if self.cheapest is None:
             near = min(self.standings, key=lambda standing: abs(standing.gap))
             return (
@@ -169,67 +206,74 @@ class Deflections:
             f"{standing.worst})."
         )
 
-    def as_dict(self) -> dict:
+    def as_dict(self) -> dict[str, Any]:
         """Return plain data in SI for JSON."""
-        return {
-            "train": self.title,
+        data: dict[str, Any] = {"train": self.title}
+        if self.load is not None:
+            data = {"scene": self.title, "load": self.load.load.tolist()}
+            data["why_without_bar"] = self.why_without_bar
+        return data | {
             "tolerance": self.tolerance,
             "verdict": self.verdict(),
             "models": {solution.model: solution.as_dict() for solution in self.solutions},
-            "standings": [vars(standing) for standing in self.standings],
+            "standings": plain(self.standings),
             "cautions": list(self.cautions),
             "senses": self.senses,
             "points": [solution.as_dict() for solution in self.points],
         }
 
 
-def deflect_train(
+def deflect(
     assembly: Assembly,
-    point: OperatingPoint,
+    point: OperatingPoint = AT_REST,
     models: Sequence[str] = MODELS,
     progress: Callable[[str], None] = lambda text: None,
     every: bool = False,
 ) -> Deflections:
-    """Compute deflection and misalignment of a train at an operating point by several models of all
-    shafts, the finest last, and by that at every operating point if `every`; lumped models have
-    no bearings of their own and are refused.
+    """Compute deflection and misalignment of a train at an operating point, or the deflection of a
+    shaft under the [load] of its scene, by several models of all shafts, the finest last, and by
+    that at every operating point if `every`; lumped models have no bearings of their own and are
+    refused, and bearings of catalogue data need no stiffness yet.
 
     Examples
     --------
     >>> import solidgear as sg
     >>> assembly = Assembly(sg.load_train("geometry/axle_straddle.toml"))
-    >>> found = deflect_train(assembly, OperatingPoint(torque=200.0), ("euler", "timoshenko"))
+    >>> found = deflect(assembly, OperatingPoint(torque=200.0), ("euler", "timoshenko"))
     >>> [m.name for m in found.judge.misalignment], len(found.judge.shafts[0].bearings)
     (['E', 'P', 'G', 'shaft angle'], 3)
+    >>> shaft = Assembly.of(sg.load("geometry/gearbox_catalogue.toml"))
+    >>> bearings = deflect(shaft, models=["timoshenko"]).judge.shafts[0].bearings
+    >>> round(sum(float(bearing.load[2]) for bearing in bearings), 6)
+    1400.0
     """
-    solutions = []
+    train, solutions = assembly.train, []
     for model in models:
         progress(model)
         solutions.append(deflection(assembly, point, model))
     progress("what the data of bearings leave open")
     solutions[-1] = with_ranges(assembly, solutions[-1])
     standings = tuple(
-        _against_judge(solution, solutions[-1], assembly.train.ask.tolerance)
-        for solution in solutions[:-1]
+        _against_judge(solution, solutions[-1], train.ask.tolerance) for solution in solutions[:-1]
     )
-    points: list[TrainDeflection] = []
+    points: list[Deflection] = []
     if every:
-        progress(f"{len(assembly.train.operation)} operating points")
-        points = deflections(assembly, assembly.train.operation, models[-1])
-    title = assembly.train.title or assembly.train.name
+        progress(f"{len(train.operation)} operating points")
+        points = deflections(assembly, train.operation, models[-1])
+    contacts = assembly.on_flank(point.coast).contacts
     return Deflections(
-        title=title,
-        tolerance=assembly.train.ask.tolerance,
+        title=train.title or train.name,
+        tolerance=train.ask.tolerance,
         solutions=tuple(solutions),
         standings=standings,
         cautions=assembly.data_cautions,
-        senses=senses(assembly.train, assembly.on_flank(point.coast).contacts, point.coast),
+        senses={} if train.is_one_shaft else senses(train, contacts, point.coast),
         points=tuple(points),
-        planets=tuple(stage.name for stage in assembly.train.stages),
+        planets=tuple(stage.name for stage in train.stages),
     )
 
 
-def deflection(assembly: Assembly, point: OperatingPoint, *models: str) -> TrainDeflection:
+def deflection(assembly: Assembly, point: OperatingPoint, *models: str) -> Deflection:
     """Compute the deflection of a train at an operating point by one model of each shaft, as
     :func:`deflections`.
     """
@@ -239,11 +283,11 @@ def deflection(assembly: Assembly, point: OperatingPoint, *models: str) -> Train
 @pinned
 def deflections(
     assembly: Assembly, points: Sequence[OperatingPoint], *models: str
-) -> list[TrainDeflection]:
+) -> list[Deflection]:
     """Compute the deflection of a train at several operating points, each begun at the one before,
     by one model of each shaft.
     """
-    by_shaft = assembly.models_by_shaft(models)
+    load, by_shaft = load_alone(assembly.train), assembly.models_by_shaft(models)
     for model in by_shaft.values():
         if model.partition("/")[0] in LUMPED:
             raise SolidgearError(
@@ -257,32 +301,19 @@ def deflections(
     for point in points:
         start = perf_counter()
         state = operating.at(point, state)
-        out.append(_solution(assembly, state, by_shaft, perf_counter() - start))
+        out.append(_solution(assembly, state, load, perf_counter() - start))
     return out
 
 
 def _solution(
-    assembly: Assembly, state: OperatingState, by_shaft: dict[str, str], seconds: float
-) -> TrainDeflection:
+    assembly: Assembly, state: OperatingState, load: LoadAtPort | None, seconds: float
+) -> Deflection:
     """Return the deflection of a train at rest."""
-    point, system = state.point, state.system
-    bars = StaticBars(assembly, state, by_shaft)
-    measures = misalignment(assembly.on_flank(point.coast), system)
-    measured = tuple(
-        Measured(
-            m.name,
-            m.unit,
-            m.meaning,
-            float(m.row @ state.coordinates),
-            bars.error_bar(m.row),
-            mesh=m.mesh,
-            face=m.face,
-        )
-        for m in measures
-    )
+    train, system, by_shaft = assembly.train, state.system, state.models
+    bars = StaticBars(assembly, state)
     housed = {
         side: housing_motion(system, assembly.places[side], state.coordinates)
-        for side in assembly.train.housed
+        for side in train.housed
     }
     shafts = tuple(
         shaft_deflection(
@@ -300,27 +331,24 @@ def _solution(
     notes = [*state.notes, *(note for shaft in shafts for note in shaft.notes)]
     if housed:
         notes.append(f"deflection lines of {listed(housed)} are relative to the housing")
-    displacement = {}
-    for side, shaft in assembly.train.shafts.items():
-        for port in shaft.gears:
-            end = f"{side}.{port}"
-            name = side if len(shaft.gears) == 1 else end
-            displacement[name] = _six_measures(f"of {end}", MOVED, system.motion(end), state, bars)
-    if assembly.train.housing is not None:
-        displacement[HOUSING] = _six_measures(
-            "of its centre", MOVED, system.motion(BOX), state, bars
-        )
-        if assembly.train.stages:
+    displacement = {
+        name: bars.measured(_six(f"of {end}", MOVED, system.motion(end)))
+        for name, end in _places(train).items()
+    }
+    if train.housing is not None:
+        displacement[HOUSING] = bars.measured(_six("of its centre", MOVED, system.motion(BOX)))
+        if train.stages:
             notes.append("forces over a turn of a carrier are not computed with a housing")
     mounts = {
-        name: _six_measures("on it", FORCE_UNITS, rows, state, bars)
-        for name, rows in mount_rows(assembly.train, system).items()
+        name: bars.measured(_six("on it", FORCE_UNITS, rows))
+        for name, rows in mount_rows(train, system).items()
     }
-    return TrainDeflection(
-        point=point,
-        models=state.models,
+    return Deflection(
+        point=state.point,
+        load=load,
+        models=by_shaft,
         mesh_forces=state.mesh_forces,
-        misalignment=measured,
+        misalignment=bars.measured(misalignment(assembly.on_flank(state.point.coast), system)),
         displacement=displacement,
         shafts=shafts,
         notes=tuple(notes),
@@ -330,45 +358,55 @@ def _solution(
     )
 
 
-def with_ranges(assembly: Assembly, solution: TrainDeflection) -> TrainDeflection:
-    """Return the same with the ranges of the misalignment over estimated insides and clearance
-    classes.
+def _places(train: Train) -> dict[str, str]:
+    """Return the ports whose motion is shown, by name: lumped points, and of a shaft alone all."""
+    if train.is_one_shaft:
+        stations = train.shafts[ALONE].scene.stations
+        return {station.name: f"{ALONE}.{station.name}" for station in stations}
+    return {
+        side if len(shaft.gears) == 1 else f"{side}.{port}": f"{side}.{port}"
+        for side, shaft in train.shafts.items()
+        for port in shaft.gears
+    }
+
+
+def _six(meaning: str, units: Sequence[str], rows: np.ndarray) -> list[Measure]:
+    """Return the motion of a place, or the load on it, as six components."""
+    return [Measure(name, unit, meaning, row) for name, unit, row in zip(DOF_NAMES, units, rows)]
+
+
+def with_ranges(assembly: Assembly, solution: Deflection) -> Deflection:
+    """Return the same with the ranges of the numbers that are compared over estimated insides and
+    clearance classes.
     """
-    values = [[m.value for m in solution.misalignment]]
+    values = [[m.value for m in solution.compared]]
     _, choices = left_open(shaft.scene for shaft in assembly.train.shafts.values())
     for choice in choices:
         operating = Operating(assembly, *solution.models.values(), choice=choice)
         state = operating.at(solution.point)
-        measures = misalignment(assembly.on_flank(solution.point.coast), state.system)
-        values.append([float(m.row @ state.coordinates) for m in measures])
+        if solution.load is None:
+            measures = misalignment(assembly.on_flank(solution.point.coast), state.system)
+            values.append([float(m.row @ state.coordinates) for m in measures])
+        else:
+            values.append(state.motion(f"{ALONE}.{solution.load.port}").tolist())
     if len(values) == 1:
         return solution
     low, high = np.min(values, axis=0), np.max(values, axis=0)
-    measured = [
-        replace(m, open=(float(a), float(b))) for m, a, b in zip(solution.misalignment, low, high)
-    ]
-    return replace(solution, misalignment=tuple(measured))
-
-
-def _six_measures(
-    meaning: str, units: Sequence[str], rows: np.ndarray, state: OperatingState, bars: StaticBars
-) -> tuple[Measured, ...]:
-    """Return the motion of a place, or the load on it, as six components."""
-    return tuple(
-        Measured(name, unit, meaning, float(row @ state.coordinates), bars.error_bar(row))
-        for name, unit, row in zip(DOF_NAMES, units, rows)
+    measured = tuple(
+        replace(m, open=(float(a), float(b))) for m, a, b in zip(solution.compared, low, high)
     )
+    if solution.load is None:
+        return replace(solution, misalignment=measured)
+    return replace(solution, displacement=solution.displacement | {solution.load.port: measured})
 
 
-def _against_judge(solution: TrainDeflection, judge: TrainDeflection, tolerance: float) -> Standing:
+def _against_judge(solution: Deflection, judge: Deflection, tolerance: float) -> Standing:
     """Compare a model with the judge: lengths against the largest length, angles against the
     largest angle.
     """
     worst, gap, bar = "", 0.0, 0.0
-    for unit in dict.fromkeys(m.unit for m in judge.misalignment):
-        pairs = [
-            (m, j) for m, j in zip(solution.misalignment, judge.misalignment) if j.unit == unit
-        ]
+    for unit in dict.fromkeys(m.unit for m in judge.compared):
+        pairs = [(m, j) for m, j in zip(solution.compared, judge.compared) if j.unit == unit]
         scale = float(np.linalg.norm([j.value for _, j in pairs]))
         for measure, reference in pairs:
             error = (measure.value - reference.value) / scale if scale else 0.0
@@ -380,15 +418,15 @@ def _against_judge(solution: TrainDeflection, judge: TrainDeflection, tolerance:
 class StaticBars:
     """Error bars that meshes of harmonic shafts leave in linear numbers of a state at rest."""
 
-    def __init__(self, assembly: Assembly, state: OperatingState, models: dict[str, str]):
+    def __init__(self, assembly: Assembly, state: OperatingState):
         self.assembly, self.state = assembly, state
-        self.sides = [side for side, model in models.items() if model == JUDGE]
+        sides = [side for side, model in state.models.items() if model == JUDGE]
         self.bounds: dict[str, HarmonicBounds] = {}
-        if not self.sides or any(mesh.local_harmonics for mesh in assembly.train.meshes):
+        if not sides or any(mesh.local_harmonics for mesh in assembly.train.meshes):
             return
         settled = assembly.with_train(with_settled_bearings(assembly.train, state))
-        self.tangent: System = settled.system(*models.values())
-        for side in self.sides:
+        self.tangent: System = settled.system(*state.models.values())
+        for side in sides:
             body = assembly.shaft_model(side, JUDGE).body
             self.bounds[side] = harmonic_bounds(coned(assembly.scenes[side]), body, statics=True)
         self.rest = self._ports(state.forces())
@@ -404,6 +442,21 @@ class StaticBars:
                     start = 6 * bounds.body.port_index(port)
                     out[side][start : start + 6] += force
         return out
+
+    def measured(self, measures: Sequence[Measure]) -> tuple[Measured, ...]:
+        """Return the values of measures at rest with their error bars."""
+        return tuple(
+            Measured(
+                m.name,
+                m.unit,
+                m.meaning,
+                float(m.row @ self.state.coordinates),
+                self.error_bar(m.row),
+                mesh=m.mesh,
+                face=m.face,
+            )
+            for m in measures
+        )
 
     def error_bar(self, row: np.ndarray) -> float | None:
         """Return the error bar of ``row @ coordinates``; None without a harmonic shaft, and where
@@ -422,11 +475,14 @@ class StaticBars:
         total = 0.0
         for side, bounds in self.bounds.items():
             f, g = self.rest[side], unit_forces[side]
-            double, single = (
-                float(np.sqrt(max(f @ m @ f, 0.0) * max(g @ m @ g, 0.0)))
-                for m in (bounds.more, bounds.less)
-            )
-            total += LOCAL * with_tail(double, single)
+            for rows in (bounds.body.rows(block) for block in bounds.body.blocks):
+                double, single = (
+                    float(
+                        np.sqrt(max(f[rows] @ m @ f[rows], 0.0) * max(g[rows] @ m @ g[rows], 0.0))
+                    )
+                    for m in (bounds.more[np.ix_(rows, rows)], bounds.less[np.ix_(rows, rows)])
+                )
+                total += LOCAL * with_tail(double, single)
         return total
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -68,6 +69,18 @@ class Range:
     high: float
 
 
+def range_of(hz: np.ndarray) -> Range:
+    """Return the range from the lowest to the highest frequency."""
+    return Range(float(hz.min()), float(hz.max()))
+
+
+class Largest(NamedTuple):
+    """The largest dynamic mesh force."""
+
+    frequency_hz: float  #: of the mesh
+    force: float  #: N
+
+
 @dataclass(frozen=True)
 class Jump:
     """A turning point of the branch, where a sweep falls off it."""
@@ -100,7 +113,7 @@ class Backlash:
     law: int = 0
     periods: int = 1  #: of the driven mesh after which motions repeat themselves
     end: str = (
-        ""  #: of a branch apart, as :class:`solidgear.backlash.solver.apart.SeparateBranch` says
+        ""  #: of a branch apart, as of :class:`solidgear.backlash.solver.apart.SeparateBranch`
     )
     #: for branches apart; None where they were not looked for
     search: Search | None = field(default=None, repr=False)
@@ -223,15 +236,21 @@ class Backlash:
         return float(hz.max()) if np.isclose(hz[0], hz[-1], rtol=1e-9) else None
 
     @cached_property
-    def loudest(self) -> tuple[float, float]:
-        """Frequency and size of the largest dynamic mesh force of stable motions."""
-        size = np.where(self.stable, self.force, 0.0)
-        return float(self.frequency_hz[size.argmax()]), float(size.max())
+    def _loudest_point(self) -> int:
+        """Number of the point with the largest dynamic mesh force of stable motions."""
+        return int(np.where(self.stable, self.force, 0.0).argmax())
+
+    @cached_property
+    def loudest(self) -> Largest:
+        """The largest dynamic mesh force of stable motions."""
+        k = self._loudest_point
+        force = float(self.force[k]) if self.stable[k] else 0.0
+        return Largest(float(self.frequency_hz[k]), force)
 
     @property
     def worst(self) -> Backlash:
         """The branch, this one or those apart, with the largest force."""
-        return max((self, *self.branches_apart), key=lambda branch: branch.loudest[1])
+        return max((self, *self.branches_apart), key=lambda branch: branch.loudest.force)
 
     @property
     def calm(self) -> Range | None:
@@ -239,14 +258,14 @@ class Backlash:
         none.
         """
         hz = self.frequency_hz[self.stable]
-        return Range(float(hz.min()), float(hz.max())) if len(hz) else None
+        return range_of(hz) if len(hz) else None
 
     @cached_property
     def departs(self) -> float:
         """Distance of a period in time where the force is largest, relative to the swing of the
         teeth.
         """
-        return departure(self.points[int(np.where(self.stable, self.force, 0.0).argmax())])
+        return departure(self.points[self._loudest_point])
 
     def motions_at(self, omega: float) -> list[Point]:
         """Return motions of this branch and those apart at a frequency of the driven mesh, rad/s."""
@@ -254,10 +273,10 @@ class Backlash:
         return [point for branch in branches for point in branch.branch.at(omega / branch.periods)]
 
     @cached_property
-    def linear_loudest(self) -> tuple[float, float]:
-        """Frequency and size of the largest force of the linear answer."""
+    def linear_loudest(self) -> Largest:
+        """The largest force of the linear answer."""
         hz, size = self.linear
-        return float(hz[size.argmax()]), float(size.max())
+        return Largest(float(hz[size.argmax()]), float(size.max()))
 
     @cached_property
     def holding(self) -> tuple[np.ndarray, np.ndarray]:
@@ -274,11 +293,14 @@ class Backlash:
     @cached_property
     def jumps(self) -> tuple[Jump, ...]:
         """Turning points, in order."""
-        out = []
-        for k in self.branch.turning:
-            rising = bool(self.branch.points[k - 1].tangent[-1] > 0)
-            out.append(Jump(float(self.frequency_hz[k]), rising, float(self.force[k])))
-        return tuple(out)
+        return tuple(
+            Jump(
+                frequency_hz=float(self.frequency_hz[k]),
+                rising=bool(self.points[k - 1].tangent[-1] > 0),
+                force=float(self.force[k]),
+            )
+            for k in self.branch.turning
+        )
 
     @cached_property
     def lost(self) -> tuple[Range, ...]:
@@ -293,25 +315,23 @@ class Backlash:
     @cached_property
     def both_flanks(self) -> tuple[Range, ...]:
         """Frequencies at which the other flank touches as well."""
-        return _ranges(self.frequency_hz, self.backside > 0, [])
+        return _ranges(self.frequency_hz, self.backside > 0)
 
     @cached_property
     def wandering(self) -> tuple[tuple[str, Range], ...]:
         """Frequencies of unstable periodic motions not between turning points, each with the kind
         of instability.
         """
-        kinds = np.full(len(self.points), "", dtype=object)
-        loose = ~self.stable
-        kinds[loose & (np.abs(self.multiplier.imag) > REAL)] = "a second frequency"
-        real = loose & (np.abs(self.multiplier.imag) <= REAL)
-        kinds[real & (self.multiplier.real < 0)] = "a motion of two mesh periods"
-        masks = {
-            kind: kinds == kind for kind in ("a second frequency", "a motion of two mesh periods")
+        loose, turns = ~self.stable, np.abs(self.multiplier.imag)
+        doubles = (turns <= REAL) & (self.multiplier.real < 0)
+        kinds = {
+            "a second frequency": loose & (turns > REAL),
+            "a motion of two mesh periods": loose & doubles,
         }
         return tuple(
             (kind, span)
-            for kind, mask in masks.items()
-            for span in _ranges(self.frequency_hz, mask, [])
+            for kind, mask in kinds.items()
+            for span in _ranges(self.frequency_hz, mask)
         )
 
     def linear_errors(self, decibels: float) -> tuple[tuple[Range, float], ...]:
@@ -323,7 +343,7 @@ class Backlash:
         error = 20 * np.log10(size / self.force)
         far = self.stable & (np.abs(error) > decibels)
         out = []
-        for span in _ranges(self.frequency_hz, far, []):
+        for span in _ranges(self.frequency_hz, far):
             inside = far & (self.frequency_hz >= span.low) & (self.frequency_hz <= span.high)
             out.append((span, float(error[inside][np.abs(error[inside]).argmax()])))
         return tuple(out)
@@ -332,18 +352,22 @@ class Backlash:
         """Return the (o,) amplitudes of the mesh force by orders of the mesh from 1, where it is
         largest, N.
         """
-        k = int(np.where(self.stable, self.force, 0.0).argmax())
+        k = self._loudest_point
         wave = self._waves[k]
         return 2 * np.abs(np.fft.rfft(wave))[1 : self.points[k].balance.count + 1] / len(wave)
 
 
-def _ranges(hz: np.ndarray, inside: np.ndarray, ends: Sequence[float]) -> tuple[Range, ...]:
+def runs_of(mask: np.ndarray) -> np.ndarray:
+    """Return (n, 2) first and after the last of each run of True."""
+    return np.flatnonzero(np.diff(np.r_[False, mask, False].astype(int))).reshape(-1, 2)
+
+
+def _ranges(hz: np.ndarray, inside: np.ndarray, ends: Sequence[float] = ()) -> tuple[Range, ...]:
     """Return ranges of neighbours that are inside, widened to the ends found between points,
     overlapping ones merged.
     """
     ranges = []
-    edges = np.flatnonzero(np.diff(np.r_[False, inside, False].astype(int)))
-    for first, last in edges.reshape(-1, 2):
+    for first, last in runs_of(inside):
         values = hz[first:last].tolist()
         for k in (first, last):
             if 0 < k < len(hz):

@@ -1,0 +1,51 @@
+"""Lives of the bearings of a train over its operating points."""
+
+from __future__ import annotations
+
+from solidgear.bearings.bearing_life import left_open, life_of
+from solidgear.bearings.duty import LivesOverPoints, PointLife
+from solidgear.bearings.solved import AS_STATED
+from solidgear.core import SolidgearError
+from solidgear.trains.assembly.assembly import Assembly
+from solidgear.trains.file.train import Train
+from solidgear.trains.load.operation import Operating, OperatingState
+
+
+def train_lives(train: Train) -> list[LivesOverPoints]:
+    """Return the life of every catalogue bearing of a train at all operating points; refused
+    without points or catalogue bearings.
+    """
+    if not train.operation:
+        raise SolidgearError(
+            f"{train.name} has no operating point; write [operation] with a torque in its file"
+        )
+    scenes = {side: shaft.scene for side, shaft in train.shafts.items()}
+    unknown, choices = left_open(scenes.values())
+    assembly = Assembly(train)
+    settled = [
+        _states(Operating(assembly, choice=choice), train) for choice in (AS_STATED, *choices)
+    ]
+    lives_by_bearing = []
+    for side, scene in scenes.items():
+        for bearing in scene.bearings:
+            if bearing.catalogue is None:
+                continue
+            end = f"{side}.{bearing.name}"
+            points = []
+            for k, point in enumerate(train.operation):
+                places = [(s[k].bearings[end], s[k].equilibrium.relative[end]) for s in settled]
+                speed = point.speed_of(side, train.turns)
+                life = life_of(bearing, scene.lubrication, unknown, speed, places)
+                points.append(PointLife(point.label, life, point.share, point.hours))
+            lives_by_bearing.append(LivesOverPoints(end, tuple(points)))
+    if not lives_by_bearing:
+        raise SolidgearError(f"{train.name}: no bearing is described by catalogue data")
+    return lives_by_bearing
+
+
+def _states(operating: Operating, train: Train) -> list[OperatingState]:
+    """Return the train at all points, each begun at the one before."""
+    states: list[OperatingState] = []
+    for point in train.operation:
+        states.append(operating.at(point, states[-1] if states else None))
+    return states

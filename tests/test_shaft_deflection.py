@@ -1,0 +1,88 @@
+"""Deflection of a shaft alone: error bars against a finer mesh, the cheapest model, what is shown."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from solidgear.core import as_written
+from solidgear.strength.deflection.at_rest import deflect, deflection
+from solidgear.strength.load import AT_REST
+from solidgear.trains.assembly.assembly import Assembly
+
+GEOMETRY = Path(__file__).parent.parent / "geometry"
+CATALOGUE = GEOMETRY / "gearbox_catalogue.toml"
+SPRINGS = GEOMETRY / "pinion_overhung.toml"
+LOAD = ("--load", "z=2 kN, x=500 N, y=300 N")
+
+
+def coarse(assembly):
+    """The same shaft on coarse cells."""
+    return replace(assembly, settings={"harmonic": {"order": 3}})
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    ("file", "load"),
+    [(CATALOGUE, None), (SPRINGS, {"z": 2000.0, "x": 500.0, "y": 300.0})],
+    ids=["catalogue", "springs"],
+)
+def test_error_bars_hold_against_a_finer_mesh(file, load):
+    scene = as_written(file)
+    scene = scene.with_changes(load=load) if load else scene
+    fine = Assembly.of(scene, kept=6)
+    truth, solved = (
+        deflection(assembly, AT_REST, "harmonic").displacement for assembly in (fine, coarse(fine))
+    )
+    assert [*solved] == [station.name for station in scene.stations]
+    for place, measures in solved.items():
+        errors = [abs(m.value - t.value) for m, t in zip(measures, truth[place])]
+        bars = [m.bar for m in measures]
+        assert bars[4] is None  # the shaft turns freely
+        assert all(error <= bar for error, bar in zip(errors, bars) if bar is not None), place
+    errors = [abs(m.value - t.value) for m, t in zip(solved["pinion"], truth["pinion"])]
+    bars = [m.bar for m in solved["pinion"]]
+    assert np.linalg.norm(bars[:3]) < 4 * np.linalg.norm(errors[:3])
+
+
+def test_a_load_along_the_axis_widens_no_bar_across_it():
+    scene = as_written(SPRINGS)
+    bars = []
+    for load in ({"z": 1.0}, {"y": 5e4, "z": 1.0}):
+        assembly = coarse(Assembly.of(scene.with_changes(load=load), kept=6))
+        bars.append(deflection(assembly, AT_REST, "harmonic").displacement["pinion"][2].bar)
+    assert bars[1] == pytest.approx(bars[0], rel=0.05)
+
+
+def test_a_bearing_that_carries_nothing_is_named():
+    scene = as_written(CATALOGUE).with_changes(load={"y": -300.0})
+    notes = deflection(Assembly.of(scene, kept=6), AT_REST, "euler").notes
+    assert any(note.startswith("bearing shaft.A carries no load within") for note in notes)
+
+
+def test_models_of_a_shaft_are_judged_by_the_motion_of_its_port():
+    scene = as_written(SPRINGS).with_changes(load={"z": 2000.0}, ask={"tolerance": 0.2})
+    found = deflect(coarse(Assembly.of(scene, kept=6)), models=("rigid", "timoshenko", "harmonic"))
+    assert [standing.verdict for standing in found.standings] == ["beyond", "within"]
+    assert "20 % of the motion of pinion: timoshenko (" in found.verdict()
+    assert found.load.port == "pinion" and not found.why_without_bar
+
+
+@pytest.mark.long
+def test_a_shaft_is_shown_with_its_bars_or_the_reason_why_it_has_none(run, tmp_path):
+    how = "deflect", SPRINGS, *LOAD, "-f", "timoshenko"
+    said = run(*how, "-f", "harmonic", "--out", tmp_path)[1]
+    assert "Under x 500.0 N, y 300.0 N, z 2000 N at pinion" in said
+    assert said.count("error bar") == 4 and "% of the motion of pinion" in said
+    bare = " ".join(run(*how)[1].split())
+    assert "No error bars: they come with the model harmonic" in bare and "mesh force" not in bare
+    data = json.loads((tmp_path / "deflection.json").read_text())
+    assert data["load"] == [500.0, 300.0, 2000.0, 0.0, 0.0, 0.0] and data["why_without_bar"] == ""
+    model = data["models"]["harmonic"]
+    assert model["displacement"]["pinion"]["z"]["value"] == pytest.approx(
+        model["ports"]["pinion"][2], rel=1e-12
+    )
+    assert model["displacement"]["pinion"]["z"]["bar"] > 0
+    assert {"name", "model", "stations", "line", "ports", "bearings"} <= model.keys()
