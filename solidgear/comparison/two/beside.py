@@ -125,7 +125,7 @@ class Beside(Generic[S, M]):
         raise NotImplementedError
 
     def data(self) -> dict[str, Any]:
-        """Return what JSON holds of this kind alone."""
+        """Return the JSON data of this kind alone."""
         raise NotImplementedError
 
     @cached_property

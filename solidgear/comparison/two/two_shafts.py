@@ -140,7 +140,7 @@ class TwoShafts(Beside[OneShaft, BarredMode], Displayed):
         return beside.sheet(self, units, sections, printed, sentences_first=True, words=words)
 
     def data(self) -> dict[str, Any]:
-        """Return what JSON holds of shafts alone."""
+        """Return the JSON data of shafts alone."""
         return {
             "shafts": {
                 letter: {

@@ -220,7 +220,7 @@ class TwoTrains(Beside[OneTrain, SeenMode]):
         )
 
     def data(self) -> dict[str, Any]:
-        """Return what JSON holds of trains alone: all numbers of the page and curves of the charts."""
+        """Return the JSON data of trains alone: all numbers of the page and curves of the charts."""
         trains = self.by_letter.items()
         return {
             "trains": {k: {"file": t.name, **train_data(t.assembly)} for k, t in trains},

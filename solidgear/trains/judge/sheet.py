@@ -108,7 +108,7 @@ def _lead(comparison: TrainComparison) -> str:
 
 
 def _words(comparison: TrainComparison) -> dict[str, str]:
-    """Return what the charts say."""
+    """Return the words of the charts."""
     every = comparison.verdict.every
     return {
         "response": (
