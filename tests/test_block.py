@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from numpy.polynomial import legendre
 from skfem import MeshTet
+from solidgear.core.judge.coarser_mesh import coarser_bars
 
 import solidgear as sg
-from solidgear.core.judge.coarser_mesh import coarser_bars
 from solidgear.core.judge.settle import settle
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.machine.memory import NoRoom

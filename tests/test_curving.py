@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from skfem import Basis, ElementTetP2, MeshTet1, MeshTet2
+from solidgear.core.judge.coarser_mesh import coarser_bars
 
 import solidgear as sg
-from solidgear.core.judge.coarser_mesh import coarser_bars
 from solidgear.core.ladder import build
 from solidgear.core.meshing.bisecting import bisected
 from solidgear.core.meshing.curving import (

@@ -22,17 +22,18 @@ from solidgear.core import (
     show,
 )
 from solidgear.core import modes as solve
+from solidgear.core.bounds.solid import NoBounds
 from solidgear.core.judge.at_rest import spin_caution
-from solidgear.core.judge.coarser_mesh import coarser_bars
+from solidgear.core.judge.bounded import mode_bars
 from solidgear.core.judge.completeness import completeness, cut_short, split_apart
 from solidgear.core.judge.hidden import complete_list, less_widest
 from solidgear.core.plain import plain
 from solidgear.core.solve.mixtures import mixtures
 from solidgear.show import open_words
 from solidgear.show.command import Progress, caution, command
-from solidgear.show.options import Run, SceneFile, Solved, options, speed_of
+from solidgear.show.options import BOUNDED, Run, SceneFile, Solved, speed_of
 from solidgear.show.remarks import cautions, load, open_ranges
-from solidgear.show.settled import SECOND_MESH, Judged, bar_lines
+from solidgear.show.settled import ONE_ORDER_MORE, Judged, bar_lines
 from solidgear.show.sheet import Sheet, present
 from solidgear.show.table import Column, Table, text
 from solidgear.show.words import by_plane, hertz, percent
@@ -81,10 +82,15 @@ def modes(
         if settled is not None and bounded:
             mode_set = complete_list(loaded, body, as_supports(loaded), mode_set)
         whole = mode_set.whole if count and not bounded else mode_set
-        if settled is None and model.on_two_meshes:
-            bars = coarser_bars(loaded, body, whole, options(model.pairs))
-        else:
+        reason = model.without_bars(settled)
+        bars: dict[str, float] = {}
+        if settled is not None:
             bars = bars_of_modes(loaded, body, whole, settled)
+        elif not reason:
+            try:
+                bars = mode_bars(loaded, body, as_supports(loaded), whole)
+            except NoBounds as error:
+                reason = str(error)
         evidence = less_widest(mode_set.evidence, bars.values())
         bars = {name: bar for name, bar in bars.items() if name in mode_set.names}
         judged = Judged(
@@ -92,7 +98,7 @@ def modes(
             body,
             settled,
             {Quantity(name): bar for name, bar in bars.items()},
-            model.without_bars(bars, settled, loaded, body),
+            reason,
             [
                 *cautions(loaded, body),
                 *cut_short(mode_set.modes, asked, highest_hz, option="-n"),
@@ -110,7 +116,7 @@ def modes_sheet(modes: ModeSet, judged: Judged, proof: dict[str, Any], counted: 
     settled, model = judged.settled, judged.body.fidelity
     bars = {str(name): bar for name, bar in judged.bars.items()}
     bare = [m.name for m in modes.modes if m.frequency_hz > 0 and m.name not in bars]
-    reason = judged.reason or _unjudged(bare, model, second=settled is None)
+    reason = judged.reason or _unjudged(bare, model)
     data = {
         "scene": judged.scene.name,
         "fidelity": model,
@@ -151,7 +157,7 @@ def modes_sheet(modes: ModeSet, judged: Judged, proof: dict[str, Any], counted: 
         ]
     notes += bar_lines(settled, judged.bars)
     if bars and settled is None:
-        notes.append(SECOND_MESH)
+        notes.append(ONE_ORDER_MORE)
     if not bars and reason:
         notes.append(f"No error bars: {reason}.")
     elif reason:
@@ -204,14 +210,10 @@ def _beyond(bars: Mapping[str, float], settled: Settled | None) -> list[str]:
     ]
 
 
-def _unjudged(names: Sequence[str], model: str, *, second: bool = False) -> str:
-    """Return the reason why some modes have no error bar, `second` by a second mesh; empty without
-    such modes.
-    """
+def _unjudged(names: Sequence[str], model: str) -> str:
+    """Return the reason why some modes have no error bar; empty without such modes."""
     if not names:
         return ""
-    if second:
-        return "the coarser mesh has no such mode, or as many cells around"
-    if LADDER[model].bounded:
+    if LADDER[model].bounded or model in BOUNDED:
         return "an error bar needs the next mode of the family; raise -n"
     return "higher modes need finer meshes"

@@ -19,16 +19,18 @@ from solidgear.core import (
     Scene,
     SolidgearError,
 )
-from solidgear.core.judge.coarser_mesh import static_bars
+from solidgear.core.body import as_supports
+from solidgear.core.bounds.solid import NoBounds
+from solidgear.core.judge.bounded import static_bars
 from solidgear.core.plain import plain
 from solidgear.core.scene.rules import no_such_point
 from solidgear.core.solve.condensed import Coupled
 from solidgear.core.solve.statics import condense
 from solidgear.show.command import Progress, caution, command
 from solidgear.show.open_words import table as open_table
-from solidgear.show.options import SceneFile, Shown, Solved, options
+from solidgear.show.options import SceneFile, Shown, Solved
 from solidgear.show.remarks import cautions, load, open_ranges
-from solidgear.show.settled import SECOND_MESH, Judged, bar_lines, largest_bar
+from solidgear.show.settled import ONE_ORDER_MORE, Judged, bar_lines, largest_bar
 from solidgear.show.sheet import Sheet, Terminal, present
 from solidgear.show.table import Column, Table
 from solidgear.show.terminal import matrix_table
@@ -66,10 +68,13 @@ def stiffness(
     def study(progress: Progress) -> Sheet:
         body, settled = model.body(loaded, "stiffness", progress, names[1:])
         bars = settled.bars if settled is not None else {}
-        if settled is None and model.on_two_meshes:
-            bars = static_bars(loaded, body, names, options(model.pairs))
+        reason = model.without_bars(settled)
+        if settled is None and not reason:
+            try:
+                bars = static_bars(loaded, body, as_supports(loaded), names)
+            except NoBounds as error:
+                reason = str(error)
         statics = condense(body, loaded, names if len(names) > 1 else names[0])
-        reason = model.without_bars(bars, settled, loaded, body)
         open_ = open_ranges(loaded, body)
         judged = Judged(loaded, body, settled, bars, reason, cautions(loaded, body), open_)
         return stiffness_sheet(statics, judged, units)
@@ -127,7 +132,7 @@ def stiffness_sheet(statics: Condensed | Coupled, judged: Judged, units: Units) 
     elif judged.reason:
         closing.append(f"No error bars: {judged.reason}.")
     else:
-        closing += [*largest_bar(bars, point), SECOND_MESH]
+        closing += [*largest_bar(bars, point), ONE_ORDER_MORE]
     return Sheet(
         name="stiffness",
         title=head,

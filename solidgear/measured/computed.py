@@ -26,8 +26,7 @@ from solidgear.core import (
     settle,
     without_axis,
 )
-from solidgear.core.judge.bounded import mode_bars
-from solidgear.core.judge.coarser_mesh import coarser_bars
+from solidgear.core.judge.bounded import has_bounds, mode_bars
 from solidgear.variants.sensitivity.adjoint import mode_form
 from solidgear.variants.sweep.bench import surface
 
@@ -174,10 +173,8 @@ def _bars(
     scene: Scene, body: Body, solved: ModeSet, options: Mapping[str, Any], settled: Settled | None
 ) -> dict[str, float]:
     """Return relative error bars by the names of modes."""
-    if LADDER[body.fidelity].bounded:
+    if has_bounds(body):
         return mode_bars(scene, body, as_supports(scene), solved)
-    if without_axis(scene):
-        return coarser_bars(scene, body, solved, options)
     return bars_of_modes(scene, body, solved, settled)
 
 

@@ -32,8 +32,8 @@ MODEL = "harmonic"
 AUTO = "auto"
 #: spellings of the option that names a model
 BY_MODEL = ("--model", "--fidelity", "-f")
-#: models that have error bars from a second mesh where theirs is set
-SECOND = ("solid",)
+#: models that have error bars where their mesh is set
+BOUNDED = ("solid",)
 #: units of tables and pages unless told otherwise
 UNITS = ENGINEERING.name
 
@@ -181,12 +181,11 @@ class Solved(Chosen):
             "petsc-gamg (multigrid, statics only); the same as --set engine=...",
         ),
     ] = None
-    second: Annotated[
+    bars: Annotated[
         bool,
         typer.Option(
             "--bars/--no-bars",
-            help="With -f solid: error bars by a coarser second mesh, a quarter to two thirds more "
-            "time.",
+            help="With -f solid: error bars by the error in one order more, about twice the time.",
         ),
     ] = True
 
@@ -195,27 +194,13 @@ class Solved(Chosen):
         """``--set`` options with ``--engine`` among them."""
         return [*super().pairs, *([] if self.engine is None else [f"engine={self.engine}"])]
 
-    @property
-    def on_two_meshes(self) -> bool:
-        """True where error bars come from a second mesh."""
-        return self.second and self.name in SECOND
-
-    def without_bars(
-        self, bars: Mapping[Any, float], settled: Settled | None, scene: Scene, body: Body
-    ) -> str:
+    def without_bars(self, settled: Settled | None) -> str:
         """Return the reason why numbers have no error bar; empty where they have one."""
-        if bars or settled is not None:
+        if settled is not None:
             return ""
-        if self.on_two_meshes:
-            if scene.body is not None and scene.body.one_mesh:
-                # start-up: for mesh files alone
-                from solidgear.core.judge.coarser_mesh import no_bar
-
-                return no_bar(scene, body, options(self.pairs))
-            return "there is no coarser mesh than the one that was set"
-        if self.name in SECOND:
-            return "--no-bars leaves the second mesh out"
-        return "model and mesh were given; -f auto has error bars"
+        if self.name not in BOUNDED:
+            return "model and mesh were given; -f auto has error bars"
+        return "" if self.bars else "--no-bars leaves them out"
 
     def body(
         self, scene: Scene, ask: str, progress: Progress, points: Sequence[str] = ()

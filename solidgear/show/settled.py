@@ -15,7 +15,7 @@ from solidgear.show.command import NOT_REACHED
 from solidgear.show.words import is_number, percent
 
 #: where bars of a 3D solid come from whose mesh was set
-SECOND_MESH = "Error bars: from a second, coarser mesh."
+ONE_ORDER_MORE = "Error bars: the error that one order more finds on this mesh."
 
 
 @dataclass(frozen=True)

@@ -29,9 +29,11 @@ from solidgear.core.body import Body
 from solidgear.core.body.cache import Cache
 from solidgear.core.body.model import Enrichment
 from solidgear.core.bounds.harmonic import lower_ends, on_ports, with_neighbours
-from solidgear.core.bounds.sharpest import sharpest_exponent
+from solidgear.core.bounds.sharpest import RIGID_EDGE, sharpest_exponent
 from solidgear.core.elements import ELEMENTS
 from solidgear.core.errors import SolidgearError
+from solidgear.core.meshing.corners import SHOULDER, is_notched
+from solidgear.core.scene.shaft import without_axis
 from solidgear.core.solve.modes import Mode, ModeSet
 from solidgear.core.solve.shifted import factors
 from solidgear.core.solve.statics import SOLVED, flexibility, port_fields
@@ -43,8 +45,15 @@ if TYPE_CHECKING:
 MISSING = 0.04
 #: of the lower side: volume and seats of a mesh are not quite those of the body
 ROUND = 0.97
+#: exponents of a body without an axis: at no concave edge, and at the end of a patch that a load on
+#: average acts on
+CONVEX, PATCH = 1.5, 1.0
 #: steps after which they have failed
 MOST_STEPS = 200
+
+
+class NoBounds(SolidgearError):
+    """A 3D body whose error cannot be bounded."""
 
 
 @dataclass
@@ -101,7 +110,7 @@ def solid_bounds(
     :func:`solidgear.core.bounds.harmonic.harmonic_bounds`.
     """
     order = ELEMENTS[body.mesh["element"]].order
-    share = 1 / (1 - (order / (order + 1)) ** (4 * sharpest_exponent(scene)))
+    share = 1 / (1 - (order / (order + 1)) ** (4 * _sharpest(scene, body)))
     size = 6 * len(body.ports)
     reached = np.zeros((size, size))
     parts: dict[int, tuple[np.ndarray, Errors]] = {}
@@ -151,6 +160,19 @@ def solid_bounds(
         family_ends = lower_ends(values, energies, (2 * np.pi * highest) ** 2)
         lowest |= dict(zip((m.name for m in members), family_ends))
     return SolidBounds(body, share, reached, lowest, by_cells, cells)
+
+
+def _sharpest(scene: Scene, body: Body) -> float:
+    """Return the exponent of displacement at the sharpest edge of a body, with or without an axis."""
+    if not without_axis(scene):
+        return sharpest_exponent(scene)
+    patches = [s for s in scene.stations if getattr(s, "patch", None) is not None]
+    notched = is_notched(body.geometry.mesh)  # type: ignore[union-attr]
+    return min(
+        SHOULDER if notched else CONVEX,
+        RIGID_EDGE if any(s.attachment == "rigid" for s in patches) else CONVEX,
+        PATCH if patches else CONVEX,
+    )
 
 
 def _by_cells(body: Body, index: int, errors: Errors, loads: np.ndarray) -> np.ndarray:
@@ -240,7 +262,10 @@ def _conjugate_gradients(apply, inverse, load) -> Errors:
         missing = _missing(gains)
         if (missing < MISSING * energy).all():
             return Errors(solution, load, np.sqrt(1 + missing / energy), count + 1)
-    raise SolidgearError("the error in one order more was not found")
+    raise NoBounds(
+        f"the error in one order more was not found in {MOST_STEPS} steps: the mesh holds very "
+        "slender cells, or a material that is next to incompressible"
+    )
 
 
 def _missing(gains: Sequence[np.ndarray]) -> np.ndarray:

@@ -21,8 +21,9 @@ from solidgear.core.bounds.safety import LOCAL
 from solidgear.core.bounds.solid import SolidBounds, solid_bounds
 from solidgear.core.judge.bars import LEAST, ErrorBar
 from solidgear.core.judge.quantities import Values, in_order, size
-from solidgear.core.judge.solving import Statics, extended_modes
+from solidgear.core.judge.solving import Statics, extended_modes, numbers
 from solidgear.core.judge.steps import METHOD
+from solidgear.core.ladder.registry import LADDER
 from solidgear.core.quantity import STIFFNESS, Quantity
 from solidgear.core.scene.coned import coned
 from solidgear.core.solve.modes import ModeSet, modes
@@ -133,6 +134,24 @@ def mode_bars(
         for m in modes_listed.modes
         if 0 < m.frequency_hz < highest[m.family]
     }
+
+
+def static_bars(
+    scene: Scene, body: Body, supports: Supports, points: Sequence[str]
+) -> dict[Quantity, float]:
+    """Compute relative error bars of compliances and stiffnesses of a solid at some points and
+    between them, about the numbers of its mesh.
+    """
+    statics = Statics.at_points(body, supports, points)
+    values = numbers(statics, None)
+    names = [name for name in values.quantities if not name.is_frequency]
+    judged = bounded(scene, body, supports, statics, None, names, values.solver)
+    return {name: judged.error_bars[name].width for name in names}
+
+
+def has_bounds(body: Body) -> bool:
+    """Return whether error bars of a body can be computed on its own mesh."""
+    return LADDER[body.fidelity].bounded or all(block.enrich is not None for block in body.blocks)
 
 
 def _highest(mode_set: ModeSet) -> dict[str, float]:

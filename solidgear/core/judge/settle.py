@@ -22,10 +22,10 @@ from typing import TYPE_CHECKING, Any
 
 from solidgear.core.body import Body, as_supports
 from solidgear.core.bounds.refining import Meshed
+from solidgear.core.bounds.solid import NoBounds
 from solidgear.core.errors import SolidgearError
 from solidgear.core.judge.answer import read_tolerance, solve_cheapest
-from solidgear.core.judge.bounded import mode_bars
-from solidgear.core.judge.coarser_mesh import coarser_bars, no_bar, static_bars
+from solidgear.core.judge.bounded import has_bounds, mode_bars, static_bars
 from solidgear.core.judge.quantities import at_points, between
 from solidgear.core.judge.question import FamilySolver, build_families
 from solidgear.core.judge.refinement import FINER_FILE, NO_FINER, Progress, Refinement, mesh_words
@@ -184,11 +184,11 @@ def bars_of_modes(
     """
     if settled is None:
         return {}
-    if without_axis(scene):
-        return coarser_bars(scene, body, mode_set, settled.options)
     bars: dict[str, float] = {}
-    if LADDER[body.fidelity].bounded:
+    if has_bounds(body):
         bars = mode_bars(scene, body, as_supports(scene), mode_set)
+    if without_axis(scene):
+        return bars
     # frequencies that the mesh was chosen by keep the bar it was chosen with
     judged = [name for name in map(Quantity, mode_set.names) if name in settled.bars]
     return bars | {name: settled.bars[name] for name in judged}
@@ -196,27 +196,29 @@ def bars_of_modes(
 
 #: the only model that holds a body without an axis
 MODEL = "solid"
-#: refinements of the nested meshes of a block, each of which gives the error bar of the next
-NESTED = (0.5, 1.0, 2.0, 4.0)
+#: refinements of the meshes of a block
+REFINEMENTS = (0.5, 1.0, 2.0, 4.0)
 
 
 def _settled_body(
     scene: Scene, tol: float, ask: str, points: tuple[str, ...], progress: Progress
 ) -> Settled:
     """Settle a body without an axis on the first mesh whose error bars of the lowest modes, and of
-    statics at some points, are within a tolerance: of a block on nested meshes, else on the last
-    mesh file.
+    statics at some points, are within a tolerance: of a block on meshes made here, else of its files.
     """
     steps: list[Step] = []
     assert scene.body is not None  # that is without an axis
     block = scene.body.kind == "block"
-    meshes = [{"refinement": r} for r in NESTED[1:]] if block else [{"coarser": 0}]
+    files = len(scene.body.coarser)
+    meshes = [{"refinement": r} for r in REFINEMENTS]
+    if not block:
+        meshes = [{"coarser": k} for k in range(files, -1, -1)]
     for mesh in meshes:
         start = time.perf_counter()
         level = {**LADDER[MODEL].given(scene, {}), **mesh}
         progress(f"{LADDER[MODEL].title}: {mesh_words(level)}")
         try:
-            body, bars = _judged_body(scene, ask, points, level)
+            body, bars, without_bars = _judged_body(scene, ask, points, level)
         except (NoRoom, MemoryError) as error:
             if not steps:
                 raise
@@ -229,10 +231,7 @@ def _settled_body(
         chosen = reached or mesh is meshes[-1]
         reason = ""
         if chosen and not reached:
-            if block:
-                reason = NO_FINER
-            else:
-                reason = FINER_FILE if bars else no_bar(scene, body, options)
+            reason = without_bars or (NO_FINER if block else FINER_FILE)
         steps.append(
             Step(
                 MODEL,
@@ -264,12 +263,19 @@ def _settled_body(
 
 def _judged_body(
     scene: Scene, ask: str, points: tuple[str, ...], options: dict[str, Any]
-) -> tuple[Body, dict[Quantity, float]]:
-    """Build the body on one mesh, and return the error bars of the numbers asked for."""
-    body = build(scene, MODEL, **options)
-    bars = static_bars(scene, body, points, options) if ask != "modes" else {}
-    if ask != "stiffness":
-        listed = modes(body, scene, scene.ask.modes)
-        mode_bars_by_name = coarser_bars(scene, body, listed, options)
-        bars |= {Quantity(name): bar for name, bar in mode_bars_by_name.items()}
-    return body, bars
+) -> tuple[Body, dict[Quantity, float], str]:
+    """Build the body on one mesh, and return the error bars of the numbers asked for, or the reason
+    for none.
+    """
+    body, supports = build(scene, MODEL, **options), as_supports(scene)
+    bars: dict[Quantity, float] = {}
+    try:
+        if ask != "modes":
+            bars |= static_bars(scene, body, supports, points)
+        if ask != "stiffness":
+            listed = modes(body, scene, scene.ask.modes)
+            by_name = mode_bars(scene, body, supports, listed)
+            bars |= {Quantity(name): bar for name, bar in by_name.items()}
+    except NoBounds as error:
+        return body, {}, str(error)
+    return body, bars, ""

@@ -7,9 +7,10 @@ from __future__ import annotations
 import argparse
 import time
 
+from solidgear.core.judge.coarser_mesh import coarser_bars
+
 from solidgear.core.body import as_supports
 from solidgear.core.judge.bounded import mode_bars
-from solidgear.core.judge.coarser_mesh import coarser_bars
 from solidgear.core.ladder import build
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.solve.modes import modes
