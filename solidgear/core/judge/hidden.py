@@ -11,12 +11,10 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from solidgear.core.body import Body, Supports
-from solidgear.core.bounds.harmonic import APART, harmonic_bounds, of_one_problem
-from solidgear.core.bounds.safety import LOCAL
-from solidgear.core.judge.bounded import ABOVE
+from solidgear.core.bounds.harmonic import APART, of_one_problem
+from solidgear.core.judge.bounded import ABOVE, bounds_of
 from solidgear.core.judge.solving import MOST_SHAPES, extended_modes
 from solidgear.core.scene import Scene
-from solidgear.core.scene.coned import coned
 from solidgear.core.solve.modes import Mode, ModeSet, modes
 
 #: frequency (Hz) that the count of a mesh reaches, in the evidence of modes
@@ -42,9 +40,7 @@ def complete_list(scene: Scene, body: Body, supports: Supports, listed: ModeSet)
     all_modes = replace(extended, beyond=(*extended.beyond, *extended.above), above=())
     elastic = [mode for mode in listed.modes if mode.frequency_hz > 0]
     names = [mode.name for mode in (*elastic, *first)]
-    bounds = harmonic_bounds(
-        coned(scene), body, statics=False, modes=all_modes, wanted=names, safety=LOCAL
-    )
+    bounds = bounds_of(scene, body, False, all_modes, names)
     least = {mode.name: bounds.frequency(mode) * (1 - mode.error) for mode in first}
     limit = min([listed.evidence[COUNTED], *least.values()])
     return replace(extended, evidence=listed.evidence | {COMPLETE: limit})

@@ -12,6 +12,7 @@ import numpy as np
 
 from solidgear.core.body import Body, as_supports
 from solidgear.core.body.mode_names import ModeName
+from solidgear.core.bounds.solid import NoBounds
 from solidgear.core.judge.bars import sizes_of
 from solidgear.core.judge.bounded import bounded
 from solidgear.core.judge.refinement import Refinement, Solved
@@ -121,7 +122,7 @@ class FamilySolver:
         statics: Statics | None = None
         modes: ModeSet | None = None
         if len(frequencies) < len(names):
-            if has_bounds:
+            if refinement.model.follows:
                 flexibility(body, SOLVED)
             statics = Statics.for_quantities(scene, body, supports, names)
             self.compliances[families or tuple(FAMILIES)] = statics.main
@@ -138,7 +139,11 @@ class FamilySolver:
         if not has_bounds:
             return values, None
         judged_names = self._judged_names(values, names)
-        judged = bounded(scene, body, supports, statics, modes, judged_names, values.solver)
+        try:
+            judged = bounded(scene, body, supports, statics, modes, judged_names, values.solver)
+        except NoBounds as error:
+            refinement.without_bars = str(error)
+            return values, None
         refinement.error_bars |= {q: judged.error_bars[q] for q in judged_names}
         # no frequency without an error bar
         quantities = {

@@ -5,9 +5,9 @@ error bars that they give. A :class:`Solver` says for which numbers the next mes
 solves it: for single numbers or a whole body (:mod:`solidgear.core.judge.question`), or in all ways of
 tying (:mod:`solidgear.core.judge.study`).
 
-The meshes of a harmonic solid follow the error bars (:mod:`solidgear.core.bounds.refining`), which every
-mesh gives by itself (:mod:`solidgear.core.judge.bounded`); of other solids two of a list of meshes make
-an error bar (:mod:`solidgear.core.judge.sequence_bars`).
+Every mesh gives its error bars by itself (:mod:`solidgear.core.judge.bounded`).  The meshes of a
+harmonic solid follow them (:mod:`solidgear.core.bounds.refining`), those of a 3D solid are listed; of
+corrected solids two of a list make an error bar (:mod:`solidgear.core.judge.sequence_bars`).
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ import numpy as np
 
 from solidgear.core.body import Body
 from solidgear.core.bounds.refining import MOST_MESHES, Meshed, refined
-from solidgear.core.judge.bars import ErrorBar, moves_freely, same_size
+from solidgear.core.judge.bars import ErrorBar, moves_freely
 from solidgear.core.judge.bounded import Bounded
 from solidgear.core.judge.effort import HEAVY, cost_text
 from solidgear.core.judge.quantities import Values, in_order, size
@@ -39,8 +39,6 @@ if TYPE_CHECKING:
     from solidgear.core.scene import Scene
 
 Progress = Callable[[str], None]
-#: reason for no bar
-ONE_MESH = "the mesh is that of the file, and there is no finer one to judge it by"
 #: reasons for no narrower one
 NO_FINER = "no finer mesh is calibrated"
 FINER_FILE = "list a finer mesh beside those of the file"
@@ -60,6 +58,9 @@ SETTINGS = {
     "refinement": "refinement",
     "cuts": "cuts",
 }
+#: error bars of one mesh of a list over those of the next, where layers are added or cells shrink by
+#: half an edge: what an edge leaves falls by no more
+FALL = 3.0
 #: quantities up to this number are listed by name
 FEW = 3
 
@@ -114,6 +115,7 @@ class Refinement:
     missing: set[Quantity] = field(default_factory=set)  #: do not exist in this scene
     options: dict[str, Any] = field(default_factory=dict)  #: of the last mesh
     last: Solved | None = None
+    without_bars: str = ""  #: why the last mesh has none
     #: bound on the change by couplings of families that were left out, relative
     left_out: float = 0.0
     mesh: Meshed = field(init=False)  #: of a harmonic solid, the first mesh and later the last
@@ -260,7 +262,7 @@ class Refinement:
         Of all admissible displacements the exact ones store the least energy under given motions of
         the ports, and the most under given loads; a Rayleigh quotient is least at the exact mode.
         """
-        exact = self.model.bounded and not self.scene.outline.corners
+        exact = self.model.follows and not self.scene.outline.corners
         if not exact or name.diagonals or name not in self.error_bars:
             return BOTH
         # errors of the solver, and of couplings that were left out, may go either way
@@ -284,12 +286,10 @@ class Refinement:
 
     def no_further_mesh(self) -> str:
         """Return the reason why there is no further mesh."""
-        if not self.model.bounded:
-            if not self.of_files or not self.sizes:
-                return NO_FINER
-            if len(self.plan.levels) == 1:
-                return ONE_MESH
-            return FINER_FILE if self.error_bars else same_size(*self.sizes[-2:])
+        if self.without_bars:
+            return self.without_bars
+        if not self.model.follows:
+            return FINER_FILE if self.of_files else NO_FINER
         count = len(self.levels)
         tried = "one mesh" if count == 1 else f"{count} meshes"
         return f"{tried} was too coarse; most of the error bar comes from {self.worst_place()}"
@@ -297,7 +297,7 @@ class Refinement:
     def in_vain(self) -> str:
         """Return the reason why no finer mesh would help; empty if one may."""
         bars = [step.bar for step in self.steps if step.bar is not None]
-        if self.model.bounded and len(bars) > 3 and bars[-1] > FUTILE * bars[-3]:
+        if self.model.follows and len(bars) > 3 and bars[-1] > FUTILE * bars[-3]:
             return f"finer meshes no longer help; most of the error bar comes from {self.worst_place()}"
         floors, wide = self.floors(), self.unmet()
         if not wide or not all(floors.get(q, 0.0) > self.tol for q in wide):
@@ -368,8 +368,8 @@ def _meshes(refinement: Refinement) -> Iterator[Mapping[str, Any]]:
     if plan.fixed:
         yield from plan.levels
         return
-    if not refinement.model.bounded:
-        yield from plan.levels[:most]
+    if not refinement.model.follows:
+        yield from _listed(refinement, plan.levels[:most])
         return
     yield refinement.mesh.options()
     for _ in range((most or MOST_MESHES) - 1):
@@ -380,6 +380,19 @@ def _meshes(refinement: Refinement) -> Iterator[Mapping[str, Any]]:
         )
         last.body.cache.clear()  # its factor need not be held beside the next one
         yield refinement.mesh.options()
+
+
+def _listed(
+    refinement: Refinement, levels: Sequence[Mapping[str, Any]]
+) -> Iterator[Mapping[str, Any]]:
+    """Yield meshes of a list, without those that can be seen to be too coarse."""
+    place = 0
+    while place < len(levels):
+        yield levels[place]
+        bar = refinement.steps[-1].bar if refinement.steps else None
+        too_wide = 0.0 if bar is None else bar / refinement.tol
+        jump = math.log(too_wide) / math.log(FALL) if 1 < too_wide < math.inf else 1.0
+        place = max(place + 1, min(place + math.floor(jump), len(levels) - 1))
 
 
 def mesh_words(options: Mapping[str, Any]) -> str:

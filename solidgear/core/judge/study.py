@@ -11,7 +11,10 @@ from collections.abc import Sequence as Listed
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from solidgear.core.body import Body, Supports, as_supports
+from solidgear.core.bounds.solid import NoBounds
 from solidgear.core.errors import SolidgearError
 from solidgear.core.judge.bars import ErrorBar, sizes_of
 from solidgear.core.judge.bounded import Bounded, bounded
@@ -168,16 +171,27 @@ class TiedSolver:
         score = None
         with self.meter.stage("band"):
             if model.bounded:
-                judged = _judged(refinement.scene, answer, refinement.wanted, ties.get(SECTION))
-                solution.error_bars, solution.scores = {SCENE: judged.error_bars}, judged.scores
-                refinement.error_bars = judged.error_bars
-                score = refinement.score(judged, refinement.wanted)
+                score = self._judge_mesh(solution)
             else:
                 self._measure_around()
                 solution.error_bars = self._error_bars()
         self.keep(solution)
         body = answer.body
         return Solved(body, answer.numbers, body.size, sizes_of(body.mesh), score)
+
+    def _judge_mesh(self, solution: Solution) -> np.ndarray | None:
+        """Add the error bars of a mesh to its solution; return weights of its cells by those that
+        are too wide.
+        """
+        refinement, ties = self.refinement, solution.ties
+        try:
+            judged = _judged(refinement.scene, ties[SCENE], refinement.wanted, ties.get(SECTION))
+        except NoBounds as error:
+            self.failed["error bar"] = refinement.without_bars = str(error)
+            return None
+        solution.error_bars, solution.scores = {SCENE: judged.error_bars}, judged.scores
+        refinement.error_bars = judged.error_bars
+        return refinement.score(judged, refinement.wanted)
 
     def _counted_from(self, k: int) -> float:
         """Return the unknowns from which on modes of mesh `k` of a list are counted."""
@@ -342,7 +356,7 @@ def solved_ties(
 def _built(scene: Scene, model: str, options: Mapping[str, Any], meter: Meter) -> Body:
     with meter.stage("build"):
         body = build(scene, model, **options)
-    if LADDER[model].bounded:
+    if LADDER[model].follows:
         with meter.stage("statics"):
             flexibility(body, SOLVED)
     return body

@@ -29,6 +29,7 @@ class Harmonic(Model):
         "lower order, refinement or layers, or raise size, or ask for fewer ovalising harmonics"
     )
     bounded = True
+    follows = True
     share = 10.0
     most_seats = 60
 

@@ -54,10 +54,11 @@ class Model:
     together: ClassVar[frozenset[str]] = frozenset()
     #: whether it is made for these features alone
     for_features: ClassVar[bool] = False
-    #: whether local problems give the error of every mesh: displacements are admissible on the
-    #: exact geometry, integrated exactly. Such a body is too stiff, so that compliances come from
-    #: below, stiffnesses and frequencies from above.
+    #: whether the error of every mesh is computed on it (:mod:`solidgear.core.judge.bounded`). Such a
+    #: body is too stiff, so that compliances come from below, stiffnesses and frequencies from above.
     bounded: ClassVar[bool] = False
+    #: whether the next mesh is made from the error bars of the last one, on the exact geometry
+    follows: ClassVar[bool] = False
     #: error bars are wanted below the tolerance asked for divided by this
     share: ClassVar[float] = 1.0
     #: whether its mesh has the mean motion of any section, so that it is compared with equal seats

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from solidgear.core.elements import ELEMENTS
-from solidgear.core.ladder.meshes import FREE, Sequence, fixed_refinements, levels
+from solidgear.core.ladder.meshes import FREE, Sequence, levels
 from solidgear.core.ladder.model import SOLID, Model, Options, Series, features_of
 from solidgear.core.models.kinds import BODIES, CUTS, CYCLIC, PARTS
 from solidgear.core.models.options import SOLID_OPTIONS
@@ -97,6 +97,7 @@ class Solid(Volume):
     coarser = "lower refinement or the layers, or raise size"
     holds = (CUTS, CYCLIC, PARTS, BODIES)
     together = frozenset((CUTS, CYCLIC))
+    bounded = True
     _nature = "one mesh of tetrahedra,"
 
     def builder(self) -> Callable[..., Body]:
@@ -157,25 +158,19 @@ class Solid(Volume):
         full_options = {**self.preset, **self.given(scene, options)}
         body = getattr(scene, "body", None)
         if body is not None and body.one_mesh:
-            if not body.coarser:
-                return Sequence((full_options,), True, False)
-            levels = ({**full_options, "coarser": k} for k in range(len(body.coarser), -1, -1))
-            return Sequence(tuple(levels), True, False)
+            files = range(len(body.coarser), -1, -1)
+            return Sequence(tuple({**full_options, "coarser": k} for k in files), False, False)
         return self.meshes(full_options)
 
     def meshes(self, options: Options) -> Sequence:
         """Return meshes with ever more layers towards corners, or plain refinement of tetrahedra."""
+        if set(options) - set(FREE):
+            return Sequence((dict(options),), True, False)
         element = self.checked({"element": options.get("element", "hex20")})["element"]
         second = ELEMENTS[element].order == 2
-        layered = second and element.startswith("hex")
-        if set(options) - set(FREE):
-            if layered and "refinement" not in options:
-                return _below_hexahedra(dict(options))
-            return fixed_refinements(options)
-        if layered:
+        if second and element.startswith("hex"):
             around = {"around": AROUND, **options}
-            hexahedra = tuple({**level, **around} for level in HEXAHEDRA)
-            return Sequence(hexahedra, False, True, _turned(hexahedra[0]))
+            return Sequence(tuple({**level, **around} for level in HEXAHEDRA), False, False)
         tetrahedra = TETRAHEDRA if second else LINEAR
         return Sequence(tuple({**level, **options} for level in tetrahedra), False, False)
 
@@ -208,28 +203,3 @@ def _elements(family: str, grading: str, extra: dict, full: bool) -> list[Series
         options = [{"element": element, **extra, "refinement": s} for s in refinements]
         out.append((family, f"{element.upper()} {grading}", options))
     return out
-
-
-def _turned(level: Level) -> Level:
-    return {**level, "around": 4 * -(-3 * level["around"] // 8)}
-
-
-def _below_hexahedra(options: Level) -> Sequence:
-    finest = {
-        "layers": 4,
-        "radial_layers": 4,
-        "edge_layers": 1,
-        "relative_size": 0.4,
-        "around": 12,
-        **options,
-    }
-    coarser = []
-    for k in (2, 1):
-        fewer = {
-            name: max(finest[name] - k, 0) for name in ("layers", "radial_layers", "edge_layers")
-        }
-        larger = {"relative_size": finest["relative_size"] * 1.5**k}
-        if finest.get("size"):
-            larger = {"size": finest["size"] * 1.5**k}
-        coarser.append({**finest, **fewer, **larger})
-    return Sequence((*coarser, finest), True, True, _turned(coarser[0]))
