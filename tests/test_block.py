@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 from numpy.polynomial import legendre
 from skfem import MeshTet
-from solidgear.core.judge.coarser_mesh import coarser_bars
 
 import solidgear as sg
+from solidgear.core.body import as_supports
+from solidgear.core.judge.bounded import mode_bars
 from solidgear.core.judge.settle import settle
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.machine.memory import NoRoom
@@ -147,9 +148,10 @@ def test_a_bad_block_is_refused_in_one_sentence(tmp_path, line, field, sentence)
         sg.load(path)
 
 
-def test_two_meshes_of_a_body_are_judged_by_their_step(meshed):
+def test_meshes_of_a_body_have_bars_of_their_own(meshed):
     scene = sg.load(free(meshed, "2.vtu", "4.vtu"))
     settled = settle(scene, 0.05, "modes")
+    assert settled.options["coarser"] == 0 and len(settled.steps) == 2
     found = sg.modes(settled.body, scene, n=10).modes
     elastic = [mode for mode in found if mode.frequency_hz > 0]
     assert [str(mode.name) for mode in elastic] == [f"mode {k}" for k in range(1, 11)]
@@ -160,10 +162,10 @@ def test_two_meshes_of_a_body_are_judged_by_their_step(meshed):
     assert settled.reached and scene.body.edges == pytest.approx(EDGES)
 
 
-def test_a_single_mesh_of_a_body_has_frequencies_and_no_bars(meshed, run):
-    code, out, _ = run("modes", free(meshed, "4.vtu"), "-n", 3)
-    assert code == 3 and "mode 3" in out
-    assert "there is no finer one to judge it by" in " ".join(out.split())
+def test_a_single_mesh_of_a_body_has_bars_and_the_way_to_narrower_ones(meshed, run):
+    code, out, _ = run("modes", free(meshed, "4.vtu"), "-n", 3, "--tol", "0.001")
+    assert code == 3 and "mode 3" in out and "Largest error bar" in out
+    assert "list a finer mesh beside those of the file" in " ".join(out.split())
     code, out, _ = run("check", meshed / "free.toml")
     assert code == 0 and "the file names no groups of surfaces" in " ".join(out.split())
     assert "there is one mesh of" in " ".join(out.split())
@@ -208,16 +210,14 @@ def test_a_thin_bar_of_a_block_is_divided_by_each_of_its_edges(tmp_path):
 
 
 def test_bars_of_a_block_hold_where_modes_change_places(tmp_path):
-    """Where cells are few to a wave, and modes change places from mesh to mesh, a seventh of a step is
-    less than what it leaves: up to 2.6 times in this bar.
-    """
+    """Cells are few to a wave, and modes change places from mesh to mesh."""
     path = tmp_path / "bar.toml"
     path.write_text(f"{HEAD}\nbody = {{ block = [0.1, 0.02, 0.005] }}\n")
     scene = sg.load(path)
     options = {"element": "hex27", "refinement": 0.5}
     body = sg.build(scene, "solid", **options)
     found = sg.modes(body, scene, n=10)
-    bars = coarser_bars(scene, body, found, options)
+    bars = mode_bars(scene, body, as_supports(scene), found)
     exact = sg.modes(sg.build(scene, "solid", element="hex27"), scene, n=12)
     for mode in found.modes:
         if mode.frequency_hz > 0:
@@ -227,13 +227,13 @@ def test_bars_of_a_block_hold_where_modes_change_places(tmp_path):
 
 def test_a_block_whose_next_mesh_does_not_fit_is_told_with_the_last_one(block, monkeypatch):
     def build(scene, model, **options):
-        if options["refinement"] > 1:
+        if options["refinement"] > 0.5:
             raise NoRoom("matrices need about 9000 MB, 3000 MB are free", 9000.0, 3000.0)
         return sg.build(scene, model, **options)
 
     monkeypatch.setattr("solidgear.core.judge.settle.build", build)
     settled = settle(block, 1e-6, "modes")
-    assert not settled.reached and settled.options["refinement"] == 1.0 and settled.bars
+    assert not settled.reached and settled.options["refinement"] == 0.5 and settled.bars
     assert "the next mesh could not be solved: matrices need" in settled.steps[-1].why
 
 

@@ -97,26 +97,17 @@ def test_a_clamped_bar_of_bricks_is_as_soft_as_a_beam(tmp_path):
     assert found == pytest.approx(LENGTH**3 / 3 / E / WEAK, rel=0.02)
 
 
-def test_two_meshes_with_cells_of_one_length_tell_no_bar(tmp_path):
-    """Halving width and height says nothing of what the length of cells leaves."""
-    path = bar(tmp_path, (5, 1, 1), (5, 2, 2))
-    scene = sg.load(path)
-    settled = settle(scene, 0.05, "modes")
-    assert not settled.bars and not settled.reached
-    for model in ("auto", "solid"):
-        told = command("modes", path, "-f", model).stdout.replace("\n", " ")
-        assert "the longest sides of their cells are as long, 48 mm and 48 mm" in told
-
-
-def test_a_bar_from_two_meshes_holds_the_beam(tmp_path):
-    scene = sg.load(bar(tmp_path, (4, 1, 1), (8, 2, 2)))
-    settled = settle(scene, 0.05, "modes")
+@pytest.mark.parametrize("cells", [(5, 1, 1), (5, 2, 2), (8, 2, 2)])
+def test_the_bar_of_one_mesh_holds_the_beam(tmp_path, cells):
+    """Whichever way the cells are long: a second mesh with cells as long would say nothing of that."""
+    scene = sg.load(bar(tmp_path, cells))
+    settled = settle(scene, 0.2, "modes")
     found = sg.modes(settled.body, scene, n=2).modes[6:]
     fine = sg.load(bar(tmp_path, (24, 2, 2)))
     exact = sg.modes(sg.build(fine, "solid"), fine, n=2).modes[6:]
     for mode, finer in zip(found, exact):
         off = mode.frequency_hz / finer.frequency_hz - 1
-        assert 0 < off < settled.bars[Quantity(mode.name)] < 0.05
+        assert 0 < off < settled.bars[Quantity(mode.name)] < 0.1
     assert settled.reached
 
 

@@ -6,10 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from skfem import Basis, ElementTetP2, MeshTet1, MeshTet2
-from solidgear.core.judge.coarser_mesh import coarser_bars
 
 import solidgear as sg
-from solidgear.core.ladder import build
 from solidgear.core.meshing.bisecting import bisected
 from solidgear.core.meshing.curving import (
     FOLD,
@@ -25,7 +23,6 @@ from solidgear.core.meshing.tetrahedra import tetrahedra
 from solidgear.core.models.solid.plan import tetrahedra_plan
 from solidgear.core.scene.closed_form import integrals_along, volume_of
 from solidgear.core.scene.outline import Frustum, Outline
-from solidgear.core.solve.modes import modes
 from solidgear.cuts.sector.body import cyclic_features, meshed_sector
 from solidgear.cuts.sector.meshing import volume_of_sector
 
@@ -160,14 +157,3 @@ def test_every_segment_has_the_volume_and_the_second_moment_of_its_closed_form()
         square, _, _, fourth = integrals_along(b - a, r, r)
         assert volume[k] == pytest.approx(np.pi * square, rel=1e-4)
         assert moment[k] == pytest.approx(np.pi / 2 * fourth, rel=2e-4)
-
-
-def test_what_straight_edges_take_is_in_every_bar():
-    rod = sg.Scene.from_parts([sg.Segment.cylinder("rod", length=0.1, diameter=0.06)])
-    options = {"element": "tet10", "refinement": 0.3}
-    body = build(rod, "solid", **options)
-    found = modes(body, rod, 4)
-    plain = coarser_bars(rod, body, found, options)
-    lacking = replace(body, mesh={**body.mesh, "straightened": 1e-3})
-    bars = coarser_bars(rod, lacking, found, options)
-    assert plain and bars == {name: pytest.approx(bar + 1e-3) for name, bar in plain.items()}

@@ -144,7 +144,7 @@ def static_bars(
     values = numbers(statics, None)
     names = [name for name in values.quantities if not name.is_frequency]
     judged = bounded(scene, body, supports, statics, None, names, values.solver)
-    return {name: judged.error_bars[name].width for name in names}
+    return {name: bar.width for name, bar in judged.error_bars.items()}
 
 
 def has_bounds(body: Body) -> bool:
