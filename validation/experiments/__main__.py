@@ -175,7 +175,7 @@ The steel cylinder as its file says, its lowest 38 shapes in ascending order; al
 | --- | --- | --- | --- |
 {solids}
 
-Worst is n = 4, of which twelve cells around leave three to a wave. `modes -f solid` tells bars by a second, coarser mesh; `correlate` and `-f auto` take the harmonic solid.
+Worst is n = 4, of which twelve cells around leave three to a wave. `modes -f solid` shows error bars by one order more; `correlate` and `-f auto` take the harmonic solid.
 
 Sources: steel cylinder, dimensions and mass as measured with the resonances; aluminium rod, B. Zadler and J. H. L. Le Rousseau, Installation and Help Guide to Fitspectra and RUS-inverse, Table 3.1; Macor, B. Zadler, J. H. L. Le Rousseau, J. A. Scales and M. L. Smith, Geophys. J. Int. 156 (2004) 154, section 10.1. Aluminium and Ti-6Al-4V blocks, dimensions and density as measured with the resonances. Numbers are cited as facts.
 """
