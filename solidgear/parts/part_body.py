@@ -96,7 +96,7 @@ def part_body(
     # four times the loss of volume by the arcs
     rtol = max(2e-3, 15.0 / plan["around"] ** 4 * 4)
     quality = check_filling(filling, volume=file.volume, rtol=rtol)
-    facts["straightened"] = quality.straightened
+    facts["geometry"] = quality.geometry
     return solid_body(
         filling.mesh,
         scene,

@@ -157,7 +157,7 @@ def _shrunk(coarser: Body, body: Body) -> float:
 
 def _shape(body: Body) -> float:
     """Return the share that second moments of a mesh are off by, which no coarser mesh shows."""
-    return body.mesh.get("straightened", 0.0)
+    return body.mesh.get("geometry", 0.0)
 
 
 def _remaining_of_step(scene: Scene, coarser: Body, body: Body) -> float:

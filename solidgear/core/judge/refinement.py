@@ -198,7 +198,7 @@ class Refinement:
             return None
         if not self.model.bounded:
             values, solver = [x.quantities for x in self.levels], self.levels[-1].solver
-            shape = self.last.body.mesh.get("straightened", 0.0) if self.last else 0.0
+            shape = self.last.body.mesh.get("geometry", 0.0) if self.last else 0.0
             self.error_bars |= sequence_bars(
                 self.scene, self.plan, self.model, values, solver, self.sizes, shape=shape
             )

@@ -250,7 +250,7 @@ def mirrored(sector: SectorMesh) -> SectorMesh:
     )
     turned = _turned(both_halves, lambda y: sector.turn)
     segment = np.tile(sector.segment, 2)
-    quality = replace(check_mesh(turned), straightened=sector.quality.straightened)
+    quality = replace(check_mesh(turned), geometry=sector.quality.geometry)
     return SectorMesh(
         turned, segment, sector.count, both_halves.p, quality, 2 * sector.drawn, sector.turn
     )

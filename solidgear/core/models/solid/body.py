@@ -13,13 +13,14 @@ from solidgear.core.body import Body, Reflection
 from solidgear.core.elements import ELEMENTS
 from solidgear.core.errors import SolidgearError
 from solidgear.core.kernel.room import assemblable
+from solidgear.core.meshing.geometry import geometry_error, misshapen
 from solidgear.core.meshing.hexahedra import hexahedra
 from solidgear.core.meshing.quality import check_mesh
 from solidgear.core.meshing.tetrahedra import tetrahedra
 from solidgear.core.models.kinds import BODIES, CUTS, CYCLIC, PARTS
 from solidgear.core.models.options import thick_enough
 from solidgear.core.models.solid.block import body_of, free_block, mesh_facts, mirrored, seat_facets
-from solidgear.core.models.solid.mesh import _isoparametric
+from solidgear.core.models.solid.mesh import _isoparametric, moments_of_solid
 from solidgear.core.models.solid.plan import hexahedra_layout, tetrahedra_of, tetrahedra_plan
 from solidgear.core.registry import addition
 from solidgear.core.scene.closed_form import volume_of
@@ -106,6 +107,9 @@ def solid(
     block = free_block(body_mesh, scene, wanted, facets, reflections=reflections)
     facts = {
         **mesh_facts(body_mesh, quality),
+        "geometry": geometry_error(
+            misshapen(moments_of_solid(body_mesh, scene.outline), scene.outline)
+        ),
         "refinement": refinement,
         # A mesh with fourfold symmetry keeps pairs exactly; a free mesh splits them by its error.
         "pair_tolerance": 2e-3 if tet else 1e-6,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 import skfem.element
@@ -17,7 +18,11 @@ from solidgear.core.body.surface import Surface, Volume
 from solidgear.core.elements import ELEMENTS
 from solidgear.core.kernel.assembly import reference, tabulate, unknowns
 from solidgear.core.kernel.lobatto import gauss_box
+from solidgear.core.meshing.geometry import moments_of_cells
 from solidgear.core.models.solid.drawing import Outline, face_grid, on_faces
+
+if TYPE_CHECKING:
+    from solidgear.core.scene.outline import Outline as ShaftOutline
 
 #: pieces to an edge of a facet that the end of a seat crosses
 PIECES = 12
@@ -205,6 +210,13 @@ def _isoparametric(mesh, name, segment) -> SolidMesh:
     nodes = np.zeros((3, int(dofs.max()) + 1))
     nodes[:, dofs.T] = tab.x
     return SolidMesh(mesh, name, element, dofs, nodes, segment)
+
+
+def moments_of_solid(mesh: SolidMesh, outline: ShaftOutline) -> np.ndarray:
+    """Integrate moments of the segments of a mesh, m, as
+    :func:`~solidgear.core.meshing.geometry.moments_of_cells` does.
+    """
+    return moments_of_cells(mesh.element, mesh.nodes[:, mesh.dofs], mesh.segment, outline)
 
 
 def _facet_rule(refdom):
