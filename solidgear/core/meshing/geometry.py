@@ -8,7 +8,7 @@ is at most softer or stiffer, lighter or heavier, than it should be.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import pi
 from typing import TYPE_CHECKING
@@ -18,7 +18,7 @@ from scipy.linalg import eigh
 from skfem.quadrature import get_quadrature
 
 from solidgear.core.meshing.quality import MeshError
-from solidgear.core.scene.closed_form import moments_of_parts, parts_of
+from solidgear.core.scene.closed_form import parts_of
 
 if TYPE_CHECKING:
     from skfem import Element, Mesh
@@ -55,18 +55,12 @@ class Misshapen:
         return max(self.lost, self.gained)
 
 
-def misshapen(
-    moments: np.ndarray, outline: Outline, unknown: Collection[int] = ()
-) -> list[Misshapen]:
-    """Compare moments of the parts of a mesh with those of the outline, but for segments whose closed
-    form is unknown.
-    """
-    left_out = {int(parts_of(outline).of_segments[segment]) for segment in unknown}
+def misshapen(found: np.ndarray, exact: np.ndarray) -> list[Misshapen]:
+    """Compare moments (k, 4, 4) of the parts of a mesh with those of the shaft."""
     out = []
-    for k, (found, true) in enumerate(zip(moments, moments_of_parts(outline))):
-        if k not in left_out:
-            ratios = eigh(found - true, true, eigvals_only=True)
-            out.append(Misshapen(k, max(-float(ratios[0]), 0.0), max(float(ratios[-1]), 0.0)))
+    for k, (of_mesh, of_shaft) in enumerate(zip(found, exact)):
+        ratios = eigh(of_mesh - of_shaft, of_shaft, eigvals_only=True)
+        out.append(Misshapen(k, max(-float(ratios[0]), 0.0), max(float(ratios[-1]), 0.0)))
     return out
 
 

@@ -27,7 +27,7 @@ from solidgear.core.meshing.geometry import (
 from solidgear.core.meshing.gmsh_session import Session, import_gmsh
 from solidgear.core.meshing.quality import MeshError, MeshQuality, check_mesh
 from solidgear.core.meshing.revolved import draw_revolved, graded_corners, tolerance_of
-from solidgear.core.scene.closed_form import volume_of
+from solidgear.core.scene.closed_form import moments_of_parts, volume_of
 from solidgear.core.scene.outline import Outline, Shape
 
 _TET10 = 11  # gmsh's number for the ten-node tetrahedron
@@ -75,7 +75,7 @@ def tetrahedra(
     gmsh = import_gmsh()
     report = progress or (lambda fraction, message: None)
 
-    limit, trials = most_misshapen(around), []
+    limit, exact, trials = most_misshapen(around), moments_of_parts(outline), []
     for finer in FINER:
         with Session(gmsh):
             report(0.0, "drawing the meridian")
@@ -91,7 +91,7 @@ def tetrahedra(
                 report,
             )
         owner = segment_of_elements(filling.mesh, segments)
-        shapes = misshapen(moments_of(filling.mesh, owner, outline), outline)
+        shapes = misshapen(moments_of(filling.mesh, owner, outline), exact)
         trials.append((max(shape.error for shape in shapes), finer, filling, owner, shapes))
         if trials[-1][0] <= limit:
             break

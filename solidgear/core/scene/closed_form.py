@@ -111,10 +111,18 @@ def moments_of_parts(outline: Outline) -> np.ndarray:
     for piece in outline.pieces:
         part = parts.of_segments[piece.segment]
         volume, _, polar, y0, about, squared = _inside(piece, 1.0)
-        beside = y0 - parts.middles[part]
-        out[part, [0, 2], [2, 0]] += about + beside * volume
-        added = [volume, polar / 2, squared + 2.0 * beside * about + beside**2 * volume, polar / 2]
-        out[part, range(4), range(4)] += added
+        out[part] += moments_about(y0 - parts.middles[part], volume, about, squared, polar)
+    return out
+
+
+def moments_about(
+    beside: float, volume: float, first: float, second: float, polar: float
+) -> np.ndarray:
+    """Return integrals (4, 4) as :func:`moments_of_parts` does of a solid that is alike about the axis,
+    whose moments along y are taken from a place beside the middle, m.
+    """
+    out = np.diag([volume, polar / 2, second + 2 * beside * first + beside**2 * volume, polar / 2])
+    out[[0, 2], [2, 0]] = first + beside * volume
     return out
 
 

@@ -20,10 +20,10 @@ from solidgear.core.meshing.tetrahedra import tetrahedra
 from solidgear.core.models.kinds import BODIES, CUTS, CYCLIC, PARTS
 from solidgear.core.models.options import thick_enough
 from solidgear.core.models.solid.block import body_of, free_block, mesh_facts, mirrored, seat_facets
-from solidgear.core.models.solid.mesh import _isoparametric, moments_of_solid
+from solidgear.core.models.solid.mesh import _isoparametric
 from solidgear.core.models.solid.plan import hexahedra_layout, tetrahedra_of, tetrahedra_plan
 from solidgear.core.registry import addition
-from solidgear.core.scene.closed_form import volume_of
+from solidgear.core.scene.closed_form import moments_of_parts, volume_of
 from solidgear.core.scene.shaft import attached_stations, feature_labels, resolved, without_axis
 
 
@@ -105,11 +105,10 @@ def solid(
         body_mesh = replace(body_mesh, nodes=nodes)
     facets = seat_facets(body_mesh, scene.segments, 1e-7 * scene.length)
     block = free_block(body_mesh, scene, wanted, facets, reflections=reflections)
+    exact = moments_of_parts(scene.outline)
     facts = {
         **mesh_facts(body_mesh, quality),
-        "geometry": geometry_error(
-            misshapen(moments_of_solid(body_mesh, scene.outline), scene.outline)
-        ),
+        "geometry": geometry_error(misshapen(body_mesh.moments(scene.outline), exact)),
         "refinement": refinement,
         # A mesh with fourfold symmetry keeps pairs exactly; a free mesh splits them by its error.
         "pair_tolerance": 2e-3 if tet else 1e-6,

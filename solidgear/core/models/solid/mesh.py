@@ -162,6 +162,13 @@ class SolidMesh:
                 )
             yield points, elements, tab.x, area
 
+    def moments(self, outline: ShaftOutline) -> np.ndarray:
+        """Integrate moments of the parts of a shaft as
+        :func:`~solidgear.core.meshing.geometry.moments_of_cells` does.
+        """
+        places = self.nodes[:, self.dofs]
+        return moments_of_cells(self.element, places, self.segment, outline)
+
     def over_cells(self, elements: np.ndarray):
         """Yield quadrature over elements, as of facets with volume for area."""
         points, weights = get_quadrature(self.mesh.refdom, 5)
@@ -210,13 +217,6 @@ def _isoparametric(mesh, name, segment) -> SolidMesh:
     nodes = np.zeros((3, int(dofs.max()) + 1))
     nodes[:, dofs.T] = tab.x
     return SolidMesh(mesh, name, element, dofs, nodes, segment)
-
-
-def moments_of_solid(mesh: SolidMesh, outline: ShaftOutline) -> np.ndarray:
-    """Integrate moments of the segments of a mesh, m, as
-    :func:`~solidgear.core.meshing.geometry.moments_of_cells` does.
-    """
-    return moments_of_cells(mesh.element, mesh.nodes[:, mesh.dofs], mesh.segment, outline)
 
 
 def _facet_rule(refdom):
