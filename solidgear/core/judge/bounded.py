@@ -75,7 +75,7 @@ def bounded(
             complete = all(name in end for end in (stiff, two_orders, one_order))
             if complete and not name.is_frequency:
                 within = _between(name, stiff, two_orders, one_order, near, solver.get(name, 0.0))
-                bars[name] = replace(within, width=within.width + misshapen)
+                bars[name] = _wider(within, misshapen)
         static_names = [q for q in names if q in bars]
         scores |= _static_scores(body, supports, bounds, statics, static_names)
     for name in names:
@@ -85,7 +85,7 @@ def bounded(
         least = bounds.frequency(mode)
         open_ = 1 - least / mode.frequency_hz
         within = _bar(mode.frequency_hz, open_, mode.error, least)
-        bars[name] = replace(within, width=within.width + misshapen / 2)
+        bars[name] = _wider(within, misshapen / 2)
         scores[name] = bounds.of_modes[mode.name] / bounds.of_modes[mode.name].sum()
     return Bounded(bars, scores)
 
@@ -191,6 +191,10 @@ def _between(
     # the number itself stands aside of the middle
     open_ = (half + abs(middle - stiff[name])) / scale
     return _bar(stiff[name], open_, solver, far_end, float(middle), scale)
+
+
+def _wider(bar: ErrorBar, geometry: float) -> ErrorBar:
+    return replace(bar, width=bar.width + geometry, geometry=geometry)
 
 
 def _bar(

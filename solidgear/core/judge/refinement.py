@@ -263,8 +263,9 @@ class Refinement:
         exact = self.model.bounded and not self.scene.outline.corners
         if not exact or name.diagonals or name not in self.error_bars:
             return BOTH
-        # errors of the solver, and of couplings that were left out, may go either way
-        if max(self.error_bars[name].solver, self.left_out) > SOLVER_SHARE * self.bar(name):
+        # errors of the solver, of geometry, and of couplings that were left out, may go either way
+        bar = self.error_bars[name]
+        if max(bar.solver, bar.geometry, self.left_out) > SOLVER_SHARE * self.bar(name):
             return BOTH
         return ABOVE if name.kind == COMPLIANCE else BELOW
 
