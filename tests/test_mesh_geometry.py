@@ -84,6 +84,19 @@ def test_steps_are_meshed_finer_until_no_segment_lacks_anything(monkeypatch):
     assert abs(alone.quality.volume / mended.quality.volume - 1) < 1e-4
 
 
+def test_volume_that_a_mesh_of_a_small_motor_loses_is_in_its_facts(monkeypatch):
+    """Cutting folded elements in two keeps it; straight edges take 1e-3 of the volume without."""
+    ends, radii = (0.0, 4e-3, 10e-3, 13e-3), (0.5e-3, 1e-3, 0.4e-3)
+    motor = Outline([Frustum(a, b, r, r, 0.0, 0.0) for a, b, r in zip(ends, ends[1:], radii)])
+    circles = [0.7e-3, 1.3e-3, 6.5e-3, 7.5e-3, 11.5e-3, 12.1e-3]
+    size = 1e-3 / 3 / 0.4
+    sizes = {"size": size, "graded_size": size / 4, "around": 8}
+    monkeypatch.setattr(tetrahedra, "FINER", (1.0,))
+    assert tetrahedra.tetrahedra(motor, [], circles, **sizes).quality.geometry < 2e-4
+    monkeypatch.setattr(tetrahedra, "bisected", lambda filling: filling)
+    assert tetrahedra.tetrahedra(motor, [], circles, **sizes).quality.geometry > 1e-3
+
+
 def test_a_mesh_far_from_the_shaft_is_refused(monkeypatch):
     monkeypatch.setattr(geometry, "REFUSED", 1e-3)
     monkeypatch.setattr(tetrahedra, "FINER", (1.0,))

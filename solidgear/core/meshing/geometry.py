@@ -55,10 +55,10 @@ class Misshapen:
         return max(self.lost, self.gained)
 
 
-def misshapen(found: np.ndarray, exact: np.ndarray) -> list[Misshapen]:
+def misshapen(moments: np.ndarray, exact: np.ndarray) -> list[Misshapen]:
     """Compare moments (k, 4, 4) of the parts of a mesh with those of the shaft."""
     out = []
-    for k, (of_mesh, of_shaft) in enumerate(zip(found, exact)):
+    for k, (of_mesh, of_shaft) in enumerate(zip(moments, exact)):
         ratios = eigh(of_mesh - of_shaft, of_shaft, eigvals_only=True)
         out.append(Misshapen(k, max(-float(ratios[0]), 0.0), max(float(ratios[-1]), 0.0)))
     return out

@@ -86,10 +86,10 @@ def parts_of(outline: Outline) -> Parts:
     array([0, 1, 1])
     """
     segments = outline.segments
-    apart = [
+    separate = [
         not any(edge.root for edge in outline.edges_at(joint)) for joint in range(1, len(segments))
     ]
-    number = np.concatenate([[0], np.cumsum(apart)]).astype(int)
+    number = np.concatenate([[0], np.cumsum(separate)]).astype(int)
     ends = [[s for s, k in zip(segments, number) if k == part] for part in range(number[-1] + 1)]
     return Parts(number, np.array([(part[0].y0 + part[-1].y1) / 2 for part in ends]))
 

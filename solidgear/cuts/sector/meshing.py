@@ -258,8 +258,8 @@ def sector_shapes(
     turns = [rotation(1, 2 * pi * k / sector.count)[:3, :3] for k in range(sector.count)]
     if sector.half:
         turns += [turn @ np.diag([-1.0, 1.0, 1.0]) for turn in turns]
-    found = whole_moments(moments_of(sector.mesh, sector.segment, outline), turns)
-    return misshapen(found, moments_of_sectors(outline, features))
+    moments = whole_moments(moments_of(sector.mesh, sector.segment, outline), turns)
+    return misshapen(moments, moments_of_sectors(outline, features))
 
 
 def _turned(mesh: MeshTet2, angle) -> MeshTet2:

@@ -141,20 +141,20 @@ def featured_mesh(
     if around_axis:
         exact = sector.moments_of_sectors(outline, around_axis)
     # two holes are not alike about the axis
-    known = all(f.count > 2 for f in around_axis)
+    has_closed_form = all(f.count > 2 for f in around_axis)
 
     finer = at_steps = 0
     while True:
         filling, cut, removed = fill(FINER[finer], AT_STEPS[at_steps])
         mesh = filling.mesh
         segment = segment_of_elements(mesh, outline.segments)
-        found = whole_moments(moments_of(mesh, segment, outline), maps)
-        shapes = misshapen(found, exact) if known else []
-        lost = max((shape.error for shape in shapes), default=0.0)
+        moments = whole_moments(moments_of(mesh, segment, outline), maps)
+        shapes = misshapen(moments, exact) if has_closed_form else []
+        worst = max((shape.error for shape in shapes), default=0.0)
         lacking = _volume_error(submesh(mesh, cut), removed)
         if lacking > arcs and FINER[finer] < FINER[-1]:
             finer += 1
-        elif _volume_error(mesh, volume) <= arcs and lost <= most_misshapen(around):
+        elif _volume_error(mesh, volume) <= arcs and worst <= most_misshapen(around):
             break
         elif graded_size and AT_STEPS[at_steps] < AT_STEPS[-1]:
             at_steps += 1
