@@ -19,6 +19,7 @@ from solidgear.core.meshing.quality import MeshError
 from solidgear.core.quantity import Quantity
 from solidgear.core.scene.closed_form import moments_of_parts, parts_of
 from solidgear.core.scene.outline import Frustum, Outline
+from solidgear.cuts.features import BoltCircle
 from solidgear.cuts.sector.body import cyclic_features, meshed_sector
 from solidgear.cuts.sector.meshing import sector_shapes
 
@@ -189,3 +190,21 @@ def test_teeth_have_closed_forms(file):
     )
     if file == "pinion_toothed.toml":
         assert shapes[0].error < 1e-12
+
+
+def test_bolt_circles_have_closed_forms():
+    holes = BoltCircle(name="b", segment="rod", count=5, diameter=0.008, circle=0.03)
+    rod = Segment.cylinder("rod", length=0.03, diameter=0.05)
+    scene = Scene.from_parts([rod], features=[holes])
+    body = build(scene, "sector", refinement=0.7)
+    # left out of the closed form they are a tenth of the second moment
+    assert 0 < body.mesh["geometry"] < 3e-4
+
+
+def test_cut_shafts_are_compared_with_their_cuts_filled():
+    """Halves with their images, and what the cut itself lacks beside them."""
+    scene = sg.load("geometry/pinion_keyed.toml")
+    halves = build(scene, "solid", element="tet10", refinement=0.35)
+    whole = build(scene, "solid", element="tet10", refinement=0.35, half=False)
+    assert halves.mesh["mirror_plane"] != "none" == whole.mesh["mirror_plane"]
+    assert 0 < halves.mesh["geometry"] < 3e-4 and 0 < whole.mesh["geometry"] < 3e-4
