@@ -242,6 +242,22 @@ MUTATIONS = (
         "tests/test_settle.py::test_bars_of_a_body_hold_its_own_couplings",
     ),
     Mutation(
+        "error bars know nothing of a mesh that is not the body",
+        "solidgear/core/judge/bounded.py",
+        "_wider",
+        "bar.width + geometry",
+        "bar.width",
+        "tests/test_mesh_geometry.py::test_statics_have_all_of_it_and_frequencies_half",
+    ),
+    Mutation(
+        "segments are compared by volume alone",
+        "solidgear/core/meshing/geometry.py",
+        "misshapen",
+        "eigh(of_mesh - of_shaft, of_shaft, eigvals_only=True)",
+        "[of_mesh[0, 0] / of_shaft[0, 0] - 1]",
+        "tests/test_mesh_geometry.py::test_bars_of_straight_elements_hold_on_both_sides",
+    ),
+    Mutation(
         "phase of the cut faces turned the other way",
         "solidgear/cuts/sector/cyclic.py",
         "basis",

@@ -49,6 +49,9 @@ class ErrorBar:
     #: a better value than the finest one, where there is one
     middle: float | None = None
     aside: float = 0.0  #: distance of `middle` from the finest value, relative as `width`
+    geometry: float = (
+        0.0  #: share of the error bar, to either side, as a mesh is not quite the body
+    )
 
     @property
     def about_middle(self) -> float:

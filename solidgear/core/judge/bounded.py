@@ -10,7 +10,7 @@ quotient and the lower bound of Kato and Temple (:mod:`solidgear.core.bounds.har
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -63,6 +63,7 @@ def bounded(
     bounds = bounds_of(
         scene, body, statics is not None, modes, list(dict.fromkeys(frequencies)), later
     )
+    misshapen = geometry_share(body)
     bars: dict[Quantity, ErrorBar] = {}
     scores: dict[Quantity, np.ndarray] = {}
     if statics is not None:
@@ -74,9 +75,8 @@ def bounded(
         for name in in_order(dict.fromkeys((*stiff, *names))):
             complete = all(name in end for end in (stiff, two_orders, one_order))
             if complete and not name.is_frequency:
-                bars[name] = _between(
-                    name, stiff, two_orders, one_order, near, solver.get(name, 0.0)
-                )
+                within = _between(name, stiff, two_orders, one_order, near, solver.get(name, 0.0))
+                bars[name] = _wider(within, misshapen)
         static_names = [q for q in names if q in bars]
         scores |= _static_scores(body, supports, bounds, statics, static_names)
     for name in names:
@@ -85,7 +85,8 @@ def bounded(
             continue
         least = bounds.frequency(mode)
         open_ = 1 - least / mode.frequency_hz
-        bars[name] = _bar(mode.frequency_hz, open_, mode.error, least)
+        within = _bar(mode.frequency_hz, open_, mode.error, least)
+        bars[name] = _wider(within, misshapen / 2)
         scores[name] = bounds.of_modes[mode.name] / bounds.of_modes[mode.name].sum()
     return Bounded(bars, scores)
 
@@ -108,6 +109,17 @@ def bounds_of(
     )
 
 
+def geometry_share(body: Body) -> float:
+    """Return the share by which static numbers may be off either way, since the mesh of a body has not
+    quite its shape; frequencies by half of it, as the root of stiffness over mass.
+
+    If segments are softer by a share e of their own stiffness, at most, a flexibility is too large by
+    ``e / (1 - e)``, and that far off is also the ratio of a stiffness to a mass.
+    """
+    error = body.mesh.get("geometry", 0.0)
+    return error / (1 - error) if error < 1 else np.inf
+
+
 def mode_bars(
     scene: Scene, body: Body, supports: Supports, modes_listed: ModeSet
 ) -> dict[str, float]:
@@ -127,8 +139,9 @@ def mode_bars(
         )
     bounds = bounds_of(scene, body, False, extended, names)
     highest = _highest(extended)
+    misshapen = geometry_share(body)
     return {
-        m.name: 1 - bounds.frequency(m) / m.frequency_hz + m.error
+        m.name: 1 - bounds.frequency(m) / m.frequency_hz + m.error + misshapen / 2
         for m in modes_listed.modes
         if 0 < m.frequency_hz < highest[m.family]
     }
@@ -197,6 +210,10 @@ def _between(
     # the number itself stands aside of the middle
     open_ = (half + abs(middle - stiff[name])) / scale
     return _bar(stiff[name], open_, solver, far_end, float(middle), scale)
+
+
+def _wider(bar: ErrorBar, geometry: float) -> ErrorBar:
+    return replace(bar, width=bar.width + geometry, geometry=geometry)
 
 
 def _bar(

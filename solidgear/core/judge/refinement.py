@@ -200,7 +200,7 @@ class Refinement:
             return None
         if not self.model.bounded:
             values, solver = [x.quantities for x in self.levels], self.levels[-1].solver
-            shape = self.last.body.mesh.get("straightened", 0.0) if self.last else 0.0
+            shape = self.last.body.mesh.get("geometry", 0.0) if self.last else 0.0
             self.error_bars |= sequence_bars(
                 self.scene, self.plan, self.model, values, solver, self.sizes, shape=shape
             )
@@ -265,8 +265,9 @@ class Refinement:
         exact = self.model.follows and not self.scene.outline.corners
         if not exact or name.diagonals or name not in self.error_bars:
             return BOTH
-        # errors of the solver, and of couplings that were left out, may go either way
-        if max(self.error_bars[name].solver, self.left_out) > SOLVER_SHARE * self.bar(name):
+        # errors of the solver, of geometry, and of couplings that were left out, may go either way
+        bar = self.error_bars[name]
+        if max(bar.solver, bar.geometry, self.left_out) > SOLVER_SHARE * self.bar(name):
             return BOTH
         return ABOVE if name.kind == COMPLIANCE else BELOW
 

@@ -262,7 +262,7 @@ class TiedSolver:
                 levels[-1].solver,
                 [sizes_of(level.mesh) for level in self.meshes],
                 self.around.get(tie),
-                self.meshes[-1].mesh.get("straightened", 0.0),
+                self.meshes[-1].mesh.get("geometry", 0.0),
             )
             if error_bars:
                 out[tie] = error_bars

@@ -54,9 +54,9 @@ class MeshQuality:
     #: smallest element volume over the mean one; grading lowers it rightly (size ratio cubed), a
     #: sliver wrongly
     min_volume_ratio: float
-    #: largest error of the second moments of a part of it, as edges of elements that would fold are
-    #: straight, relative: it falls by no order
-    straightened: float = 0.0
+    #: error of the moments of a part of it, relative, which no estimate on the mesh sees: the most
+    #: that a part has lost and the most that one has gained
+    geometry: float = 0.0
 
 
 def check_mesh(

@@ -17,13 +17,23 @@ from solidgear.core.meshing.bisecting import bisected
 from solidgear.core.meshing.curving import Filling, relaxed, ten_nodes, volume_preserved
 from solidgear.core.meshing.edge_places import edge_places
 from solidgear.core.meshing.element_size import set_size, size_formulas
+from solidgear.core.meshing.geometry import (
+    geometry_error,
+    misshapen,
+    moments_of,
+    most_misshapen,
+    refuse_misshapen,
+)
 from solidgear.core.meshing.gmsh_session import Session, import_gmsh
 from solidgear.core.meshing.quality import MeshError, MeshQuality, check_mesh
 from solidgear.core.meshing.revolved import draw_revolved, graded_corners, tolerance_of
-from solidgear.core.scene.closed_form import volume_of
+from solidgear.core.scene.closed_form import moments_of_parts, volume_of
 from solidgear.core.scene.outline import Outline, Shape
 
 _TET10 = 11  # gmsh's number for the ten-node tetrahedron
+#: how many times smaller elements are at shoulders and seat ends where a segment is misshapen: edges
+#: between the two circles of a small step fold where they are long, and have to be straightened
+FINER = (1.0, 1.5, 2.0, 3.0)
 
 
 @dataclass(frozen=True)
@@ -48,7 +58,7 @@ def tetrahedra(
 ):
     """Mesh a shaft of revolution about y with curved ten-node tetrahedra; the same arrays for the
     same input. MeshError for geometry that cannot be meshed, gmsh missing or failing, inverted
-    elements, or a wrong volume.
+    elements, or wrong volumes and second moments of segments.
 
     `planes` are positions y of cross-sections to be made of element faces, `circles` those at which
     the outer surface is split along a circle (ends of seats), m. `size` is the target length of an
@@ -56,7 +66,8 @@ def tetrahedra(
     `graded_size` that at `circles` and at every kink of the outline (shoulders, cone ends,
     corners), the same everywhere when None; `reach` the distance over which the edge grows from the
     one to the other, m, the local radius when None. `around` is the least number of elements around
-    a circle; `progress` is called as progress(fraction, message) between the stages.
+    a circle. Where a segment lacks volume or second moments, as edges that would fold are straight,
+    elements are made smaller at `graded_size`; `progress` is called as progress(fraction, message) between the stages.
     """
     segments = outline.segments
     planes, circles = [float(y) for y in planes], [float(y) for y in circles]
@@ -64,23 +75,33 @@ def tetrahedra(
     gmsh = import_gmsh()
     report = progress or (lambda fraction, message: None)
 
-    with Session(gmsh):
-        report(0.0, "drawing the meridian")
-        draw_revolved(gmsh, outline, planes, circles)
-        corners = graded_corners(outline, planes, circles)
-        formulas = size_formulas(outline, corners, size, graded_size, reach, around)
-        set_size(gmsh, formulas, size)
-        filling = filled(
-            gmsh,
-            "gmsh could not mesh the shaft ({}): change size or graded_size a little, "
-            "or look for segments much thinner than size",
-            report,
-        )
+    limit, exact, trials = most_misshapen(around), moments_of_parts(outline), []
+    for finer in FINER:
+        with Session(gmsh):
+            report(0.0, "drawing the meridian")
+            draw_revolved(gmsh, outline, planes, circles)
+            corners = graded_corners(outline, planes, circles)
+            least = (graded_size or size) / finer
+            formulas = size_formulas(outline, corners, size, least, reach, around)
+            set_size(gmsh, formulas, size)
+            filling = filled(
+                gmsh,
+                "gmsh could not mesh the shaft ({}): change size or graded_size a little, "
+                "or look for segments much thinner than size",
+                report,
+            )
+        owner = segment_of_elements(filling.mesh, segments)
+        shapes = misshapen(moments_of(filling.mesh, owner, outline), exact)
+        trials.append((max(shape.error for shape in shapes), finer, filling, owner, shapes))
+        if trials[-1][0] <= limit:
+            break
+    _, _, filling, owner, shapes = min(trials, key=lambda trial: trial[:2])
+    refuse_misshapen(shapes, outline)
 
     report(0.9, "checking the mesh")
     quality = check_filling(filling, volume=volume_of(outline), rtol=lost_by_arcs(around))
     report(1.0, f"{quality.n_elements} elements")
-    return TetMesh(filling.mesh, segment_of_elements(filling.mesh, segments), quality)
+    return TetMesh(filling.mesh, owner, replace(quality, geometry=geometry_error(shapes)))
 
 
 def check_filling(filling: Filling, **limits: float) -> MeshQuality:
@@ -88,7 +109,7 @@ def check_filling(filling: Filling, **limits: float) -> MeshQuality:
     of straightened edges.
     """
     worst = max(filling.straightened.values(), default=0.0)
-    return replace(check_mesh(filling.mesh, **limits), straightened=worst)
+    return replace(check_mesh(filling.mesh, **limits), geometry=worst)
 
 
 def lost_by_arcs(around: int) -> float:

@@ -66,6 +66,66 @@ def mass_properties(outline: Outline[Segment]) -> MassProperties:
     )
 
 
+@dataclass(frozen=True)
+class Parts:
+    """Segments of a shaft, where a fillet or chamfer fills a step both beside it as one: meshes differ
+    in which of them it belongs to.
+    """
+
+    of_segments: np.ndarray  #: (n,) part that each segment is in
+    middles: np.ndarray  #: (k,) m
+
+
+def parts_of(outline: Outline) -> Parts:
+    """Return the parts of a shaft whose moments are known one by one.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> parts_of(sg.load("geometry/pinion_filleted.toml").outline).of_segments
+    array([0, 1, 1])
+    """
+    segments = outline.segments
+    separate = [
+        not any(edge.root for edge in outline.edges_at(joint)) for joint in range(1, len(segments))
+    ]
+    number = np.concatenate([[0], np.cumsum(separate)]).astype(int)
+    ends = [[s for s, k in zip(segments, number) if k == part] for part in range(number[-1] + 1)]
+    return Parts(number, np.array([(part[0].y0 + part[-1].y1) / 2 for part in ends]))
+
+
+def moments_of_parts(outline: Outline) -> np.ndarray:
+    """Compute the integrals (k, 4, 4) of the products of 1, x, y and z over every part of a shaft, y
+    from its middle, in m: volume, first and second moments.
+
+    Examples
+    --------
+    >>> from solidgear import Segment
+    >>> rod = Segment.cylinder("rod", length=0.6, diameter=0.02)
+    >>> moments = moments_of_parts(Outline([rod]))[0]
+    >>> bool(np.isclose(2 * moments[1, 1], moments[0, 0] * 0.01**2 / 2))
+    True
+    """
+    parts = parts_of(outline)
+    out = np.zeros((len(parts.middles), 4, 4))
+    for piece in outline.pieces:
+        part = parts.of_segments[piece.segment]
+        volume, _, polar, y0, about, squared = _inside(piece, 1.0)
+        out[part] += moments_about(y0 - parts.middles[part], volume, about, squared, polar)
+    return out
+
+
+def moments_about(
+    beside: float, volume: float, first: float, second: float, polar: float
+) -> np.ndarray:
+    """Return integrals (4, 4) as :func:`moments_of_parts` does of a solid that is alike about the axis,
+    whose moments along y are taken from a place beside the middle, m.
+    """
+    out = np.diag([volume, polar / 2, second + 2 * beside * first + beside**2 * volume, polar / 2])
+    out[[0, 2], [2, 0]] = first + beside * volume
+    return out
+
+
 def whole_mass(scene: Scene) -> MassProperties:
     """Compute mass, centre and inertia of a shaft with its rigid masses; transverse about x."""
     shaft, places = mass_properties(scene.outline), {s.name: s.y for s in scene.stations}

@@ -10,7 +10,7 @@ each other's image and volumes stay the same.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import cos, gcd, pi, sin
 from typing import Any
@@ -22,20 +22,36 @@ from skfem import MeshTet2
 from solidgear.core import Outline, rotation
 from solidgear.core.meshing.curving import ten_nodes, with_nodes
 from solidgear.core.meshing.element_size import set_size, size_formulas
+from solidgear.core.meshing.geometry import (
+    Misshapen,
+    geometry_error,
+    misshapen,
+    moments_of,
+    most_misshapen,
+    refuse_misshapen,
+    whole_moments,
+)
 from solidgear.core.meshing.gmsh_session import Session, import_gmsh
 from solidgear.core.meshing.quality import MeshError, MeshQuality, check_mesh
 from solidgear.core.meshing.revolved import graded_corners
 from solidgear.core.meshing.tetrahedra import (
+    FINER,
     check_filling,
     filled,
     lost_by_arcs,
     segment_of_elements,
 )
-from solidgear.core.scene.closed_form import integrals_along, volume_of
+from solidgear.core.scene.closed_form import (
+    integrals_along,
+    moments_about,
+    moments_of_parts,
+    parts_of,
+    volume_of,
+)
 from solidgear.core.scene.parts import Segment
 from solidgear.cuts.features.around import middle, mirror_angle, no_common_sector
 from solidgear.cuts.sector.drawing import draw_sector, drill, pair_faces
-from solidgear.cuts.sector.teeth import section_area, tooth_size, turn_at
+from solidgear.cuts.sector.teeth import section_area, section_polar, tooth_size, turn_at
 from solidgear.cuts.solid.holes import Hole, hole_of, hole_places, hole_size
 
 #: of the length of the shaft: cut faces whose nodes match no better than this do not match
@@ -93,12 +109,38 @@ def sector_mesh(
 
     Sizes are those of :func:`solidgear.core.meshing.tetrahedra.tetrahedra`, given refined; `refinement`
     divides the sizes at features. MeshError for features without a common sector, geometry that
-    cannot be meshed, cut faces that do not match, inverted elements, or a wrong volume.
+    cannot be meshed, cut faces that do not match, inverted elements, or wrong volumes and second moments.
     """
     count = count or sectors_of(features)
     reason = no_common_sector(features, count)
     if reason:
         raise MeshError(reason)
+    limit, trials = most_misshapen(around), []
+    for finer in FINER:
+        sizes = {"size": size, "graded_size": (graded_size or size) / finer, "around": around}
+        meshed = _meshed(outline, features, planes, circles, count, refinement, sizes)
+        shapes = sector_shapes(meshed, outline, features)
+        trials.append((max((shape.error for shape in shapes), default=0.0), finer, meshed, shapes))
+        if trials[-1][0] <= limit:
+            break
+    *_, meshed, shapes = min(trials, key=lambda trial: trial[:2])
+    if not shapes:
+        return meshed
+    refuse_misshapen(shapes, outline)
+    return replace(meshed, quality=replace(meshed.quality, geometry=geometry_error(shapes)))
+
+
+def _meshed(
+    outline: Outline[Segment],
+    features: tuple[Any, ...],
+    planes: list[float],
+    circles: list[float],
+    count: int,
+    refinement: float,
+    sizes: Mapping[str, Any],
+) -> SectorMesh:
+    """Mesh one of so many sectors as :func:`sector_mesh` does."""
+    around = sizes["around"]
     gmsh = import_gmsh()
     segments = outline.segments
     toothed = {f.segment: f for f in features if f.toothed}
@@ -117,13 +159,15 @@ def sector_mesh(
         if not half:
             pair_faces(gmsh, count)
         corners = graded_corners(outline, planes, circles)
-        formulas = size_formulas(outline, corners, size, graded_size, None, around)
+        formulas = size_formulas(
+            outline, corners, sizes["size"], sizes["graded_size"], None, around
+        )
         formulas += tooth_sizes(segments, features, refinement)
         for f, segment, hole in hole_sizes(segments, features, refinement):
             # those in the sector, and on either side of it
             reach = pi / count + 2 * pi / f.count
             formulas.append(hole_size(hole, hole_places(f, segment, twists, first, reach)))
-        set_size(gmsh, formulas, size)
+        set_size(gmsh, formulas, sizes["size"])
         filling = filled(gmsh, "gmsh could not mesh the sector ({}): change refinement a little")
     mesh = filling.mesh
     exact = volume_of_sector(outline, features, count) / (2 if half else 1)
@@ -177,6 +221,45 @@ def volume_of_sector(outline: Outline[Segment], features: Iterable[Any], count: 
             lo, hi = f.reach(next(s for s in segments if s.name == f.segment))
             total -= f.count * pi * f.diameter**2 / 4 * (hi - lo)
     return total / count
+
+
+def moments_of_sectors(outline: Outline[Segment], features: Iterable[Any]) -> np.ndarray:
+    """Compute the moments of the parts of a shaft with teeth and bolt circles as
+    :func:`~solidgear.core.scene.closed_form.moments_of_parts` does.
+    """
+    parts, out = parts_of(outline), moments_of_parts(outline)
+    numbers = {s.name: number for number, s in enumerate(outline.segments)}
+    for f in features:
+        s = outline.segments[numbers[f.segment]]
+        part = parts.of_segments[numbers[f.segment]]
+        if f.toothed:
+            beside = s.y0 - parts.middles[part]
+            square, first, second, fourth = integrals_along(s.length, s.outer0, s.outer1)
+            area = section_area(f) - pi
+            polar = (section_polar(f) - pi / 2) * fourth
+            out[part] += moments_about(beside, area * square, area * first, area * second, polar)
+        else:
+            lo, hi = f.reach(s)
+            volume = f.count * pi * f.diameter**2 / 4 * (hi - lo)
+            polar = volume * (f.circle**2 / 4 + f.diameter**2 / 8)
+            beside = (lo + hi) / 2 - parts.middles[part]
+            out[part] -= moments_about(beside, volume, 0.0, volume * (hi - lo) ** 2 / 12, polar)
+    return out
+
+
+def sector_shapes(
+    sector: SectorMesh, outline: Outline[Segment], features: Sequence[Any]
+) -> list[Misshapen]:
+    """Compare the moments of a meshed sector, all of them together, with the closed form; none of two
+    holes, which are not alike about the axis.
+    """
+    if any(f.count < 3 for f in features):
+        return []
+    turns = [rotation(1, 2 * pi * k / sector.count)[:3, :3] for k in range(sector.count)]
+    if sector.half:
+        turns += [turn @ np.diag([-1.0, 1.0, 1.0]) for turn in turns]
+    moments = whole_moments(moments_of(sector.mesh, sector.segment, outline), turns)
+    return misshapen(moments, moments_of_sectors(outline, features))
 
 
 def _turned(mesh: MeshTet2, angle) -> MeshTet2:
@@ -250,7 +333,7 @@ def mirrored(sector: SectorMesh) -> SectorMesh:
     )
     turned = _turned(both_halves, lambda y: sector.turn)
     segment = np.tile(sector.segment, 2)
-    quality = replace(check_mesh(turned), straightened=sector.quality.straightened)
+    quality = replace(check_mesh(turned), geometry=sector.quality.geometry)
     return SectorMesh(
         turned, segment, sector.count, both_halves.p, quality, 2 * sector.drawn, sector.turn
     )

@@ -61,7 +61,7 @@ def featured_body(
     """
     keep = np.ones(len(cut_mesh.cut), bool) if plain else ~cut_mesh.cut
     mesh = cut_mesh.mesh if plain else submesh(cut_mesh.mesh, keep)
-    quality = replace(check_mesh(mesh), straightened=cut_mesh.quality.straightened)
+    quality = replace(check_mesh(mesh), geometry=cut_mesh.quality.geometry)
     solid = _isoparametric(mesh, "tet10", cut_mesh.segment[keep])
     facets = _facets(solid, scene)
     if cut_mesh.plane is None:

@@ -199,6 +199,6 @@ def mesh_facts(solid: SolidMesh, quality: MeshQuality, copies: int = 1) -> dict[
         "nodes": int(solid.nodes.shape[1]),
         "volume": copies * quality.volume,
         "min_jacobian_ratio": quality.min_ratio,
-        "straightened": quality.straightened,
+        "geometry": quality.geometry,
         "representative_size": float((quality.volume / quality.n_elements) ** (1 / 3)),
     }

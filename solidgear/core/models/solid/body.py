@@ -13,6 +13,7 @@ from solidgear.core.body import Body, Reflection
 from solidgear.core.elements import ELEMENTS
 from solidgear.core.errors import SolidgearError
 from solidgear.core.kernel.room import assemblable
+from solidgear.core.meshing.geometry import geometry_error, misshapen
 from solidgear.core.meshing.hexahedra import hexahedra
 from solidgear.core.meshing.quality import check_mesh
 from solidgear.core.meshing.tetrahedra import tetrahedra
@@ -22,7 +23,7 @@ from solidgear.core.models.solid.block import body_of, free_block, mesh_facts, m
 from solidgear.core.models.solid.mesh import _isoparametric
 from solidgear.core.models.solid.plan import hexahedra_layout, tetrahedra_of, tetrahedra_plan
 from solidgear.core.registry import addition
-from solidgear.core.scene.closed_form import volume_of
+from solidgear.core.scene.closed_form import moments_of_parts, volume_of
 from solidgear.core.scene.shaft import attached_stations, feature_labels, resolved, without_axis
 
 
@@ -104,8 +105,10 @@ def solid(
         body_mesh = replace(body_mesh, nodes=nodes)
     facets = seat_facets(body_mesh, scene.segments, 1e-7 * scene.length)
     block = free_block(body_mesh, scene, wanted, facets, reflections=reflections)
+    exact = moments_of_parts(scene.outline)
     facts = {
         **mesh_facts(body_mesh, quality),
+        "geometry": geometry_error(misshapen(body_mesh.moments(scene.outline), exact)),
         "refinement": refinement,
         # A mesh with fourfold symmetry keeps pairs exactly; a free mesh splits them by its error.
         "pair_tolerance": 2e-3 if tet else 1e-6,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 import skfem.element
@@ -17,7 +18,11 @@ from solidgear.core.body.surface import Surface, Volume
 from solidgear.core.elements import ELEMENTS
 from solidgear.core.kernel.assembly import reference, tabulate, unknowns
 from solidgear.core.kernel.lobatto import gauss_box
+from solidgear.core.meshing.geometry import moments_of_cells
 from solidgear.core.models.solid.drawing import Outline, face_grid, on_faces
+
+if TYPE_CHECKING:
+    from solidgear.core.scene.outline import Outline as ShaftOutline
 
 #: pieces to an edge of a facet that the end of a seat crosses
 PIECES = 12
@@ -156,6 +161,13 @@ class SolidMesh:
                     np.clip((y - lo) / reach + 0.5, 0, 1) * np.clip((hi - y) / reach + 0.5, 0, 1)
                 )
             yield points, elements, tab.x, area
+
+    def moments(self, outline: ShaftOutline) -> np.ndarray:
+        """Integrate moments of the parts of a shaft as
+        :func:`~solidgear.core.meshing.geometry.moments_of_cells` does.
+        """
+        places = self.nodes[:, self.dofs]
+        return moments_of_cells(self.element, places, self.segment, outline)
 
     def over_cells(self, elements: np.ndarray):
         """Yield quadrature over elements, as of facets with volume for area."""
