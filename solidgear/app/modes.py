@@ -23,6 +23,7 @@ from solidgear.core import (
 )
 from solidgear.core import modes as solve
 from solidgear.core.judge.at_rest import spin_caution
+from solidgear.core.judge.bounded import NOTHING_BEYOND
 from solidgear.core.judge.coarser_mesh import coarser_bars
 from solidgear.core.judge.completeness import completeness, cut_short, split_apart
 from solidgear.core.judge.hidden import complete_list, less_widest
@@ -213,5 +214,5 @@ def _unjudged(names: Sequence[str], model: str, *, second: bool = False) -> str:
     if second:
         return "the coarser mesh has no such mode, or as many cells around"
     if LADDER[model].bounded:
-        return "an error bar needs the next mode of the family; raise -n"
+        return NOTHING_BEYOND
     return "higher modes need finer meshes"

@@ -11,13 +11,12 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from solidgear.core.body import Body, Supports
-from solidgear.core.bounds.harmonic import APART, harmonic_bounds, of_one_problem
+from solidgear.core.bounds.harmonic import by_problem, harmonic_bounds, is_bounded
 from solidgear.core.bounds.safety import LOCAL
-from solidgear.core.judge.bounded import ABOVE
-from solidgear.core.judge.solving import MOST_SHAPES, extended_modes
+from solidgear.core.judge.bounded import extended_until
 from solidgear.core.scene import Scene
 from solidgear.core.scene.coned import coned
-from solidgear.core.solve.modes import Mode, ModeSet, modes
+from solidgear.core.solve.modes import Mode, ModeSet
 
 #: frequency (Hz) that the count of a mesh reaches, in the evidence of modes
 COUNTED = "counted_below_hz"
@@ -32,11 +31,8 @@ def complete_list(scene: Scene, body: Body, supports: Supports, listed: ModeSet)
     """
     if COUNTED not in listed.evidence:
         return listed
-    shapes = sum(mode.multiplicity for mode in listed.modes)
-    extended, count = listed, shapes
-    while (first := _first_above(extended)) is None and count < MOST_SHAPES:
-        count += ABOVE if count == shapes else count - shapes
-        extended = extended_modes(listed, modes(body, supports, count))
+    extended = extended_until(body, supports, listed, lambda found: _first_above(found) is not None)
+    first = _first_above(extended)
     if first is None:
         return listed
     all_modes = replace(extended, beyond=(*extended.beyond, *extended.above), above=())
@@ -45,8 +41,12 @@ def complete_list(scene: Scene, body: Body, supports: Supports, listed: ModeSet)
     bounds = harmonic_bounds(
         coned(scene), body, statics=False, modes=all_modes, wanted=names, safety=LOCAL
     )
-    least = {mode.name: bounds.frequency(mode) * (1 - mode.error) for mode in first}
-    limit = min([listed.evidence[COUNTED], *least.values()])
+    limit = listed.evidence[COUNTED]
+    for mode in first:
+        least = bounds.frequency(mode)
+        if least is None:
+            return listed
+        limit = min(limit, least * (1 - mode.error))
     return replace(extended, evidence=listed.evidence | {COMPLETE: limit})
 
 
@@ -62,18 +62,14 @@ def less_widest(evidence: dict, bars: Iterable[float]) -> dict:
 
 
 def _first_above(modes: ModeSet) -> list[Mode] | None:
-    """Return the lowest mode of every eigenproblem above the end of a list; None where one of them
-    has no other mode clear above it, on whose distance the lower end rests.
+    """Return the lowest mode of every eigenproblem above the end of a list; None where nothing was
+    solved beyond those near one of them, on which the lower end rests.
     """
     names_listed = {mode.name for mode in modes.modes}
-    remaining = [mode for mode in modes.solved if mode.frequency_hz > 0]
-    remaining.sort(key=lambda mode: mode.frequency_hz)
     out = []
-    while remaining:
-        group = [mode for mode in remaining if of_one_problem(mode, remaining[0])]
-        remaining = [mode for mode in remaining if mode not in group]
+    for group in by_problem([mode for mode in modes.solved if mode.frequency_hz > 0]):
         above = [mode for mode in group if mode.name not in names_listed]
-        if not above or (above[0].frequency_hz / above[-1].frequency_hz) ** 2 > 1 - APART:
+        if not above or not is_bounded(modes, above[0]):
             return None
         out.append(above[0])
     return out

@@ -139,12 +139,13 @@ class FamilySolver:
             return values, None
         judged_names = self._judged_names(values, names)
         judged = bounded(scene, body, supports, statics, modes, judged_names, values.solver)
-        refinement.error_bars |= {q: judged.error_bars[q] for q in judged_names}
+        barred = [q for q in judged_names if q in judged.error_bars]
+        refinement.error_bars |= {q: judged.error_bars[q] for q in barred}
         # no frequency without an error bar
         quantities = {
             q: v for q, v in values.quantities.items() if q in judged_names or not q.is_frequency
         }
-        return Numbers(quantities, values.solver), refinement.score(judged, judged_names)
+        return Numbers(quantities, values.solver), refinement.score(judged, barred)
 
     def _judged_names(self, values: Numbers, names: tuple[Quantity, ...]) -> list[Quantity]:
         """Return the numbers that get an error bar: those asked for, and all static ones that are

@@ -13,7 +13,8 @@ import numpy as np
 
 from solidgear.core import ELEMENTS, System, coned, pinned
 from solidgear.core.body import FURTHER
-from solidgear.core.bounds.harmonic import lower_ends, vibration_energies, with_tail
+from solidgear.core.bounds.clusters import lower_ends
+from solidgear.core.bounds.harmonic import vibration_energies, with_tail
 from solidgear.core.bounds.safety import LOCAL
 from solidgear.core.system.parts import Part, Placed
 from solidgear.trains.assembly.assembly import Assembly
@@ -54,7 +55,7 @@ def mesh_bars(
     elastic = slice(modes.rigid, modes.rigid + max(n + 1, resolved))
     shapes = modes.shapes[:, elastic]
     value = (2 * np.pi * modes.frequency_hz[elastic]) ** 2
-    double_energy, single_energy = np.zeros(len(value)), np.zeros(len(value))
+    double_energy, single_energy = np.zeros((2, len(value), len(value)))
     for side in sides:
         fields = system.expand(side, shapes)
         if max(fields) >= FURTHER:
@@ -62,8 +63,11 @@ def mesh_bars(
         body = assembly.shaft_model(side, JUDGE).body
         energies = vibration_energies(coned(assembly.scenes[side]), body, fields, value)
         double_energy, single_energy = double_energy + energies[0], single_energy + energies[1]
-    energy = LOCAL * np.array([with_tail(a, b) for a, b in zip(double_energy, single_energy)])
-    least = np.maximum(lower_ends(value, energy, value[-1]), 0.0)
+    two_more, one_more = double_energy.diagonal(), single_energy.diagonal()
+    tails = np.array([with_tail(a, b) for a, b in zip(two_more, one_more)])
+    grown = np.sqrt(np.divide(tails, two_more, out=np.ones(len(value)), where=two_more > 0))
+    products = LOCAL * double_energy * np.outer(grown, grown)
+    least = np.maximum(lower_ends(value, products, value[-1]), 0.0)
     bars = (1 - np.sqrt(least / value))[:n]
     assembly.bars[tuple(models.values())] = bars
     return bars
