@@ -137,7 +137,7 @@ def modes_sheet(modes: ModeSet, judged: Judged, proof: dict[str, Any], counted: 
     if len(modes.modes) > MANY:
         shapes = sum(m.multiplicity for m in modes.modes)
         notes.insert(0, f"{shapes} shapes up to {modes.frequency_hz[-1]:.6g} Hz.")
-    notes += map(caution, split_apart(evidence))
+    notes += map(caution, split_apart(modes, bars))
     notes += [caution(f"{mixture.sentence}.") for mixture in mixtures(modes)]
     if evidence["error"] > 1e-6:
         notes.append(

@@ -153,7 +153,8 @@ def _warnings(
         failed = [f"{part}: {reason}" for part, reason in solution.failed.items()]
         out += [f"{LADDER[model].title}: {sentence}" for sentence in failed]
     for model, solution in solutions.items():
-        sentences = [*split_apart(solution.modes.evidence)]
+        bars = {str(q): bar.width for q, bar in solution.error_bars.get(SCENE, {}).items()}
+        sentences = [*split_apart(solution.modes, bars)]
         sentences += [mixture.sentence for mixture in mixtures(solution.modes)]
         out += [f"{LADDER[model].title}: {sentence}" for sentence in sentences]
     return out

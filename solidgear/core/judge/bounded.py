@@ -132,7 +132,9 @@ def mode_bars(
     elastic = [m for m in modes_listed.modes if m.frequency_hz > 0]
 
     def rest_on_others(found: ModeSet) -> bool:
-        return all(is_bounded(found, mode) for mode in elastic)
+        # the gap to the modes above counts, in every family
+        widened = found is not modes_listed or _all_below(found)
+        return widened and all(is_bounded(found, mode) for mode in elastic)
 
     extended = extended_until(body, supports, modes_listed, rest_on_others)
     bounds = bounds_of(scene, body, False, extended, names)
@@ -142,6 +144,14 @@ def mode_bars(
         if least is not None:
             bars[mode.name] = 1 - least / mode.frequency_hz + mode.error
     return bars
+
+
+def _all_below(mode_set: ModeSet) -> bool:
+    """Return whether a mode of the same family was found above each mode of a list."""
+    highest: dict[str, float] = {}
+    for mode in mode_set.solved:
+        highest[mode.family] = max(mode.frequency_hz, highest.get(mode.family, 0.0))
+    return all(m.frequency_hz < highest[m.family] for m in mode_set.modes if m.frequency_hz > 0)
 
 
 def extended_until(

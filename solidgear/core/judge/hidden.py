@@ -11,11 +11,9 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from solidgear.core.body import Body, Supports
-from solidgear.core.bounds.harmonic import by_problem, harmonic_bounds, is_bounded
-from solidgear.core.bounds.safety import LOCAL
-from solidgear.core.judge.bounded import extended_until
+from solidgear.core.bounds.harmonic import by_problem, is_bounded
+from solidgear.core.judge.bounded import bounds_of, extended_until
 from solidgear.core.scene import Scene
-from solidgear.core.scene.coned import coned
 from solidgear.core.solve.modes import Mode, ModeSet
 
 #: frequency (Hz) that the count of a mesh reaches, in the evidence of modes
@@ -25,7 +23,7 @@ COMPLETE = "complete_below_hz"
 
 
 def complete_list(scene: Scene, body: Body, supports: Supports, listed: ModeSet) -> ModeSet:
-    """Bound a list of counted modes of a harmonic body: add the frequency below which the body
+    """Bound a list of counted modes of a solid: add the frequency below which the body
     itself has no further mode to the evidence; unchanged where none were counted, or no bound
     exists.
     """
@@ -35,18 +33,17 @@ def complete_list(scene: Scene, body: Body, supports: Supports, listed: ModeSet)
     first = _first_above(extended)
     if first is None:
         return listed
+    if body.blocks[0].enrich is not None:
+        first = _first_of_families(extended)
     all_modes = replace(extended, beyond=(*extended.beyond, *extended.above), above=())
     elastic = [mode for mode in listed.modes if mode.frequency_hz > 0]
     names = [mode.name for mode in (*elastic, *first)]
-    bounds = harmonic_bounds(
-        coned(scene), body, statics=False, modes=all_modes, wanted=names, safety=LOCAL
-    )
+    bounds = bounds_of(scene, body, False, all_modes, names)
     limit = listed.evidence[COUNTED]
     for mode in first:
         least = bounds.frequency(mode)
-        if least is None:
-            return listed
-        limit = min(limit, least * (1 - mode.error))
+        if least is not None:
+            limit = min(limit, least * (1 - mode.error))
     return replace(extended, evidence=listed.evidence | {COMPLETE: limit})
 
 
@@ -59,6 +56,16 @@ def less_widest(evidence: dict, bars: Iterable[float]) -> dict:
     if widest is None or COUNTED not in evidence or COMPLETE in evidence:
         return evidence
     return evidence | {COMPLETE: evidence[COUNTED] * max(1 - widest, 0.0)}
+
+
+def _first_of_families(modes: ModeSet) -> list[Mode]:
+    """Return the lowest mode of every family above the end of a list: a block that holds all
+    families keeps their order, each for itself.
+    """
+    names_listed = {mode.name for mode in modes.modes}
+    above = [m for m in modes.solved if m.frequency_hz > 0 and m.name not in names_listed]
+    above.sort(key=lambda mode: mode.frequency_hz, reverse=True)
+    return list({mode.family: mode for mode in above}.values())
 
 
 def _first_above(modes: ModeSet) -> list[Mode] | None:

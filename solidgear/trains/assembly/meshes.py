@@ -67,7 +67,9 @@ def mesh_bars(
     tails = np.array([with_tail(a, b) for a, b in zip(two_more, one_more)])
     grown = np.sqrt(np.divide(tails, two_more, out=np.ones(len(value)), where=two_more > 0))
     products = LOCAL * double_energy * np.outer(grown, grown)
-    least = np.maximum(lower_ends(value, products, value[-1]), 0.0)
+    least = lower_ends(value, products, value[-1])
+    # nothing resolved beyond the last ones: as far down as one likes
+    least = np.maximum(np.nan_to_num(least, nan=0.0), 0.0)
     bars = (1 - np.sqrt(least / value))[:n]
     assembly.bars[tuple(models.values())] = bars
     return bars
