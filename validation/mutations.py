@@ -210,6 +210,22 @@ MUTATIONS = (
         "tests/test_bounds.py::test_modes_that_may_change_places_share_their_lower_ends",
     ),
     Mutation(
+        "bounds: near modes share no error",
+        "solidgear/core/bounds/clusters.py",
+        "cluster_ends",
+        "(products + products.T) / (2 * rho * np.outer(v, v))",
+        "np.diag(products.diagonal()) / (rho * np.outer(v, v))",
+        "tests/test_clusters.py::test_shapes_that_share_one_error_lie_below_what_each_says_alone",
+    ),
+    Mutation(
+        "bounds: a gap inside a cluster is one to rest on",
+        "solidgear/core/bounds/clusters.py",
+        "lower_ends",
+        "alone and gap.min() >= BESIDE",
+        "gap.min() > 0",
+        "tests/test_clusters.py::test_nothing_beyond_a_cluster_leaves_no_lower_end",
+    ),
+    Mutation(
         "bounds: functions of the top order inside a cell are forgotten",
         "solidgear/core/bounds/patches.py",
         "_Loaded._eliminate",
