@@ -14,6 +14,7 @@ import solidgear as sg
 from solidgear import Bearing, Port, Scene, Segment
 from solidgear.core.body import Body, as_supports
 from solidgear.core.bounds import richer_space as meridian_pieces
+from solidgear.core.bounds.clusters import lower_ends
 from solidgear.core.bounds.harmonic import (
     HarmonicBounds,
     harmonic_bounds,
@@ -323,6 +324,8 @@ def test_modes_that_may_change_places_share_their_lower_ends():
     ends = lower_ends_of([first, second], [first, second, third], energy[:2, :2])
     # a millionth for what rounding makes of the exact one
     assert ends[first.name] <= 0.95 and ends[first.name] <= ends[second.name] <= 1.0 + 1e-6
+    # of one block as of several
+    assert np.diff(lower_ends(values[:2], energy[:2, :2], values[2])) > 0
 
 
 def test_the_space_of_an_order_less_is_that_of_a_mesh_an_order_lower(monkeypatch):
