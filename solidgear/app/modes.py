@@ -26,7 +26,7 @@ from solidgear.core.judge.at_rest import spin_caution
 from solidgear.core.judge.bounded import NOTHING_BEYOND
 from solidgear.core.judge.coarser_mesh import coarser_bars
 from solidgear.core.judge.completeness import completeness, cut_short, split_apart
-from solidgear.core.judge.hidden import complete_list, less_widest
+from solidgear.core.judge.hidden import complete_list, less_bars
 from solidgear.core.plain import plain
 from solidgear.core.solve.mixtures import mixtures
 from solidgear.show import open_words
@@ -86,7 +86,8 @@ def modes(
             bars = coarser_bars(loaded, body, whole, options(model.pairs))
         else:
             bars = bars_of_modes(loaded, body, whole, settled)
-        evidence = less_widest(mode_set.evidence, bars.values())
+        above = [mode for mode in whole.modes if mode.name not in mode_set.names]
+        evidence = less_bars(mode_set.evidence, bars, above)
         bars = {name: bar for name, bar in bars.items() if name in mode_set.names}
         judged = Judged(
             loaded,

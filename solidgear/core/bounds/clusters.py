@@ -113,12 +113,12 @@ def lower_ends(
         # at the end of what was solved it is looked at for its place only
         ends[run] = _as_first_order(values[run], products[own], np.ones(len(run)))
         beyond = [runs[j].start for j in range(k + 1, len(runs))]
-        found = [_before(values, products, ends, run, b, families) for b in beyond]
-        found = [f for f in found if f is not None]
-        known[run] = bool(found)
-        if found:
+        several = [_before(values, products, ends, run, b, families) for b in beyond]
+        lower = [bounds for bounds in several if bounds is not None]
+        known[run] = bool(lower)
+        if lower:
             # every one of them holds
-            ends[run] = np.max(found, axis=0)
+            ends[run] = np.max(lower, axis=0)
     for family in set(families):
         members = [i for i, name in enumerate(families) if name == family]
         ends[members] = np.sort(ends[members])

@@ -7,7 +7,7 @@ k-th lower end of that family, so that the first above the list bounds all that 
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
 from solidgear.core.body import Body, Supports
@@ -47,15 +47,21 @@ def complete_list(scene: Scene, body: Body, supports: Supports, listed: ModeSet)
     return replace(extended, evidence=listed.evidence | {COMPLETE: limit})
 
 
-def less_widest(evidence: dict, bars: Iterable[float]) -> dict:
-    """Add to the evidence of counted modes, whose error bars come from several meshes, the
-    frequency below which the body itself has no further one: that of the mesh less the widest error
-    bar.
+def less_bars(evidence: dict, bars: Mapping[str, float], above: Iterable[Mode] = ()) -> dict:
+    """Add to the evidence of counted modes, with error bars by name, the frequency below which the
+    body itself has no further one: the least lower end of the modes above the list, if the first of
+    these has one; else what the mesh counts less the widest error bar.
     """
-    widest = max(bars, default=None)
-    if widest is None or COUNTED not in evidence or COMPLETE in evidence:
+    if not bars or COUNTED not in evidence or COMPLETE in evidence:
         return evidence
-    return evidence | {COMPLETE: evidence[COUNTED] * max(1 - widest, 0.0)}
+    counted = evidence[COUNTED]
+    ascending = sorted(above, key=lambda mode: mode.frequency_hz)
+    if ascending and ascending[0].name in bars:
+        ends = [m.frequency_hz * (1 - bars[m.name]) for m in ascending if m.name in bars]
+        limit = min(counted, *ends)
+    else:
+        limit = counted * (1 - max(bars.values()))
+    return evidence | {COMPLETE: max(limit, 0.0)}
 
 
 def _first_of_families(modes: ModeSet) -> list[Mode]:
