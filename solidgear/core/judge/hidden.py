@@ -33,6 +33,7 @@ def complete_list(scene: Scene, body: Body, supports: Supports, listed: ModeSet)
     first = _first_above(extended)
     if first is None:
         return listed
+    needed = [mode.name for mode in first]
     if body.blocks[0].enrich is not None:
         first = _first_of_families(extended)
     all_modes = replace(extended, beyond=(*extended.beyond, *extended.above), above=())
@@ -42,6 +43,8 @@ def complete_list(scene: Scene, body: Body, supports: Supports, listed: ModeSet)
     limit = listed.evidence[COUNTED]
     for mode in first:
         least = bounds.frequency(mode)
+        if least is None and mode.name in needed:
+            return listed
         if least is not None:
             limit = min(limit, least * (1 - mode.error))
     return replace(extended, evidence=listed.evidence | {COMPLETE: limit})
