@@ -2,7 +2,6 @@
 find, and bars against references that share no code with them.
 """
 
-
 import numpy as np
 import pytest
 import scipy.sparse as sp
@@ -65,7 +64,9 @@ def test_with_those_of_the_mesh_they_hold_all_polynomials_of_an_order_more(eleme
     points = np.random.default_rng(2).uniform(0.0, 1.0, (3, 300))
     if element.startswith("tet"):
         points = points / 3
-    held = np.vstack([reference(basis_of(element), points)[0], Further.beyond(element).at(points)[0]])
+    held = np.vstack(
+        [reference(basis_of(element), points)[0], Further.beyond(element).at(points)[0]]
+    )
     assert np.linalg.matrix_rank(held, tol=1e-6) == len(held)  # none is there twice
     powers = [p for p in np.ndindex(*[order + 2] * 3) if sum(p) <= order + 1]
     monomials = np.array([np.prod(points ** np.array(p)[:, None], axis=0) for p in powers])
@@ -178,7 +179,9 @@ def test_the_truth_lies_beyond_the_least_growth():
     exact = truth(scene)
     body = sg.build(scene, "solid", element="tet10", **COARSE["tet10"])
     bounds = solid_bounds(scene, body, statics=True)
-    ends = [sg.condense(bounds.softer(m), scene, "gear").compliance for m in (bounds.least, bounds.more)]
+    ends = [
+        sg.condense(bounds.softer(m), scene, "gear").compliance for m in (bounds.least, bounds.more)
+    ]
     for name, place in (("C_zz", 2), ("C_thx", 3), ("C_yy", 1)):
         near, far = (end[place, place] for end in ends)
         assert near < exact[Quantity(name)] < far + (LOCAL - 1) * (far - near)

@@ -9,8 +9,9 @@ import solidgear as sg
 from solidgear.core.body import as_supports
 from solidgear.core.judge.bounded import mode_bars
 from solidgear.core.judge.completeness import completeness
-from solidgear.core.judge.hidden import COMPLETE, COUNTED, complete_list, less_widest
+from solidgear.core.judge.hidden import COMPLETE, COUNTED, complete_list, less_bars
 from solidgear.core.scene import Bearing, Material, Scene
+from solidgear.core.solve.modes import Mode
 from tests.shafts import shaft
 
 RUBBER = Material(E=1e7, nu=0.49, density=1100.0)
@@ -49,12 +50,19 @@ def test_a_list_is_complete_below_the_lower_ends_of_what_lies_above(rubber_tail)
     assert "No mode of this mesh missed below" in completeness(found.evidence, "harmonic")
 
 
-def test_several_meshes_take_their_widest_bar_off_a_count():
+def test_bars_of_what_lies_above_a_list_are_taken_off_a_count():
     counted = {COUNTED: 1000.0}
-    assert less_widest(counted, [0.01, 0.2])[COMPLETE] == pytest.approx(800.0)
+    listed = {"bending 1": 0.01, "axial 1": 0.2}
+    own = ({0: np.zeros(1)},), np.zeros((1, 1, 6)), 1.0
+    above = [Mode(name, "m", hz, 1, *own) for name, hz in (("m 1", 1010.0), ("m 2", 1200.0))]
+    ends = less_bars(counted, listed | {"m 1": 0.05, "m 2": 0.3}, above)
+    assert ends[COMPLETE] == pytest.approx(1200 * 0.7)
+    # without the first of them the widest of all
+    assert less_bars(counted, listed | {"m 2": 0.01}, above)[COMPLETE] == pytest.approx(800.0)
+    assert less_bars(counted, listed)[COMPLETE] == pytest.approx(800.0)
     # nothing is claimed where no bar is known; what the bars of every family have told stays
-    assert less_widest(counted, []) == counted
-    assert less_widest(counted | {COMPLETE: 900.0}, [0.2])[COMPLETE] == 900.0
+    assert less_bars(counted, {}) == counted
+    assert less_bars(counted | {COMPLETE: 900.0}, {"bending 1": 0.2})[COMPLETE] == 900.0
 
 
 def test_modes_of_a_cluster_rest_on_the_distance_to_what_lies_beyond_it():

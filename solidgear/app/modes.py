@@ -24,14 +24,14 @@ from solidgear.core import (
 from solidgear.core import modes as solve
 from solidgear.core.bounds.solid import NoBounds
 from solidgear.core.judge.at_rest import spin_caution
-from solidgear.core.judge.bounded import mode_bars
+from solidgear.core.judge.bounded import NOTHING_BEYOND, mode_bars
 from solidgear.core.judge.completeness import completeness, cut_short, split_apart
-from solidgear.core.judge.hidden import complete_list, less_widest
+from solidgear.core.judge.hidden import complete_list, less_bars
 from solidgear.core.plain import plain
 from solidgear.core.solve.mixtures import mixtures
 from solidgear.show import open_words
 from solidgear.show.command import Progress, caution, command
-from solidgear.show.options import BOUNDED, Run, SceneFile, Solved, speed_of
+from solidgear.show.options import Run, SceneFile, Solved, speed_of
 from solidgear.show.remarks import cautions, load, open_ranges
 from solidgear.show.settled import ONE_ORDER_MORE, Judged, bar_lines
 from solidgear.show.sheet import Sheet, present
@@ -91,7 +91,8 @@ def modes(
                 bars = mode_bars(loaded, body, as_supports(loaded), whole)
             except NoBounds as error:
                 reason = str(error)
-        evidence = less_widest(mode_set.evidence, bars.values())
+        above = [mode for mode in whole.modes if mode.name not in mode_set.names]
+        evidence = less_bars(mode_set.evidence, bars, above)
         bars = {name: bar for name, bar in bars.items() if name in mode_set.names}
         judged = Judged(
             loaded,
@@ -142,7 +143,7 @@ def modes_sheet(modes: ModeSet, judged: Judged, proof: dict[str, Any], counted: 
     if len(modes.modes) > MANY:
         shapes = sum(m.multiplicity for m in modes.modes)
         notes.insert(0, f"{shapes} shapes up to {modes.frequency_hz[-1]:.6g} Hz.")
-    notes += map(caution, split_apart(evidence))
+    notes += map(caution, split_apart(modes, bars))
     notes += [caution(f"{mixture.sentence}.") for mixture in mixtures(modes)]
     if evidence["error"] > 1e-6:
         notes.append(
@@ -214,6 +215,6 @@ def _unjudged(names: Sequence[str], model: str) -> str:
     """Return the reason why some modes have no error bar; empty without such modes."""
     if not names:
         return ""
-    if LADDER[model].bounded or model in BOUNDED:
-        return "an error bar needs the next mode of the family; raise -n"
+    if LADDER[model].bounded:
+        return NOTHING_BEYOND
     return "higher modes need finer meshes"

@@ -27,7 +27,7 @@ from solidgear.core.judge.bars import ErrorBar
 from solidgear.core.judge.completeness import completeness, cut_short, split_apart
 from solidgear.core.judge.correlation import correlate
 from solidgear.core.judge.deviations import Deviation, deviations
-from solidgear.core.judge.hidden import COMPLETE, less_widest
+from solidgear.core.judge.hidden import COMPLETE, less_bars
 from solidgear.core.judge.lumped import model_facts, model_record
 from solidgear.core.judge.quantities import usual
 from solidgear.core.judge.record import (
@@ -153,7 +153,8 @@ def _warnings(
         failed = [f"{part}: {reason}" for part, reason in solution.failed.items()]
         out += [f"{LADDER[model].title}: {sentence}" for sentence in failed]
     for model, solution in solutions.items():
-        sentences = [*split_apart(solution.modes.evidence)]
+        bars = {str(q): bar.width for q, bar in solution.error_bars.get(SCENE, {}).items()}
+        sentences = [*split_apart(solution.modes, bars)]
         sentences += [mixture.sentence for mixture in mixtures(solution.modes)]
         out += [f"{LADDER[model].title}: {sentence}" for sentence in sentences]
     return out
@@ -258,8 +259,8 @@ def _bar_record(bar: ErrorBar) -> BarRecord:
 
 def _evidence(solution: Solution, bars: Mapping[Quantity, ErrorBar]) -> EvidenceRecord:
     statics = solution.condensed.evidence
-    widths = [bar.width for q, bar in bars.items() if q.is_frequency]
-    evidence = less_widest(solution.modes.evidence, widths)
+    widths = {str(q): bar.width for q, bar in bars.items() if q.is_frequency}
+    evidence = less_bars(solution.modes.evidence, widths)
     return EvidenceRecord(
         asymmetry=statics["asymmetry"],
         refinement_residual=statics["residual"],

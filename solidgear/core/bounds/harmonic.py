@@ -9,10 +9,8 @@ With the flexibility F of the free body at its ports and M from
 Bearings, held ports and housings come after that: whatever they are, compliances grow with the
 flexibility and stiffnesses fall, so that both ends are found by condensing both (:meth:`softer`).
 
-A Rayleigh quotient lies above its eigenvalue by at most ``M / (1 - lambda / lambda_next)`` with the
-energy M of the local solutions of a mode of unit mass (Kato 1949, J. Phys. Soc. Japan 4, 334;
-Temple 1928, Proc. R. Soc. A 119, 276). Of near modes the order may change: the lower end of the
-j-th is the j-th smallest of all lower ends.
+Eigenvalues have lower ends by the products of energy of the local solutions of modes of unit mass
+(:mod:`solidgear.core.bounds.clusters`).
 """
 
 from __future__ import annotations
@@ -26,6 +24,7 @@ import numpy as np
 
 from solidgear.core.body import FURTHER, Block, Body
 from solidgear.core.body.cache import Cache
+from solidgear.core.bounds.clusters import ROOM, cluster_of, clusters, lower_ends
 from solidgear.core.bounds.loads import Loading
 from solidgear.core.bounds.patches import local_energies
 from solidgear.core.bounds.richer_space import RicherSpace
@@ -37,8 +36,6 @@ if TYPE_CHECKING:
 
 #: an order leaves at most this share of the remaining error
 SLOWEST = 0.8
-#: least gap to the next eigenvalue that a bound is made with, relative; nearer modes are a group
-APART = 0.02
 
 
 @dataclass
@@ -52,7 +49,8 @@ class HarmonicBounds:
     less: np.ndarray  #: (6 p, 6 p) sum of M by a richer space of an order less
     #: (ne,) energies of the local solutions of a mode, rad^2/s^2, by the name of the mode
     of_modes: dict[str, np.ndarray]
-    lowest: dict[str, float]  #: least eigenvalue that each mode may have, rad^2/s^2
+    #: least eigenvalue that each mode may have, rad^2/s^2, where one is known
+    lowest: dict[str, float]
 
     @cached_property
     def more(self) -> np.ndarray:
@@ -73,9 +71,17 @@ class HarmonicBounds:
         computed = flexibility(self.body)
         return replace(self.body, cache=Cache(replace(computed, matrix=computed.matrix + more)))
 
-    def frequency(self, mode: Mode) -> float:
-        """Return the least frequency that a mode may have, Hz."""
-        return float(np.sqrt(max(self.lowest[mode.name], 0.0)) / (2 * np.pi))
+    def frequency(self, mode: Mode) -> float | None:
+        """Return the least frequency that a mode may have, Hz; None where nothing was solved beyond
+        those near it.
+        """
+        return least_frequency(self.lowest, mode)
+
+
+def least_frequency(lowest: Mapping[str, float], mode: Mode) -> float | None:
+    """Return the least frequency of a mode, Hz, from least eigenvalues by name; None without."""
+    least = lowest.get(mode.name)
+    return None if least is None else float(np.sqrt(max(least, 0.0)) / (2 * np.pi))
 
 
 def richer_space(scene: Scene, body: Body) -> RicherSpace:
@@ -111,8 +117,8 @@ def harmonic_bounds(
     """Compute bounds of the flexibility and of some modes of a harmonic body.
 
     `scene` is the one that the body was meshed from, chamfers as cones
-    (:func:`solidgear.core.scene.coned.coned`). `modes` are modes of the body, one more of every group
-    than the ones of the `wanted` names; `safety` multiplies the bounds of modes. `later` are modes
+    (:func:`solidgear.core.scene.coned.coned`). `modes` are modes of the body, of every group
+    up to one beyond the cluster of each of the `wanted` names; `safety` multiplies the bounds of modes. `later` are modes
     of the body in other supports, whose bounds will be computed next: local problems that they
     share with these are not solved again.
     """
@@ -123,9 +129,12 @@ def harmonic_bounds(
     empty = np.zeros((cells if ports_missing else 0, size, size))
     of_ports = computed or _OfPorts(empty, np.zeros((size, size)))
     chosen = with_neighbours(modes, wanted)
-    of_modes = body.cache.get(_OfModes, _OfModes).by_id
-    new = [m for m in (*chosen, *with_neighbours(later, wanted)) if id(m) not in of_modes]
+    kept = body.cache.get(_OfModes, _OfModes)
+    new = kept.missing(chosen) + kept.missing(with_neighbours(later, wanted))
+    new = list({id(mode): mode for mode in new}.values())
+    of_modes = kept.by_id
     of_modes |= {id(mode): _OfMode(mode, np.zeros(cells)) for mode in new}
+    kept.products.update({(id(a), id(b)): 0.0 for a in new for b in new})
     for index, block in _originals(body, new):
         parts = [_modes_on(body, k, new) for k in (index, *_twins(body, index))]
         count = block.ports.shape[0] if ports_missing and block.components else 0
@@ -138,6 +147,7 @@ def harmonic_bounds(
         for k, owner in enumerate(owners, count):
             owner.by_cell += two_more[:, k, k]
             owner.less += float(one_more[:, k, k].sum())
+        kept.add(parts, two_more[:, count:, count:].sum(axis=0))
         if count:
             rows = body.rows(block)
             of_ports.by_cell[np.ix_(np.arange(cells), rows, rows)] = two_more[:, :count, :count]
@@ -152,14 +162,13 @@ def harmonic_bounds(
                 of_ports.less[np.ix_(rows, rows)] = twin_matrix(body, block, of_ports.less)
         body.cache.keep(of_ports)
     by_name: dict[str, _OfMode] = {mode.name: of_modes[id(mode)] for mode in chosen}
-    energy = {name: safety * with_tail(e.by_cell.sum(), e.less) for name, e in by_name.items()}
     solved = () if modes is None else modes.solved
     return HarmonicBounds(
         body,
         of_ports.by_cell,
         of_ports.less,
         {name: e.by_cell for name, e in by_name.items()},
-        lower_ends_of(chosen, solved, energy),
+        lower_ends_of(chosen, solved, kept.energies(chosen, safety)),
     )
 
 
@@ -179,12 +188,10 @@ class _OfMode:
     by_cell: np.ndarray
     less: float = 0.0  #: sum by a richer space of an order less
 
-
-@dataclass(frozen=True)
-class _OfModes:
-    """Energies of modes that were computed before; kept with their body."""
-
-    by_id: dict[int, _OfMode] = field(default_factory=dict)
+    @property
+    def energy(self) -> float:
+        """With the tail of further orders."""
+        return with_tail(self.by_cell.sum(), self.less)
 
 
 @dataclass(frozen=True)
@@ -195,9 +202,51 @@ class _Part:
     modes: Sequence[Mode] = ()
 
 
+@dataclass(frozen=True)
+class _OfModes:
+    """Energies of modes that were computed before; kept with their body."""
+
+    by_id: dict[int, _OfMode] = field(default_factory=dict)
+    #: products of energy of two modes that were computed together
+    products: dict[tuple[int, int], float] = field(default_factory=dict)
+
+    def missing(self, modes: Sequence[Mode]) -> list[Mode]:
+        """Return the modes that are yet to be computed: of near ones all together."""
+        out = []
+        for group in by_problem(modes):
+            near = len(clusters([eigenvalue(m) for m in group])) < len(group)
+            known = all(id(m) in self.by_id for m in group) and (
+                not near or all((id(a), id(b)) in self.products for a in group for b in group)
+            )
+            out += [m for m in group if near or id(m) not in self.by_id] if not known else []
+        return out
+
+    def add(self, parts: Sequence[_Part], products: np.ndarray) -> None:
+        """Add products of energy (k, k) of the modes of some parts: each goes with those of its own
+        part.
+        """
+        first = 0
+        for part in parts:
+            for i, a in enumerate(part.modes):
+                for j, b in enumerate(part.modes):
+                    self.products[id(a), id(b)] += float(products[first + i, first + j])
+            first += len(part.modes)
+
+    def energies(self, modes: Sequence[Mode], safety: float) -> np.ndarray:
+        """Return (k, k) products of energy of some modes, with tails; zero of those that are not
+        near.
+        """
+        found = [self.by_id[id(mode)] for mode in modes]
+        grown = [e.energy / e.by_cell.sum() if e.by_cell.any() else 1.0 for e in found]
+        matrix = np.array([[self.products.get((id(a), id(b)), 0.0) for b in modes] for a in modes])
+        matrix = matrix.reshape(len(modes), len(modes)) * np.sqrt(np.outer(grown, grown))
+        np.fill_diagonal(matrix, [e.energy for e in found])
+        return safety * matrix
+
+
 def with_neighbours(modes: ModeSet | None, wanted: Sequence[str]) -> list[Mode]:
     """Return the wanted modes, and of their groups those that might change places with them: one
-    more.
+    more, and of a cluster all, with what lies beyond it.
     """
     if modes is None or not wanted:
         return []
@@ -210,7 +259,28 @@ def with_neighbours(modes: ModeSet | None, wanted: Sequence[str]) -> list[Mode]:
             continue
         group = [m for m in elastic if of_one_problem(m, mode)]
         chosen += group[: group.index(mode) + 2]
+        coupled = [m for m in elastic if shares_blocks(m, mode)]
+        chosen += _cluster([m for m in coupled if of_one_problem(m, mode)], mode)
     return list({m.name: m for m in chosen}.values())
+
+
+def _cluster(modes: Sequence[Mode], mode: Mode) -> Sequence[Mode]:
+    """Return the modes near one, of some in ascending order, and those up to one that leaves them
+    room; none of one that is alone.
+    """
+    values = [eigenvalue(m) for m in modes]
+    run = cluster_of(values, modes.index(mode))
+    if len(run) == 1:
+        return []
+    far = (k for k in range(run.stop, len(values)) if values[run.stop - 1] < ROOM * values[k])
+    return modes[run.start : next(far, len(values) - 1) + 1]
+
+
+def is_bounded(modes: ModeSet, mode: Mode) -> bool:
+    """Return whether a mode was solved beyond those near another."""
+    coupled = [m for m in modes.solved if m.frequency_hz > 0 and shares_blocks(m, mode)]
+    values = sorted(eigenvalue(m) for m in coupled)
+    return cluster_of(values, values.index(eigenvalue(mode))).stop < len(values)
 
 
 def of_one_problem(a: Mode, b: Mode) -> bool:
@@ -218,6 +288,11 @@ def of_one_problem(a: Mode, b: Mode) -> bool:
     return set(a.vectors[0]) == set(b.vectors[0]) or (
         a.family == b.family and a.multiplicity == b.multiplicity
     )
+
+
+def shares_blocks(a: Mode, b: Mode) -> bool:
+    """Return whether two modes move some of the same blocks, so that they may mix."""
+    return not set(a.vectors[0]).isdisjoint(b.vectors[0])
 
 
 def _originals(body: Body, modes: Sequence[Mode]) -> Iterator[tuple[int, Block]]:
@@ -248,7 +323,7 @@ def _modes_on(body: Body, index: int, modes: Sequence[Mode]) -> _Part:
     on_block = [mode for mode in modes if index in mode.vectors[0]]
     no_modes = np.zeros((body.block(index).size, 0))
     shapes = np.column_stack([no_modes, *(mode.vectors[0][index] for mode in on_block)])
-    value = np.array([_eigenvalue(mode) for mode in on_block])
+    value = np.array([eigenvalue(mode) for mode in on_block])
     return _Part(_vibrating(body, index, shapes, value), on_block)
 
 
@@ -267,20 +342,23 @@ def _vibrating(body: Body, index: int, shapes: np.ndarray, value: np.ndarray) ->
 def vibration_energies(
     scene: Scene, body: Body, fields: Mapping[int, np.ndarray], value: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Compute the energies of the local solutions of modes of a system that a body is a part of, by
-    the richer space and by one of an order less, rad^2/s^2.
+    """Compute the products of energy (k, k) of the local solutions of modes of a system that a body
+    is a part of, by the richer space and by one of an order less, rad^2/s^2.
 
     `fields` are (n, k) unknowns of blocks by their index, of unit mass of the system; `value` (k,)
     are eigenvalues, rad^2/s^2.
     """
-    space, out = richer_space(scene, body), np.zeros((2, len(value)))
+    count = len(value)
+    space, out = richer_space(scene, body), np.zeros((2, count, count))
     for index, block in _originals(body, ()):
         moving = [k for k in (index, *_twins(body, index)) if k in fields]
         if not moving:
             continue
         parts = [_vibrating(body, k, fields[k], value) for k in moving]
-        for row, energy in zip(out, local_energies(space, block, _stacked(parts))):
-            row += energy.sum(axis=0).diagonal().reshape(len(moving), -1).sum(axis=0)
+        for total, energy in zip(out, local_energies(space, block, _stacked(parts))):
+            by_part = energy.sum(axis=0).reshape(len(moving), count, len(moving), count)
+            # the motions of both planes are orthogonal
+            total += np.einsum("aiaj->ij", by_part)
     return out[0], out[1]
 
 
@@ -306,39 +384,38 @@ def on_ports(block: Block, residual: np.ndarray) -> np.ndarray:
     return np.linalg.lstsq(scaled @ scaled.T, scaled @ residual, rcond=1e-12)[0] / size[:, None]
 
 
-def lower_ends_of(
-    modes: Sequence[Mode], solved: Sequence[Mode], energy: Mapping[str, float]
-) -> dict[str, float]:
-    """Return the least eigenvalue of some modes by their names, by the gap to the highest one
-    solved of their group: the discrete modes between are orthogonal to each other.
-    """
-    out: dict[str, float] = {}
+def by_problem(modes: Sequence[Mode]) -> Iterator[list[Mode]]:
+    """Yield the modes of every eigenproblem, ascending."""
     pending = sorted(modes, key=lambda m: m.frequency_hz)
     while pending:
         group = [m for m in pending if of_one_problem(m, pending[0])]
         pending = [m for m in pending if m not in group]
-        highest = max(_eigenvalue(m) for m in solved if of_one_problem(m, group[0]))
-        value = np.array([_eigenvalue(m) for m in group])
-        ends = lower_ends(value, np.array([energy[m.name] for m in group]), highest)
-        out |= {mode.name: float(end) for mode, end in zip(group, ends)}
+        yield group
+
+
+def lower_ends_of(
+    modes: Sequence[Mode], solved: Sequence[Mode], products: np.ndarray
+) -> dict[str, float]:
+    """Return the least eigenvalue of some modes by their names, from their products of energy (k,
+    k), where it is known.
+    """
+    places = {mode.name: k for k, mode in enumerate(modes)}
+    out: dict[str, float] = {}
+    for group in by_problem(modes):
+        highest = max(eigenvalue(m) for m in solved if of_one_problem(m, group[0]))
+        ends: dict[str, float] = {}
+        while pending := [m for m in group if m.name not in ends]:
+            coupled = [m for m in pending if shares_blocks(m, pending[0])]
+            values = np.array([eigenvalue(m) for m in coupled])
+            own = [places[m.name] for m in coupled]
+            found = lower_ends(values, products[np.ix_(own, own)], highest)
+            ends |= {m.name: float(end) for m, end in zip(coupled, found)}
+        known = [m for m in group if np.isfinite(ends[m.name])]
+        # planes that do not mix share their names
+        out |= {m.name: end for m, end in zip(known, sorted(ends[m.name] for m in known))}
     return out
 
 
-def lower_ends(value: np.ndarray, energy: np.ndarray, highest: float) -> np.ndarray:
-    """Return the least eigenvalues of modes of one eigenproblem, from their Rayleigh quotients,
-    ascending, the energies of their local solutions, both (k,), and the highest eigenvalue that was
-    solved.
-
-    Examples
-    --------
-    >>> lower_ends(np.array([1.0, 2.0]), np.array([0.1, 0.1]), 4.0).round(4)
-    array([0.8667, 1.8   ])
-    """
-    gap = 1 - value / highest
-    # nothing beyond the last is known: it is looked at for its place only
-    gap = np.where(gap > 0, np.maximum(gap, APART), 1.0)
-    return np.sort(value - energy / gap)
-
-
-def _eigenvalue(mode: Mode) -> float:
+def eigenvalue(mode: Mode) -> float:
+    """Return the eigenvalue of a mode, rad^2/s^2."""
     return float((2 * np.pi * mode.frequency_hz) ** 2)

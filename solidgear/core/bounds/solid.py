@@ -28,7 +28,13 @@ import numpy as np
 from solidgear.core.body import Body
 from solidgear.core.body.cache import Cache
 from solidgear.core.body.model import Enrichment
-from solidgear.core.bounds.harmonic import lower_ends, on_ports, with_neighbours
+from solidgear.core.bounds.clusters import lower_ends
+from solidgear.core.bounds.harmonic import (
+    eigenvalue,
+    least_frequency,
+    on_ports,
+    with_neighbours,
+)
 from solidgear.core.bounds.sharpest import RIGID_EDGE, sharpest_exponent
 from solidgear.core.elements import ELEMENTS
 from solidgear.core.errors import SolidgearError
@@ -66,7 +72,8 @@ class SolidBounds:
     share: float  #: the largest energy of an error over that in one order more
     #: (6 p, 6 p) energies of the errors under unit loads on the ports in one order more, N m
     reached: np.ndarray
-    lowest: dict[str, float]  #: least eigenvalue that each mode may have, rad^2/s^2
+    #: least eigenvalue that each mode may have, rad^2/s^2, where one is known
+    lowest: dict[str, float]
     of_modes: dict[str, np.ndarray]  #: (ne,) energies of the error of a mode, by its name
     _cells: Callable[[np.ndarray], np.ndarray]
 
@@ -94,9 +101,11 @@ class SolidBounds:
         computed = flexibility(self.body)
         return replace(self.body, cache=Cache(replace(computed, matrix=computed.matrix + more)))
 
-    def frequency(self, mode: Mode) -> float:
-        """Return the least frequency that a mode may have, Hz."""
-        return float(np.sqrt(max(self.lowest[mode.name], 0.0)) / (2 * np.pi))
+    def frequency(self, mode: Mode) -> float | None:
+        """Return the least frequency that a mode may have, Hz; None where nothing was solved beyond
+        those near it.
+        """
+        return least_frequency(self.lowest, mode)
 
 
 def solid_bounds(
@@ -126,25 +135,26 @@ def solid_bounds(
             reached[np.ix_(rows, rows)] = errors.energies
             parts[index] = rows, errors
     chosen = with_neighbours(modes, wanted)
-    energy: dict[str, float] = {}
+    shapes = sorted(
+        (_Shape(m, value, u) for m in chosen for value, u in zip(_values(m), m.vectors)),
+        key=lambda shape: shape.value,
+    )
+    products = np.zeros((len(shapes), len(shapes)))
     by_cells: dict[str, np.ndarray] = {}
     for index, block in enumerate(body.blocks):
-        on_block = [mode for mode in chosen if index in mode.vectors[0]]
-        shapes = [(mode, vectors[index]) for mode in on_block for vectors in mode.vectors]
-        if not shapes:
+        places = [k for k, shape in enumerate(shapes) if index in shape.vectors]
+        if not places:
             continue
-        fields = np.column_stack([shape for _, shape in shapes])
-        fields = fields / np.sqrt(np.einsum("nk,nk->k", fields, block.mass @ fields))
-        values = np.array([(2 * np.pi * mode.frequency_hz) ** 2 for mode, _ in shapes])
+        fields = np.column_stack([shapes[k].vectors[index] for k in places])
+        values = np.array([shapes[k].value for k in places])
         left = block.stiffness @ fields - (block.mass @ fields) * values
         errors = enriched_errors(body, index, fields, on_ports(block, left), fields * values)
-        found = np.diag(errors.energies)
-        for k, (mode, _) in enumerate(shapes):
-            if found[k] > energy.get(mode.name, 0.0):
-                energy[mode.name] = float(found[k])
-                by_cells[mode.name] = _by_cells(body, index, errors, np.eye(len(shapes))[k])
+        products[np.ix_(places, places)] += errors.energies
+        for load, k in zip(np.eye(len(places)), places):
+            name = shapes[k].mode.name
+            energy = _by_cells(body, index, errors, load)
+            by_cells[name] = by_cells[name] + energy if name in by_cells else energy
     solved = () if modes is None else modes.solved
-    ends = {str(name): safety * share * value for name, value in energy.items()}
 
     def cells(forces: np.ndarray) -> np.ndarray:
         by_block = [
@@ -152,15 +162,7 @@ def solid_bounds(
         ]
         return np.sum(by_block, axis=0)
 
-    lowest: dict[str, float] = {}
-    highest = max((m.frequency_hz for m in solved), default=0.0)
-    # the mesh mixes families no more than its own error, so that each keeps its order
-    for family in dict.fromkeys(mode.family for mode in chosen):
-        members = sorted((m for m in chosen if m.family == family), key=lambda m: m.frequency_hz)
-        values = (2 * np.pi * np.array([m.frequency_hz for m in members])) ** 2
-        energies = np.array([ends[m.name] for m in members])
-        family_ends = lower_ends(values, energies, (2 * np.pi * highest) ** 2)
-        lowest |= dict(zip((m.name for m in members), family_ends))
+    lowest = _lowest(shapes, safety * share * products, solved)
     return SolidBounds(body, share, reached, lowest, by_cells, cells)
 
 
@@ -175,6 +177,51 @@ def _sharpest(scene: Scene, body: Body) -> float:
         RIGID_EDGE if any(s.attachment == "rigid" for s in patches) else CONVEX,
         PATCH if patches else CONVEX,
     )
+
+
+@dataclass(frozen=True)
+class _Shape:
+    """One shape of a mode, with its eigenvalue."""
+
+    mode: Mode
+    value: float  #: rad^2/s^2
+    vectors: dict[int, np.ndarray]  #: as in :attr:`Mode.vectors`
+
+
+def _values(mode: Mode) -> tuple[float, ...]:
+    """Return the eigenvalue of every shape of a mode, rad^2/s^2: of twins those about their mean."""
+    mean = eigenvalue(mode)
+    if len(mode.vectors) == 1:
+        return (mean,)
+    ratio = (1 + mode.split) ** 2
+    return 2 * mean / (1 + ratio), 2 * mean * ratio / (1 + ratio)
+
+
+def _lowest(
+    shapes: Sequence[_Shape], products: np.ndarray, solved: Sequence[Mode]
+) -> dict[str, float]:
+    """Return the least eigenvalue of modes by their names, from shapes in ascending order and the
+    products of energy of their errors, of every eigenproblem for itself; of twins the lesser.
+    """
+    lowest: dict[str, float] = {}
+    pending = list(range(len(shapes)))
+    while pending:
+        blocks = set(shapes[pending[0]].vectors)
+        places = [k for k in pending if blocks & set(shapes[k].vectors)]
+        pending = [k for k in pending if k not in places]
+        group = [shapes[k].mode for k in places]
+        highest = max(_values(m)[-1] for m in solved if blocks & set(m.vectors[0]))
+        ends = lower_ends(
+            np.array([shapes[k].value for k in places]),
+            products[np.ix_(places, places)],
+            highest,
+            # the mesh mixes families no more than its own error, so that each keeps its order
+            families=[mode.family for mode in group],
+            pairs=[id(mode) for mode in group],
+        )
+        for mode, end in zip(group, ends):
+            lowest[mode.name] = min(float(end), lowest.get(mode.name, np.inf))
+    return {name: end for name, end in lowest.items() if np.isfinite(end)}
 
 
 def _by_cells(body: Body, index: int, errors: Errors, loads: np.ndarray) -> np.ndarray:

@@ -9,19 +9,24 @@ quotient and the lower bound of Kato and Temple (:mod:`solidgear.core.bounds.har
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from solidgear.core.body import Body, Supports
-from solidgear.core.bounds.harmonic import HarmonicBounds, harmonic_bounds, with_tail
+from solidgear.core.bounds.harmonic import (
+    HarmonicBounds,
+    harmonic_bounds,
+    is_bounded,
+    with_tail,
+)
 from solidgear.core.bounds.safety import LOCAL
 from solidgear.core.bounds.solid import SolidBounds, solid_bounds
 from solidgear.core.judge.bars import LEAST, ErrorBar
 from solidgear.core.judge.quantities import Values, in_order, size
-from solidgear.core.judge.solving import Statics, extended_modes, numbers
+from solidgear.core.judge.solving import MOST_SHAPES, Statics, extended_modes, numbers
 from solidgear.core.judge.steps import METHOD
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.quantity import STIFFNESS, Quantity
@@ -32,6 +37,11 @@ from solidgear.core.solve.statics import flexibility
 if TYPE_CHECKING:
     from solidgear.core.scene import Scene
 
+#: why a mode has no error bar
+NOTHING_BEYOND = (
+    "an error bar needs a mode beyond those side by side with it, and none was found among the "
+    f"lowest {MOST_SHAPES} shapes"
+)
 #: shapes above a list of modes that are looked at for its bars
 ABOVE = 12
 
@@ -84,6 +94,8 @@ def bounded(
         if mode is None:
             continue
         least = bounds.frequency(mode)
+        if least is None:
+            continue
         open_ = 1 - least / mode.frequency_hz
         within = _bar(mode.frequency_hz, open_, mode.error, least)
         bars[name] = _wider(within, misshapen / 2)
@@ -124,27 +136,28 @@ def mode_bars(
     scene: Scene, body: Body, supports: Supports, modes_listed: ModeSet
 ) -> dict[str, float]:
     """Compute error bars of the frequencies of a harmonic body, which lie above the exact ones, of
-    all families: relative, by the names of elastic modes; without modes above which none of the
-    same family was found.
+    all families: relative, by the names of elastic modes; without modes beyond whose neighbours
+    nothing was found.
     """
     names = [m.name for m in modes_listed.modes if m.frequency_hz > 0]
     if not names:
         return {}
-    extended = modes_listed
-    if not _all_below(modes_listed):
+    elastic = [m for m in modes_listed.modes if m.frequency_hz > 0]
+
+    def rest_on_others(found: ModeSet) -> bool:
         # the gap to the modes above counts, in every family
-        shapes = sum(m.multiplicity for m in modes_listed.modes)
-        extended = extended_modes(
-            modes_listed, modes(body, supports, shapes + ABOVE, ovalising=True)
-        )
+        widened = found is not modes_listed or _all_below(found)
+        return widened and all(is_bounded(found, mode) for mode in elastic)
+
+    extended = extended_until(body, supports, modes_listed, rest_on_others)
     bounds = bounds_of(scene, body, False, extended, names)
-    highest = _highest(extended)
+    bars: dict[str, float] = {}
     misshapen = geometry_share(body)
-    return {
-        m.name: 1 - bounds.frequency(m) / m.frequency_hz + m.error + misshapen / 2
-        for m in modes_listed.modes
-        if 0 < m.frequency_hz < highest[m.family]
-    }
+    for mode in elastic:
+        least = bounds.frequency(mode)
+        if least is not None:
+            bars[mode.name] = 1 - least / mode.frequency_hz + mode.error + misshapen / 2
+    return bars
 
 
 def static_bars(
@@ -165,18 +178,27 @@ def has_bounds(body: Body) -> bool:
     return LADDER[body.fidelity].bounded or all(block.enrich is not None for block in body.blocks)
 
 
-def _highest(mode_set: ModeSet) -> dict[str, float]:
-    """Return the highest frequency found of every family, Hz."""
-    out: dict[str, float] = {}
-    for mode in mode_set.solved:
-        out[mode.family] = max(mode.frequency_hz, out.get(mode.family, 0.0))
-    return out
-
-
 def _all_below(mode_set: ModeSet) -> bool:
     """Return whether a mode of the same family was found above each mode of a list."""
-    highest = _highest(mode_set)
+    highest: dict[str, float] = {}
+    for mode in mode_set.solved:
+        highest[mode.family] = max(mode.frequency_hz, highest.get(mode.family, 0.0))
     return all(m.frequency_hz < highest[m.family] for m in mode_set.modes if m.frequency_hz > 0)
+
+
+def extended_until(
+    body: Body,
+    supports: Supports,
+    listed: ModeSet,
+    enough: Callable[[ModeSet], bool],
+) -> ModeSet:
+    """Solve a list of modes on, among the lowest `MOST_SHAPES` shapes, until there are enough."""
+    shapes = sum(mode.multiplicity for mode in listed.modes)
+    extended, count = listed, shapes
+    while not enough(extended) and count < MOST_SHAPES:
+        count += ABOVE if count == shapes else count - shapes
+        extended = extended_modes(listed, modes(body, supports, count, ovalising=True))
+    return extended
 
 
 def _between(

@@ -4,7 +4,7 @@ begin, and whether the number asked for ends it early.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING
 
 from solidgear.core.judge.hidden import COMPLETE, COUNTED
@@ -12,7 +12,7 @@ from solidgear.core.ladder.model import BEAM
 from solidgear.core.ladder.registry import LADDER
 
 if TYPE_CHECKING:
-    from solidgear.core.solve.modes import Mode
+    from solidgear.core.solve.modes import Mode, ModeSet
 
 
 def completeness(evidence: dict, model: str) -> str:
@@ -47,12 +47,17 @@ def cut_short(modes: Iterable[Mode], n: int, asked_hz: float | None, option: str
     ]
 
 
-def split_apart(evidence: dict) -> list[str]:
-    """Return sentences on pairs that a mesh has split further than meshes like it do."""
+def split_apart(modes: ModeSet, bars: Mapping[str, float]) -> list[str]:
+    """Return sentences on pairs that a mesh has split further than their error bars, by the names
+    of modes, say; without one further than meshes like it do.
+    """
+    unusual = dict(modes.evidence.get("split_pairs", ()))
+    split = {m.name: m.split for m in modes.modes if m.name in bars and m.split > bars[m.name]}
+    split |= {name: s for name, s in unusual.items() if name not in bars}
     return [
-        f"the mesh splits the pair {name} by {split:.1e}, although the body has one frequency: "
+        f"the mesh splits the pair {name} by {relative:.1e}, although the body has one frequency: "
         "refine it, or use hexahedra or the harmonic model."
-        for name, split in evidence.get("split_pairs", ())
+        for name, relative in split.items()
     ]
 
 

@@ -7,15 +7,14 @@ k-th lower end of that family, so that the first above the list bounds all that 
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
 from solidgear.core.body import Body, Supports
-from solidgear.core.bounds.harmonic import APART, of_one_problem
-from solidgear.core.judge.bounded import ABOVE, bounds_of
-from solidgear.core.judge.solving import MOST_SHAPES, extended_modes
+from solidgear.core.bounds.harmonic import by_problem, is_bounded
+from solidgear.core.judge.bounded import bounds_of, extended_until
 from solidgear.core.scene import Scene
-from solidgear.core.solve.modes import Mode, ModeSet, modes
+from solidgear.core.solve.modes import Mode, ModeSet
 
 #: frequency (Hz) that the count of a mesh reaches, in the evidence of modes
 COUNTED = "counted_below_hz"
@@ -24,52 +23,69 @@ COMPLETE = "complete_below_hz"
 
 
 def complete_list(scene: Scene, body: Body, supports: Supports, listed: ModeSet) -> ModeSet:
-    """Bound a list of counted modes of a harmonic body: add the frequency below which the body
+    """Bound a list of counted modes of a solid: add the frequency below which the body
     itself has no further mode to the evidence; unchanged where none were counted, or no bound
     exists.
     """
     if COUNTED not in listed.evidence:
         return listed
-    shapes = sum(mode.multiplicity for mode in listed.modes)
-    extended, count = listed, shapes
-    while (first := _first_above(extended)) is None and count < MOST_SHAPES:
-        count += ABOVE if count == shapes else count - shapes
-        extended = extended_modes(listed, modes(body, supports, count))
+    extended = extended_until(body, supports, listed, lambda found: _first_above(found) is not None)
+    first = _first_above(extended)
     if first is None:
         return listed
+    needed = [mode.name for mode in first]
+    if body.blocks[0].enrich is not None:
+        first = _first_of_families(extended)
     all_modes = replace(extended, beyond=(*extended.beyond, *extended.above), above=())
     elastic = [mode for mode in listed.modes if mode.frequency_hz > 0]
     names = [mode.name for mode in (*elastic, *first)]
     bounds = bounds_of(scene, body, False, all_modes, names)
-    least = {mode.name: bounds.frequency(mode) * (1 - mode.error) for mode in first}
-    limit = min([listed.evidence[COUNTED], *least.values()])
+    limit = listed.evidence[COUNTED]
+    for mode in first:
+        least = bounds.frequency(mode)
+        if least is None and mode.name in needed:
+            return listed
+        if least is not None:
+            limit = min(limit, least * (1 - mode.error))
     return replace(extended, evidence=listed.evidence | {COMPLETE: limit})
 
 
-def less_widest(evidence: dict, bars: Iterable[float]) -> dict:
-    """Add to the evidence of counted modes, whose error bars come from several meshes, the
-    frequency below which the body itself has no further one: that of the mesh less the widest error
-    bar.
+def less_bars(evidence: dict, bars: Mapping[str, float], above: Iterable[Mode] = ()) -> dict:
+    """Add to the evidence of counted modes, with error bars by name, the frequency below which the
+    body itself has no further one: the least lower end of the modes above the list, if the first of
+    these has one; else what the mesh counts less the widest error bar.
     """
-    widest = max(bars, default=None)
-    if widest is None or COUNTED not in evidence or COMPLETE in evidence:
+    if not bars or COUNTED not in evidence or COMPLETE in evidence:
         return evidence
-    return evidence | {COMPLETE: evidence[COUNTED] * max(1 - widest, 0.0)}
+    counted = evidence[COUNTED]
+    ascending = sorted(above, key=lambda mode: mode.frequency_hz)
+    if ascending and ascending[0].name in bars:
+        ends = [m.frequency_hz * (1 - bars[m.name]) for m in ascending if m.name in bars]
+        limit = min(counted, *ends)
+    else:
+        limit = counted * (1 - max(bars.values()))
+    return evidence | {COMPLETE: max(limit, 0.0)}
+
+
+def _first_of_families(modes: ModeSet) -> list[Mode]:
+    """Return the lowest mode of every family above the end of a list: a block that holds all
+    families keeps their order, each for itself.
+    """
+    names_listed = {mode.name for mode in modes.modes}
+    above = [m for m in modes.solved if m.frequency_hz > 0 and m.name not in names_listed]
+    above.sort(key=lambda mode: mode.frequency_hz, reverse=True)
+    return list({mode.family: mode for mode in above}.values())
 
 
 def _first_above(modes: ModeSet) -> list[Mode] | None:
-    """Return the lowest mode of every eigenproblem above the end of a list; None where one of them
-    has no other mode clear above it, on whose distance the lower end rests.
+    """Return the lowest mode of every eigenproblem above the end of a list; None where nothing was
+    solved beyond those near one of them, on which the lower end rests.
     """
     names_listed = {mode.name for mode in modes.modes}
-    remaining = [mode for mode in modes.solved if mode.frequency_hz > 0]
-    remaining.sort(key=lambda mode: mode.frequency_hz)
     out = []
-    while remaining:
-        group = [mode for mode in remaining if of_one_problem(mode, remaining[0])]
-        remaining = [mode for mode in remaining if mode not in group]
+    for group in by_problem([mode for mode in modes.solved if mode.frequency_hz > 0]):
         above = [mode for mode in group if mode.name not in names_listed]
-        if not above or (above[0].frequency_hz / above[-1].frequency_hz) ** 2 > 1 - APART:
+        if not above or not is_bounded(modes, above[0]):
             return None
         out.append(above[0])
     return out

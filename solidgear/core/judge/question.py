@@ -144,12 +144,13 @@ class FamilySolver:
         except NoBounds as error:
             refinement.without_bars = str(error)
             return values, None
-        refinement.error_bars |= {q: judged.error_bars[q] for q in judged_names}
+        barred = [q for q in judged_names if q in judged.error_bars]
+        refinement.error_bars |= {q: judged.error_bars[q] for q in barred}
         # no frequency without an error bar
         quantities = {
             q: v for q, v in values.quantities.items() if q in judged_names or not q.is_frequency
         }
-        return Numbers(quantities, values.solver), refinement.score(judged, judged_names)
+        return Numbers(quantities, values.solver), refinement.score(judged, barred)
 
     def _judged_names(self, values: Numbers, names: tuple[Quantity, ...]) -> list[Quantity]:
         """Return the numbers that get an error bar: those asked for, and all static ones that are

@@ -20,7 +20,7 @@ from solidgear.core.bounds.harmonic import richer_space
 from solidgear.core.bounds.refining import corner_strength
 from solidgear.core.errors import SolidgearError
 from solidgear.core.judge.bars import LEAST, ErrorBar
-from solidgear.core.judge.bounded import bounded
+from solidgear.core.judge.bounded import NOTHING_BEYOND, bounded
 from solidgear.core.judge.quantities import usual
 from solidgear.core.judge.record import PlaceRecord, WhereRecord
 from solidgear.core.judge.singular_places import Place, singular_places
@@ -105,6 +105,8 @@ def _shares(
         statics = Statics.for_quantities(scene, body, supports, [quantity])
     solver = numbers(statics, modes).solver
     judged = bounded(scene, body, supports, statics, modes, [quantity], solver)
+    if quantity not in judged.error_bars:
+        raise SolidgearError(f"{quantity} has no error bar: {NOTHING_BEYOND}")
     error_bar, score = judged.error_bars[quantity], judged.scores[quantity]
     if _rounding(error_bar):
         raise SolidgearError(

@@ -13,8 +13,10 @@ import numpy as np
 
 from solidgear.core import ELEMENTS, System, coned, pinned
 from solidgear.core.body import FURTHER
-from solidgear.core.bounds.harmonic import lower_ends, vibration_energies, with_tail
+from solidgear.core.bounds.clusters import cluster_of, lower_ends
+from solidgear.core.bounds.harmonic import vibration_energies, with_tail
 from solidgear.core.bounds.safety import LOCAL
+from solidgear.core.system.modes import SystemModes
 from solidgear.core.system.parts import Part, Placed
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.shaft import JUDGE
@@ -50,11 +52,13 @@ def mesh_bars(
     if stored is not None and len(stored) >= n:
         return stored[:n]
     modes = system.modes(n + ABOVE)
-    resolved = int((modes.error_bound[modes.rigid :] < RESOLVED).sum())
-    elastic = slice(modes.rigid, modes.rigid + max(n + 1, resolved))
+    if not _ends_below(modes, n):
+        # near the last one asked for there are more of them than usual
+        modes = system.modes(n + 4 * ABOVE)
+    elastic = slice(modes.rigid, modes.rigid + max(n + 1, _resolved(modes)))
     shapes = modes.shapes[:, elastic]
     value = (2 * np.pi * modes.frequency_hz[elastic]) ** 2
-    double_energy, single_energy = np.zeros(len(value)), np.zeros(len(value))
+    double_energy, single_energy = np.zeros((2, len(value), len(value)))
     for side in sides:
         fields = system.expand(side, shapes)
         if max(fields) >= FURTHER:
@@ -62,11 +66,27 @@ def mesh_bars(
         body = assembly.shaft_model(side, JUDGE).body
         energies = vibration_energies(coned(assembly.scenes[side]), body, fields, value)
         double_energy, single_energy = double_energy + energies[0], single_energy + energies[1]
-    energy = LOCAL * np.array([with_tail(a, b) for a, b in zip(double_energy, single_energy)])
-    least = np.maximum(lower_ends(value, energy, value[-1]), 0.0)
+    two_more, one_more = double_energy.diagonal(), single_energy.diagonal()
+    tails = np.array([with_tail(a, b) for a, b in zip(two_more, one_more)])
+    grown = np.sqrt(np.divide(tails, two_more, out=np.ones(len(value)), where=two_more > 0))
+    products = LOCAL * double_energy * np.outer(grown, grown)
+    least = lower_ends(value, products, value[-1])
+    # nothing resolved beyond the last ones: as far down as one likes
+    least = np.maximum(np.nan_to_num(least, nan=0.0), 0.0)
     bars = (1 - np.sqrt(least / value))[:n]
     assembly.bars[tuple(models.values())] = bars
     return bars
+
+
+def _resolved(modes: SystemModes) -> int:
+    """Return the number of elastic modes that are modes of the shafts."""
+    return int((modes.error_bound[modes.rigid :] < RESOLVED).sum())
+
+
+def _ends_below(modes: SystemModes, n: int) -> bool:
+    """Return whether modes near the n-th elastic one end below a further mode of the shafts."""
+    values = modes.frequency_hz[modes.rigid :][: _resolved(modes)] ** 2
+    return n <= len(values) and cluster_of(values, n - 1).stop < len(values)
 
 
 def mesh_limit(assembly: Assembly, side: str, part: Part) -> float:
