@@ -28,13 +28,18 @@ import numpy as np
 from solidgear.core.body import Body
 from solidgear.core.body.cache import Cache
 from solidgear.core.body.model import Enrichment
-from solidgear.core.bounds.harmonic import lower_ends, on_ports, with_neighbours
+from solidgear.core.bounds.harmonic import (
+    lower_ends,
+    of_one_problem,
+    on_ports,
+    with_neighbours,
+)
 from solidgear.core.bounds.sharpest import sharpest_exponent
 from solidgear.core.elements import ELEMENTS
 from solidgear.core.errors import SolidgearError
 from solidgear.core.solve.modes import Mode, ModeSet
 from solidgear.core.solve.shifted import factors
-from solidgear.core.solve.statics import SOLVED, flexibility, port_fields
+from solidgear.core.solve.statics import SOLVED, flexibility, port_fields, twin_matrix
 
 if TYPE_CHECKING:
     from solidgear.core.scene import Scene
@@ -104,7 +109,8 @@ def solid_bounds(
     share = 1 / (1 - (order / (order + 1)) ** (4 * sharpest_exponent(scene)))
     size = 6 * len(body.ports)
     reached = np.zeros((size, size))
-    parts: dict[int, tuple[np.ndarray, Errors]] = {}
+    # ports of every block, their signs in the block that it repeats, and errors of that one
+    parts: dict[int, tuple[np.ndarray, np.ndarray, Errors]] = {}
     if statics:
         for index, fields, _, _ in port_fields(body, SOLVED):
             block = body.blocks[index]
@@ -113,39 +119,31 @@ def solid_bounds(
             carried = -block.rigid @ np.linalg.solve(gram, block.rigid.T @ block.ports.T.toarray())
             errors = enriched_errors(body, index, fields, np.eye(len(rows)), carried)
             reached[np.ix_(rows, rows)] = errors.energies
-            parts[index] = rows, errors
+            parts[index] = rows, np.ones(len(rows)), errors
+        for k, block in enumerate(body.blocks):
+            if block.mirror is not None:
+                original, signs = block.mirror
+                rows = body.rows(block)
+                reached[np.ix_(rows, rows)] = twin_matrix(body, block, reached)
+                parts[k] = rows, np.tile(signs, len(body.ports)), parts[original][2]
     chosen = with_neighbours(modes, wanted)
-    energy: dict[str, float] = {}
-    by_cells: dict[str, np.ndarray] = {}
-    for index, block in enumerate(body.blocks):
-        on_block = [mode for mode in chosen if index in mode.vectors[0]]
-        shapes = [(mode, vectors[index]) for mode in on_block for vectors in mode.vectors]
-        if not shapes:
-            continue
-        fields = np.column_stack([shape for _, shape in shapes])
-        fields = fields / np.sqrt(np.einsum("nk,nk->k", fields, block.mass @ fields))
-        values = np.array([(2 * np.pi * mode.frequency_hz) ** 2 for mode, _ in shapes])
-        left = block.stiffness @ fields - (block.mass @ fields) * values
-        errors = enriched_errors(body, index, fields, on_ports(block, left), fields * values)
-        found = np.diag(errors.energies)
-        for k, (mode, _) in enumerate(shapes):
-            if found[k] > energy.get(mode.name, 0.0):
-                energy[mode.name] = float(found[k])
-                by_cells[mode.name] = _by_cells(body, index, errors, np.eye(len(shapes))[k])
+    found = _of_shapes(body, chosen)
+    by_cells = {name: cells for name, (_, cells) in found.items()}
     solved = () if modes is None else modes.solved
-    ends = {str(name): safety * share * value for name, value in energy.items()}
+    ends = {name: safety * share * energy for name, (energy, _) in found.items()}
 
     def cells(forces: np.ndarray) -> np.ndarray:
         by_block = [
-            _by_cells(body, index, errors, forces[rows]) for index, (rows, errors) in parts.items()
+            _by_cells(body, _original(body, index), errors, signs * forces[rows])
+            for index, (rows, signs, errors) in parts.items()
         ]
         return np.sum(by_block, axis=0)
 
     lowest: dict[str, float] = {}
-    highest = max((m.frequency_hz for m in solved), default=0.0)
     # the mesh mixes families no more than its own error, so that each keeps its order
     for family in dict.fromkeys(mode.family for mode in chosen):
         members = sorted((m for m in chosen if m.family == family), key=lambda m: m.frequency_hz)
+        highest = max(m.frequency_hz for m in solved if of_one_problem(m, members[0]))
         values = (2 * np.pi * np.array([m.frequency_hz for m in members])) ** 2
         energies = np.array([ends[m.name] for m in members])
         family_ends = lower_ends(values, energies, (2 * np.pi * highest) ** 2)
@@ -153,14 +151,53 @@ def solid_bounds(
     return SolidBounds(body, share, reached, lowest, by_cells, cells)
 
 
+def _of_shapes(body: Body, modes: Sequence[Mode]) -> dict[str, tuple[float, np.ndarray]]:
+    """Return the energies of the errors of modes by their names, in sum and by cells (ne,): of a
+    pair those of the shape that has the larger one.
+    """
+    shapes = [(m, shape) for m in modes for shape in m.vectors]
+    energy, by_cells = np.zeros(len(shapes)), [np.zeros(1)] * len(shapes)
+    for index, block in enumerate(body.blocks):
+        if block.mirror is not None:
+            continue
+        # a block and its twin hold the same matrices
+        here = [
+            (k, mode, vector)
+            for k, (mode, shape) in enumerate(shapes)
+            for place, vector in shape.items()
+            if _original(body, place) == index
+        ]
+        if not here:
+            continue
+        fields = np.column_stack([vector for *_, vector in here])
+        values = np.array([(2 * np.pi * mode.frequency_hz) ** 2 for _, mode, _ in here])
+        left = block.stiffness @ fields - (block.mass @ fields) * values
+        errors = enriched_errors(body, index, fields, on_ports(block, left), fields * values)
+        for column, (k, _, _) in zip(np.eye(len(here)), here):
+            energy[k] += column @ errors.energies @ column
+            by_cells[k] = by_cells[k] + _by_cells(body, index, errors, column)
+    found: dict[str, tuple[float, np.ndarray]] = {}
+    for (mode, _), total, cells in zip(shapes, energy, by_cells):
+        if total > found.get(mode.name, (0.0,))[0]:
+            found[str(mode.name)] = float(total), cells
+    return found
+
+
+def _original(body: Body, index: int) -> int:
+    """Return the block that one repeats; of one that repeats none, itself."""
+    mirror = body.blocks[index].mirror
+    return index if mirror is None else mirror[0]
+
+
 def _by_cells(body: Body, index: int, errors: Errors, loads: np.ndarray) -> np.ndarray:
     """Return (ne,) energies by cells of the error under a combination of loads: that of a function
     to equal parts to the cells that it lives in.
     """
-    numbers = _enrichment(body, index).cells
-    energy = ((errors.fields @ loads) * (errors.residuals @ loads)).reshape(-1, 3).sum(axis=1)
-    count = np.bincount(numbers.ravel(), minlength=len(energy))
-    return np.maximum((energy / count)[numbers].sum(axis=0), 0.0)
+    more = _enrichment(body, index)
+    count = np.bincount(more.cells.ravel())
+    work = (errors.fields @ loads) * (errors.residuals @ loads)
+    energy = np.bincount(more.functions, work, minlength=len(count)) / np.maximum(count, 1)
+    return np.maximum(energy[more.cells].sum(axis=0), 0.0)
 
 
 @dataclass(frozen=True)
