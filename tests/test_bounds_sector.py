@@ -131,7 +131,7 @@ def test_a_port_follows_the_material_in_one_order_more_too():
     for station in scene.stations:
         seat = Seat(station.y, seat_facets(m, scene.segments, 1e-9)(station, "average"))
         seat = replace(seat, cells=cells) if station is scene.port else seat
-        gram, loads = weighed(seat.on(m), station.y, m.nodes.shape[1])
+        gram, loads = weighed(seat.pieces(m), station.y, m.nodes.shape[1])
         seats.append(seat)
         ports.append(rigid_part(gram, loads, tuple(range(6))))
     materials = [s.material for s in scene.segments]
@@ -164,3 +164,20 @@ def test_bars_reach_beyond_a_finer_mesh():
         # the finer mesh leaves an error of its own
         assert change < bar.width < 2.5 * (change + rest.width)
         assert rest.width < 0.7 * bar.width
+
+
+@pytest.mark.usefixtures("small_residuals")
+def test_modes_that_move_in_several_blocks_have_the_energy_of_all():
+    """A bearing that couples axial motion and bending in one plane."""
+    springs = np.diag([6e8, 2e8, 1e9, 1e6, 0.0, 1e6])
+    springs[1, 2] = springs[2, 1] = 3e8
+    coupling = sg.Bearing(name="a", y=0.045, seat_width=0.015, matrix=springs.tolist())
+    plain = PARTS["straight"]
+    scene = plain.with_changes(bearings=(coupling, plain.bearings[1]))
+    of_modes = []
+    for body in (entire("straight"), sector(scene, refinement=COARSE)):
+        modes = sg.modes(body, scene, n=4)
+        bounds = solid_bounds(scene, body, statics=False, modes=modes, wanted=["axial 1"])
+        of_modes.append(bounds.of_modes["axial 1"].sum())
+    assert len(modes.named("axial 1").vectors[0]) == 2
+    assert of_modes[1] == pytest.approx(of_modes[0], rel=1e-3)

@@ -324,10 +324,10 @@ def lower_ends_of(
     return out
 
 
-def lower_ends(value: np.ndarray, energy: np.ndarray, highest: float) -> np.ndarray:
-    """Return the least eigenvalues of modes of one eigenproblem, from their Rayleigh quotients,
-    ascending, the energies of their local solutions, both (k,), and the highest eigenvalue that was
-    solved.
+def lower_ends(value: np.ndarray, energy: np.ndarray, highest: float | np.ndarray) -> np.ndarray:
+    """Return the least eigenvalues of modes, from their Rayleigh quotients, ascending, the energies
+    of their local solutions, both (k,), and the highest eigenvalue that was solved of their
+    eigenproblem, or (k,) of each.
 
     Examples
     --------

@@ -28,12 +28,7 @@ import numpy as np
 from solidgear.core.body import Body
 from solidgear.core.body.cache import Cache
 from solidgear.core.body.model import Enrichment
-from solidgear.core.bounds.harmonic import (
-    lower_ends,
-    of_one_problem,
-    on_ports,
-    with_neighbours,
-)
+from solidgear.core.bounds.harmonic import lower_ends, on_ports, with_neighbours
 from solidgear.core.bounds.sharpest import sharpest_exponent
 from solidgear.core.elements import ELEMENTS
 from solidgear.core.errors import SolidgearError
@@ -127,10 +122,10 @@ def solid_bounds(
                 reached[np.ix_(rows, rows)] = twin_matrix(body, block, reached)
                 parts[k] = rows, np.tile(signs, len(body.ports)), parts[original][2]
     chosen = with_neighbours(modes, wanted)
-    found = _of_shapes(body, chosen)
-    by_cells = {name: cells for name, (_, cells) in found.items()}
+    of_shapes = _of_shapes(body, chosen)
+    by_cells = {name: cells for name, (_, cells) in of_shapes.items()}
     solved = () if modes is None else modes.solved
-    ends = {name: safety * share * energy for name, (energy, _) in found.items()}
+    ends = {name: safety * share * energy for name, (energy, _) in of_shapes.items()}
 
     def cells(forces: np.ndarray) -> np.ndarray:
         by_block = [
@@ -143,12 +138,18 @@ def solid_bounds(
     # the mesh mixes families no more than its own error, so that each keeps its order
     for family in dict.fromkeys(mode.family for mode in chosen):
         members = sorted((m for m in chosen if m.family == family), key=lambda m: m.frequency_hz)
-        highest = max(m.frequency_hz for m in solved if of_one_problem(m, members[0]))
+        highest = np.array([_highest(solved, member) for member in members])
         values = (2 * np.pi * np.array([m.frequency_hz for m in members])) ** 2
         energies = np.array([ends[m.name] for m in members])
         family_ends = lower_ends(values, energies, (2 * np.pi * highest) ** 2)
         lowest |= dict(zip((m.name for m in members), family_ends))
     return SolidBounds(body, share, reached, lowest, by_cells, cells)
+
+
+def _highest(modes: Sequence[Mode], near: Mode) -> float:
+    """Return the highest frequency of modes in the blocks of one of them, Hz."""
+    blocks = set(near.vectors[0])
+    return max(m.frequency_hz for m in modes if not blocks.isdisjoint(m.vectors[0]))
 
 
 def _of_shapes(body: Body, modes: Sequence[Mode]) -> dict[str, tuple[float, np.ndarray]]:
@@ -161,26 +162,26 @@ def _of_shapes(body: Body, modes: Sequence[Mode]) -> dict[str, tuple[float, np.n
         if block.mirror is not None:
             continue
         # a block and its twin hold the same matrices
-        here = [
+        on_block = [
             (k, mode, vector)
             for k, (mode, shape) in enumerate(shapes)
             for place, vector in shape.items()
             if _original(body, place) == index
         ]
-        if not here:
+        if not on_block:
             continue
-        fields = np.column_stack([vector for *_, vector in here])
-        values = np.array([(2 * np.pi * mode.frequency_hz) ** 2 for _, mode, _ in here])
+        fields = np.column_stack([vector for *_, vector in on_block])
+        values = np.array([(2 * np.pi * mode.frequency_hz) ** 2 for _, mode, _ in on_block])
         left = block.stiffness @ fields - (block.mass @ fields) * values
         errors = enriched_errors(body, index, fields, on_ports(block, left), fields * values)
-        for column, (k, _, _) in zip(np.eye(len(here)), here):
+        for column, (k, _, _) in zip(np.eye(len(on_block)), on_block):
             energy[k] += column @ errors.energies @ column
             by_cells[k] = by_cells[k] + _by_cells(body, index, errors, column)
-    found: dict[str, tuple[float, np.ndarray]] = {}
+    larger: dict[str, tuple[float, np.ndarray]] = {}
     for (mode, _), total, cells in zip(shapes, energy, by_cells):
-        if total > found.get(mode.name, (0.0,))[0]:
-            found[str(mode.name)] = float(total), cells
-    return found
+        if total > larger.get(mode.name, (0.0,))[0]:
+            larger[str(mode.name)] = float(total), cells
+    return larger
 
 
 def _original(body: Body, index: int) -> int:
@@ -241,7 +242,13 @@ def enriched_errors(
             u = block.expand @ u
         return held * (more.stiffness @ x - more.coupling @ u)
 
-    return _conjugate_gradients(schur, more.moves / more.stiffness.diagonal(), residuals)
+    inverse = more.moves / more.stiffness.diagonal()
+    # a mode may stand still in a block
+    loaded = residuals.any(axis=0)
+    errors = _conjugate_gradients(schur, inverse, residuals[:, loaded])
+    fields, scale = np.zeros_like(residuals), np.ones(len(loaded))
+    fields[:, loaded], scale[loaded] = errors.fields, errors.scale
+    return Errors(fields, residuals, scale, errors.steps)
 
 
 def _enrichment(body: Body, index: int) -> Enrichment:

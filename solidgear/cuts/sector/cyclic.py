@@ -15,6 +15,9 @@ Translation and rotation along y are h = 0, those across it h = 1, so that ports
 only. Sums over copies give the port rows: with the loads ``b`` and the Gram matrix ``A`` of the
 sector's part of a seat, the motion is ``A_full^{-1} Re(P b' T q)`` with
 ``P = sum_k e^{i k h alpha} Rot6^k``.
+
+What one order more adds to the mesh is tied by the same basis, with edges and faces for nodes: a
+slave follows its master, with the other sign where its edge runs the other way round.
 """
 
 from __future__ import annotations
@@ -150,9 +153,9 @@ def cyclic_blocks(
     seats = []
     for station, attachment in wanted:
         seat = seat_of(station, attachment)
-        seats.append((seat, *weighed(seat.on(mesh), station.y, n)))
+        seats.append((seat, *weighed(seat.pieces(mesh), station.y, n)))
     # the blocks share it
-    addition = cache(partial(Addition.to, mesh, materials))
+    addition = cache(partial(Addition.of_mesh, mesh, materials))
     blocks = []
     for h in (0, 1, *harmonics):
         wave = Wave(mesh.sector, h)
@@ -202,9 +205,9 @@ class Wave:
         part on the sector and the loads (m, 6) there on the complex ones.
         """
         components = list(self.components)
-        whole = sum(turn @ gram @ turn.T for turn in self.turns)[np.ix_(components, components)]
+        seat_gram = sum(turn @ gram @ turn.T for turn in self.turns)[np.ix_(components, components)]
         summed = sum(p * turn for p, turn in zip(self.phases, self.turns))[components]
-        motion = np.linalg.solve(whole, summed @ loads.T)
+        motion = np.linalg.solve(seat_gram, summed @ loads.T)
         motion = motion.real if self.h == 0 else _interleaved(motion.conj().T).T
         motion[np.abs(motion) < ROUNDING * np.abs(motion).max(axis=1, keepdims=True)] = 0.0
         return motion

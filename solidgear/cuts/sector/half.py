@@ -143,10 +143,10 @@ def half_sector_blocks(
     seats = []
     for station, attachment in wanted:
         seat = seat_of(station, attachment)
-        gram, loads = weighed(seat.on(mesh), station.y, n)
+        gram, loads = weighed(seat.pieces(mesh), station.y, n)
         seats.append((seat, _around(gram, mesh.sector), loads))
     # the blocks share it
-    addition = cache(partial(Addition.to, mesh, materials))
+    addition = cache(partial(Addition.of_mesh, mesh, materials))
     blocks: list[Block] = []
     for name in (*PORTED, *(f"ovalising_{h}" for h in harmonics)):
         grams = [(seat, gram) for seat, gram, _ in seats]
@@ -170,7 +170,7 @@ def _block(name: str, matrices, mesh: HalfSectorSolid, rigid, seats) -> Block:
     half = mesh.sector
     t, node = _unknowns(name, half, mesh.nodes.shape[1])
     components = _components(name)
-    stiffness, mass = (_copies(name, half) * (t.T @ _both(name, x) @ t) for x in matrices)
+    stiffness, mass = (_copies(name, half) * (t.T @ _block_matrix(name, x) @ t) for x in matrices)
     ports = []
     for seat, gram, loads in seats if components else ():
         if seat.rigid:
@@ -209,9 +209,9 @@ def _enrichment(
             rows.append(_motion(name, half, gram, more.loads(seat), t))
     inertia = sp.kron(more.inertia, sp.identity(3))
     return Enrichment(
-        (copies * (t.T @ _both(name, more.stiffness) @ t)).tocsr(),
-        (copies * (t.T @ _both(name, more.coupling))).tocsr(),
-        (copies * (t.T @ _both(name, inertia))).tocsr(),
+        (copies * (t.T @ _block_matrix(name, more.stiffness) @ t)).tocsr(),
+        (copies * (t.T @ _block_matrix(name, more.coupling))).tocsr(),
+        (copies * (t.T @ _block_matrix(name, inertia))).tocsr(),
         np.vstack(rows),
         np.where(np.isin(function, still), 0.0, 1.0),
         function,
@@ -251,7 +251,7 @@ def _copies(name: str, half: HalfSector) -> int:
     return 2 * half.count if _harmonic(name) == 0 else half.count
 
 
-def _both(name: str, matrix: sp.spmatrix) -> sp.csr_matrix:
+def _block_matrix(name: str, matrix: sp.spmatrix) -> sp.csr_matrix:
     """Return a matrix of the half for a, or for a and b."""
     parts = [matrix] if _harmonic(name) == 0 else [matrix, matrix]
     return sp.block_diag(parts, format="csr")

@@ -192,7 +192,7 @@ class Seat:
     within: tuple[float, float] | None = None  #: ends along y, m, of the part that counts
     cells: np.ndarray | None = None  #: whose mean motion is that of the port, in place of facets
 
-    def on(self, m: SolidMesh) -> Iterable:
+    def pieces(self, m: SolidMesh) -> Iterable:
         """Return quadrature on the seat, of :meth:`SolidMesh.over_facets`."""
         if self.cells is not None:
             return m.over_cells(self.cells)
@@ -214,7 +214,7 @@ class Addition:
     inertia: sp.csr_matrix  #: (w, n) mass between them and the nodes, of every component, kg
 
     @classmethod
-    def to(cls, m: SolidMesh, materials: Sequence[Material]) -> Addition:
+    def of_mesh(cls, m: SolidMesh, materials: Sequence[Material]) -> Addition:
         """Compute what one order more adds to a mesh."""
         further = Further.beyond(m.name)
         numbers, signs = further.numbered(m)
@@ -252,9 +252,11 @@ class Addition:
 
     def loads(self, seat: Seat) -> np.ndarray:
         """Return the loads (3 w, 6) of unit rigid motions of a seat, of :func:`weighed`."""
-        return weighed(self._on(seat), seat.place, self.count)[1]
+        return weighed(self._pieces(seat), seat.place, self.count)[1]
 
-    def _on(self, seat: Seat) -> Iterable[tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]]:
+    def _pieces(
+        self, seat: Seat
+    ) -> Iterable[tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]]:
         """Yield quadrature on a seat as :meth:`SolidMesh.over_facets`, with values (e, k, q)."""
         pieces = (
             self.mesh.quadrature_on(seat.facets, seat.within)
@@ -278,7 +280,7 @@ def enrichment(
     have these seats and components; `held` are facets, and the components (3,) that do not move
     there.
     """
-    more = Addition.to(m, materials)
+    more = Addition.of_mesh(m, materials)
     n, count = m.nodes.shape[1], more.count
     moves = np.ones((count, 3))
     if held is not None:
@@ -291,7 +293,7 @@ def enrichment(
             moves[more.alive(seat.facets)] = 0.0
             rows.append(np.zeros((len(components), 3 * count)))
             continue
-        gram, _ = weighed(seat.on(m), seat.place, n)
+        gram, _ = weighed(seat.pieces(m), seat.place, n)
         rows.append(rigid_part(gram, more.loads(seat), components).toarray())
     return Enrichment(
         copies * more.stiffness,
