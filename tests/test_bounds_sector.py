@@ -22,7 +22,9 @@ from solidgear.core.models.solid.enriched import Seat, enrichment
 from solidgear.core.models.solid.matrices import rigid_part, weighed
 from solidgear.core.quantity import Quantity
 from solidgear.cuts.features import Spline
+from solidgear.cuts.sector import body as of_sector
 from solidgear.cuts.sector.body import sector, whole
+from solidgear.cuts.sector.meshing import joined
 
 #: the same elements whatever the mesh
 COARSE = 0.05
@@ -105,6 +107,30 @@ def test_a_sector_errs_as_the_whole_does(name, half):
     assert apart(found, reached) < 1e-3
     assert cells == pytest.approx(1, rel=0.01) and by_cells == pytest.approx(1, rel=0.01)
     assert found_modes == pytest.approx(modes, rel=1e-3)
+
+
+def shuffled(meshed):
+    """The same sector with its vertices in another order."""
+    used = np.unique(meshed.mesh.t)
+    number = np.zeros(meshed.mesh.p.shape[1], int)
+    number[used] = np.random.default_rng(5).permutation(len(used))
+    mesh = joined(meshed.mesh, [np.eye(3)], number[None], len(used))
+    straight = np.zeros((3, len(used)))
+    straight[:, number[used]] = meshed.straight[:, used]
+    return replace(meshed, mesh=mesh, straight=straight)
+
+
+def test_no_number_of_a_vertex_matters(monkeypatch):
+    """Edges run from the lesser to the larger one: gmsh numbers slaves in the order of their masters,
+    so that hardly any runs the other way round.
+    """
+    scene = PARTS["spiral"]
+    loaded = []
+    for change in (lambda meshed: meshed, shuffled):
+        monkeypatch.setattr(of_sector, "mirrored", change)
+        turned = sector(scene, refinement=COARSE, half=False)
+        loaded.append(np.diag(solid_bounds(scene, turned, statics=True).reached))
+    assert loaded[1] == pytest.approx(loaded[0], rel=1e-3)
 
 
 @pytest.mark.usefixtures("small_residuals")
