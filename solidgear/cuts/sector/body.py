@@ -113,7 +113,7 @@ def _solved_part(meshed: SectorMesh) -> tuple[SolidMesh, Callable[..., tuple[Blo
         half = half_sector_solid(meshed)
         return half, partial(half_sector_blocks, half)
     mesh = sector_solid(meshed)
-    return mesh, partial(cyclic_blocks, mesh)
+    return mesh, partial(cyclic_blocks, mesh, mesh.sector)
 
 
 def whole(scene: Scene, wanted: Sequence, *, refinement: float, **sizes: Any) -> Body:

@@ -25,7 +25,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, cached_property, partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy.sparse as sp
@@ -36,11 +36,11 @@ from solidgear.core.kernel.attachment import Attached, with_ports
 from solidgear.core.models.solid.block import rigid_motions
 from solidgear.core.models.solid.enriched import Addition, Seat
 from solidgear.core.models.solid.matrices import _matrices, weighed
+from solidgear.core.models.solid.mesh import SolidMesh
 
 if TYPE_CHECKING:
     from solidgear.core import Scene
     from solidgear.core.scene.shaft import Station
-    from solidgear.cuts.sector.mesh import SectorSolid
 
 #: port components of the two harmonics that ports move in
 PORTED: dict[int, tuple[int, ...]] = {0: (1, 4), 1: (0, 2, 3, 5)}
@@ -135,7 +135,8 @@ def _interleaved(matrix: np.ndarray) -> np.ndarray:
 
 
 def cyclic_blocks(
-    mesh: SectorSolid,
+    mesh: SolidMesh,
+    sector: Sector,
     scene: Scene,
     wanted: Sequence[tuple[Station, str]],
     seat_of: Callable[[Station, str], Seat],
@@ -158,7 +159,7 @@ def cyclic_blocks(
     addition = cache(partial(Addition.of_mesh, mesh, materials))
     blocks = []
     for h in (0, 1, *harmonics):
-        wave = Wave(mesh.sector, h)
+        wave = Wave(sector, h)
         block = _block(wave, k, m, mesh, rigid, seats)
         grams = [(seat, gram) for seat, gram, _ in seats]
         blocks.append(replace(block, enrich=partial(_enrichment, addition, wave, grams)))
@@ -213,8 +214,8 @@ class Wave:
         return motion
 
 
-def _block(wave: Wave, k, m, mesh: SectorSolid, rigid, seats) -> Block:
-    t, free, node = basis(mesh.sector, mesh.nodes.shape[1], wave.h)
+def _block(wave: Wave, k, m, mesh: SolidMesh, rigid, seats) -> Block:
+    t, free, node = basis(wave.sector, mesh.nodes.shape[1], wave.h)
     components, conjugate = wave.components, t.conj().T
     stiffness, mass = (wave.copies * wave.spread((conjugate @ x @ t).tocsr()) for x in (k, m))
     # rigid motions of the whole part, in the turned axes of its copies
@@ -276,7 +277,7 @@ def _functions(more: Addition, sector: Sector) -> tuple[Sector, np.ndarray]:
     """Return the functions of one order more on cut faces and axis, and the signs (w,) with which
     those of slaves follow their masters: an edge may run the other way round.
     """
-    m: Any = more.mesh
+    m = more.mesh
     of_node, ends = functions_of_edges(more)
     image = np.arange(m.nodes.shape[1])
     image[sector.slave] = sector.master
@@ -286,12 +287,12 @@ def _functions(more: Addition, sector: Sector) -> tuple[Sector, np.ndarray]:
     signs = np.ones(more.count)
     start, end = ends[:, slave]
     signs[slave] = np.where((start < end) == (image[start] < image[end]), 1.0, -1.0)
-    corners, of_face = functions_of_faces(more, m.inner)
-    on_slave = np.isin(corners, np.r_[sector.slave, sector.axis]).all(axis=0)
-    faces = [
-        of_face[side][np.lexsort(np.sort(image[corners[:, side]], axis=0))]
-        for side in (on_slave, ~on_slave)
-    ]
+    corners, of_face = functions_of_faces(more, m.mesh.boundary_facets())
+    faces = []
+    for side in (sector.slave, sector.master):
+        on_side = np.isin(corners, np.r_[side, sector.axis]).all(axis=0)
+        order = np.lexsort(np.sort(image[corners[:, on_side]], axis=0))
+        faces.append(of_face[on_side][order])
     return (
         Sector(sector.count, np.r_[master, faces[1]], np.r_[slave, faces[0]], axis[axis >= 0]),
         signs,
