@@ -64,16 +64,18 @@ def component_rows(ports: Iterable[int], components: Sequence[int]) -> np.ndarra
 
 @dataclass(frozen=True, eq=False)
 class Enrichment:
-    """Functions that one order more adds to a mesh, of three components each, and what couples
-    them to the unknowns of the mesh.
+    """Unknowns of the functions that one order more adds to a mesh, and what couples them to those
+    of the mesh.
     """
 
     stiffness: sp.csr_matrix  #: (m, m) N/m
     coupling: sp.csr_matrix  #: (m, n) stiffness between them and the unknowns of the mesh, N/m
-    #: (m / 3, n / 3) mass between them and the unknowns of the mesh, of every component, kg
+    #: mass between them and the unknowns of the mesh, kg: (m, n), or (m / c, n / c) where it is the
+    #: same for each of c components, which are numbered together
     inertia: sp.csr_matrix
     ports: np.ndarray  #: (c p, m) motions of the ports by them
-    moves: np.ndarray  #: (m,) 1 for components that move, 0 for those that are held
+    moves: np.ndarray  #: (m,) 1 for unknowns that move, 0 for those that are held
+    functions: np.ndarray  #: (m,) function of every unknown
     cells: np.ndarray  #: (k, ne) functions of every cell
 
 
@@ -108,7 +110,8 @@ class Block:
     #: the coupling by spin of unknowns (n, k) with the twin a quarter of a wave further round
     #: (:mod:`solidgear.core.solve.spin`), times them; None where there is none
     swirl: Swirl | None = None
-    #: returns what one order more adds to the mesh of the block; None where nothing does
+    #: returns what one order more adds to the mesh of the block, or of the one that it repeats; None
+    #: where nothing does
     enrich: Callable[[], Enrichment] | None = None
 
     def mirrored(

@@ -42,7 +42,7 @@ from solidgear.core.meshing.corners import SHOULDER, is_notched
 from solidgear.core.scene.shaft import without_axis
 from solidgear.core.solve.modes import Mode, ModeSet
 from solidgear.core.solve.shifted import factors
-from solidgear.core.solve.statics import flexibility, port_fields
+from solidgear.core.solve.statics import flexibility, port_fields, twin_matrix
 
 if TYPE_CHECKING:
     from solidgear.core.scene import Scene
@@ -124,7 +124,8 @@ def solid_bounds(
     share = 1 / (1 - (order / (order + 1)) ** (4 * _sharpest(scene, body)))
     size = 6 * len(body.ports)
     reached = np.zeros((size, size))
-    parts: dict[int, tuple[np.ndarray, Errors]] = {}
+    # ports of every block, their signs in the block that it repeats, and errors of that one
+    parts: dict[int, tuple[np.ndarray, np.ndarray, Errors]] = {}
     if statics:
         for index, fields, _, _ in port_fields(body, FIELDS):
             block = body.blocks[index]
@@ -133,32 +134,29 @@ def solid_bounds(
             carried = -block.rigid @ np.linalg.solve(gram, block.rigid.T @ block.ports.T.toarray())
             errors = enriched_errors(body, index, fields, np.eye(len(rows)), carried)
             reached[np.ix_(rows, rows)] = errors.energies
-            parts[index] = rows, errors
+            parts[index] = rows, np.ones(len(rows)), errors
+        for k, block in enumerate(body.blocks):
+            if block.mirror is not None:
+                original, signs = block.mirror
+                rows = body.rows(block)
+                reached[np.ix_(rows, rows)] = twin_matrix(body, block, reached)
+                parts[k] = rows, np.tile(signs, len(body.ports)), parts[original][2]
     chosen = with_neighbours(modes, wanted)
     shapes = sorted(
         (_Shape(m, value, u) for m in chosen for value, u in zip(_values(m), m.vectors)),
         key=lambda shape: shape.value,
     )
-    products = np.zeros((len(shapes), len(shapes)))
+    products, cells_of = _of_shapes(body, shapes)
     by_cells: dict[str, np.ndarray] = {}
-    for index, block in enumerate(body.blocks):
-        places = [k for k, shape in enumerate(shapes) if index in shape.vectors]
-        if not places:
-            continue
-        fields = np.column_stack([shapes[k].vectors[index] for k in places])
-        values = np.array([shapes[k].value for k in places])
-        left = block.stiffness @ fields - (block.mass @ fields) * values
-        errors = enriched_errors(body, index, fields, on_ports(block, left), fields * values)
-        products[np.ix_(places, places)] += errors.energies
-        for load, k in zip(np.eye(len(places)), places):
-            name = shapes[k].mode.name
-            energy = _by_cells(body, index, errors, load)
-            by_cells[name] = by_cells[name] + energy if name in by_cells else energy
+    for shape, energy in zip(shapes, cells_of):
+        name = shape.mode.name
+        by_cells[name] = by_cells[name] + energy if name in by_cells else energy
     solved = () if modes is None else modes.solved
 
     def cells(forces: np.ndarray) -> np.ndarray:
         by_block = [
-            _by_cells(body, index, errors, forces[rows]) for index, (rows, errors) in parts.items()
+            _by_cells(body, _original(body, index), errors, signs * forces[rows])
+            for index, (rows, signs, errors) in parts.items()
         ]
         return np.sum(by_block, axis=0)
 
@@ -197,6 +195,41 @@ def _values(mode: Mode) -> tuple[float, ...]:
     return 2 * mean / (1 + ratio), 2 * mean * ratio / (1 + ratio)
 
 
+def _of_shapes(body: Body, shapes: Sequence[_Shape]) -> tuple[np.ndarray, list[np.ndarray]]:
+    """Return the products of energy (k, k) of the errors of shapes, and their energies by cells
+    (ne,); of a shape in several blocks those of all.
+    """
+    products = np.zeros((len(shapes), len(shapes)))
+    by_cells = [np.zeros(1)] * len(shapes)
+    for index, block in enumerate(body.blocks):
+        # a block and its twin hold the same matrices
+        parts = [
+            (k, place, vector)
+            for k, shape in enumerate(shapes)
+            for place, vector in shape.vectors.items()
+            if _original(body, place) == index
+        ]
+        if not parts:
+            continue
+        fields = np.column_stack([vector for *_, vector in parts])
+        values = np.array([shapes[k].value for k, *_ in parts])
+        left = block.stiffness @ fields - (block.mass @ fields) * values
+        errors = enriched_errors(body, index, fields, on_ports(block, left), fields * values)
+        owners = np.array([k for k, *_ in parts])
+        blocks = np.array([place for _, place, _ in parts])
+        in_one_block = blocks[:, None] == blocks
+        np.add.at(products, np.ix_(owners, owners), errors.energies * in_one_block)
+        for k, load in zip(owners, np.eye(len(parts))):
+            by_cells[k] = by_cells[k] + _by_cells(body, index, errors, load)
+    return products, by_cells
+
+
+def _original(body: Body, index: int) -> int:
+    """Return the block that one repeats; of one that repeats none, itself."""
+    mirror = body.blocks[index].mirror
+    return index if mirror is None else mirror[0]
+
+
 def _lowest(
     shapes: Sequence[_Shape], products: np.ndarray, solved: Sequence[Mode]
 ) -> dict[str, float]:
@@ -228,10 +261,11 @@ def _by_cells(body: Body, index: int, errors: Errors, loads: np.ndarray) -> np.n
     """Return (ne,) energies by cells of the error under a combination of loads: that of a function
     to equal parts to the cells that it lives in.
     """
-    numbers = _enrichment(body, index).cells
-    energy = ((errors.fields @ loads) * (errors.residuals @ loads)).reshape(-1, 3).sum(axis=1)
-    count = np.bincount(numbers.ravel(), minlength=len(energy))
-    return np.maximum((energy / count)[numbers].sum(axis=0), 0.0)
+    more = _enrichment(body, index)
+    count = np.bincount(more.cells.ravel())
+    work = (errors.fields @ loads) * (errors.residuals @ loads)
+    energy = np.bincount(more.functions, work, minlength=len(count)) / np.maximum(count, 1)
+    return np.maximum(energy[more.cells].sum(axis=0), 0.0)
 
 
 @dataclass(frozen=True)
@@ -275,7 +309,13 @@ def enriched_errors(
             u = block.expand @ u
         return held * (more.stiffness @ x - more.coupling @ u)
 
-    return _conjugate_gradients(schur, more.moves / more.stiffness.diagonal(), residuals)
+    inverse = more.moves / more.stiffness.diagonal()
+    # a mode may stand still in a block
+    loaded = residuals.any(axis=0)
+    errors = _conjugate_gradients(schur, inverse, residuals[:, loaded])
+    fields, scale = np.zeros_like(residuals), np.ones(len(loaded))
+    fields[:, loaded], scale[loaded] = errors.fields, errors.scale
+    return Errors(fields, residuals, scale, errors.steps)
 
 
 def _enrichment(body: Body, index: int) -> Enrichment:

@@ -18,6 +18,7 @@ from solidgear.core.meshing.element_size import rough_cells
 from solidgear.core.models.kinds import CYCLIC
 from solidgear.core.models.size import Size, size_of_mesh
 from solidgear.core.models.solid.block import body_of, free_block, mesh_facts
+from solidgear.core.models.solid.enriched import Seat
 from solidgear.core.models.solid.mesh import SolidMesh, _isoparametric, basis_of
 from solidgear.core.models.solid.plan import tetrahedra_plan
 from solidgear.core.scene.feature import SMALLEST
@@ -87,18 +88,17 @@ def sector(
     mesh, blocks_of = _solved_part(meshed)
     facets = seats(mesh, meshed.straight, scene, features)
 
-    def parts_of(station, attachment):
+    def seat_of(station, attachment):
         if material_port and attachment == "average" and station is scene.port:
             y = meshed.straight[1][meshed.mesh.t]
             inside = (y > station.lo - 1e-9) & (y < station.hi + 1e-9)
-            return mesh.over_cells(np.flatnonzero(inside.all(axis=0))), None
+            return Seat(station.y, np.zeros(0, int), cells=np.flatnonzero(inside.all(axis=0)))
         seat = facets(station, attachment)
         if not len(seat):
             raise SolidgearError(f"port {station.name!r}: no element faces lie on its seat")
-        rigid_nodes = mesh.facet_unknowns(seat) if attachment == "rigid" else None
-        return mesh.over_facets(seat), rigid_nodes
+        return Seat(station.y, seat, attachment == "rigid")
 
-    blocks = blocks_of(scene, ties, parts_of, ovalising)
+    blocks = blocks_of(scene, ties, seat_of, ovalising)
     facts = _facts(meshed, mesh, features, refinement) | {
         "sectors": meshed.count,
         "solved_part": "half a sector" if meshed.half else "a whole sector",

@@ -21,26 +21,28 @@ it (Thomas 1979 solves the pair at once).
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, replace
+from functools import cache, partial
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import scipy.sparse as sp
 
 from solidgear.core import Block, Surface, rotation
+from solidgear.core.body.model import Enrichment
 from solidgear.core.kernel.attachment import Attached, with_ports
 from solidgear.core.models.solid.block import rigid_motions
 from solidgear.core.models.solid.drawing import copied
+from solidgear.core.models.solid.enriched import Addition, Seat
 from solidgear.core.models.solid.matrices import _matrices, weighed
 from solidgear.core.models.solid.mesh import SolidMesh, _isoparametric
-from solidgear.cuts.sector.cyclic import ROUNDING
+from solidgear.cuts.sector.cyclic import ROUNDING, functions_of_edges, functions_of_faces
 from solidgear.cuts.sector.mesh import PieceSolid
 from solidgear.cuts.sector.meshing import MATCH, SectorMesh
 
 if TYPE_CHECKING:
     from solidgear.core import Scene
     from solidgear.core.scene.shaft import Station
-    from solidgear.cuts.sector.cyclic import SeatParts
 
 #: blocks that ports move in: harmonic index and components
 PORTED: dict[str, tuple[int, tuple[int, ...]]] = {
@@ -126,7 +128,7 @@ def half_sector_blocks(
     mesh: HalfSectorSolid,
     scene: Scene,
     wanted: Sequence[tuple[Station, str]],
-    parts_of: Callable[[Station, str], SeatParts],
+    seat_of: Callable[[Station, str], Seat],
     harmonics: Sequence[int] = (),
 ) -> tuple[Block, ...]:
     """Return the blocks of a whole part from the mesh of half a sector, as by
@@ -134,28 +136,26 @@ def half_sector_blocks(
     its mirror image ``bending_x``, and ``ovalising_h`` without ports, which stands for its twin as
     well.
     """
-    k, m = _matrices(mesh, [segment.material for segment in scene.segments])
-    m, n, half = m.tocsr(), mesh.nodes.shape[1], mesh.sector
+    materials = [segment.material for segment in scene.segments]
+    k, m = _matrices(mesh, materials)
+    matrices, n = (k, m.tocsr()), mesh.nodes.shape[1]
     rigid = rigid_motions(mesh.nodes)
     seats = []
     for station, attachment in wanted:
-        pieces, rigid_nodes = parts_of(station, attachment)
-        gram, loads = weighed(pieces, station.y, n)
-        seats.append((station, rigid_nodes, _around(gram, half), loads))
-    doubled = [sp.block_diag([x, x], format="csr") for x in (k, m)]
+        seat = seat_of(station, attachment)
+        gram, loads = weighed(seat.pieces(mesh), station.y, n)
+        seats.append((seat, _around(gram, mesh.sector), loads))
+    # the blocks share it
+    addition = cache(partial(Addition.of_mesh, mesh, materials))
     blocks: list[Block] = []
-    still, node = basis(half, n, 0)
-    # a holds axial motion, b torsion: the columns of each
-    turning = np.asarray(abs(still[3 * n :]).sum(axis=0)).ravel() > 0
-    for name, columns, part in (("axial", ~turning, 0), ("torsion", turning, 1)):
-        t = still[3 * n * part : 3 * n * (part + 1)][:, columns]
-        blocks.append(_block(name, (k, m), t, node[columns], mesh, rigid, seats))
-    t, node = basis(half, n, 1)
-    bending = _block("bending_z", doubled, t, node, mesh, rigid, seats)
-    blocks += [bending, bending.mirrored("bending_x", (0, 5), len(blocks), (1.0, -1.0))]
-    for h in harmonics:
-        t, node = basis(half, n, h)
-        blocks.append(_block(f"ovalising_{h}", doubled, t, node, mesh, rigid, ()))
+    for name in (*PORTED, *(f"ovalising_{h}" for h in harmonics)):
+        grams = [(seat, gram) for seat, gram, _ in seats]
+        enrich = partial(_enrichment, addition, name, mesh.sector, grams)
+        block = replace(_block(name, matrices, mesh, rigid, seats), enrich=enrich)
+        blocks.append(block)
+        if name == "bending_z":
+            place = len(blocks) - 1
+            blocks.append(block.mirrored("bending_x", (0, 5), place, (1.0, -1.0)))
     return tuple(blocks)
 
 
@@ -166,20 +166,18 @@ def _around(gram: np.ndarray, half: HalfSector) -> np.ndarray:
     return sum(turn @ gram @ turn.T for turn in turns)
 
 
-def _block(name, matrices, t, node, mesh: HalfSectorSolid, rigid, seats) -> Block:
-    h, components = PORTED.get(name, (2, ()))
-    # both halves of all sectors; cos^2 and sin^2 of the phases are one half on the mean
-    energy = 2 * mesh.sector.count if h == 0 else mesh.sector.count
-    stiffness, mass = (energy * (t.T @ x @ t) for x in matrices)
+def _block(name: str, matrices, mesh: HalfSectorSolid, rigid, seats) -> Block:
+    half = mesh.sector
+    t, node = _unknowns(name, half, mesh.nodes.shape[1])
+    components = _components(name)
+    stiffness, mass = (_copies(name, half) * (t.T @ _block_matrix(name, x) @ t) for x in matrices)
     ports = []
-    for station, rigid_nodes, gram, loads in seats:
-        if rigid_nodes is not None:
-            ports.append(Attached(station.y, held=np.isin(node, rigid_nodes)))
-            continue
-        block_gram = gram[np.ix_(components, components)]
-        motion = np.linalg.solve(block_gram, energy * (t.T @ _in_parts(loads, components)).T)
-        motion[np.abs(motion) < ROUNDING * np.abs(motion).max(axis=1, keepdims=True)] = 0.0
-        ports.append(Attached(station.y, motion))
+    for seat, gram, loads in seats if components else ():
+        if seat.rigid:
+            mask = np.isin(node, mesh.facet_unknowns(seat.facets))
+            ports.append(Attached(seat.place, held=mask))
+        else:
+            ports.append(Attached(seat.place, _motion(name, half, gram, loads, t)))
     block = Block(
         name,
         components,
@@ -191,6 +189,99 @@ def _block(name, matrices, t, node, mesh: HalfSectorSolid, rigid, seats) -> Bloc
         expand=t.tocsr(),
     )
     return with_ports(block, ports)
+
+
+def _enrichment(
+    addition: Callable[[], Addition],
+    name: str,
+    half: HalfSector,
+    seats: Sequence[tuple[Seat, np.ndarray]],
+) -> Enrichment:
+    """Compute what one order more adds to a block: functions move as nodes in their place do."""
+    more, copies, components = addition(), _copies(name, half), _components(name)
+    t, function = _unknowns(name, _functions(more, half), more.count)
+    still, rows = np.zeros(0, int), [np.zeros((0, len(function)))]
+    for seat, gram in seats if components else ():
+        if seat.rigid:
+            still = np.r_[still, more.alive(seat.facets)]
+            rows.append(np.zeros((len(components), len(function))))
+        else:
+            rows.append(_motion(name, half, gram, more.loads(seat), t))
+    inertia = sp.kron(more.inertia, sp.identity(3))
+    return Enrichment(
+        (copies * (t.T @ _block_matrix(name, more.stiffness) @ t)).tocsr(),
+        (copies * (t.T @ _block_matrix(name, more.coupling))).tocsr(),
+        (copies * (t.T @ _block_matrix(name, inertia))).tocsr(),
+        np.vstack(rows),
+        np.where(np.isin(function, still), 0.0, 1.0),
+        function,
+        more.numbers,
+    )
+
+
+def _functions(more: Addition, half: HalfSector) -> HalfSector:
+    """Return the places of the functions of one order more."""
+    mesh: Any = more.mesh
+    of_node, _ = functions_of_edges(more)
+    corners, of_face = functions_of_faces(more, mesh.inner)
+    on_cut = np.isin(corners, half.cut).any(axis=0)
+    middle, cut, axis = (of_node[nodes] for nodes in (half.middle, half.cut, half.axis))
+    return replace(
+        half,
+        middle=np.r_[middle[middle >= 0], of_face[~on_cut]],
+        cut=np.r_[cut[cut >= 0], of_face[on_cut]],
+        axis=axis[axis >= 0],
+    )
+
+
+def _components(name: str) -> tuple[int, ...]:
+    """Return the components of ports that move in a block."""
+    return PORTED[name][1] if name in PORTED else ()
+
+
+def _harmonic(name: str) -> int:
+    """Return the harmonic index of a block."""
+    return PORTED[name][0] if name in PORTED else int(name.rsplit("_", 1)[1])
+
+
+def _copies(name: str, half: HalfSector) -> int:
+    """Return the energy of both halves of all sectors over that of a, and with waves b: cos^2 and
+    sin^2 of the phases are one half on the mean.
+    """
+    return 2 * half.count if _harmonic(name) == 0 else half.count
+
+
+def _block_matrix(name: str, matrix: sp.spmatrix) -> sp.csr_matrix:
+    """Return a matrix of the half for a, or for a and b."""
+    parts = [matrix] if _harmonic(name) == 0 else [matrix, matrix]
+    return sp.block_diag(parts, format="csr")
+
+
+def _unknowns(name: str, half: HalfSector, nodes: int) -> tuple[sp.csr_matrix, np.ndarray]:
+    """Return the basis of a block, of :func:`basis`, and the node (m,) of each unknown."""
+    h = _harmonic(name)
+    t, node = basis(half, nodes, h)
+    if h:
+        return t, node
+    # a holds axial motion, b torsion: the columns of each
+    part = ("axial", "torsion").index(name)
+    rows = t[3 * nodes * part : 3 * nodes * (part + 1)]
+    columns = np.asarray(abs(rows).sum(axis=0)).ravel() > 0
+    return rows[:, columns], node[columns]
+
+
+def _motion(
+    name: str, half: HalfSector, gram: np.ndarray, loads: np.ndarray, t: sp.csr_matrix
+) -> np.ndarray:
+    """Return the motion (c, m) of a whole seat by the unknowns, from its Gram matrix and the loads
+    of its part on the half.
+    """
+    components = _components(name)
+    block_gram = gram[np.ix_(components, components)]
+    block_loads = t.T @ _in_parts(loads, components)
+    motion = np.linalg.solve(block_gram, _copies(name, half) * block_loads.T)
+    motion[np.abs(motion) < ROUNDING * np.abs(motion).max(axis=1, keepdims=True)] = 0.0
+    return motion
 
 
 def _in_parts(six: np.ndarray, components: tuple[int, ...]) -> np.ndarray:

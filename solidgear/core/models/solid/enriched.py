@@ -16,6 +16,7 @@ from itertools import product
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
+import scipy.sparse as sp
 from skfem.refdom import RefHex, RefTet
 
 from solidgear.core.body.model import Enrichment
@@ -189,6 +190,82 @@ class Seat:
     facets: np.ndarray
     rigid: bool = False  #: whether they move as one rigid piece
     within: tuple[float, float] | None = None  #: ends along y, m, of the part that counts
+    cells: np.ndarray | None = None  #: whose mean motion is that of the port, in place of facets
+
+    def pieces(self, m: SolidMesh) -> Iterable:
+        """Return quadrature on the seat, of :meth:`SolidMesh.over_facets`."""
+        if self.cells is not None:
+            return m.over_cells(self.cells)
+        return m.over_facets(self.facets, self.within)
+
+
+@dataclass(frozen=True, eq=False)
+class Addition:
+    """Functions that one order more adds to a mesh, each with three components, and their
+    matrices.
+    """
+
+    mesh: SolidMesh
+    further: Further
+    numbers: np.ndarray  #: (k, ne) functions of every cell
+    signs: np.ndarray  #: (k, ne) that they have there
+    stiffness: sp.csr_matrix  #: (3 w, 3 w) N/m
+    coupling: sp.csr_matrix  #: (3 w, 3 n) stiffness between them and the nodes of the mesh, N/m
+    inertia: sp.csr_matrix  #: (w, n) mass between them and the nodes, of every component, kg
+
+    @classmethod
+    def of_mesh(cls, m: SolidMesh, materials: Sequence[Material]) -> Addition:
+        """Compute what one order more adds to a mesh."""
+        further = Further.beyond(m.name)
+        numbers, signs = further.numbered(m)
+        n = m.nodes.shape[1]
+        points, weights = _cell_rule(m.name) if m.name.startswith("tet") else gauss_box(4, 3)
+        basis = Tabulation(m.element, m.element, points)
+        value, slope = further.at(points)
+        basis.value = np.vstack([basis.value, value])
+        basis.slope = np.concatenate([basis.slope, slope])
+        stiffness, mass = integrals(
+            m,
+            materials,
+            basis,
+            weights,
+            np.vstack([m.dofs, n + numbers]),
+            np.vstack([np.ones(m.dofs.shape), signs]),
+        )
+        coupling, own = stiffness.rows_from(n)
+        between, _ = mass.rows_from(n)
+        return cls(m, further, numbers, signs, own, coupling, between)
+
+    @property
+    def count(self) -> int:
+        """Number w of the functions."""
+        return self.inertia.shape[0]
+
+    def alive(self, facets: np.ndarray) -> np.ndarray:
+        """Return the functions that do not vanish on some facets."""
+        corner = np.full((2, 1), 0.3) + np.array([[0.0, 0.2, 0.0], [0.0, 0.0, 0.1]])
+        parts = [np.zeros(0, int)]
+        for place, cells in self.mesh.local_facets(facets):
+            value, _ = self.further.at(self.mesh.on_facet(place, corner)[0])
+            parts.append(self.numbers[np.abs(value).max(axis=1) > 1e-9][:, cells].ravel())
+        return np.unique(np.concatenate(parts))
+
+    def loads(self, seat: Seat) -> np.ndarray:
+        """Return the loads (3 w, 6) of unit rigid motions of a seat, of :func:`weighed`."""
+        return weighed(self._pieces(seat), seat.place, self.count)[1]
+
+    def _pieces(
+        self, seat: Seat
+    ) -> Iterable[tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]]:
+        """Yield quadrature on a seat as :meth:`SolidMesh.over_facets`, with values (e, k, q)."""
+        pieces = (
+            self.mesh.quadrature_on(seat.facets, seat.within)
+            if seat.cells is None
+            else [self.mesh.quadrature_in(seat.cells)]
+        )
+        for points, cells, x, weight in pieces:
+            value, _ = self.further.at(points)
+            yield value * self.signs[:, cells].T[:, :, None], x, weight, self.numbers[:, cells]
 
 
 def enrichment(
@@ -203,63 +280,27 @@ def enrichment(
     have these seats and components; `held` are facets, and the components (3,) that do not move
     there.
     """
-    further = Further.beyond(m.name)
-    numbers, signs = further.numbered(m)
-    n, count = m.nodes.shape[1], int(numbers.max()) + 1
-    points, weights = _cell_rule(m.name) if m.name.startswith("tet") else gauss_box(4, 3)
-    basis = Tabulation(m.element, m.element, points)
-    value, slope = further.at(points)
-    basis.value, basis.slope = np.vstack([basis.value, value]), np.concatenate([basis.slope, slope])
-    stiffness, mass = integrals(
-        m,
-        materials,
-        basis,
-        weights,
-        np.vstack([m.dofs, n + numbers]),
-        np.vstack([np.ones(m.dofs.shape), signs]),
-    )
-    coupling, own = stiffness.rows_from(n)
-    between, _ = mass.rows_from(n)
+    more = Addition.of_mesh(m, materials)
+    n, count = m.nodes.shape[1], more.count
     moves = np.ones((count, 3))
     if held is not None:
         facets, still = held
-        moves[np.ix_(_alive(m, further, numbers, facets), still)] = 0.0
+        moves[np.ix_(more.alive(facets), still)] = 0.0
     rows = []
     for seat in seats:
         if seat.rigid:
             # what does not vanish on a rigid seat stands still: rigid motions are in the mesh
-            moves[_alive(m, further, numbers, seat.facets)] = 0.0
+            moves[more.alive(seat.facets)] = 0.0
             rows.append(np.zeros((len(components), 3 * count)))
             continue
-        gram, _ = weighed(m.over_facets(seat.facets, seat.within), seat.place, n)
-        _, loads = weighed(_over_facets(m, further, numbers, signs, seat), seat.place, count)
-        rows.append(rigid_part(gram, loads, components).toarray())
+        gram, _ = weighed(seat.pieces(m), seat.place, n)
+        rows.append(rigid_part(gram, more.loads(seat), components).toarray())
     return Enrichment(
-        copies * own,
-        copies * coupling,
-        copies * between,
+        copies * more.stiffness,
+        copies * more.coupling,
+        copies * more.inertia,
         np.vstack([np.zeros((0, 3 * count)), *rows]),
         moves.ravel(),
-        numbers,
+        np.repeat(np.arange(count), 3),
+        more.numbers,
     )
-
-
-def _alive(m: SolidMesh, further: Further, numbers: np.ndarray, facets: np.ndarray) -> np.ndarray:
-    """Return the functions that do not vanish on some facets."""
-    corner = np.full((2, 1), 0.3) + np.array([[0.0, 0.2, 0.0], [0.0, 0.0, 0.1]])
-    parts = [np.zeros(0, int)]
-    for place, cells in m.local_facets(facets):
-        value, _ = further.at(m.on_facet(place, corner)[0])
-        parts.append(numbers[np.abs(value).max(axis=1) > 1e-9][:, cells].ravel())
-    return np.unique(np.concatenate(parts))
-
-
-def _over_facets(
-    m: SolidMesh, further: Further, numbers: np.ndarray, signs: np.ndarray, seat: Seat
-) -> Iterable[tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]]:
-    """Yield quadrature on the facets of a seat as :meth:`SolidMesh.over_facets`, with values (e, k,
-    q) of further functions.
-    """
-    for points, cells, x, weight in m.quadrature_on(seat.facets, seat.within):
-        value, _ = further.at(points)
-        yield value * signs[:, cells].T[:, :, None], x, weight, numbers[:, cells]

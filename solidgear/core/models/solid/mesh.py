@@ -171,9 +171,14 @@ class SolidMesh:
 
     def over_cells(self, elements: np.ndarray):
         """Yield quadrature over elements, as of facets with volume for area."""
+        points, _, x, volume = self.quadrature_in(elements)
+        yield reference(self.element, points)[0], x, volume, self.dofs[:, elements]
+
+    def quadrature_in(self, elements: np.ndarray):
+        """Return quadrature in elements, as :meth:`quadrature_on` with volume for area."""
         points, weights = get_quadrature(self.mesh.refdom, 5)
         tab = self.tabulate(points, elements)
-        yield tab.value, tab.x, tab.det * weights, self.dofs[:, elements]
+        return points, elements, tab.x, tab.det * weights
 
     def facet_unknowns(self, facets: np.ndarray) -> np.ndarray:
         """Return the unknowns that do not vanish on some facets."""
