@@ -101,7 +101,8 @@ def solid_bounds(
     :func:`solidgear.core.bounds.harmonic.harmonic_bounds`.
     """
     order = ELEMENTS[body.mesh["element"]].order
-    share = 1 / (1 - (order / (order + 1)) ** (4 * sharpest_exponent(scene)))
+    rigid = [port.name for port in body.ports if port.attachment == "rigid"]
+    share = 1 / (1 - (order / (order + 1)) ** (4 * sharpest_exponent(scene, rigid)))
     size = 6 * len(body.ports)
     reached = np.zeros((size, size))
     parts: dict[int, tuple[np.ndarray, Errors]] = {}
