@@ -16,6 +16,9 @@ _MEASURED = json.loads((files("solidgear.core.bounds") / "safety.json").read_tex
 #: on bounds by local problems: errors that the richer space does not see
 LOCAL: float = _MEASURED["local problems"]["safety"]
 
+#: distance from a narrow seat that cells of first order see, over their depth
+REACH: float = _MEASURED["narrow seats"]["reach"]
+
 
 @dataclass(frozen=True)
 class Safety:

@@ -38,7 +38,7 @@ SHAPES = 10
 _LAYERED = [{**level, "around": AROUND} for level in HEXAHEDRA[:3]]
 #: what is solved: by the name of an element, meshes coarse to fine
 MESHES: dict[str, list[Level]] = {
-    "tet10": [{"refinement": 0.3}, *TETRAHEDRA[:2]],
+    "tet10": [{"refinement": 0.2}, {"refinement": 0.3}, TETRAHEDRA[0]],
     "hex20": _LAYERED,
     "hex27": _LAYERED[:1],
 }

@@ -1,0 +1,67 @@
+"""Seats narrower than cells: what one order more finds of their error."""
+
+import pytest
+
+import solidgear as sg
+from solidgear import Bearing, Port, Scene, Segment
+from solidgear.core.bounds import solid as bounds_solid
+from solidgear.core.bounds.narrow import AVERAGED, RIGID, narrow_share, share_of
+from solidgear.core.bounds.safety import LOCAL
+from solidgear.core.bounds.solid import solid_bounds
+
+COARSE = {"element": "tet10", "refinement": 0.2}
+
+
+def bar(width, *, tie="average", beside=None):
+    """A smooth bar of 30 mm with a port of some width, mm, and a rigid bearing beside it."""
+    lo, hi = (45 - width / 2) * 1e-3, (45 + width / 2) * 1e-3
+    port = Port(name="gear", y=45e-3, lo=lo, hi=hi, attachment=tie)
+    held = {"seat_width": 12e-3, "stiffness": {"kxx": 1e9, "kyy": 5e8, "kzz": 1e9, "kthy": 2e4}}
+    bearings = [Bearing(name=name, y=y * 1e-3, **held) for name, y in (("A", 10), ("B", 80))]
+    if beside is not None:
+        y = hi + beside * 1e-3 + 6e-3
+        bearings[1] = Bearing(name="B", y=y, attachment="rigid", **held)
+    segments = [Segment.cylinder("bar", length=0.09, diameter=0.03)]
+    return Scene.from_parts(segments, bearings=bearings, port=port)
+
+
+@pytest.mark.parametrize("exponent", [AVERAGED, RIGID])
+@pytest.mark.parametrize("order", [1, 2, 3])
+def test_a_wide_seat_leaves_what_the_exponent_at_its_ends_leaves(order, exponent):
+    theory = 1 / (1 - (order / (order + 1)) ** (4 * exponent))
+    assert share_of(order, 1e-6, exponent) == pytest.approx(theory, rel=1e-2)
+    # the narrower, the less is found
+    shares = [share_of(order, slimness, exponent) for slimness in (1e-3, 0.1, 1, 10, 1e3)]
+    assert shares == sorted(shares)
+
+
+def test_bars_hold_at_a_seat_narrower_than_its_cells(monkeypatch):
+    scene = bar(1.5)
+    names = ("C_thx", "C_yy")
+    exact = {str(v.quantity): v.value for v in sg.answer(scene, 1e-4, ask=names).values}
+    body = sg.build(scene, "solid", **COARSE)
+
+    def ends():
+        bounds = solid_bounds(scene, body, statics=True)
+        softer = [bounds.softer(LOCAL * bounds.more), bounds.softer(bounds.least)]
+        far, near = (sg.condense(one, scene, "gear").compliance for one in softer)
+        return {"C_thx": (near[3, 3], far[3, 3]), "C_yy": (near[1, 1], far[1, 1])}
+
+    for name, (near, far) in ends().items():
+        assert near < exact[name] < far
+    # of the ends of the seat alone, as if cells were small beside it
+    monkeypatch.setattr(bounds_solid, "narrow_share", lambda *_: 1.0)
+    assert all(far < exact[name] for name, (_, far) in ends().items())
+
+
+def test_the_gap_between_two_rigid_seats_counts_as_a_seat():
+    shares = []
+    for gap in (0.05, 10.0):
+        scene = bar(12.0, tie="rigid", beside=gap)
+        body = sg.build(scene, "solid", **COARSE)
+        shares.append(narrow_share(scene, body, 2))
+    assert shares[0] > 4
+    assert shares[1] < 2.5
+    # two loads on average beside each other leave nothing held between them
+    scene = bar(12.0, beside=0.05)
+    assert narrow_share(scene, sg.build(scene, "solid", **COARSE), 2) < 2.5
