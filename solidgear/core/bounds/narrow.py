@@ -20,6 +20,7 @@ import numpy as np
 
 from solidgear.core.bounds.safety import REACH
 from solidgear.core.models.solid.mesh import SolidMesh
+from solidgear.core.scene.shaft import without_axis
 
 if TYPE_CHECKING:
     from solidgear.core.body import Body
@@ -33,7 +34,7 @@ def narrow_share(scene: Scene, body: Body, order: int) -> float:
     """Return the largest energy of an error over that which one order more finds of it, at the seats of
     a body on a mesh of some order; one where nothing is known of its seats.
     """
-    if not isinstance(body.geometry, SolidMesh):
+    if without_axis(scene) or not isinstance(body.geometry, SolidMesh):
         return 1.0
     places = _places(scene, body, body.geometry)
     return max((share_of(order, slimness, a) for slimness, a in places), default=1.0)
