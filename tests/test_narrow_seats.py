@@ -1,11 +1,12 @@
 """Seats narrower than cells: what one order more finds of their error."""
 
+from dataclasses import replace
+
 import pytest
 
 import solidgear as sg
 from solidgear import Bearing, Port, Scene, Segment
-from solidgear.core.bounds import solid as bounds_solid
-from solidgear.core.bounds.narrow import AVERAGED, RIGID, narrow_share, share_of
+from solidgear.core.bounds.narrow import AVERAGED, RIGID, narrow_share, share_of, share_of_gap
 from solidgear.core.bounds.safety import LOCAL
 from solidgear.core.bounds.solid import solid_bounds
 
@@ -33,25 +34,29 @@ def test_a_wide_seat_leaves_what_the_exponent_at_its_ends_leaves(order, exponent
     # the narrower, the less is found
     shares = [share_of(order, slimness, exponent) for slimness in (1e-3, 0.1, 1, 10, 1e3)]
     assert shares == sorted(shares)
+    wide = share_of_gap(order, 1e-6)
+    assert wide == pytest.approx(share_of(order, 1e-6, RIGID), rel=1e-2)
 
 
-def test_bars_hold_at_a_seat_narrower_than_its_cells(monkeypatch):
+def ends(scene, bounds, place):
+    """The least and the most that a compliance of the port may be."""
+    return [
+        sg.condense(bounds.softer(more), scene, "gear").compliance[place, place]
+        for more in (bounds.least, LOCAL * bounds.more)
+    ]
+
+
+def test_bars_hold_at_a_seat_narrower_than_its_cells():
     scene = bar(1.5)
-    names = ("C_thx", "C_yy")
-    exact = {str(v.quantity): v.value for v in sg.answer(scene, 1e-4, ask=names).values}
-    body = sg.build(scene, "solid", **COARSE)
-
-    def ends():
-        bounds = solid_bounds(scene, body, statics=True)
-        softer = [bounds.softer(LOCAL * bounds.more), bounds.softer(bounds.least)]
-        far, near = (sg.condense(one, scene, "gear").compliance for one in softer)
-        return {"C_thx": (near[3, 3], far[3, 3]), "C_yy": (near[1, 1], far[1, 1])}
-
-    for name, (near, far) in ends().items():
+    places = {"C_thx": 3, "C_yy": 1}
+    exact = {str(v.quantity): v.value for v in sg.answer(scene, 1e-4, ask=tuple(places)).values}
+    bounds = solid_bounds(scene, sg.build(scene, "solid", **COARSE), statics=True)
+    # the same by the ends of the seat alone, as if cells were small beside it
+    short = replace(bounds, share=share_of(2, 1e-6, AVERAGED))
+    for name, place in places.items():
+        near, far = ends(scene, bounds, place)
         assert near < exact[name] < far
-    # of the ends of the seat alone, as if cells were small beside it
-    monkeypatch.setattr(bounds_solid, "narrow_share", lambda *_: 1.0)
-    assert all(far < exact[name] for name, (_, far) in ends().items())
+        assert ends(scene, short, place)[1] < exact[name]
 
 
 def test_the_gap_between_two_rigid_seats_counts_as_a_seat():
@@ -60,8 +65,18 @@ def test_the_gap_between_two_rigid_seats_counts_as_a_seat():
         scene = bar(12.0, tie="rigid", beside=gap)
         body = sg.build(scene, "solid", **COARSE)
         shares.append(narrow_share(scene, body, 2))
-    assert shares[0] > 4
+    assert shares[0] > 10
     assert shares[1] < 2.5
     # two loads on average beside each other leave nothing held between them
     scene = bar(12.0, beside=0.05)
     assert narrow_share(scene, sg.build(scene, "solid", **COARSE), 2) < 2.5
+
+
+def test_bars_hold_at_a_gap_narrower_than_its_cells():
+    scene = bar(12.0, tie="rigid", beside=0.2)
+    exact = {str(v.quantity): v.value for v in sg.answer(scene, 1e-4, ask=("C_yy",)).values}
+    bounds = solid_bounds(scene, sg.build(scene, "solid", **COARSE), statics=True)
+    near, far = ends(scene, bounds, 1)
+    assert near < exact["C_yy"] < far
+    short = replace(bounds, share=share_of(2, 1e-6, RIGID))
+    assert ends(scene, short, 1)[1] < exact["C_yy"]

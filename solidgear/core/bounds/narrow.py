@@ -8,17 +8,22 @@ resolves a distance of about ``h / p^2``, so that the energy that it does not se
 
 with the width w: p^(-4 a) where the seat is resolved, and as slowly as a logarithm where it is not.
 One order more takes ``(L(p) - L(p + 1)) / L(p)`` of it.
+
+Cells between two rigid seats are strained evenly across the gap g as deep as order p lets them be, which
+makes them too stiff by a factor ``1 + q``, ``q = b h / (p^2 g)``, and all but locks what is deeper
+than the gap is wide.  Of the flexibility that they lack, ``q / (1 + q)``, one order more takes
+
+    (1 - t) / (1 + t q),      t = (p / (p + 1))^2.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from solidgear.core.bounds.safety import REACH
+from solidgear.core.bounds.safety import GAP, REACH
 from solidgear.core.models.solid.mesh import SolidMesh
 from solidgear.core.scene.shaft import without_axis
 
@@ -28,6 +33,9 @@ if TYPE_CHECKING:
 
 #: exponents of displacement at the ends of averaged and rigid seats on a smooth surface
 AVERAGED, RIGID = 1.0, 1 / 2
+EXPONENTS = {"average": AVERAGED, "rigid": RIGID}
+#: ends along the shaft, depth of the cells below, m, and the exponent at the ends
+Seat = tuple[float, float, float, float]
 
 
 def narrow_share(scene: Scene, body: Body, order: int) -> float:
@@ -36,8 +44,14 @@ def narrow_share(scene: Scene, body: Body, order: int) -> float:
     """
     if without_axis(scene) or not isinstance(body.geometry, SolidMesh):
         return 1.0
-    places = _places(scene, body, body.geometry)
-    return max((share_of(order, slimness, a) for slimness, a in places), default=1.0)
+    seats = _seats(scene, body, body.geometry)
+    shares = [share_of(order, depth / (hi - lo), a) for lo, hi, depth, a in seats]
+    rigid = sorted(seat for seat in seats if seat[3] == RIGID)
+    for (_, end, *before), (start, _, *after) in pairwise(rigid):
+        if start > end:
+            depth = max(before[0], after[0])
+            shares.append(share_of_gap(order, depth / (start - end)))
+    return max(shares, default=1.0)
 
 
 def share_of(order: int, slimness: float, exponent: float) -> float:
@@ -55,27 +69,32 @@ def share_of(order: int, slimness: float, exponent: float) -> float:
     return float(missing / (missing - left))
 
 
-def _places(scene: Scene, body: Body, mesh: SolidMesh) -> Iterator[tuple[float, float]]:
-    """Yield depths of cells over widths of seats, and of gaps between rigid ones, with the exponent at
-    their ends.
+def share_of_gap(order: int, slimness: float) -> float:
+    """Return the same where cells are so many times deeper than a gap between two rigid seats is wide.
+
+    Examples
+    --------
+    >>> [round(share_of_gap(2, slimness), 2) for slimness in (0.01, 1.0, 100.0)]
+    [1.8, 1.9, 11.8]
     """
+    taken = (order / (order + 1)) ** 2
+    stiffer = GAP * slimness / order**2
+    return (1 + taken * stiffer) / (1 - taken)
+
+
+def _seats(scene: Scene, body: Body, mesh: SolidMesh) -> list[Seat]:
+    """Return the seats of a body, averaged and rigid ones."""
     stations = {station.name: station for station in scene.stations}
-    rigid: list[tuple[float, float, float]] = []
+    seats: list[Seat] = []
     for port in body.ports:
         station = stations.get(port.name)
-        if station is None or port.attachment not in ("average", "rigid"):
+        if station is None or port.attachment not in EXPONENTS:
             continue
         facets = mesh.seat(station, scene.segments, 1e-7 * scene.length)
-        if not len(facets):
-            continue
-        depth = _depth(mesh, facets)
-        held = port.attachment == "rigid"
-        yield depth / (station.hi - station.lo), RIGID if held else AVERAGED
-        if held:
-            rigid.append((station.lo, station.hi, depth))
-    for before, after in pairwise(sorted(rigid)):
-        if after[0] > before[1]:
-            yield max(before[2], after[2]) / (after[0] - before[1]), RIGID
+        if len(facets):
+            depth, exponent = _depth(mesh, facets), EXPONENTS[port.attachment]
+            seats.append((station.lo, station.hi, depth, exponent))
+    return seats
 
 
 def _depth(mesh: SolidMesh, facets: np.ndarray) -> float:

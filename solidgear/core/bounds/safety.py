@@ -18,6 +18,9 @@ LOCAL: float = _MEASURED["local problems"]["safety"]
 
 #: distance from a narrow seat that cells of first order see, over their depth
 REACH: float = _MEASURED["narrow seats"]["reach"]
+#: factor by which cells of first order are too stiff in a gap between rigid seats as wide as they are
+#: deep, less one
+GAP: float = _MEASURED["narrow seats"]["gap"]
 
 
 @dataclass(frozen=True)
