@@ -80,3 +80,9 @@ def test_bars_hold_at_a_gap_narrower_than_its_cells():
     assert near < exact["C_yy"] < far
     short = replace(bounds, share=share_of(2, 1e-6, RIGID))
     assert ends(scene, short, 1)[1] < exact["C_yy"]
+
+
+def test_half_a_part_has_the_seats_of_the_whole():
+    scene = sg.load("geometry/pinion_keyed.toml")
+    half = sg.build(scene, "solid", refinement=0.2, half=True)
+    assert narrow_share(scene, half, 2) > share_of(2, 1e-6, AVERAGED) + 0.01

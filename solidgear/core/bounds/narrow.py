@@ -42,9 +42,11 @@ def narrow_share(scene: Scene, body: Body, order: int) -> float:
     """Return the largest energy of an error over that which one order more finds of it, at the seats of
     a body on a mesh of some order; one where nothing is known of its seats.
     """
-    if without_axis(scene) or not isinstance(body.geometry, SolidMesh):
+    # half a part is drawn from the mesh of its half
+    mesh = next((m for m in _meshes(body) if isinstance(m, SolidMesh)), None)
+    if without_axis(scene) or mesh is None:
         return 1.0
-    seats = _seats(scene, body, body.geometry)
+    seats = _seats(scene, body, mesh)
     shares = [share_of(order, depth / (hi - lo), a) for lo, hi, depth, a in seats]
     rigid = sorted(seat for seat in seats if seat[3] == RIGID)
     for (_, end, *before), (start, _, *after) in pairwise(rigid):
@@ -80,6 +82,11 @@ def share_of_gap(order: int, slimness: float) -> float:
     taken = (order / (order + 1)) ** 2
     stiffer = GAP * slimness / order**2
     return (1 + taken * stiffer) / (1 - taken)
+
+
+def _meshes(body: Body) -> tuple[object, object]:
+    """Return the geometry of a body, and the mesh that it may have."""
+    return body.geometry, getattr(body.geometry, "mesh", None)
 
 
 def _seats(scene: Scene, body: Body, mesh: SolidMesh) -> list[Seat]:
