@@ -7,7 +7,7 @@ import pytest
 import solidgear as sg
 from solidgear import Bearing, Port, Scene, Segment
 from solidgear.core.bounds.narrow import AVERAGED, RIGID, narrow_share, share_of, share_of_gap
-from solidgear.core.bounds.safety import LOCAL
+from solidgear.core.bounds.safety import LOCAL, SLOWER
 from solidgear.core.bounds.solid import solid_bounds
 
 COARSE = {"element": "tet10", "refinement": 0.2}
@@ -86,3 +86,19 @@ def test_half_a_part_has_the_seats_of_the_whole():
     scene = sg.load("geometry/pinion_keyed.toml")
     half = sg.build(scene, "solid", refinement=0.2, half=True)
     assert narrow_share(scene, half, 2) > share_of(2, 1e-6, AVERAGED) + 0.01
+
+
+def test_of_hexahedra_with_all_products_one_order_more_tells_less():
+    scene = bar(12.0, tie="rigid")
+    exact = {str(v.quantity): v.value for v in sg.answer(scene, 1e-3, ask=("C_yy",)).values}
+    options = {"layers": 0, "radial_layers": 0, "edge_layers": 0, "relative_size": 2.0, "around": 8}
+    ratios = []
+    for element in ("hex20", "hex27"):
+        body = sg.build(scene, "solid", element=element, **options)
+        bounds = solid_bounds(scene, body, statics=True)
+        value = sg.condense(body, scene, "gear").compliance[1, 1]
+        near = sg.condense(bounds.softer(bounds.reached), scene, "gear").compliance[1, 1]
+        theory = bounds.share / SLOWER.get(element, 1.0)
+        ratios.append((exact["C_yy"] - value) / (near - value) / theory)
+    assert ratios[0] < 1
+    assert 1.1 * ratios[0] < ratios[1] < SLOWER["hex27"]

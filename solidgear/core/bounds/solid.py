@@ -30,6 +30,7 @@ from solidgear.core.body.cache import Cache
 from solidgear.core.body.model import Enrichment
 from solidgear.core.bounds.harmonic import lower_ends, on_ports, with_neighbours
 from solidgear.core.bounds.narrow import narrow_share
+from solidgear.core.bounds.safety import SLOWER
 from solidgear.core.bounds.sharpest import sharpest_exponent
 from solidgear.core.elements import ELEMENTS
 from solidgear.core.errors import SolidgearError
@@ -101,10 +102,11 @@ def solid_bounds(
     """Compute bounds of the flexibility and of some modes of a 3D body; parameters are those of
     :func:`solidgear.core.bounds.harmonic.harmonic_bounds`.
     """
-    order = ELEMENTS[body.mesh["element"]].order
+    element = body.mesh["element"]
+    order = ELEMENTS[element].order
     rigid = [port.name for port in body.ports if port.attachment == "rigid"]
     share = 1 / (1 - (order / (order + 1)) ** (4 * sharpest_exponent(scene, rigid)))
-    share = max(share, narrow_share(scene, body, order))
+    share = max(share, narrow_share(scene, body, order)) * SLOWER.get(element, 1.0)
     size = 6 * len(body.ports)
     reached = np.zeros((size, size))
     parts: dict[int, tuple[np.ndarray, Errors]] = {}
