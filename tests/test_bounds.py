@@ -16,8 +16,8 @@ from solidgear.core.body import Body, as_supports
 from solidgear.core.bounds import richer_space as meridian_pieces
 from solidgear.core.bounds.harmonic import (
     HarmonicBounds,
-    lower_ends_of,
     harmonic_bounds,
+    lower_ends_of,
     richer_space,
     with_tail,
 )
