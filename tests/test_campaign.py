@@ -8,13 +8,15 @@ import time
 import numpy as np
 import pytest
 
+from solidgear.core.judge.bars import ErrorBar
 from solidgear.core.ladder import build
+from solidgear.core.quantity import Quantity
 from solidgear.core.scene import Scene
 from validation.campaign import __main__ as command
 from validation.campaign import results, scoreboard, table
 from validation.campaign import run as running
 from validation.campaign.case import Run
-from validation.campaign.cases import CASES, answers, claims, pairs, shafts
+from validation.campaign.cases import CASES, answers, claims, pairs, shafts, solids
 from validation.campaign.cases.answers import goals_of, kind_of
 from validation.campaign.rows import (
     AGREES,
@@ -398,3 +400,34 @@ def test_a_resolved_change_goes_the_way_of_its_theorem(monkeypatch):
     wrong = pairs.judged(2).rows
     assert not any(row.held for row in wrong if row.tags["verdict"] == "resolved")
     assert any(row.tags["verdict"] == "resolved" for row in wrong)
+
+
+def test_of_a_solid_both_ends_of_a_number_are_held_against_the_truth():
+    # ends at 1.1 and 1.5, the middle 1.3
+    bar = ErrorBar((1.0,), 0.5, 0.5, None, 1.25, 0.0, 1.4, middle=1.3, aside=0.3)
+
+    def ends(name, value, truth):
+        rows = solids.rows_of(Quantity(name), value, bar, 1.0, Truth(truth, 0.0, 1.0, "made up"))
+        return {kind: (pytest.approx(limit), pytest.approx(error)) for kind, limit, error in rows}
+
+    assert ends("C_zz", 1.0, 1.35) == {"static": (0.2, -0.05), "lower side": (0.35, 0.1)}
+    # a truth nearer than the least growth shows
+    limit, error = ends("C_zz", 1.0, 1.05)["lower side"]
+    assert limit.expected < error.expected
+    assert ends("C_z,thx", 1.0, 1.2) == {"coupling": (0.2, 0.1)}
+    softer = ErrorBar((1.0,), 0.5, 0.5, None, 1.25, 0.0, 0.6, middle=0.7, aside=0.3)
+    rows = solids.rows_of(Quantity("K_zz"), 1.0, softer, 1.0, Truth(0.65, 0.0, 1.0, "made up"))
+    assert [row[1:] for row in rows] == [pytest.approx((0.2, 0.05)), pytest.approx((0.35, 0.1))]
+
+
+def test_a_solid_is_judged_on_one_mesh_and_told_what_it_costs():
+    truths = {"C_zz": Truth(1e-10, 1e-15, 1e-10, "made up")}
+    options = {"element": "hex20", "layers": 0, "relative_size": 2.0, "around": 8}
+    tags = {"element": "hex20", "mesh": "1"}
+    found = solids.judged("short plate", options, tags, truths, 30_000)
+    assert [row.tags["kind"] for row in found.rows] == ["static", "lower side"]
+    # the number is larger than that, though it can only grow
+    assert [row.held for row in found.rows] == [False, False]
+    assert [cost.tags["stage"] for cost in found.costs] == ["build", "statics", "modes", "estimate"]
+    with pytest.raises(ValueError, match="unknowns are more than"):
+        solids.judged("short plate", options, tags, truths, 100)

@@ -16,6 +16,14 @@ _MEASURED = json.loads((files("solidgear.core.bounds") / "safety.json").read_tex
 #: on bounds by local problems: errors that the richer space does not see
 LOCAL: float = _MEASURED["local problems"]["safety"]
 
+#: energies of errors over what one order more tells of them, by elements where this is not one
+SLOWER: dict[str, float] = _MEASURED["one order more"]["slower"]
+#: distance from a narrow seat that cells of first order see, over their depth
+REACH: float = _MEASURED["narrow seats"]["reach"]
+#: factor by which cells of first order are too stiff in a gap between rigid seats as wide as they are
+#: deep, less one
+GAP: float = _MEASURED["narrow seats"]["gap"]
+
 
 @dataclass(frozen=True)
 class Safety:

@@ -35,7 +35,9 @@ from solidgear.core.bounds.harmonic import (
     on_ports,
     with_neighbours,
 )
-from solidgear.core.bounds.sharpest import RIGID_EDGE, sharpest_exponent
+from solidgear.core.bounds.narrow import RIGID, narrow_share
+from solidgear.core.bounds.safety import SLOWER
+from solidgear.core.bounds.sharpest import sharpest_exponent
 from solidgear.core.elements import ELEMENTS
 from solidgear.core.errors import SolidgearError
 from solidgear.core.meshing.corners import SHOULDER, is_notched
@@ -120,8 +122,12 @@ def solid_bounds(
     """Compute bounds of the flexibility and of some modes of a 3D body; parameters are those of
     :func:`solidgear.core.bounds.harmonic.harmonic_bounds`.
     """
-    order = ELEMENTS[body.mesh["element"]].order
+    element = body.mesh["element"]
+    order = ELEMENTS[element].order
     share = 1 / (1 - (order / (order + 1)) ** (4 * _sharpest(scene, body)))
+    if not without_axis(scene):
+        share = max(share, narrow_share(scene, body, order))
+    share *= SLOWER.get(element, 1.0)
     size = 6 * len(body.ports)
     reached = np.zeros((size, size))
     # ports of every block, their signs in the block that it repeats, and errors of that one
@@ -167,12 +173,13 @@ def solid_bounds(
 def _sharpest(scene: Scene, body: Body) -> float:
     """Return the exponent of displacement at the sharpest edge of a body, with or without an axis."""
     if not without_axis(scene):
-        return sharpest_exponent(scene)
+        rigid = [port.name for port in body.ports if port.attachment == "rigid"]
+        return sharpest_exponent(scene, rigid)
     patches = [s for s in scene.stations if getattr(s, "patch", None) is not None]
     notched = is_notched(body.geometry.mesh)  # type: ignore[union-attr]
     return min(
         SHOULDER if notched else CONVEX,
-        RIGID_EDGE if any(s.attachment == "rigid" for s in patches) else CONVEX,
+        RIGID if any(s.attachment == "rigid" for s in patches) else CONVEX,
         PATCH if patches else CONVEX,
     )
 

@@ -9,8 +9,8 @@ from validation.campaign.cases.modes import Modes
 from validation.campaign.cases.pairing import Pairing
 from validation.campaign.cases.pairs import Pairs
 from validation.campaign.cases.points import Points
-from validation.campaign.cases.second_mesh import SecondMesh
 from validation.campaign.cases.shafts import Shafts
+from validation.campaign.cases.solids import Solids
 
 DRAWN = (
     Answers(),
@@ -23,6 +23,6 @@ DRAWN = (
     Fillets(),
     Identification(),
     Pairing(),
-    SecondMesh(),
+    Solids(),
 )
 CASES = {case.name: case for case in DRAWN}

@@ -1,0 +1,112 @@
+"""Exponents of displacement at the tip of wedges of several materials, bonded side by side.
+
+Displacements ``r^a g(theta)`` in plane strain are in equilibrium with faces free or held where
+
+    (K + a (C - C') - a^2 M) g = 0,
+
+K, C and M being integrals along the angle of strains that do not and that do grow with a: the roots
+are eigenvalues of a small matrix, none is looked for.  Across the plane ``C`` vanishes.  Functions
+are polynomials of high order along each wedge, to which g is smooth: eight digits.  In a body of
+revolution both problems rule near an edge (Williams 1952, J. Appl. Mech. 19, 526; Bogy 1971, J. Appl.
+Mech. 38, 377).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from solidgear.core.kernel.lobatto import gauss, lobatto
+
+if TYPE_CHECKING:
+    from solidgear.core.scene.parts import Material
+
+#: order of the polynomials along a wedge
+ORDER = 12
+#: smaller roots are those of translations, which rounding parts: no wedge comes near
+RIGID = 0.05
+#: angle of a wedge, rad, and its material
+Wedge = tuple[float, "Material"]
+
+
+def wedge_exponent(wedges: Sequence[Wedge], held: bool = False) -> float:
+    """Return the least exponent of displacement, its real part, at the tip of wedges side by side with
+    free outer faces, the first one held if so wanted; one at most.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from solidgear.core.scene import Material
+    >>> steel = Material(E=2.07e11, nu=0.3, density=7850)
+    >>> rubber = Material(E=2e9, nu=0.49, density=1400)
+    >>> round(wedge_exponent([(1.5 * np.pi, steel)]), 4)
+    0.5445
+    >>> round(wedge_exponent([(0.5 * np.pi, steel), (0.5 * np.pi, rubber)]), 3)
+    0.612
+    """
+    stiff = max(material.E for _, material in wedges)
+    plain = tuple((float(a), float(m.E / stiff), float(m.nu)) for a, m in wedges)
+    return _exponent(plain, held)
+
+
+@lru_cache(maxsize=256)
+def _exponent(wedges: tuple[tuple[float, float, float], ...], held: bool) -> float:
+    in_plane = _matrices([(angle, _plane(e, nu)) for angle, e, nu in wedges], 2)
+    across = _matrices([(angle, _across(e, nu)) for angle, e, nu in wedges], 1)
+    roots = np.concatenate([_roots(*in_plane, 2 * held), _roots(*across, 1 * held)]).real
+    return float(min(roots[roots > RIGID].min(), 1.0))
+
+
+#: elasticity, and the strains of functions that do and that do not grow with the exponent: of value
+#: and slope along the angle, (strain, component) each
+_Law = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
+
+
+def _plane(e: float, nu: float) -> _Law:
+    """Return radial and hoop strain and shear of displacements (radial, hoop)."""
+    shear = e / (2 * (1 + nu))
+    bulk = 2 * shear * nu / (1 - 2 * nu)
+    elasticity = np.array([[bulk + 2 * shear, bulk, 0], [bulk, bulk + 2 * shear, 0], [0, 0, shear]])
+    growing = np.array([[1.0, 0], [0, 0], [0, 1]])
+    value = np.array([[0.0, 0], [1, 0], [0, -1]])
+    slope = np.array([[0.0, 0], [0, 1], [1, 0]])
+    return elasticity, growing, value, slope
+
+
+def _across(e: float, nu: float) -> _Law:
+    """Return both shears of a displacement across the plane."""
+    elasticity = e / (2 * (1 + nu)) * np.eye(2)
+    return elasticity, np.array([[1.0], [0]]), np.zeros((2, 1)), np.array([[0.0], [1]])
+
+
+def _matrices(
+    wedges: Iterable[tuple[float, _Law]], components: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return M, C and K of wedges, unknowns by places along the angle."""
+    wedges = list(wedges)
+    size = components * (ORDER * len(wedges) + 1)
+    m, c, k = (np.zeros((size, size)) for _ in range(3))
+    points, weights = gauss(ORDER + 2)
+    value, slope = lobatto(ORDER, points)
+    for n, (angle, (elasticity, growing, still, turning)) in enumerate(wedges):
+        by_value = np.einsum("qn,sc->qsnc", value, still)
+        by_slope = np.einsum("qn,sc->qsnc", slope / angle, turning)
+        steady = (by_value + by_slope).reshape(len(points), len(elasticity), -1)
+        rising = np.einsum("qn,sc->qsnc", value, growing).reshape(steady.shape)
+        places = np.r_[n, n + 1, len(wedges) + 1 + (ORDER - 1) * n + np.arange(ORDER - 1)]
+        rows = (components * places[:, None] + np.arange(components)).ravel()
+        for matrix, left, right in ((m, rising, rising), (c, steady, rising), (k, steady, steady)):
+            part = np.einsum("q,qsi,st,qtj->ij", angle * weights, left, elasticity, right)
+            matrix[np.ix_(rows, rows)] += part
+    return m, c, k
+
+
+def _roots(m: np.ndarray, c: np.ndarray, k: np.ndarray, held: int) -> np.ndarray:
+    """Return the exponents, with as many unknowns at the first face held."""
+    m, c, k = (matrix[held:, held:] for matrix in (m, c, k))
+    left = np.linalg.solve(m, np.hstack([k, c - c.T]))
+    size = len(m)
+    return np.linalg.eigvals(np.vstack([np.hstack([np.zeros((size, size)), np.eye(size)]), left]))
