@@ -66,15 +66,21 @@ def component_rows(ports: Iterable[int], components: Sequence[int]) -> np.ndarra
 class Enrichment:
     """Functions that one order more adds to a mesh, of three components each, and what couples
     them to the unknowns of the mesh.
+
+    Of a mesh with mirror planes the matrices are sums over one cell of each set of images, times
+    the cells of it: right for motions that are symmetric or antisymmetric about the planes.
     """
 
-    stiffness: sp.csr_matrix  #: (m, m) N/m
-    coupling: sp.csr_matrix  #: (m, n) stiffness between them and the unknowns of the mesh, N/m
-    #: (m / 3, n / 3) mass between them and the unknowns of the mesh, of every component, kg
+    stiffness: sp.csr_matrix  #: (s, s) N/m
+    coupling: sp.csr_matrix  #: (s, n) stiffness between them and the unknowns of the mesh, N/m
+    #: (s / 3, n / 3) mass between them and the unknowns of the mesh, of every component, kg
     inertia: sp.csr_matrix
+    summed: np.ndarray  #: (s,) which of them the matrices have rows for
     ports: np.ndarray  #: (c p, m) motions of the ports by them
     moves: np.ndarray  #: (m,) 1 for components that move, 0 for those that are held
     cells: np.ndarray  #: (k, ne) functions of every cell
+    #: of the unknowns of the mesh and of the functions, in the planes x = 0, z = 0 and x = z
+    reflections: tuple[tuple[Reflection, Reflection], ...] = ()
 
 
 @dataclass(frozen=True, eq=False)

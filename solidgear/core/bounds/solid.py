@@ -20,7 +20,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -29,6 +29,7 @@ from solidgear.core.body import Body
 from solidgear.core.body.cache import Cache
 from solidgear.core.body.model import Enrichment
 from solidgear.core.bounds.harmonic import lower_ends, on_ports, with_neighbours
+from solidgear.core.bounds.pieces import Piece, independent, pieces_of
 from solidgear.core.bounds.sharpest import sharpest_exponent
 from solidgear.core.elements import ELEMENTS
 from solidgear.core.errors import SolidgearError
@@ -169,61 +170,101 @@ class Errors:
 
     fields: np.ndarray  #: (m, k) the part of one order more
     residuals: np.ndarray  #: (m, k)
-    scale: np.ndarray  #: (k,) root of the whole energy over that which was reached
     steps: int
 
     @property
     def energies(self) -> np.ndarray:
         """(k, k) products of energy."""
         products = self.fields.T @ self.residuals
-        return (products + products.T) / 2 * np.outer(self.scale, self.scale)
+        return (products + products.T) / 2
 
 
 def enriched_errors(
     body: Body, index: int, fields: np.ndarray, forces: np.ndarray, carried: np.ndarray
 ) -> Errors:
     """Compute the errors of displacements (n, k) of a block under forces (6 p, k) on its ports and
-    the inertia of an acceleration (n, k); refuse a problem that does not converge.
+    the inertia of an acceleration (n, k), with the energy that is expected where the search ends;
+    refuse a problem that does not converge.
     """
     block, factor = body.blocks[index], factors(body)[index]
-    more = _enrichment(body, index)
+    more, pieces = _enriched(body, index)
     back = more.coupling.T.tocsr()
-    held = more.moves[:, None]
     if block.expand is not None:
         fields, carried = block.expand @ fields, block.expand @ carried
-    inertia = (more.inertia @ carried.reshape(more.inertia.shape[1], -1)).reshape(len(held), -1)
-    residuals = held * (more.ports.T @ forces + inertia - more.coupling @ fields)
+    loads = more.ports.T @ forces
     heavy = block.mass @ block.rigid
     gram = block.rigid.T @ heavy
 
-    def schur(x: np.ndarray) -> np.ndarray:
-        load = back @ x
+    def residuals(piece: Piece) -> np.ndarray:
+        """Return the residuals of all parts, side by side."""
+        by_part = []
+        for part in piece.parts:
+            u, moved = part.of(fields), part.of(carried)
+            nodes = more.inertia @ moved.reshape(more.inertia.shape[1], -1)
+            left = nodes.reshape(len(more.summed), -1) - more.coupling @ u
+            by_part.append(part.fold.T @ loads + piece.near.T @ left)
+        return piece.held * np.hstack(by_part)
+
+    def schur(piece: Piece, x: np.ndarray) -> np.ndarray:
+        x = piece.near @ x
+        load = piece.parts[0].of(back @ x)
         u = factor.solve(load if block.expand is None else block.expand.T @ load)
         u -= block.rigid @ np.linalg.solve(gram, heavy.T @ u)
         if block.expand is not None:
             u = block.expand @ u
-        return held * (more.stiffness @ x - more.coupling @ u)
+        return piece.held * (piece.near.T @ (more.stiffness @ x - more.coupling @ u))
 
-    return _conjugate_gradients(schur, more.moves / more.stiffness.diagonal(), residuals)
+    lefts = [residuals(piece) for piece in pieces]
+    squares = [
+        np.einsum("nk,n,nk->k", left, piece.inverse, left).reshape(len(piece.parts), -1)
+        for piece, left in zip(pieces, lefts)
+    ]
+    whole = np.sum([part for square in squares for part in square], axis=0)
+    found, left_over = np.zeros(loads.shape), np.zeros(loads.shape)
+    steps = 0
+    for piece, left in zip(pieces, lefts):
+        count = len(piece.parts)
+        chosen, combined = independent(left, piece.inverse, np.tile(whole, count))
+        if not len(chosen):
+            continue
+        load = left[:, chosen]
+        x, scale, taken = _conjugate_gradients(partial(schur, piece), piece.inverse, load)
+        steps = max(steps, taken)
+        for part, how in zip(piece.parts, np.split(combined, count, axis=1)):
+            found += part.fold @ ((x * scale) @ how)
+            left_over += part.fold @ ((load * scale) @ how)
+    return Errors(found, left_over, steps)
 
 
 def _enrichment(body: Body, index: int) -> Enrichment:
-    """Return the enrichment of a block, kept with its body."""
+    """Return the enrichment of a block."""
+    return _enriched(body, index)[0]
+
+
+def _enriched(body: Body, index: int) -> tuple[Enrichment, list[Piece]]:
+    """Return the enrichment of a block and its pieces, kept with its body."""
     kept = body.cache.get(_Enrichments, _Enrichments)
     if index not in kept:
         enrich = body.blocks[index].enrich
         assert enrich is not None
-        kept[index] = enrich()
+        more = enrich()
+        kept[index] = more, pieces_of(more)
     return kept[index]
 
 
-class _Enrichments(dict[int, Enrichment]):
-    """Enrichments of blocks by their index."""
+class _Enrichments(dict[int, tuple[Enrichment, list[Piece]]]):
+    """Enrichments of blocks by their index, with their pieces."""
 
 
-def _conjugate_gradients(apply, inverse, load) -> Errors:
-    solution = np.zeros_like(load)
-    residual, step = load.copy(), np.zeros_like(load)
+def _conjugate_gradients(
+    apply: Callable[[np.ndarray], np.ndarray], inverse: np.ndarray, load: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, int]:
+    """Return solutions, the root of the whole energy of each over that which was reached, and the
+    steps taken; a column is left alone as soon as little of it is missing.
+    """
+    solution, scale = np.zeros_like(load), np.ones(load.shape[1])
+    going = np.arange(load.shape[1])
+    found, residual, step = np.zeros_like(load), load.copy(), np.zeros_like(load)
     size = np.zeros(load.shape[1])
     energy, gains = np.zeros(load.shape[1]), []
     for count in range(MOST_STEPS):
@@ -233,13 +274,21 @@ def _conjugate_gradients(apply, inverse, load) -> Errors:
         size = fresh
         pull = apply(step)
         along = size / np.einsum("ij,ij->j", step, pull)
-        solution += step * along
+        found += step * along
         residual -= pull * along
         gains.append(along * size)
         energy = energy + gains[-1]
         missing = _missing(gains)
-        if (missing < MISSING * energy).all():
-            return Errors(solution, load, np.sqrt(1 + missing / energy), count + 1)
+        enough = missing < MISSING * energy
+        if enough.any():
+            solution[:, going[enough]] = found[:, enough]
+            scale[going[enough]] = np.sqrt(1 + missing[enough] / energy[enough])
+            open_ = ~enough
+            going, size, energy = going[open_], size[open_], energy[open_]
+            found, residual, step = found[:, open_], residual[:, open_], step[:, open_]
+            gains = [gain[open_] for gain in gains[-2:]]
+        if not len(going):
+            return solution, scale, count + 1
     raise SolidgearError("the error in one order more was not found")
 
 

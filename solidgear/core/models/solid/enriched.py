@@ -10,7 +10,7 @@ edge or face has a sign in every cell, so that it is one function for all of the
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import reduce
 from itertools import product
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -18,10 +18,12 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from skfem.refdom import RefHex, RefTet
 
+from solidgear.core.body import Reflection
 from solidgear.core.body.model import Enrichment
 from solidgear.core.elements import ELEMENTS
 from solidgear.core.kernel.assembly import Tabulation, unknowns
 from solidgear.core.kernel.lobatto import gauss_box
+from solidgear.core.models.solid.images import Images, of_vectors, orbits
 from solidgear.core.models.solid.matrices import _cell_rule, integrals, rigid_part, weighed
 from solidgear.core.models.solid.mesh import SolidMesh
 
@@ -198,25 +200,31 @@ def enrichment(
     components: tuple[int, ...] = tuple(range(6)),
     held: tuple[np.ndarray, np.ndarray] | None = None,
     copies: int = 1,
+    reflections: Sequence[Reflection] = (),
 ) -> Enrichment:
     """Compute what one order more adds to a mesh of which so many copies make the body, whose ports
     have these seats and components; `held` are facets, and the components (3,) that do not move
-    there.
+    there; `reflections` are those of the unknowns of the mesh.
     """
     further = Further.beyond(m.name)
     numbers, signs = further.numbered(m)
+    images = [Images(m.mesh.t, partner[::3] // 3) for partner, _ in reflections]
+    cells, multiples = orbits(images[:2], m.dofs.shape[1])
+    summed, places = np.unique(numbers[:, cells], return_inverse=True)
     n, count = m.nodes.shape[1], int(numbers.max()) + 1
     points, weights = _cell_rule(m.name) if m.name.startswith("tet") else gauss_box(4, 3)
     basis = Tabulation(m.element, m.element, points)
     value, slope = further.at(points)
     basis.value, basis.slope = np.vstack([basis.value, value]), np.concatenate([basis.slope, slope])
+    some = replace(m, dofs=m.dofs[:, cells], segment=m.segment[cells])
     stiffness, mass = integrals(
-        m,
+        some,
         materials,
         basis,
         weights,
-        np.vstack([m.dofs, n + numbers]),
-        np.vstack([np.ones(m.dofs.shape), signs]),
+        np.vstack([some.dofs, n + places.reshape(len(numbers), -1)]),
+        np.vstack([np.ones(some.dofs.shape), signs[:, cells]]),
+        multiples,
     )
     coupling, own = stiffness.rows_from(n)
     between, _ = mass.rows_from(n)
@@ -238,9 +246,14 @@ def enrichment(
         copies * own,
         copies * coupling,
         copies * between,
+        (3 * summed[:, None] + np.arange(3)).ravel(),
         np.vstack([np.zeros((0, 3 * count)), *rows]),
         moves.ravel(),
         numbers,
+        tuple(
+            (reflection, of_vectors(reflection, *image.of_functions(further, numbers, signs)))
+            for reflection, image in zip(reflections, images)
+        ),
     )
 
 

@@ -36,9 +36,11 @@ def integrals(
     weights: np.ndarray,
     numbers: np.ndarray,
     signs: np.ndarray | None = None,
+    multiples: np.ndarray | None = None,
 ) -> tuple[Sum, Sum]:
     """Sum up stiffness (3n, 3n) and mass of one component (n, n) in some basis, tabulated at the
-    points of the weights, whose functions have numbers (nb, ne) and signs (nb, ne) in the cells.
+    points of the weights, whose functions have numbers (nb, ne) and signs (nb, ne) in the cells;
+    each cell counts so many times (ne,).
     """
     nb, nq = basis.value.shape
     pattern = Pattern(numbers)
@@ -56,6 +58,7 @@ def integrals(
         members = m.segment == index
         for part in batches(np.flatnonzero(members & is_straight), 8 * 20 * nb * nb):
             inverse, det = inverted(jac[:, :, part])
+            det = det if multiples is None else det * multiples[part]
             along = (inverse * det)[:, :, None, None] * inverse  # (reference, space) twice
             tensor = _elastic(along.transpose(1, 3, 4, 0, 2).reshape(3, 3, len(part), 9), lame, mu)
             turned = 1.0 if signs is None else _products_of_signs(signs, part)
@@ -68,6 +71,7 @@ def integrals(
             # from a node of each: absolute places would round the differences in a thin cell
             t = basis.on(places - places[:, :1])
             dv = t.det * weights
+            dv = dv if multiples is None else dv * multiples[part, None]
             g = t.gradient(np.sqrt(dv))
             inertia = rho * dv @ products
             if signs is not None:
