@@ -20,15 +20,37 @@ from solidgear.core.solve.symmetry import mirrored_basis, symmetric_bases
 
 #: of the residual of a displacement, squared: a part that is none, or that follows from others
 NONE, FOLLOWS = 1e-8, 1e-12
+#: of the square of a displacement: a part of a kind that is none
+ROUNDING = 1e-16
+
+
+class Whole:
+    """Basis of all functions."""
+
+    @property
+    def T(self) -> Whole:
+        """Itself."""
+        return self
+
+    def __matmul__(self, columns: np.ndarray) -> np.ndarray:
+        return columns
 
 
 @dataclass(frozen=True)
 class Part:
     """Functions and displacements of one kind."""
 
-    fold: sp.csr_matrix  #: (m, p) orthonormal basis of these functions
+    fold: sp.csr_matrix | Whole  #: (m, p) orthonormal basis of these functions
     planes: tuple[tuple[Reflection, float], ...]  #: mirrors of the mesh, and the parity in each
     turn: Reflection | None = None  #: mirror of the mesh that makes another kind of it
+
+    def columns(self, fields: np.ndarray) -> np.ndarray:
+        """Return the places of the displacements (n, k) that have a part of this kind."""
+        if not self.planes:
+            return np.arange(fields.shape[1])
+        size = np.einsum("nk,nk->k", fields, fields)
+        part = self.of(fields)
+        return np.flatnonzero(np.einsum("nk,nk->k", part, part) > ROUNDING * size)
 
     def of(self, fields: np.ndarray) -> np.ndarray:
         """Return the part (n, k) of displacements or forces that is of this kind, turned."""
@@ -45,33 +67,31 @@ class Piece:
     """Kinds of functions that have one problem, the first of which is not turned."""
 
     parts: tuple[Part, ...]
-    near: sp.csr_matrix  #: (m', p) basis of the first, of the functions that were summed up
+    near: sp.csr_matrix | Whole  #: (m', p) basis of the first, of functions that were summed up
     held: np.ndarray  #: (p, 1) 0 for functions that are held
     inverse: np.ndarray  #: (p,) of the diagonal of the stiffness, 0 for functions that are held
 
 
 def pieces_of(more: Enrichment) -> list[Piece]:
     """Return the pieces of an enrichment: one without mirror planes."""
-    size = len(more.moves)
-    planes = [mesh for mesh, _ in more.reflections[:2]]
-    if planes:
-        bases = symmetric_bases(size, [functions for _, functions in more.reflections[:2]])
-    else:
-        bases = {(): sp.identity(size, format="csr")}
     diagonal = more.stiffness.diagonal()
+    if not more.reflections:
+        return [Piece((Part(Whole(), ()),), Whole(), more.moves[:, None], more.moves / diagonal)]
+    planes = [mesh for mesh, _ in more.reflections[:2]]
+    bases = symmetric_bases(len(more.moves), [images for _, images in more.reflections[:2]])
     pieces = []
     for kind, fold in bases.items():
         parts = [Part(fold, tuple(zip(planes, kind)))]
         if len(more.reflections) == 3 and kind[0] != kind[-1]:
             if kind < kind[::-1]:
                 continue  # solved beside the other one
-            mesh, functions = more.reflections[2]
-            turned = mirrored_basis(fold, functions)
+            mesh, images = more.reflections[2]
+            turned = mirrored_basis(fold, images)
             parts.append(Part(turned, tuple(zip(planes, kind[::-1])), mesh))
         near = fold[more.summed]
-        held = (fold.power(2).T @ more.moves)[:, None]
-        inverse = held[:, 0] / (near.power(2).T @ diagonal)
-        pieces.append(Piece(tuple(parts), near, held, inverse))
+        held = fold.power(2).T @ more.moves
+        inverse = held / (near.power(2).T @ diagonal)
+        pieces.append(Piece(tuple(parts), near, held[:, None], inverse))
     return pieces
 
 

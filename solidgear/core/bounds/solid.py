@@ -199,10 +199,12 @@ def enriched_errors(
         """Return the residuals of all parts, side by side."""
         by_part = []
         for part in piece.parts:
-            u, moved = part.of(fields), part.of(carried)
-            nodes = more.inertia @ moved.reshape(more.inertia.shape[1], -1)
-            left = nodes.reshape(len(more.summed), -1) - more.coupling @ u
-            by_part.append(part.fold.T @ loads + piece.near.T @ left)
+            left = np.zeros((len(piece.held), loads.shape[1]))
+            k = part.columns(fields)
+            nodes = more.inertia @ part.of(carried[:, k]).reshape(more.inertia.shape[1], -1)
+            inner = nodes.reshape(len(more.summed), -1) - more.coupling @ part.of(fields[:, k])
+            left[:, k] = part.fold.T @ loads[:, k] + piece.near.T @ inner
+            by_part.append(left)
         return piece.held * np.hstack(by_part)
 
     def schur(piece: Piece, x: np.ndarray) -> np.ndarray:
@@ -270,12 +272,14 @@ def _conjugate_gradients(
     for count in range(MOST_STEPS):
         z = inverse[:, None] * residual
         fresh = np.einsum("ij,ij->j", residual, z)
-        step = z + step * np.divide(fresh, size, out=np.zeros_like(size), where=size > 0)
+        step *= np.divide(fresh, size, out=np.zeros_like(size), where=size > 0)
+        step += z
         size = fresh
         pull = apply(step)
         along = size / np.einsum("ij,ij->j", step, pull)
         found += step * along
-        residual -= pull * along
+        pull *= along
+        residual -= pull
         gains.append(along * size)
         energy = energy + gains[-1]
         missing = _missing(gains)

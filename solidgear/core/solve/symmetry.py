@@ -87,7 +87,10 @@ def _solver(pieces):
         width = columns.shape[1]
         out = np.zeros_like(columns, dtype=float)
         for folds, back, factor in pieces:
-            solution = factor.solve(np.hstack([b @ columns for b in back]))
+            folded = np.hstack([b @ columns for b in back])
+            if not folded.any():
+                continue  # loads of another kind
+            solution = factor.solve(folded)
             for i, fold in enumerate(folds):
                 out += fold @ solution[:, i * width : (i + 1) * width]
         return out.reshape(rhs.shape)

@@ -225,9 +225,10 @@ def enrichment(
         np.vstack([some.dofs, n + places.reshape(len(numbers), -1)]),
         np.vstack([np.ones(some.dofs.shape), signs[:, cells]]),
         multiples,
+        first=len(m.dofs),
     )
-    coupling, own = stiffness.rows_from(n)
-    between, _ = mass.rows_from(n)
+    coupling, own = stiffness.divided(n)
+    between, _ = mass.divided(n)
     moves = np.ones((count, 3))
     if held is not None:
         facets, still = held
