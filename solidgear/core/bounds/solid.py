@@ -33,6 +33,7 @@ from solidgear.core.bounds.pieces import Piece, independent, pieces_of
 from solidgear.core.bounds.sharpest import sharpest_exponent
 from solidgear.core.elements import ELEMENTS
 from solidgear.core.errors import SolidgearError
+from solidgear.core.solve.inertia_relief import ratio
 from solidgear.core.solve.modes import Mode, ModeSet
 from solidgear.core.solve.shifted import factors
 from solidgear.core.solve.statics import SOLVED, flexibility, port_fields
@@ -222,19 +223,18 @@ def enriched_errors(
         for piece, left in zip(pieces, lefts)
     ]
     whole = np.sum([part for square in squares for part in square], axis=0)
-    found, left_over = np.zeros(loads.shape), np.zeros(loads.shape)
-    steps = 0
+    searches, combined = [], []
     for piece, left in zip(pieces, lefts):
-        count = len(piece.parts)
-        chosen, combined = independent(left, piece.inverse, np.tile(whole, count))
-        if not len(chosen):
-            continue
-        load = left[:, chosen]
-        x, scale, taken = _conjugate_gradients(partial(schur, piece), piece.inverse, load)
-        steps = max(steps, taken)
-        for part, how in zip(piece.parts, np.split(combined, count, axis=1)):
-            found += part.fold @ ((x * scale) @ how)
-            left_over += part.fold @ ((load * scale) @ how)
+        chosen, how = independent(left, piece.inverse, np.tile(whole, len(piece.parts)))
+        searches.append(_Search(partial(schur, piece), piece.inverse, left[:, chosen]))
+        combined.append(how)
+    steps = _found(searches)
+    found, left_over = np.zeros(loads.shape), np.zeros(loads.shape)
+    for piece, search, how in zip(pieces, searches, combined):
+        scale = np.sqrt(1 + ratio(search.missing, search.energy))
+        for part, by_part in zip(piece.parts, np.split(how, len(piece.parts), axis=1)):
+            found += part.fold @ ((search.solution * scale) @ by_part)
+            left_over += part.fold @ ((search.load * scale) @ by_part)
     return Errors(found, left_over, steps)
 
 
@@ -258,41 +258,57 @@ class _Enrichments(dict[int, tuple[Enrichment, list[Piece]]]):
     """Enrichments of blocks by their index, with their pieces."""
 
 
-def _conjugate_gradients(
-    apply: Callable[[np.ndarray], np.ndarray], inverse: np.ndarray, load: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, int]:
-    """Return solutions, the root of the whole energy of each over that which was reached, and the
-    steps taken; a column is left alone as soon as little of it is missing.
-    """
-    solution, scale = np.zeros_like(load), np.ones(load.shape[1])
-    going = np.arange(load.shape[1])
-    found, residual, step = np.zeros_like(load), load.copy(), np.zeros_like(load)
-    size = np.zeros(load.shape[1])
-    energy, gains = np.zeros(load.shape[1]), []
-    for count in range(MOST_STEPS):
-        z = inverse[:, None] * residual
-        fresh = np.einsum("ij,ij->j", residual, z)
-        step *= np.divide(fresh, size, out=np.zeros_like(size), where=size > 0)
-        step += z
-        size = fresh
-        pull = apply(step)
-        along = size / np.einsum("ij,ij->j", step, pull)
-        found += step * along
+class _Search:
+    """Conjugate gradients for the solutions of one piece, by the product with its matrix."""
+
+    def __init__(
+        self,
+        apply: Callable[[np.ndarray], np.ndarray],
+        inverse: np.ndarray,
+        load: np.ndarray,
+    ):
+        self._apply, self._inverse = apply, inverse
+        self.load, self.solution = load, np.zeros_like(load)
+        self._residual, self._step = load.copy(), np.zeros_like(load)
+        self._size = np.zeros(load.shape[1])
+        self.energy: np.ndarray = np.zeros(load.shape[1])
+        self._gains: list[np.ndarray] = []
+
+    def advance(self) -> None:
+        """Take a step."""
+        z = self._inverse[:, None] * self._residual
+        size = np.einsum("ij,ij->j", self._residual, z)
+        self._step *= ratio(size, self._size)
+        self._step += z
+        self._size = size
+        pull = self._apply(self._step)
+        along = ratio(size, np.einsum("ij,ij->j", self._step, pull))
+        self.solution += self._step * along
         pull *= along
-        residual -= pull
-        gains.append(along * size)
-        energy = energy + gains[-1]
-        missing = _missing(gains)
-        enough = missing < MISSING * energy
-        if enough.any():
-            solution[:, going[enough]] = found[:, enough]
-            scale[going[enough]] = np.sqrt(1 + missing[enough] / energy[enough])
-            open_ = ~enough
-            going, size, energy = going[open_], size[open_], energy[open_]
-            found, residual, step = found[:, open_], residual[:, open_], step[:, open_]
-            gains = [gain[open_] for gain in gains[-2:]]
-        if not len(going):
-            return solution, scale, count + 1
+        self._residual -= pull
+        self._gains = [*self._gains[-2:], along * size]
+        self.energy = self.energy + self._gains[-1]
+
+    @property
+    def missing(self) -> np.ndarray:
+        """(k,) energy that is still missing, if gains go on to fall as they have."""
+        return _missing(self._gains)
+
+    @property
+    def done(self) -> bool:
+        """Whether little is missing of all columns."""
+        return bool((self.missing <= MISSING * self.energy).all())
+
+
+def _found(searches: Sequence[_Search]) -> int:
+    """Advance until little is missing anywhere, and return the steps: the energy of some columns
+    rests at half of its end for a while, which others show that do not rest at the same time.
+    """
+    for count in range(MOST_STEPS):
+        for search in searches:
+            search.advance()
+        if all(search.done for search in searches):
+            return count + 1
     raise SolidgearError("the error in one order more was not found")
 
 
@@ -300,5 +316,5 @@ def _missing(gains: Sequence[np.ndarray]) -> np.ndarray:
     """Return the energy that is still missing, if gains go on to fall as they have."""
     if len(gains) < 3:
         return np.full(gains[-1].shape, np.inf)
-    ratio = np.sqrt(gains[-1] / gains[-3])
-    return np.where(ratio < 1, gains[-1] * ratio / np.maximum(1 - ratio, 1e-9), np.inf)
+    left = np.sqrt(ratio(gains[-1], gains[-3]))
+    return np.where(left < 1, gains[-1] * left / np.maximum(1 - left, 1e-9), np.inf)
