@@ -44,7 +44,10 @@ def _exponents(scene: Scene) -> Iterator[float]:
             ends = (station.lo, station.hi)
             near = 1e-9 * scene.length
             notched = any(
-                abs(edge.y - end) < near for edge in scene.outline.edges if edge.steps for end in ends
+                abs(edge.y - end) < near
+                for edge in scene.outline.edges
+                if edge.steps
+                for end in ends
             )
             yield RIGID_CORNER if notched else RIGID_EDGE
     for a, b in pairwise(scene.segments):

@@ -33,6 +33,8 @@ from solidgear.core.bounds.pieces import Piece, independent, pieces_of
 from solidgear.core.bounds.sharpest import sharpest_exponent
 from solidgear.core.elements import ELEMENTS
 from solidgear.core.errors import SolidgearError
+from solidgear.core.kernel.room import MB
+from solidgear.core.machine.memory import NoRoom, require
 from solidgear.core.solve.inertia_relief import ratio
 from solidgear.core.solve.modes import Mode, ModeSet
 from solidgear.core.solve.shifted import factors
@@ -47,6 +49,10 @@ MISSING = 0.04
 ROUND = 0.97
 #: steps after which they have failed
 MOST_STEPS = 200
+#: vectors of every column that are held while they go on
+COPIES = 8
+#: way out of an estimate that finds no room
+COARSER = "use a coarser mesh"
 
 
 @dataclass
@@ -192,6 +198,9 @@ def enriched_errors(
     back = more.coupling.T.tocsr()
     if block.expand is not None:
         fields, carried = block.expand @ fields, block.expand @ carried
+    count = fields.shape[1]
+    numbers = COPIES * count * (len(more.moves) + fields.shape[0]) + more.coupling.nnz
+    require(8 * numbers / MB, f"error bars by {len(more.moves)} unknowns of one order more")
     loads = more.ports.T @ forces
     heavy = block.mass @ block.rigid
     gram = block.rigid.T @ heavy
@@ -249,7 +258,10 @@ def _enriched(body: Body, index: int) -> tuple[Enrichment, list[Piece]]:
     if index not in kept:
         enrich = body.blocks[index].enrich
         assert enrich is not None
-        more = enrich()
+        try:
+            more = enrich()
+        except NoRoom as error:
+            raise error.of_model(f"error bars of the {body.fidelity} model", COARSER) from None
         kept[index] = more, pieces_of(more)
     return kept[index]
 

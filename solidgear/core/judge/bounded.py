@@ -101,9 +101,7 @@ def bounds_of(
     one.
     """
     if body.blocks[0].enrich is not None:
-        return solid_bounds(
-            scene, body, statics=statics, modes=modes, wanted=wanted, safety=LOCAL
-        )
+        return solid_bounds(scene, body, statics=statics, modes=modes, wanted=wanted, safety=LOCAL)
     return harmonic_bounds(
         coned(scene), body, statics=statics, modes=modes, wanted=wanted, safety=LOCAL, later=later
     )

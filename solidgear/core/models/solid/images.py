@@ -77,9 +77,7 @@ def orbits(images: Sequence[Images], cells: int) -> tuple[np.ndarray, np.ndarray
     return np.unique(first, return_counts=True)
 
 
-def of_vectors(
-    reflection: Reflection, partner: np.ndarray, sign: np.ndarray
-) -> Reflection:
+def of_vectors(reflection: Reflection, partner: np.ndarray, sign: np.ndarray) -> Reflection:
     """Return the mirror of vectors that belong to functions, three components each, from that of the
     unknowns of a mesh.
     """
