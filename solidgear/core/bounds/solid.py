@@ -234,17 +234,17 @@ def enriched_errors(
     whole = np.sum([part for square in squares for part in square], axis=0)
     searches, combined = [], []
     for piece, left in zip(pieces, lefts):
-        chosen, how = independent(left, piece.inverse, np.tile(whole, len(piece.parts)))
+        chosen, combination = independent(left, piece.inverse, np.tile(whole, len(piece.parts)))
         searches.append(_Search(partial(schur, piece), piece.inverse, left[:, chosen]))
-        combined.append(how)
-    steps = _found(searches)
-    found, left_over = np.zeros(loads.shape), np.zeros(loads.shape)
-    for piece, search, how in zip(pieces, searches, combined):
+        combined.append(combination)
+    steps = _converged(searches)
+    solutions, functionals = np.zeros(loads.shape), np.zeros(loads.shape)
+    for piece, search, combination in zip(pieces, searches, combined):
         scale = np.sqrt(1 + ratio(search.missing, search.energy))
-        for part, by_part in zip(piece.parts, np.split(how, len(piece.parts), axis=1)):
-            found += part.fold @ ((search.solution * scale) @ by_part)
-            left_over += part.fold @ ((search.load * scale) @ by_part)
-    return Errors(found, left_over, steps)
+        for part, by_part in zip(piece.parts, np.split(combination, len(piece.parts), axis=1)):
+            solutions += part.fold @ ((search.solution * scale) @ by_part)
+            functionals += part.fold @ ((search.load * scale) @ by_part)
+    return Errors(solutions, functionals, steps)
 
 
 def _enrichment(body: Body, index: int) -> Enrichment:
@@ -307,19 +307,19 @@ class _Search:
         return _missing(self._gains)
 
     @property
-    def done(self) -> bool:
+    def converged(self) -> bool:
         """Whether little is missing of all columns."""
         return bool((self.missing <= MISSING * self.energy).all())
 
 
-def _found(searches: Sequence[_Search]) -> int:
+def _converged(searches: Sequence[_Search]) -> int:
     """Advance until little is missing anywhere, and return the steps: the energy of some columns
     rests at half of its end for a while, which others show that do not rest at the same time.
     """
     for count in range(MOST_STEPS):
         for search in searches:
             search.advance()
-        if all(search.done for search in searches):
+        if all(search.converged for search in searches):
             return count + 1
     raise SolidgearError("the error in one order more was not found")
 

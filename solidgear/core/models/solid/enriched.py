@@ -216,14 +216,14 @@ def enrichment(
     basis = Tabulation(m.element, m.element, points)
     value, slope = further.at(points)
     basis.value, basis.slope = np.vstack([basis.value, value]), np.concatenate([basis.slope, slope])
-    some = replace(m, dofs=m.dofs[:, cells], segment=m.segment[cells])
+    part = replace(m, dofs=m.dofs[:, cells], segment=m.segment[cells])
     stiffness, mass = integrals(
-        some,
+        part,
         materials,
         basis,
         weights,
-        np.vstack([some.dofs, n + places.reshape(len(numbers), -1)]),
-        np.vstack([np.ones(some.dofs.shape), signs[:, cells]]),
+        np.vstack([part.dofs, n + places.reshape(len(numbers), -1)]),
+        np.vstack([np.ones(part.dofs.shape), signs[:, cells]]),
         multiples,
         first=len(m.dofs),
     )
