@@ -3,14 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import Any, Protocol
 
 import numpy as np
 
 from solidgear.core.body import Reflection
 
-if TYPE_CHECKING:
-    from solidgear.core.models.solid.enriched import Further
+
+class Functions(Protocol):
+    """Functions on a reference cell."""
+
+    @property
+    def refdom(self) -> Any:
+        """Reference cell of scikit-fem."""
+
+    def at(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return values (k, q) and slopes (k, 3, q) at reference points (3, q)."""
 
 
 class Images:
@@ -35,7 +43,7 @@ class Images:
         self.corners = (corners[:, self.cells] == moved[:, None]).argmax(axis=1)
 
     def of_functions(
-        self, further: Further, numbers: np.ndarray, signs: np.ndarray
+        self, further: Functions, numbers: np.ndarray, signs: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
         """Return the function that every one becomes in the mirror, and the sign that it has there,
         from the numbers (k, ne) and signs (k, ne) of those of all cells.
