@@ -66,17 +66,23 @@ def component_rows(ports: Iterable[int], components: Sequence[int]) -> np.ndarra
 class Enrichment:
     """Unknowns of the functions that one order more adds to a mesh, and what couples them to those
     of the mesh.
+
+    Of a mesh with mirror planes the matrices are sums over one cell of each set of images, times
+    the cells of it: right for motions that are symmetric or antisymmetric about the planes.
     """
 
-    stiffness: sp.csr_matrix  #: (m, m) N/m
-    coupling: sp.csr_matrix  #: (m, n) stiffness between them and the unknowns of the mesh, N/m
-    #: mass between them and the unknowns of the mesh, kg: (m, n), or (m / c, n / c) where it is the
+    stiffness: sp.csr_matrix  #: (s, s) N/m
+    coupling: sp.csr_matrix  #: (s, n) stiffness between them and the unknowns of the mesh, N/m
+    #: mass between them and the unknowns of the mesh, kg: (s, n), or (s / c, n / c) where it is the
     #: same for each of c components, which are numbered together
     inertia: sp.csr_matrix
+    summed: np.ndarray  #: (s,) which of them the matrices have rows for
     ports: np.ndarray  #: (c p, m) motions of the ports by them
     moves: np.ndarray  #: (m,) 1 for unknowns that move, 0 for those that are held
     functions: np.ndarray  #: (m,) function of every unknown
     cells: np.ndarray  #: (k, ne) functions of every cell
+    #: of the unknowns of the mesh and of the functions, in the planes x = 0, z = 0 and x = z
+    reflections: tuple[tuple[Reflection, Reflection], ...] = ()
 
 
 @dataclass(frozen=True, eq=False)

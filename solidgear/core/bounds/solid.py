@@ -20,7 +20,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -36,12 +36,16 @@ from solidgear.core.bounds.harmonic import (
     with_neighbours,
 )
 from solidgear.core.bounds.narrow import RIGID, narrow_share
+from solidgear.core.bounds.pieces import Piece, independent, pieces_of
 from solidgear.core.bounds.safety import SLOWER
 from solidgear.core.bounds.sharpest import sharpest_exponent
 from solidgear.core.elements import ELEMENTS
 from solidgear.core.errors import SolidgearError
+from solidgear.core.kernel.room import MB
+from solidgear.core.machine.memory import NoRoom, require
 from solidgear.core.meshing.corners import SHOULDER, is_notched
 from solidgear.core.scene.shaft import without_axis
+from solidgear.core.solve.inertia_relief import ratio
 from solidgear.core.solve.modes import Mode, ModeSet
 from solidgear.core.solve.shifted import factors
 from solidgear.core.solve.statics import flexibility, port_fields, twin_matrix
@@ -60,6 +64,10 @@ ROUND = 0.97
 CONVEX, PATCH = 1.5, 1.0
 #: steps after which they have failed
 MOST_STEPS = 200
+#: vectors of every column that are held while they go on
+COPIES = 8
+#: way out of an estimate that finds no room
+COARSER = "use a coarser mesh"
 
 
 class NoBounds(SolidgearError):
@@ -281,83 +289,150 @@ class Errors:
 
     fields: np.ndarray  #: (m, k) the part of one order more
     residuals: np.ndarray  #: (m, k)
-    scale: np.ndarray  #: (k,) root of the whole energy over that which was reached
     steps: int
 
     @property
     def energies(self) -> np.ndarray:
         """(k, k) products of energy."""
         products = self.fields.T @ self.residuals
-        return (products + products.T) / 2 * np.outer(self.scale, self.scale)
+        return (products + products.T) / 2
 
 
 def enriched_errors(
     body: Body, index: int, fields: np.ndarray, forces: np.ndarray, carried: np.ndarray
 ) -> Errors:
     """Compute the errors of displacements (n, k) of a block under forces (6 p, k) on its ports and
-    the inertia of an acceleration (n, k); refuse a problem that does not converge.
+    the inertia of an acceleration (n, k), with the energy that is expected where the search ends;
+    refuse a problem that does not converge.
     """
     block, factor = body.blocks[index], factors(body)[index]
-    more = _enrichment(body, index)
+    more, pieces = _enriched(body, index)
     back = more.coupling.T.tocsr()
-    held = more.moves[:, None]
     if block.expand is not None:
         fields, carried = block.expand @ fields, block.expand @ carried
-    inertia = (more.inertia @ carried.reshape(more.inertia.shape[1], -1)).reshape(len(held), -1)
-    residuals = held * (more.ports.T @ forces + inertia - more.coupling @ fields)
+    count = fields.shape[1]
+    numbers = COPIES * count * (len(more.moves) + fields.shape[0]) + more.coupling.nnz
+    require(8 * numbers / MB, f"error bars by {len(more.moves)} unknowns of one order more")
+    loads = more.ports.T @ forces
     heavy = block.mass @ block.rigid
     gram = block.rigid.T @ heavy
 
-    def schur(x: np.ndarray) -> np.ndarray:
-        load = back @ x
+    def residuals(piece: Piece) -> np.ndarray:
+        """Return the residuals of all parts, side by side."""
+        by_part = []
+        for part in piece.parts:
+            left = np.zeros((len(piece.held), loads.shape[1]))
+            k = part.columns(fields)
+            nodes = more.inertia @ part.of(carried[:, k]).reshape(more.inertia.shape[1], -1)
+            inner = nodes.reshape(len(more.summed), -1) - more.coupling @ part.of(fields[:, k])
+            left[:, k] = part.fold.T @ loads[:, k] + piece.near.T @ inner
+            by_part.append(left)
+        return piece.held * np.hstack(by_part)
+
+    def schur(piece: Piece, x: np.ndarray) -> np.ndarray:
+        x = piece.near @ x
+        load = piece.parts[0].of(back @ x)
         u = factor.solve(load if block.expand is None else block.expand.T @ load)
         u -= block.rigid @ np.linalg.solve(gram, heavy.T @ u)
         if block.expand is not None:
             u = block.expand @ u
-        return held * (more.stiffness @ x - more.coupling @ u)
+        return piece.held * (piece.near.T @ (more.stiffness @ x - more.coupling @ u))
 
-    inverse = more.moves / more.stiffness.diagonal()
-    # a mode may stand still in a block
-    loaded = residuals.any(axis=0)
-    errors = _conjugate_gradients(schur, inverse, residuals[:, loaded])
-    fields, scale = np.zeros_like(residuals), np.ones(len(loaded))
-    fields[:, loaded], scale[loaded] = errors.fields, errors.scale
-    return Errors(fields, residuals, scale, errors.steps)
+    lefts = [residuals(piece) for piece in pieces]
+    squares = [
+        np.einsum("nk,n,nk->k", left, piece.inverse, left).reshape(len(piece.parts), -1)
+        for piece, left in zip(pieces, lefts)
+    ]
+    whole = np.sum([part for square in squares for part in square], axis=0)
+    searches, combined = [], []
+    for piece, left in zip(pieces, lefts):
+        chosen, combination = independent(left, piece.inverse, np.tile(whole, len(piece.parts)))
+        searches.append(_Search(partial(schur, piece), piece.inverse, left[:, chosen]))
+        combined.append(combination)
+    steps = _converged(searches)
+    solutions, functionals = np.zeros(loads.shape), np.zeros(loads.shape)
+    for piece, search, combination in zip(pieces, searches, combined):
+        scale = np.sqrt(1 + ratio(search.missing, search.energy))
+        for part, by_part in zip(piece.parts, np.split(combination, len(piece.parts), axis=1)):
+            solutions += part.fold @ ((search.solution * scale) @ by_part)
+            functionals += part.fold @ ((search.load * scale) @ by_part)
+    return Errors(solutions, functionals, steps)
 
 
 def _enrichment(body: Body, index: int) -> Enrichment:
-    """Return the enrichment of a block, kept with its body."""
+    """Return the enrichment of a block."""
+    return _enriched(body, index)[0]
+
+
+def _enriched(body: Body, index: int) -> tuple[Enrichment, list[Piece]]:
+    """Return the enrichment of a block and its pieces, kept with its body."""
     kept = body.cache.get(_Enrichments, _Enrichments)
     if index not in kept:
         enrich = body.blocks[index].enrich
         assert enrich is not None
-        kept[index] = enrich()
+        try:
+            more = enrich()
+        except NoRoom as error:
+            raise error.of_model(f"error bars of the {body.fidelity} model", COARSER) from None
+        kept[index] = more, pieces_of(more)
     return kept[index]
 
 
-class _Enrichments(dict[int, Enrichment]):
-    """Enrichments of blocks by their index."""
+class _Enrichments(dict[int, tuple[Enrichment, list[Piece]]]):
+    """Enrichments of blocks by their index, with their pieces."""
 
 
-def _conjugate_gradients(apply, inverse, load) -> Errors:
-    solution = np.zeros_like(load)
-    residual, step = load.copy(), np.zeros_like(load)
-    size = np.zeros(load.shape[1])
-    energy, gains = np.zeros(load.shape[1]), []
+class _Search:
+    """Conjugate gradients for the solutions of one piece, by the product with its matrix."""
+
+    def __init__(
+        self,
+        apply: Callable[[np.ndarray], np.ndarray],
+        inverse: np.ndarray,
+        load: np.ndarray,
+    ):
+        self._apply, self._inverse = apply, inverse
+        self.load, self.solution = load, np.zeros_like(load)
+        self._residual, self._step = load.copy(), np.zeros_like(load)
+        self._size = np.zeros(load.shape[1])
+        self.energy: np.ndarray = np.zeros(load.shape[1])
+        self._gains: list[np.ndarray] = []
+
+    def advance(self) -> None:
+        """Take a step."""
+        z = self._inverse[:, None] * self._residual
+        size = np.einsum("ij,ij->j", self._residual, z)
+        self._step *= ratio(size, self._size)
+        self._step += z
+        self._size = size
+        pull = self._apply(self._step)
+        along = ratio(size, np.einsum("ij,ij->j", self._step, pull))
+        self.solution += self._step * along
+        pull *= along
+        self._residual -= pull
+        self._gains = [*self._gains[-2:], along * size]
+        self.energy = self.energy + self._gains[-1]
+
+    @property
+    def missing(self) -> np.ndarray:
+        """(k,) energy that is still missing, if gains go on to fall as they have."""
+        return _missing(self._gains)
+
+    @property
+    def converged(self) -> bool:
+        """Whether little is missing of all columns."""
+        return bool((self.missing <= MISSING * self.energy).all())
+
+
+def _converged(searches: Sequence[_Search]) -> int:
+    """Advance until little is missing anywhere, and return the steps: the energy of some columns
+    rests at half of its end for a while, which others show that do not rest at the same time.
+    """
     for count in range(MOST_STEPS):
-        z = inverse[:, None] * residual
-        fresh = np.einsum("ij,ij->j", residual, z)
-        step = z + step * np.divide(fresh, size, out=np.zeros_like(size), where=size > 0)
-        size = fresh
-        pull = apply(step)
-        along = size / np.einsum("ij,ij->j", step, pull)
-        solution += step * along
-        residual -= pull * along
-        gains.append(along * size)
-        energy = energy + gains[-1]
-        missing = _missing(gains)
-        if (missing < MISSING * energy).all():
-            return Errors(solution, load, np.sqrt(1 + missing / energy), count + 1)
+        for search in searches:
+            search.advance()
+        if all(search.converged for search in searches):
+            return count + 1
     raise NoBounds(
         f"the error in one order more was not found in {MOST_STEPS} steps: the mesh holds very "
         "slender cells, or a material that is next to incompressible"
@@ -368,5 +443,5 @@ def _missing(gains: Sequence[np.ndarray]) -> np.ndarray:
     """Return the energy that is still missing, if gains go on to fall as they have."""
     if len(gains) < 3:
         return np.full(gains[-1].shape, np.inf)
-    ratio = np.sqrt(gains[-1] / gains[-3])
-    return np.where(ratio < 1, gains[-1] * ratio / np.maximum(1 - ratio, 1e-9), np.inf)
+    left = np.sqrt(ratio(gains[-1], gains[-3]))
+    return np.where(left < 1, gains[-1] * left / np.maximum(1 - left, 1e-9), np.inf)

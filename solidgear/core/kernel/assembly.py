@@ -158,7 +158,8 @@ def unknowns(mesh: Mesh, element: Element) -> np.ndarray:
 
 
 class Pattern:
-    """Sparse pattern of an element connectivity (nb, ne), reused for every matrix on it.
+    """Sparse pattern of an element connectivity (nb, ne), reused for every matrix on it, with rows
+    for other numbers (nr, ne) of each element where these are given.
 
     Examples
     --------
@@ -174,29 +175,32 @@ class Pattern:
            [ 0., -2.,  2.]])
     """
 
-    def __init__(self, dofs: np.ndarray):
-        self.n = int(dofs.max()) + 1  #: number of unknowns
+    def __init__(self, dofs: np.ndarray, rows: np.ndarray | None = None):
+        rows = dofs if rows is None else rows
+        #: number of unknowns, and of those that have rows
+        self.n, self.of_rows = int(dofs.max()) + 1, int(rows.max()) + 1
         nb, ne = dofs.shape
-        assemblable(ne, nb)
-        numbers = np.ascontiguousarray(dofs.T, np.int32)
+        nr = len(rows)
+        assemblable(ne, nb, nr)
+        numbers, row_numbers = (np.ascontiguousarray(d.T, np.int32) for d in (dofs, rows))
         # Element entries row by row, each row being an unknown of an element.  A transposition is a
-        # counting sort by column that leaves rows in order; the pattern is symmetric, so each entry
-        # carries the number of its mirror image.
+        # counting sort by column that leaves rows in order: columns first, then rows.
         slots = np.arange(ne * nb, dtype=np.int32).reshape(ne, nb)
         by_row = sp.csr_matrix(
             (slots.ravel(), numbers.ravel(), np.arange(0, ne * nb + 1, nb)), shape=(ne, self.n)
         ).tocsc()
         element, a = by_row.indices, by_row.data % nb
-        mirror = (element * (nb * nb) + a)[:, None] + np.arange(0, nb * nb, nb, dtype=np.int32)
+        entry = (element * (nr * nb) + a)[:, None] + np.arange(0, nr * nb, nb, dtype=np.int32)
         entries = sp.csr_matrix(
-            (mirror.ravel(), numbers[element].ravel(), by_row.indptr * nb), shape=(self.n, self.n)
+            (entry.ravel(), row_numbers[element].ravel(), by_row.indptr * nr),
+            shape=(self.n, self.of_rows),
         ).tocsc()
-        # A change of row opens a new entry.  So does a change of column: were the last row of
-        # column j the first of column j + 1, symmetry and the diagonal would contradict it.
+        # a change of column opens a new entry, and so does a change of row
         first = np.ones(entries.nnz, bool)
         np.not_equal(entries.indices[1:], entries.indices[:-1], out=first[1:])
+        first[entries.indptr[:-1][np.diff(entries.indptr) > 0]] = True
         #: place of every entry of every element matrix among the entries of the assembled one
-        self.place = np.empty((ne, nb * nb), np.int32)
+        self.place = np.empty((ne, nr * nb), np.int32)
         self.place.ravel()[entries.data] = np.cumsum(first, dtype=np.int32) - 1
         starts = np.flatnonzero(first)
         self.indices = entries.indices[starts]
@@ -219,8 +223,8 @@ class Sum:
         self.data = np.zeros(entries)
 
     def add(self, elements: slice | np.ndarray, values: np.ndarray) -> None:
-        """Add element matrices (c, c, m, nb, nb), component of row and column first; of one
-        component (m, nb, nb) will do.
+        """Add element matrices (c, c, m, nr, nb), component of row and column first; of one
+        component (m, nr, nb) will do.
         """
         c = self.c
         places = self.pattern.place[elements].ravel() * np.intp(c * c)
@@ -228,31 +232,26 @@ class Sum:
             np.add.at(self.data[k:], places, plane)
 
     def matrix(self) -> sp.csr_matrix:
-        """Return the assembled (n c, n c) matrix, with unknowns grouped by node."""
+        """Return the assembled (rows c, n c) matrix, with unknowns grouped by node."""
         p, c = self.pattern, self.c
         if c == 1:
-            return sp.csr_matrix((self.data, p.indices, p.indptr), shape=(p.n, p.n))
+            return sp.csr_matrix((self.data, p.indices, p.indptr), shape=(p.of_rows, p.n))
         return sp.bsr_matrix(
-            (self.data.reshape(-1, c, c), p.indices, p.indptr), shape=(p.n * c, p.n * c)
+            (self.data.reshape(-1, c, c), p.indices, p.indptr), shape=(p.of_rows * c, p.n * c)
         ).tocsr()
 
-    def rows_from(self, first: int) -> tuple[sp.csr_matrix, sp.csr_matrix]:
-        """Return the rows of the nodes from one on: the part in the columns of nodes before it, and
-        the part in those from it on.
-        """
+    def divided(self, first: int) -> tuple[sp.csr_matrix, sp.csr_matrix]:
+        """Return the part in the columns of nodes before one, and the part in those from it on."""
         p, c = self.pattern, self.c
-        begin = p.indptr[first]
-        indices = p.indices[begin:]
-        data = self.data.reshape(-1, c, c)[begin:]
-        after = indices >= first
+        data = self.data.reshape(-1, c, c)
+        after = p.indices >= first
         parts = []
         for chosen, offset, width in ((~after, 0, first), (after, first, p.n - first)):
             count = np.concatenate([[0], np.cumsum(chosen)])
-            indptr = count[p.indptr[first:] - begin]
             parts.append(
                 sp.bsr_matrix(
-                    (data[chosen], indices[chosen] - offset, indptr),
-                    shape=((p.n - first) * c, width * c),
+                    (data[chosen], p.indices[chosen] - offset, count[p.indptr]),
+                    shape=(p.of_rows * c, width * c),
                 ).tocsr()
             )
         return parts[0], parts[1]

@@ -14,12 +14,12 @@ SOUGHT, PUT = 25.0, 20.0
 MOST_ENTRIES = 2_000_000_000
 
 
-def assemblable(elements: float, size: int) -> None:
-    """Refuse (:class:`NoRoom`) meshes whose matrices cannot be assembled, by the rows of an element
-    matrix of one component; called before a mesh with a bound of its elements, and after it with
-    their number.
+def assemblable(elements: float, columns: int, rows: int | None = None) -> None:
+    """Refuse (:class:`NoRoom`) meshes whose matrices cannot be assembled, by the columns and rows of
+    an element matrix of one component, by default as many; called before a mesh with a bound of its
+    elements, and after it with their number.
     """
-    entries = elements * size**2
+    entries = elements * columns * (columns if rows is None else rows)
     number = f"{elements:.0f}" if elements < 1e6 else f"{elements:.2g}"
     matrices = f"matrices of {number} elements"
     if entries > MOST_ENTRIES:

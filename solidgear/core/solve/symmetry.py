@@ -58,7 +58,7 @@ def planned_by_symmetry(matrix: sp.csr_matrix, reflections: Sequence[Reflection]
         twin = kind[::-1] if len(reflections) == 3 and kind[0] != kind[-1] else None
         if twin is not None and kind < twin:
             continue  # solved beside the other one
-        folds = [fold] if twin is None else [fold, _mirrored(fold, reflections[2])]
+        folds = [fold] if twin is None else [fold, mirrored_basis(fold, reflections[2])]
         # All columns of K T are as symmetric as those of T: one row of each orbit gives the others.
         first, size = _first_of(fold)
         small = (sp.diags(np.sqrt(size)) @ matrix[first]) @ fold
@@ -87,7 +87,10 @@ def _solver(pieces):
         width = columns.shape[1]
         out = np.zeros_like(columns, dtype=float)
         for folds, back, factor in pieces:
-            solution = factor.solve(np.hstack([b @ columns for b in back]))
+            folded = np.hstack([b @ columns for b in back])
+            if not folded.any():
+                continue  # loads of another kind
+            solution = factor.solve(folded)
             for i, fold in enumerate(folds):
                 out += fold @ solution[:, i * width : (i + 1) * width]
         return out.reshape(rhs.shape)
@@ -135,8 +138,8 @@ def symmetric_bases(
     return bases
 
 
-def _mirrored(fold: sp.csr_matrix, reflection: Reflection) -> sp.csr_matrix:
-    """Mirror a basis."""
+def mirrored_basis(fold: sp.csr_matrix, reflection: Reflection) -> sp.csr_matrix:
+    """Return the mirror image of a basis."""
     partner, sign = reflection
     return (sp.diags(sign) @ fold[partner]).tocsr()
 

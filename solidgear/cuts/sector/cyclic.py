@@ -266,6 +266,7 @@ def _enrichment(
         wave.spread(back @ more.stiffness @ t),
         wave.spread(back @ more.coupling),
         wave.spread(back @ inertia),
+        np.arange(size),
         np.vstack(rows),
         wave.repeated(np.where(np.isin(function, still), 0.0, 1.0)),
         wave.repeated(function),

@@ -212,6 +212,7 @@ def _enrichment(
         (copies * (t.T @ _block_matrix(name, more.stiffness) @ t)).tocsr(),
         (copies * (t.T @ _block_matrix(name, more.coupling))).tocsr(),
         (copies * (t.T @ _block_matrix(name, inertia))).tocsr(),
+        np.arange(len(function)),
         np.vstack(rows),
         np.where(np.isin(function, still), 0.0, 1.0),
         function,

@@ -172,7 +172,7 @@ def free_block(
         np.repeat(mesh.nodes[1], 3),
         planar=False,
         reflections=reflections,
-        enrich=partial(enrichment, mesh, materials, seats),
+        enrich=partial(enrichment, mesh, materials, seats, reflections=reflections),
     )
     return with_ports(block, ports)
 

@@ -10,7 +10,7 @@ edge or face has a sign in every cell, so that it is one function for all of the
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import reduce
 from itertools import product
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -19,10 +19,12 @@ import numpy as np
 import scipy.sparse as sp
 from skfem.refdom import RefHex, RefTet
 
+from solidgear.core.body import Reflection
 from solidgear.core.body.model import Enrichment
 from solidgear.core.elements import ELEMENTS
 from solidgear.core.kernel.assembly import Tabulation, unknowns
 from solidgear.core.kernel.lobatto import gauss_box
+from solidgear.core.models.solid.images import Images, of_vectors, orbits
 from solidgear.core.models.solid.matrices import _cell_rule, integrals, rigid_part, weighed
 from solidgear.core.models.solid.mesh import SolidMesh
 
@@ -202,44 +204,64 @@ class Seat:
 @dataclass(frozen=True, eq=False)
 class Addition:
     """Functions that one order more adds to a mesh, each with three components, and their
-    matrices.
+    matrices, which of a mesh with mirror planes have rows of some only, as those of an
+    :class:`Enrichment` do.
     """
 
     mesh: SolidMesh
     further: Further
     numbers: np.ndarray  #: (k, ne) functions of every cell
     signs: np.ndarray  #: (k, ne) that they have there
-    stiffness: sp.csr_matrix  #: (3 w, 3 w) N/m
-    coupling: sp.csr_matrix  #: (3 w, 3 n) stiffness between them and the nodes of the mesh, N/m
-    inertia: sp.csr_matrix  #: (w, n) mass between them and the nodes, of every component, kg
+    stiffness: sp.csr_matrix  #: (3 s, 3 s) N/m
+    coupling: sp.csr_matrix  #: (3 s, 3 n) stiffness between them and the nodes of the mesh, N/m
+    inertia: sp.csr_matrix  #: (s, n) mass between them and the nodes, of every component, kg
+    summed: np.ndarray  #: (s,) which of them the matrices have rows for
+    images: tuple[Images, ...] = ()  #: of the cells in every mirror plane
 
     @classmethod
-    def of_mesh(cls, m: SolidMesh, materials: Sequence[Material]) -> Addition:
-        """Compute what one order more adds to a mesh."""
+    def of_mesh(
+        cls,
+        m: SolidMesh,
+        materials: Sequence[Material],
+        reflections: Sequence[Reflection] = (),
+    ) -> Addition:
+        """Compute what one order more adds to a mesh; `reflections` are those of its unknowns."""
         further = Further.beyond(m.name)
         numbers, signs = further.numbered(m)
+        images = tuple(Images(m.mesh.t, partner[::3] // 3) for partner, _ in reflections)
+        cells, multiples = orbits(images[:2], m.dofs.shape[1])
+        summed, places = np.unique(numbers[:, cells], return_inverse=True)
         n = m.nodes.shape[1]
         points, weights = _cell_rule(m.name) if m.name.startswith("tet") else gauss_box(4, 3)
         basis = Tabulation(m.element, m.element, points)
         value, slope = further.at(points)
         basis.value = np.vstack([basis.value, value])
         basis.slope = np.concatenate([basis.slope, slope])
+        part = replace(m, dofs=m.dofs[:, cells], segment=m.segment[cells])
         stiffness, mass = integrals(
-            m,
+            part,
             materials,
             basis,
             weights,
-            np.vstack([m.dofs, n + numbers]),
-            np.vstack([np.ones(m.dofs.shape), signs]),
+            np.vstack([part.dofs, n + places.reshape(len(numbers), -1)]),
+            np.vstack([np.ones(part.dofs.shape), signs[:, cells]]),
+            multiples,
+            first=len(m.dofs),
         )
-        coupling, own = stiffness.rows_from(n)
-        between, _ = mass.rows_from(n)
-        return cls(m, further, numbers, signs, own, coupling, between)
+        coupling, own = stiffness.divided(n)
+        between, _ = mass.divided(n)
+        return cls(m, further, numbers, signs, own, coupling, between, summed, images)
 
     @property
     def count(self) -> int:
         """Number w of the functions."""
-        return self.inertia.shape[0]
+        return int(self.numbers.max()) + 1
+
+    def reflected(self, reflections: Sequence[Reflection]) -> Iterable[Reflection]:
+        """Yield the mirrors of their unknowns (3 w,), from those of the unknowns of the mesh."""
+        for reflection, image in zip(reflections, self.images):
+            of_functions = image.of_functions(self.further, self.numbers, self.signs)
+            yield of_vectors(reflection, *of_functions)
 
     def alive(self, facets: np.ndarray) -> np.ndarray:
         """Return the functions that do not vanish on some facets."""
@@ -275,12 +297,13 @@ def enrichment(
     components: tuple[int, ...] = tuple(range(6)),
     held: tuple[np.ndarray, np.ndarray] | None = None,
     copies: int = 1,
+    reflections: Sequence[Reflection] = (),
 ) -> Enrichment:
     """Compute what one order more adds to a mesh of which so many copies make the body, whose ports
     have these seats and components; `held` are facets, and the components (3,) that do not move
-    there.
+    there; `reflections` are those of the unknowns of the mesh.
     """
-    more = Addition.of_mesh(m, materials)
+    more = Addition.of_mesh(m, materials, reflections)
     n, count = m.nodes.shape[1], more.count
     moves = np.ones((count, 3))
     if held is not None:
@@ -299,8 +322,10 @@ def enrichment(
         copies * more.stiffness,
         copies * more.coupling,
         copies * more.inertia,
+        (3 * more.summed[:, None] + np.arange(3)).ravel(),
         np.vstack([np.zeros((0, 3 * count)), *rows]),
         moves.ravel(),
         np.repeat(np.arange(count), 3),
         more.numbers,
+        tuple(zip(reflections, more.reflected(reflections))),
     )

@@ -36,19 +36,24 @@ def integrals(
     weights: np.ndarray,
     numbers: np.ndarray,
     signs: np.ndarray | None = None,
+    multiples: np.ndarray | None = None,
+    first: int = 0,
 ) -> tuple[Sum, Sum]:
     """Sum up stiffness (3n, 3n) and mass of one component (n, n) in some basis, tabulated at the
-    points of the weights, whose functions have numbers (nb, ne) and signs (nb, ne) in the cells.
+    points of the weights, whose functions have numbers (nb, ne) and signs (nb, ne) in the cells;
+    each cell counts so many times (ne,).  Rows are those of the `first` function of a cell and of
+    all after it, whose numbers are counted from the least of them.
     """
     nb, nq = basis.value.shape
-    pattern = Pattern(numbers)
+    rows = numbers[first:]
+    pattern = Pattern(numbers, rows - rows.min() if first else None)
     stiffness, mass = pattern.sum(3), pattern.sum()
     # products of basis functions, and of reference gradients, of which straight elements take one
     # multiple each
-    products = (basis.value[:, None] * basis.value).reshape(nb * nb, nq).T
-    slopes = np.einsum("apq,brq,q->prab", basis.slope, basis.slope, weights, optimize=True).reshape(
-        9, nb * nb
-    )
+    products = (basis.value[first:, None] * basis.value).reshape(-1, nq).T
+    slopes = np.einsum(
+        "apq,brq,q->prab", basis.slope[first:], basis.slope, weights, optimize=True
+    ).reshape(9, -1)
     is_straight, jac = straight(m.element, m.nodes[:, m.dofs])
     for index, material in enumerate(materials):
         nu, mu, rho = material.nu, material.shear_modulus, material.density
@@ -56,9 +61,10 @@ def integrals(
         members = m.segment == index
         for part in batches(np.flatnonzero(members & is_straight), 8 * 20 * nb * nb):
             inverse, det = inverted(jac[:, :, part])
+            det = det if multiples is None else det * multiples[part]
             along = (inverse * det)[:, :, None, None] * inverse  # (reference, space) twice
             tensor = _elastic(along.transpose(1, 3, 4, 0, 2).reshape(3, 3, len(part), 9), lame, mu)
-            turned = 1.0 if signs is None else _products_of_signs(signs, part)
+            turned = 1.0 if signs is None else _products_of_signs(signs, part, first)
             stiffness.add(part, tensor @ slopes * turned)
             mass.add(part, np.outer(rho * det, weights @ products) * turned)
         for part in batches(
@@ -68,22 +74,26 @@ def integrals(
             # from a node of each: absolute places would round the differences in a thin cell
             t = basis.on(places - places[:, :1])
             dv = t.det * weights
+            dv = dv if multiples is None else dv * multiples[part, None]
             g = t.gradient(np.sqrt(dv))
             inertia = rho * dv @ products
             if signs is not None:
                 g *= signs[:, part].T[:, None, :, None]
-                inertia *= _products_of_signs(signs, part)
-            g = g.reshape(len(part), 3 * nb, nq)
-            gram = (g @ g.transpose(0, 2, 1)).reshape(-1, 3, nb, 3, nb).transpose(1, 3, 0, 2, 4)
+                inertia *= _products_of_signs(signs, part, first)
+            of_rows = g[:, :, first:].reshape(len(part), -1, nq)
+            gram = of_rows @ g.reshape(len(part), 3 * nb, nq).transpose(0, 2, 1)
+            gram = gram.reshape(-1, 3, nb - first, 3, nb).transpose(1, 3, 0, 2, 4)
             stiffness.add(part, _elastic(gram, lame, mu))
             mass.add(part, inertia)
     return stiffness, mass
 
 
-def _products_of_signs(signs: np.ndarray, cells: np.ndarray) -> np.ndarray:
-    """Return the products (e, nb nb) of the signs of any two functions of some cells."""
+def _products_of_signs(signs: np.ndarray, cells: np.ndarray, first: int) -> np.ndarray:
+    """Return the products (e, nr nb) of the signs of functions of some cells from a first one on,
+    and of all.
+    """
     own = signs[:, cells].T
-    return (own[:, :, None] * own[:, None, :]).reshape(len(cells), -1)
+    return (own[:, first:, None] * own[:, None, :]).reshape(len(cells), -1)
 
 
 def _elastic(gram, lame: float, mu: float):
