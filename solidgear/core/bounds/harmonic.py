@@ -20,7 +20,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -53,6 +53,7 @@ class HarmonicBounds:
     #: (ne,) energies of the local solutions of a mode, rad^2/s^2, by the name of the mode
     of_modes: dict[str, np.ndarray]
     lowest: dict[str, float]  #: least eigenvalue that each mode may have, rad^2/s^2
+    two_sided: ClassVar = False  #: a mesh is too stiff
 
     @cached_property
     def more(self) -> np.ndarray:

@@ -21,7 +21,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -58,6 +58,7 @@ class SolidBounds:
     lowest: dict[str, float]  #: least eigenvalue that each mode may have, rad^2/s^2
     of_modes: dict[str, np.ndarray]  #: (ne,) energies of the error of a mode, by its name
     _cells: Callable[[np.ndarray], np.ndarray]
+    two_sided: ClassVar = False  #: a mesh is too stiff
 
     @cached_property
     def more(self) -> np.ndarray:
@@ -108,10 +109,7 @@ def solid_bounds(
     if statics:
         for index, fields, _, _ in port_fields(body, SOLVED):
             block = body.blocks[index]
-            rows = body.rows(block)
-            gram = block.rigid.T @ (block.mass @ block.rigid)
-            carried = -block.rigid @ np.linalg.solve(gram, block.rigid.T @ block.ports.T.toarray())
-            errors = enriched_errors(body, index, fields, np.eye(len(rows)), carried)
+            rows, errors = body.rows(block), errors_of_loads(body, index, fields)
             reached[np.ix_(rows, rows)] = errors.energies
             parts[index] = rows, errors
     chosen = with_neighbours(modes, wanted)
@@ -125,8 +123,7 @@ def solid_bounds(
         fields = np.column_stack([shape for _, shape in shapes])
         fields = fields / np.sqrt(np.einsum("nk,nk->k", fields, block.mass @ fields))
         values = np.array([(2 * np.pi * mode.frequency_hz) ** 2 for mode, _ in shapes])
-        left = block.stiffness @ fields - (block.mass @ fields) * values
-        errors = enriched_errors(body, index, fields, on_ports(block, left), fields * values)
+        errors = errors_of_modes(body, index, fields, values)
         found = np.diag(errors.energies)
         for k, (mode, _) in enumerate(shapes):
             if found[k] > energy.get(mode.name, 0.0):
@@ -179,32 +176,62 @@ class Errors:
         return (products + products.T) / 2 * np.outer(self.scale, self.scale)
 
 
+def errors_of_loads(body: Body, index: int, fields: np.ndarray) -> Errors:
+    """Compute the errors of the displacements (n, 6 p) of a block under unit loads on its ports."""
+    block = body.blocks[index]
+    gram = block.rigid.T @ (block.mass @ block.rigid)
+    carried = -block.rigid @ np.linalg.solve(gram, block.rigid.T @ block.ports.T.toarray())
+    return enriched_errors(body, index, fields, np.eye(fields.shape[1]), carried)
+
+
+def errors_of_modes(body: Body, index: int, fields: np.ndarray, values: np.ndarray) -> Errors:
+    """Compute the errors of modes (n, k) of a block of eigenvalues (k,), rad^2/s^2."""
+    block = body.blocks[index]
+    left = block.stiffness @ fields - (block.mass @ fields) * values
+    return enriched_errors(body, index, fields, on_ports(block, left), fields * values)
+
+
 def enriched_errors(
     body: Body, index: int, fields: np.ndarray, forces: np.ndarray, carried: np.ndarray
 ) -> Errors:
     """Compute the errors of displacements (n, k) of a block under forces (6 p, k) on its ports and
     the inertia of an acceleration (n, k); refuse a problem that does not converge.
     """
-    block, factor = body.blocks[index], factors(body)[index]
-    more = _enrichment(body, index)
-    back = more.coupling.T.tocsr()
+    block, more = body.blocks[index], _enrichment(body, index)
     held = more.moves[:, None]
     if block.expand is not None:
         fields, carried = block.expand @ fields, block.expand @ carried
     inertia = (more.inertia @ carried.reshape(more.inertia.shape[1], -1)).reshape(len(held), -1)
     residuals = held * (more.ports.T @ forces + inertia - more.coupling @ fields)
+    follow = _following(body, index)
+
+    def schur(x: np.ndarray) -> np.ndarray:
+        return held * (more.stiffness @ x + more.coupling @ follow(x))
+
+    return _conjugate_gradients(schur, more.moves / more.stiffness.diagonal(), residuals)
+
+
+def on_mesh(body: Body, index: int, errors: Errors) -> np.ndarray:
+    """Return the part (n, k) of the errors of a block in the functions of the mesh."""
+    return _following(body, index)(errors.fields)
+
+
+def _following(body: Body, index: int) -> Callable[[np.ndarray], np.ndarray]:
+    """Return what gives the displacements (n, k) of the mesh of a block that follow those of one
+    order more, (m, k), without any load.
+    """
+    block, factor = body.blocks[index], factors(body)[index]
+    back = _enrichment(body, index).coupling.T.tocsr()
     heavy = block.mass @ block.rigid
     gram = block.rigid.T @ heavy
 
-    def schur(x: np.ndarray) -> np.ndarray:
+    def follow(x: np.ndarray) -> np.ndarray:
         load = back @ x
         u = factor.solve(load if block.expand is None else block.expand.T @ load)
         u -= block.rigid @ np.linalg.solve(gram, heavy.T @ u)
-        if block.expand is not None:
-            u = block.expand @ u
-        return held * (more.stiffness @ x - more.coupling @ u)
+        return -u if block.expand is None else -(block.expand @ u)
 
-    return _conjugate_gradients(schur, more.moves / more.stiffness.diagonal(), residuals)
+    return follow
 
 
 def _enrichment(body: Body, index: int) -> Enrichment:

@@ -11,19 +11,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from solidgear.core.body import Body, Supports
-from solidgear.core.bounds.harmonic import HarmonicBounds, harmonic_bounds, with_tail
+from solidgear.core.bounds.harmonic import harmonic_bounds, with_tail
 from solidgear.core.bounds.safety import LOCAL
-from solidgear.core.bounds.solid import SolidBounds, solid_bounds
+from solidgear.core.bounds.solid import solid_bounds
 from solidgear.core.judge.bars import LEAST, ErrorBar
 from solidgear.core.judge.quantities import Values, in_order, size
 from solidgear.core.judge.solving import Statics, extended_modes
 from solidgear.core.judge.steps import METHOD
 from solidgear.core.quantity import STIFFNESS, Quantity
+from solidgear.core.registry import addition
 from solidgear.core.scene.coned import coned
 from solidgear.core.solve.modes import ModeSet, modes
 from solidgear.core.solve.statics import flexibility
@@ -60,7 +61,7 @@ def bounded(
     """
     frequencies = [q for q in names if q.is_frequency]
     bounds = bounds_of(
-        scene, body, statics is not None, modes, list(dict.fromkeys(frequencies)), later
+        scene, body, supports, statics is not None, modes, list(dict.fromkeys(frequencies)), later
     )
     bars: dict[Quantity, ErrorBar] = {}
     scores: dict[Quantity, np.ndarray] = {}
@@ -71,8 +72,12 @@ def bounded(
             for more in (bounds.more, bounds.less, bounds.least)
         )
         for name in in_order(dict.fromkeys((*stiff, *names))):
-            complete = all(name in end for end in (stiff, two_orders, one_order))
-            if complete and not name.is_frequency:
+            complete = all(name in end for end in (stiff, two_orders, one_order, near))
+            if not complete or name.is_frequency:
+                continue
+            if bounds.two_sided:
+                bars[name] = _within(name, stiff, near, two_orders, solver.get(name, 0.0))
+            else:
                 bars[name] = _between(
                     name, stiff, two_orders, one_order, near, solver.get(name, 0.0)
                 )
@@ -92,14 +97,20 @@ def bounded(
 def bounds_of(
     scene: Scene,
     body: Body,
+    supports: Supports,
     statics: bool,
     modes: ModeSet | None,
     wanted: Sequence[str],
     later: ModeSet | None = None,
-) -> HarmonicBounds | SolidBounds:
+) -> Any:
     """Compute the bounds of a solid, by local problems of a harmonic one, by one order more of a 3D
-    one.
+    one; of others as the room of their model does.
     """
+    computed = addition("bounds", body.fidelity)
+    if computed is not None:
+        return computed(
+            scene, body, supports, statics=statics, modes=modes, wanted=wanted, safety=LOCAL
+        )
     if body.blocks[0].enrich is not None:
         return solid_bounds(
             scene, body, statics=statics, modes=modes, wanted=wanted, safety=LOCAL
@@ -126,7 +137,7 @@ def mode_bars(
         extended = extended_modes(
             modes_listed, modes(body, supports, shapes + ABOVE, ovalising=True)
         )
-    bounds = bounds_of(scene, body, False, extended, names)
+    bounds = bounds_of(scene, body, supports, False, extended, names)
     highest = _highest(extended)
     return {
         m.name: 1 - bounds.frequency(m) / m.frequency_hz + m.error
@@ -182,6 +193,21 @@ def _between(
     return _bar(stiff[name], open_, solver, far_end, float(middle), scale)
 
 
+def _within(
+    name: Quantity, value: Values, near: Values, far: Values, solver: float
+) -> ErrorBar:
+    """Compute the error bar of a static number that may lie on either side of it, from both ends; of
+    a coupling from those of both diagonal entries.
+    """
+    scale, middle = size(value, name), (near[name] + far[name]) / 2
+    pair = name.diagonals
+    half = abs(far[name] - near[name]) / 2
+    if pair is not None and all(d in near and d in far for d in pair):
+        half = float(np.sqrt(np.prod([abs(far[d] - near[d]) for d in pair]))) / 2
+    open_ = (half + abs(middle - value[name])) / scale
+    return _bar(value[name], open_, solver, far[name], float(middle), scale)
+
+
 def _bar(
     value: float,
     open_: float,
@@ -207,7 +233,7 @@ def _bar(
 def _static_scores(
     body: Body,
     supports: Supports,
-    bounds: HarmonicBounds | SolidBounds,
+    bounds: Any,
     statics: Statics,
     names: Sequence[Quantity],
 ) -> dict[Quantity, np.ndarray]:
