@@ -112,9 +112,7 @@ def bounds_of(
             scene, body, supports, statics=statics, modes=modes, wanted=wanted, safety=LOCAL
         )
     if body.blocks[0].enrich is not None:
-        return solid_bounds(
-            scene, body, statics=statics, modes=modes, wanted=wanted, safety=LOCAL
-        )
+        return solid_bounds(scene, body, statics=statics, modes=modes, wanted=wanted, safety=LOCAL)
     return harmonic_bounds(
         coned(scene), body, statics=statics, modes=modes, wanted=wanted, safety=LOCAL, later=later
     )
@@ -193,9 +191,7 @@ def _between(
     return _bar(stiff[name], open_, solver, far_end, float(middle), scale)
 
 
-def _within(
-    name: Quantity, value: Values, near: Values, far: Values, solver: float
-) -> ErrorBar:
+def _within(name: Quantity, value: Values, near: Values, far: Values, solver: float) -> ErrorBar:
     """Compute the error bar of a static number that may lie on either side of it, from both ends; of
     a coupling from those of both diagonal entries.
     """

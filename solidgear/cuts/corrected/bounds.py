@@ -254,7 +254,9 @@ class _Difference:
         for part, *energies in self.products(self.in_cells(with_, index, errors), plain_values):
             ww, wo, oo = (np.einsum("ekk->ek", x) for x in energies)
             known = ww - oo
-            mean = np.sqrt(np.maximum(ww - 2 * wo + oo, 0.0) * np.maximum(ww + 2 * wo + oo, 0.0)) / 2
+            mean = (
+                np.sqrt(np.maximum(ww - 2 * wo + oo, 0.0) * np.maximum(ww + 2 * wo + oo, 0.0)) / 2
+            )
             lower += (known - self.beyond * (mean - known / 2)).sum(axis=0)
             upper += (known + self.beyond * (mean + known / 2)).sum(axis=0)
             by_cell[part] = 2 * self.beyond * mean
