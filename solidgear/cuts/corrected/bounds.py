@@ -56,6 +56,7 @@ from solidgear.core.bounds.sharpest import sharpest_exponent
 from solidgear.core.bounds.solid import Errors, errors_of_loads, errors_of_modes, on_mesh
 from solidgear.core.elements import ELEMENTS
 from solidgear.core.models.solid.enriched import by_cells, products_by_cells
+from solidgear.core.models.solid.mesh import SolidMesh
 from solidgear.core.scene.coned import coned
 from solidgear.core.solve.statics import SOLVED, flexibility, port_fields
 from solidgear.cuts.corrected.body import Origin
@@ -63,7 +64,6 @@ from solidgear.cuts.solid.halves import HalfDrawing
 
 if TYPE_CHECKING:
     from solidgear.core import Mode, ModeSet, Scene, Supports
-    from solidgear.core.models.solid.mesh import SolidMesh
 
 #: shapes solved above those of the corrected solid, for 3D solids ovalise besides
 ABOVE = 6
@@ -158,12 +158,6 @@ class _Difference:
     scene: Scene
     origin: Origin
 
-    @cached_property
-    def mesh(self) -> SolidMesh:
-        """That of the plain part, or of half of it."""
-        drawing = self.origin.without.geometry
-        return drawing.mesh if isinstance(drawing, HalfDrawing) else drawing
-
     @property
     def cells(self) -> int:
         """Number of cells of the plain part."""
@@ -180,9 +174,7 @@ class _Difference:
         """Return the values (ne, b, k) of the errors of a 3D solid in the cells of the plain part,
         zero in those that it does not have.
         """
-        drawing = body.geometry
-        mesh = drawing.mesh if isinstance(drawing, HalfDrawing) else drawing
-        values = by_cells(mesh, on_mesh(body, index, errors), errors.fields) * errors.scale
+        values = by_cells(_mesh(body), on_mesh(body, index, errors), errors.fields) * errors.scale
         if body is self.origin.without:
             return values
         out = np.zeros((self.cells, *values.shape[1:]))
@@ -195,46 +187,45 @@ class _Difference:
         """Yield some cells after others with the products (e, k, k) of energy of both errors: with
         features, of both and without.
         """
-        copies = 2 if isinstance(self.origin.without.geometry, HalfDrawing) else 1
+        mesh = _mesh(self.origin.without)
+        copies = 1 if mesh is self.origin.without.geometry else 2
         materials = [segment.material for segment in self.scene.segments]
         count = with_.shape[2]
-        for part, energy in products_by_cells(self.mesh, materials, (with_, without)):
+        for part, energy in products_by_cells(mesh, materials, (with_, without)):
             energy = copies * energy
-            ours, theirs = slice(0, count), slice(count, None)
-            yield part, energy[:, ours, ours], energy[:, ours, theirs], energy[:, theirs, theirs]
+            rows = energy[:, :count], energy[:, count:]
+            yield part, rows[0][..., :count], rows[0][..., count:], rows[1][..., count:]
 
     def of_ports(self, scale: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return both ends (6 p, 6 p) of the difference of the errors of the flexibility, and the
         distance between them by cells; `scale` are flexibilities of one component each.
         """
-        bodies = self.origin.with_, self.origin.without
+        with_, without = self.origin.with_, self.origin.without
         size = len(scale)
         lower, upper = np.zeros((2, size, size))
         by_cell = np.zeros((self.cells, size, size))
-        # of both bodies the same block after the other
-        for (index, fields, *_), (_, plain_fields, *_) in zip(
-            *(port_fields(body, SOLVED) for body in bodies)
-        ):
-            rows = bodies[0].rows(bodies[0].blocks[index])
+        blocks = zip(port_fields(with_, SOLVED), port_fields(without, SOLVED))
+        for (index, fields, *_), (_, plain_fields, *_) in blocks:
+            rows = with_.rows(with_.blocks[index])
             place = np.ix_(rows, rows)
-            values = [
-                self.in_cells(body, index, errors_of_loads(body, index, u))
-                for body, u in zip(bodies, (fields, plain_fields))
-            ]
+            errors = errors_of_loads(with_, index, fields)
+            plain_errors = errors_of_loads(without, index, plain_fields)
+            values = self.in_cells(with_, index, errors)
+            plain_values = self.in_cells(without, index, plain_errors)
             weight = 1 / np.where(scale[rows] > 0, scale[rows], np.inf)
-            for part, ww, wo, oo in self.products(*values):
-                both = wo + wo.transpose(0, 2, 1)
-                change, total = ww - both + oo, ww + both + oo
+            for part, ww, wo, oo in self.products(values, plain_values):
+                crossed = wo + wo.transpose(0, 2, 1)
+                change, total = ww - crossed + oo, ww + crossed + oo
                 size_of_change, size_of_total = (
                     np.einsum("eii,i->e", np.maximum(x, 0.0), weight) for x in (change, total)
                 )
                 t = np.sqrt(size_of_change / np.maximum(size_of_total, TINY))
                 t = np.maximum(t, SAME)[:, None, None]
-                known = ww - oo
+                difference = ww - oo
                 mean = (change / t + t * total) / 4
-                low, high = (self.beyond * (mean + side * known / 2) for side in (-1, 1))
-                lower[place] += (known - low).sum(axis=0)
-                upper[place] += (known + high).sum(axis=0)
+                low, high = (self.beyond * (mean + side * difference / 2) for side in (-1, 1))
+                lower[place] += (difference - low).sum(axis=0)
+                upper[place] += (difference + high).sum(axis=0)
                 by_cell[np.ix_(part, rows, rows)] = low + high
         return lower, upper, by_cell
 
@@ -253,14 +244,21 @@ class _Difference:
         by_cell = np.zeros((self.cells, len(values)))
         for part, *energies in self.products(self.in_cells(with_, index, errors), plain_values):
             ww, wo, oo = (np.einsum("ekk->ek", x) for x in energies)
-            known = ww - oo
+            difference = ww - oo
             mean = (
                 np.sqrt(np.maximum(ww - 2 * wo + oo, 0.0) * np.maximum(ww + 2 * wo + oo, 0.0)) / 2
             )
-            lower += (known - self.beyond * (mean - known / 2)).sum(axis=0)
-            upper += (known + self.beyond * (mean + known / 2)).sum(axis=0)
+            lower += (difference - self.beyond * (mean - difference / 2)).sum(axis=0)
+            upper += (difference + self.beyond * (mean + difference / 2)).sum(axis=0)
             by_cell[part] = 2 * self.beyond * mean
         return lower, upper, by_cell
+
+
+def _mesh(solid: Body) -> SolidMesh:
+    """Return the mesh of a 3D solid, or of half of it."""
+    drawing = solid.geometry.mesh if isinstance(solid.geometry, HalfDrawing) else solid.geometry
+    assert isinstance(drawing, SolidMesh)
+    return drawing
 
 
 @dataclass(frozen=True)
@@ -322,75 +320,72 @@ def _of_modes(
         modes=plain_set,
         wanted=plain_names,
     )
-    lowest = {mode.name: 0.0 for mode in chosen}
-    by_cells = {mode.name: np.ones(difference.cells) for mode in chosen}
-    partners: dict[int, list[tuple[Mode, _Shape]]] = {}
-    for mode in chosen:
-        partner = _most_like(cut, mode.motions[0].ravel(), gram)
-        if partner is not None:
-            partners.setdefault(next(iter(partner.vector)), []).append((mode, partner))
-    for index, pairs in partners.items():
-        here = [shape for shape in uncut if set(shape.vector) == {index}]
-        near = np.array([_turned(here, shape, gram) for _, shape in pairs]).T
-        used = np.flatnonzero(near.any(axis=1))
-        pairs_found = near.any(axis=0)
-        if not len(used):
+    lowest = {str(mode.name): 0.0 for mode in chosen}
+    widths = {str(mode.name): np.ones(difference.cells) for mode in chosen}
+    ends = {id(shape): _plain_ends(shape, plain, bounds, gram) for shape in uncut}
+    for index in range(len(origin.with_.blocks)):
+        group = [s for s in uncut if set(s.vector) == {index} and ends[id(s)] is not None]
+        pairs = []
+        for mode in chosen:
+            shape = _most_like(cut, mode.motions[0].ravel(), gram)
+            if shape is None or set(shape.vector) != {index}:
+                continue
+            turn = _turned(group, shape, gram)
+            if turn is not None:
+                pairs.append((mode, shape, turn))
+        if not pairs:
             continue
-        values = np.array([shape.value for _, shape in pairs])
-        fields = np.column_stack([shape.vector[index] for _, shape in pairs])
-        group = [here[k] for k in used]
+        turns = np.column_stack([turn for *_, turn in pairs])
+        values = np.array([shape.value for _, shape, _ in pairs])
+        fields = np.column_stack([shape.vector[index] for _, shape, _ in pairs])
         plain_modes = _Plain(
             np.column_stack([shape.vector[index] for shape in group]),
             np.array([shape.value for shape in group]),
-            near[used],
+            turns,
         )
-        lower, upper, widths = difference.of_modes(index, fields, values, plain_modes)
-        exact = np.array([_between(shape, plain, bounds, gram) for shape in group])
-        share = plain_modes.turn**2
-        low, high = (share.T @ (plain_modes.values - end) for end in exact.T[::-1])
-        for k, (mode, _) in enumerate(pairs):
-            if not pairs_found[k]:
-                continue
-            ends = np.array([values[k] - high[k] - upper[k], values[k] - low[k] - lower[k]])
-            half = safety * (ends[1] - ends[0]) / 2
+        lower, upper, by_cell = difference.of_modes(index, fields, values, plain_modes)
+        exact = np.array([ends[id(shape)] for shape in group])
+        # what the 3D solid without features errs by, at least and at most
+        least, most = ((turns**2).T @ (plain_modes.values - end) for end in exact.T[::-1])
+        for k, (mode, *_) in enumerate(pairs):
+            low, high = values[k] - most[k] - upper[k], values[k] - least[k] - lower[k]
             value = (2 * np.pi * mode.frequency_hz) ** 2
-            lowest[mode.name] = value - abs(value - ends.mean()) - half
-            by_cells[mode.name] = widths[:, k]
-    return lowest, by_cells
+            distance = abs(value - (low + high) / 2) + safety * (high - low) / 2
+            lowest[mode.name] = value - distance
+            widths[mode.name] = by_cell[:, k]
+    return lowest, widths
 
 
 def _most_like(shapes: Sequence[_Shape], motion: np.ndarray, gram: np.ndarray) -> _Shape | None:
     """Return the shape that is most like a motion of sections; None where none is like it."""
     length = motion @ gram @ motion
     cosines = [(shape.motion @ gram @ motion) ** 2 / length for shape in shapes]
-    best = int(np.argmax(cosines))
-    return shapes[best] if cosines[best] > ALIKE else None
+    best = int(np.argmax(cosines)) if cosines else 0
+    return shapes[best] if cosines and cosines[best] > ALIKE else None
 
 
-def _turned(shapes: Sequence[_Shape], wanted: _Shape, gram: np.ndarray) -> np.ndarray:
+def _turned(shapes: Sequence[_Shape], wanted: _Shape, gram: np.ndarray) -> np.ndarray | None:
     """Return the combination (l,) of near shapes, of unit length, that is most like another one;
-    zero where none is.
+    None where none is.
     """
-    out = np.zeros(len(shapes))
-    best = _most_like(shapes, wanted.motion, gram) if shapes else None
+    best = _most_like(shapes, wanted.motion, gram)
     if best is None:
-        return out
-    for k, shape in enumerate(shapes):
-        if abs(shape.mode.frequency_hz / best.mode.frequency_hz - 1) < NEAR:
-            out[k] = shape.motion @ gram @ wanted.motion
-    return out / np.linalg.norm(out)
+        return None
+    near = [abs(s.mode.frequency_hz / best.mode.frequency_hz - 1) < NEAR for s in shapes]
+    cosines = np.array([s.motion @ gram @ wanted.motion for s in shapes]) * near
+    return cosines / np.linalg.norm(cosines)
 
 
-def _between(
+def _plain_ends(
     shape: _Shape, plain: Sequence[_Shape], bounds: HarmonicBounds, gram: np.ndarray
-) -> tuple[float, float]:
+) -> tuple[float, float] | None:
     """Return both ends of the exact eigenvalue of a shape of the plain part, from the harmonic modes
-    that it consists of.
+    that it consists of; None where it consists of none.
     """
     near = [s for s in plain if abs(s.mode.frequency_hz / shape.mode.frequency_hz - 1) < NEAR]
-    share = np.array([(s.motion @ gram @ shape.motion) ** 2 for s in near])
-    if share.sum() < ALIKE:
-        return 0.0, np.inf
+    shares = np.array([(s.motion @ gram @ shape.motion) ** 2 for s in near])
+    if shares.sum() < ALIKE:
+        return None
     ends = np.array([(bounds.lowest[s.mode.name], s.value) for s in near])
-    low, high = share @ ends / share.sum()
+    low, high = shares @ ends / shares.sum()
     return float(low), float(high)
