@@ -312,22 +312,25 @@ def _of_modes(
         for body in (origin.with_, origin.without, origin.plain)
     )
     cut, uncut, plain = (_shapes(x, gram) for x in (with_set, without_set, plain_set))
-    plain_names = list(dict.fromkeys(shape.mode.name for shape in plain))
+    partners = [_most_like(cut, mode.motions[0].ravel(), gram) for mode in chosen]
+    bests = [_most_like(uncut, shape.motion, gram) for shape in partners if shape is not None]
+    # of shapes near these, those near of the harmonic solid
+    names = [s.mode.name for s in plain if any(_near(s, best, 3 * NEAR) for best in bests)]
     bounds = harmonic_bounds(
         coned(difference.scene.plain),
         origin.plain,
         statics=False,
         modes=plain_set,
-        wanted=plain_names,
+        wanted=list(dict.fromkeys(names)),
     )
+    plain = [shape for shape in plain if shape.mode.name in bounds.lowest]
     lowest = {str(mode.name): 0.0 for mode in chosen}
     widths = {str(mode.name): np.ones(difference.cells) for mode in chosen}
     ends = {id(shape): _plain_ends(shape, plain, bounds, gram) for shape in uncut}
     for index in range(len(origin.with_.blocks)):
         group = [s for s in uncut if set(s.vector) == {index} and ends[id(s)] is not None]
         pairs = []
-        for mode in chosen:
-            shape = _most_like(cut, mode.motions[0].ravel(), gram)
+        for mode, shape in zip(chosen, partners):
             if shape is None or set(shape.vector) != {index}:
                 continue
             turn = _turned(group, shape, gram)
@@ -364,6 +367,11 @@ def _most_like(shapes: Sequence[_Shape], motion: np.ndarray, gram: np.ndarray) -
     return shapes[best] if cosines and cosines[best] > ALIKE else None
 
 
+def _near(shape: _Shape, other: _Shape | None, most: float) -> bool:
+    """Return whether frequencies of two shapes differ by less than a share."""
+    return other is not None and abs(shape.mode.frequency_hz / other.mode.frequency_hz - 1) < most
+
+
 def _turned(shapes: Sequence[_Shape], wanted: _Shape, gram: np.ndarray) -> np.ndarray | None:
     """Return the combination (l,) of near shapes, of unit length, that is most like another one;
     None where none is.
@@ -371,7 +379,7 @@ def _turned(shapes: Sequence[_Shape], wanted: _Shape, gram: np.ndarray) -> np.nd
     best = _most_like(shapes, wanted.motion, gram)
     if best is None:
         return None
-    near = [abs(s.mode.frequency_hz / best.mode.frequency_hz - 1) < NEAR for s in shapes]
+    near = [_near(shape, best, NEAR) for shape in shapes]
     cosines = np.array([s.motion @ gram @ wanted.motion for s in shapes]) * near
     return cosines / np.linalg.norm(cosines)
 
@@ -382,7 +390,7 @@ def _plain_ends(
     """Return both ends of the exact eigenvalue of a shape of the plain part, from the harmonic modes
     that it consists of; None where it consists of none.
     """
-    near = [s for s in plain if abs(s.mode.frequency_hz / shape.mode.frequency_hz - 1) < NEAR]
+    near = [s for s in plain if _near(s, shape, NEAR)]
     shares = np.array([(s.motion @ gram @ shape.motion) ** 2 for s in near])
     if shares.sum() < ALIKE:
         return None
