@@ -60,6 +60,13 @@ class HarmonicBounds:
         """(6 p, 6 p) M of the flexibility."""
         return self.of_ports.sum(axis=0)
 
+    @cached_property
+    def tailed(self) -> np.ndarray:
+        """(6 p, 6 p) M of the flexibility with the tail beyond two orders."""
+        pairs = zip(np.diag(self.more), np.diag(self.less))
+        tail = [with_tail(two, one) / two if two > 0 else 1.0 for two, one in pairs]
+        return self.more * np.sqrt(np.outer(tail, tail))
+
     @property
     def least(self) -> np.ndarray:
         """(6 p, 6 p) least that the flexibility grows by: nothing is known of it."""

@@ -51,7 +51,7 @@ import numpy as np
 from solidgear.core import Body, SolidgearError
 from solidgear.core import modes as modes_of
 from solidgear.core.body.cache import Cache
-from solidgear.core.bounds.harmonic import HarmonicBounds, harmonic_bounds, with_tail
+from solidgear.core.bounds.harmonic import HarmonicBounds, harmonic_bounds
 from solidgear.core.bounds.sharpest import sharpest_exponent
 from solidgear.core.bounds.solid import Errors, errors_of_loads, errors_of_modes, on_mesh
 from solidgear.core.elements import ELEMENTS
@@ -132,7 +132,7 @@ def corrected_bounds(
     ports = np.zeros((cells if statics else 0, size, size))
     least, more = np.zeros((2, size, size))
     if statics:
-        plain = _with_tail(harmonic_bounds(coned(scene.plain), origin.plain, statics=True))
+        plain = harmonic_bounds(coned(scene.plain), origin.plain, statics=True).tailed
         lower, upper, ports = difference.of_ports(np.diag(flexibility(body).matrix))
         middle, half = (lower + upper + plain) / 2, safety * (upper + plain - lower) / 2
         least, more = middle - half, middle + half
@@ -142,13 +142,6 @@ def corrected_bounds(
     if modes is not None and chosen:
         ends, widths = _of_modes(difference, supports, modes, chosen, safety)
     return CorrectedBounds(body, least, more, ends, widths, ports)
-
-
-def _with_tail(bounds: HarmonicBounds) -> np.ndarray:
-    """Return the bounds of the flexibility of the plain part with the tail beyond two orders."""
-    pairs = zip(np.diag(bounds.more), np.diag(bounds.less))
-    tail = [with_tail(two, one) / two if two > 0 else 1.0 for two, one in pairs]
-    return bounds.more * np.sqrt(np.outer(tail, tail))
 
 
 @dataclass
