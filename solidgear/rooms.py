@@ -41,6 +41,7 @@ ADDITIONS = {
         "corrected": "cuts.corrected.model:Corrected",
         "sector": "cuts.sector.model:Sector",
     },
+    "bounds": {"corrected": "cuts.corrected.bounds:corrected_bounds"},
     "solid body": {
         "block": "parts.rectangular:block_body",
         "part": "parts.part_body:part_body",

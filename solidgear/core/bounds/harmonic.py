@@ -18,7 +18,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -51,11 +51,19 @@ class HarmonicBounds:
     of_modes: dict[str, np.ndarray]
     #: least eigenvalue that each mode may have, rad^2/s^2, where one is known
     lowest: dict[str, float]
+    two_sided: ClassVar = False  #: a mesh is too stiff
 
     @cached_property
     def more(self) -> np.ndarray:
         """(6 p, 6 p) M of the flexibility."""
         return self.of_ports.sum(axis=0)
+
+    @cached_property
+    def tailed(self) -> np.ndarray:
+        """(6 p, 6 p) M of the flexibility with the tail beyond two orders."""
+        pairs = zip(np.diag(self.more), np.diag(self.less))
+        tail = [with_tail(two, one) / two if two > 0 else 1.0 for two, one in pairs]
+        return self.more * np.sqrt(np.outer(tail, tail))
 
     @property
     def least(self) -> np.ndarray:

@@ -56,10 +56,14 @@ class Part:
         """Return the part (n, k) of displacements or forces that is of this kind, turned."""
         for (partner, sign), parity in self.planes:
             fields = (fields + (parity * sign)[:, None] * fields[partner]) / 2
-        if self.turn is not None:
-            partner, sign = self.turn
-            fields = sign[:, None] * fields[partner]
-        return fields
+        return self.turned(fields)
+
+    def turned(self, fields: np.ndarray) -> np.ndarray:
+        """Return displacements or forces (n, k) of this kind turned, or those turned as of this."""
+        if self.turn is None:
+            return fields
+        partner, sign = self.turn
+        return sign[:, None] * fields[partner]
 
 
 @dataclass(frozen=True)

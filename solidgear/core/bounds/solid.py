@@ -21,7 +21,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -36,7 +36,7 @@ from solidgear.core.bounds.harmonic import (
     with_neighbours,
 )
 from solidgear.core.bounds.narrow import RIGID, narrow_share
-from solidgear.core.bounds.pieces import Piece, independent, pieces_of
+from solidgear.core.bounds.pieces import Part, Piece, independent, pieces_of
 from solidgear.core.bounds.safety import SLOWER
 from solidgear.core.bounds.sharpest import sharpest_exponent
 from solidgear.core.elements import ELEMENTS
@@ -86,6 +86,7 @@ class SolidBounds:
     lowest: dict[str, float]
     of_modes: dict[str, np.ndarray]  #: (ne,) energies of the error of a mode, by its name
     _cells: Callable[[np.ndarray], np.ndarray]
+    two_sided: ClassVar = False  #: a mesh is too stiff
 
     @cached_property
     def more(self) -> np.ndarray:
@@ -130,12 +131,7 @@ def solid_bounds(
     """Compute bounds of the flexibility and of some modes of a 3D body; parameters are those of
     :func:`solidgear.core.bounds.harmonic.harmonic_bounds`.
     """
-    element = body.mesh["element"]
-    order = ELEMENTS[element].order
-    share = 1 / (1 - (order / (order + 1)) ** (4 * _sharpest(scene, body)))
-    if not without_axis(scene):
-        share = max(share, narrow_share(scene, body, order))
-    share *= SLOWER.get(element, 1.0)
+    share = share_of_error(scene, body)
     size = 6 * len(body.ports)
     reached = np.zeros((size, size))
     # ports of every block, their signs in the block that it repeats, and errors of that one
@@ -143,10 +139,7 @@ def solid_bounds(
     if statics:
         for index, fields, _, _ in port_fields(body, FIELDS):
             block = body.blocks[index]
-            rows = body.rows(block)
-            gram = block.rigid.T @ (block.mass @ block.rigid)
-            carried = -block.rigid @ np.linalg.solve(gram, block.rigid.T @ block.ports.T.toarray())
-            errors = enriched_errors(body, index, fields, np.eye(len(rows)), carried)
+            rows, errors = body.rows(block), errors_of_loads(body, index, fields)
             reached[np.ix_(rows, rows)] = errors.energies
             parts[index] = rows, np.ones(len(rows)), errors
         for k, block in enumerate(body.blocks):
@@ -157,7 +150,7 @@ def solid_bounds(
                 parts[k] = rows, np.tile(signs, len(body.ports)), parts[original][2]
     chosen = with_neighbours(modes, wanted)
     shapes = sorted(
-        (_Shape(m, value, u) for m in chosen for value, u in zip(_values(m), m.vectors)),
+        (_Shape(m, value, u) for m in chosen for value, u in zip(eigenvalues(m), m.vectors)),
         key=lambda shape: shape.value,
     )
     products, cells_of = _of_shapes(body, shapes)
@@ -176,6 +169,16 @@ def solid_bounds(
 
     lowest = _lowest(shapes, safety * share * products, solved)
     return SolidBounds(body, share, reached, lowest, by_cells, cells)
+
+
+def share_of_error(scene: Scene, body: Body) -> float:
+    """Return the largest energy of an error of a 3D body over that which one order more finds of it."""
+    element = body.mesh["element"]
+    order = ELEMENTS[element].order
+    share = 1 / (1 - (order / (order + 1)) ** (4 * _sharpest(scene, body)))
+    if not without_axis(scene):
+        share = max(share, narrow_share(scene, body, order))
+    return share * SLOWER.get(element, 1.0)
 
 
 def _sharpest(scene: Scene, body: Body) -> float:
@@ -201,13 +204,13 @@ class _Shape:
     vectors: dict[int, np.ndarray]  #: as in :attr:`Mode.vectors`
 
 
-def _values(mode: Mode) -> tuple[float, ...]:
+def eigenvalues(mode: Mode) -> tuple[float, ...]:
     """Return the eigenvalue of every shape of a mode, rad^2/s^2: of twins those about their mean."""
     mean = eigenvalue(mode)
     if len(mode.vectors) == 1:
         return (mean,)
-    ratio = (1 + mode.split) ** 2
-    return 2 * mean / (1 + ratio), 2 * mean * ratio / (1 + ratio)
+    apart = (1 + mode.split) ** 2
+    return 2 * mean / (1 + apart), 2 * mean * apart / (1 + apart)
 
 
 def _of_shapes(body: Body, shapes: Sequence[_Shape]) -> tuple[np.ndarray, list[np.ndarray]]:
@@ -216,7 +219,7 @@ def _of_shapes(body: Body, shapes: Sequence[_Shape]) -> tuple[np.ndarray, list[n
     """
     products = np.zeros((len(shapes), len(shapes)))
     by_cells = [np.zeros(1)] * len(shapes)
-    for index, block in enumerate(body.blocks):
+    for index in range(len(body.blocks)):
         # a block and its twin hold the same matrices
         parts = [
             (k, place, vector)
@@ -228,8 +231,7 @@ def _of_shapes(body: Body, shapes: Sequence[_Shape]) -> tuple[np.ndarray, list[n
             continue
         fields = np.column_stack([vector for *_, vector in parts])
         values = np.array([shapes[k].value for k, *_ in parts])
-        left = block.stiffness @ fields - (block.mass @ fields) * values
-        errors = enriched_errors(body, index, fields, on_ports(block, left), fields * values)
+        errors = errors_of_modes(body, index, fields, values)
         owners = np.array([k for k, *_ in parts])
         blocks = np.array([place for _, place, _ in parts])
         in_one_block = blocks[:, None] == blocks
@@ -258,7 +260,7 @@ def _lowest(
         places = [k for k in pending if blocks & set(shapes[k].vectors)]
         pending = [k for k in pending if k not in places]
         group = [shapes[k].mode for k in places]
-        highest = max(_values(m)[-1] for m in solved if blocks & set(m.vectors[0]))
+        highest = max(eigenvalues(m)[-1] for m in solved if blocks & set(m.vectors[0]))
         ends = lower_ends(
             np.array([shapes[k].value for k in places]),
             products[np.ix_(places, places)],
@@ -298,6 +300,21 @@ class Errors:
         return (products + products.T) / 2
 
 
+def errors_of_loads(body: Body, index: int, fields: np.ndarray) -> Errors:
+    """Compute the errors of the displacements (n, 6 p) of a block under unit loads on its ports."""
+    block = body.blocks[index]
+    gram = block.rigid.T @ (block.mass @ block.rigid)
+    carried = -block.rigid @ np.linalg.solve(gram, block.rigid.T @ block.ports.T.toarray())
+    return enriched_errors(body, index, fields, np.eye(fields.shape[1]), carried)
+
+
+def errors_of_modes(body: Body, index: int, fields: np.ndarray, values: np.ndarray) -> Errors:
+    """Compute the errors of modes (n, k) of a block of eigenvalues (k,), rad^2/s^2."""
+    block = body.blocks[index]
+    left = block.stiffness @ fields - (block.mass @ fields) * values
+    return enriched_errors(body, index, fields, on_ports(block, left), fields * values)
+
+
 def enriched_errors(
     body: Body, index: int, fields: np.ndarray, forces: np.ndarray, carried: np.ndarray
 ) -> Errors:
@@ -305,17 +322,15 @@ def enriched_errors(
     the inertia of an acceleration (n, k), with the energy that is expected where the search ends;
     refuse a problem that does not converge.
     """
-    block, factor = body.blocks[index], factors(body)[index]
+    block = body.blocks[index]
     more, pieces = _enriched(body, index)
-    back = more.coupling.T.tocsr()
     if block.expand is not None:
         fields, carried = block.expand @ fields, block.expand @ carried
     count = fields.shape[1]
     numbers = COPIES * count * (len(more.moves) + fields.shape[0]) + more.coupling.nnz
     require(8 * numbers / MB, f"error bars by {len(more.moves)} unknowns of one order more")
     loads = more.ports.T @ forces
-    heavy = block.mass @ block.rigid
-    gram = block.rigid.T @ heavy
+    follow = _following(body, index)
 
     def residuals(piece: Piece) -> np.ndarray:
         """Return the residuals of all parts, side by side."""
@@ -331,12 +346,8 @@ def enriched_errors(
 
     def schur(piece: Piece, x: np.ndarray) -> np.ndarray:
         x = piece.near @ x
-        load = piece.parts[0].of(back @ x)
-        u = factor.solve(load if block.expand is None else block.expand.T @ load)
-        u -= block.rigid @ np.linalg.solve(gram, heavy.T @ u)
-        if block.expand is not None:
-            u = block.expand @ u
-        return piece.held * (piece.near.T @ (more.stiffness @ x - more.coupling @ u))
+        force = more.stiffness @ x + more.coupling @ follow(piece.parts[0], x)
+        return piece.held * (piece.near.T @ force)
 
     lefts = [residuals(piece) for piece in pieces]
     squares = [
@@ -357,6 +368,36 @@ def enriched_errors(
             solutions += part.fold @ ((search.solution * scale) @ by_part)
             functionals += part.fold @ ((search.load * scale) @ by_part)
     return Errors(solutions, functionals, steps)
+
+
+def on_mesh(body: Body, index: int, errors: Errors) -> np.ndarray:
+    """Return the part (n, k) of the errors of a block in the functions of the mesh."""
+    _, pieces = _enriched(body, index)
+    follow = _following(body, index)
+    by_part = [
+        part.turned(follow(piece.parts[0], piece.near @ (part.fold.T @ errors.fields)))
+        for piece in pieces
+        for part in piece.parts
+    ]
+    return np.sum(by_part, axis=0)
+
+
+def _following(body: Body, index: int) -> Callable[[Part, np.ndarray], np.ndarray]:
+    """Return what gives the displacements (n, k) of the mesh of a block that follow those of one
+    order more without any load, from one kind of these, of functions that were summed up (s, k).
+    """
+    block, factor = body.blocks[index], factors(body)[index]
+    back = _enrichment(body, index).coupling.T.tocsr()
+    heavy = block.mass @ block.rigid
+    gram = block.rigid.T @ heavy
+
+    def follow(part: Part, x: np.ndarray) -> np.ndarray:
+        load = part.of(back @ x)
+        u = factor.solve(load if block.expand is None else block.expand.T @ load)
+        u -= block.rigid @ np.linalg.solve(gram, heavy.T @ u)
+        return -u if block.expand is None else -(block.expand @ u)
+
+    return follow
 
 
 def _enrichment(body: Body, index: int) -> Enrichment:

@@ -11,25 +11,21 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from solidgear.core.body import Body, Supports
-from solidgear.core.bounds.harmonic import (
-    HarmonicBounds,
-    harmonic_bounds,
-    is_bounded,
-    with_tail,
-)
+from solidgear.core.bounds.harmonic import harmonic_bounds, is_bounded, with_tail
 from solidgear.core.bounds.safety import LOCAL
-from solidgear.core.bounds.solid import SolidBounds, solid_bounds
+from solidgear.core.bounds.solid import solid_bounds
 from solidgear.core.judge.bars import LEAST, ErrorBar
 from solidgear.core.judge.quantities import Values, in_order, size
 from solidgear.core.judge.solving import MOST_SHAPES, Statics, extended_modes, numbers
 from solidgear.core.judge.steps import METHOD
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.quantity import STIFFNESS, Quantity
+from solidgear.core.registry import addition
 from solidgear.core.scene.coned import coned
 from solidgear.core.solve.modes import ModeSet, modes
 from solidgear.core.solve.statics import flexibility
@@ -71,7 +67,7 @@ def bounded(
     """
     frequencies = [q for q in names if q.is_frequency]
     bounds = bounds_of(
-        scene, body, statics is not None, modes, list(dict.fromkeys(frequencies)), later
+        scene, body, supports, statics is not None, modes, list(dict.fromkeys(frequencies)), later
     )
     misshapen = geometry_share(body)
     bars: dict[Quantity, ErrorBar] = {}
@@ -83,10 +79,15 @@ def bounded(
             for more in (bounds.more, bounds.less, bounds.least)
         )
         for name in in_order(dict.fromkeys((*stiff, *names))):
-            complete = all(name in end for end in (stiff, two_orders, one_order))
-            if complete and not name.is_frequency:
-                within = _between(name, stiff, two_orders, one_order, near, solver.get(name, 0.0))
-                bars[name] = _wider(within, misshapen)
+            complete = all(name in end for end in (stiff, two_orders, one_order, near))
+            if not complete or name.is_frequency:
+                continue
+            left = solver.get(name, 0.0)
+            if bounds.two_sided:
+                within = _within(name, stiff, near, two_orders, left)
+            else:
+                within = _between(name, stiff, two_orders, one_order, near, left)
+            bars[name] = _wider(within, misshapen)
         static_names = [q for q in names if q in bars]
         scores |= _static_scores(body, supports, bounds, statics, static_names)
     for name in names:
@@ -106,14 +107,20 @@ def bounded(
 def bounds_of(
     scene: Scene,
     body: Body,
+    supports: Supports,
     statics: bool,
     modes: ModeSet | None,
     wanted: Sequence[str],
     later: ModeSet | None = None,
-) -> HarmonicBounds | SolidBounds:
+) -> Any:
     """Compute the bounds of a solid, by local problems of a harmonic one, by one order more of a 3D
-    one.
+    one; of others as the room of their model does.
     """
+    computed = addition("bounds", body.fidelity)
+    if computed is not None:
+        return computed(
+            scene, body, supports, statics=statics, modes=modes, wanted=wanted, safety=LOCAL
+        )
     if body.blocks[0].enrich is not None:
         return solid_bounds(scene, body, statics=statics, modes=modes, wanted=wanted, safety=LOCAL)
     return harmonic_bounds(
@@ -150,7 +157,7 @@ def mode_bars(
         return widened and all(is_bounded(found, mode) for mode in elastic)
 
     extended = extended_until(body, supports, modes_listed, rest_on_others)
-    bounds = bounds_of(scene, body, False, extended, names)
+    bounds = bounds_of(scene, body, supports, False, extended, names)
     bars: dict[str, float] = {}
     misshapen = geometry_share(body)
     for mode in elastic:
@@ -234,6 +241,19 @@ def _between(
     return _bar(stiff[name], open_, solver, far_end, float(middle), scale)
 
 
+def _within(name: Quantity, value: Values, near: Values, far: Values, solver: float) -> ErrorBar:
+    """Compute the error bar of a static number that may lie on either side of it, from both ends; of
+    a coupling from those of both diagonal entries.
+    """
+    scale, middle = size(value, name), (near[name] + far[name]) / 2
+    pair = name.diagonals
+    half = abs(far[name] - near[name]) / 2
+    if pair is not None and all(d in near and d in far for d in pair):
+        half = float(np.sqrt(np.prod([abs(far[d] - near[d]) for d in pair]))) / 2
+    open_ = (half + abs(middle - value[name])) / scale
+    return _bar(value[name], open_, solver, far[name], float(middle), scale)
+
+
 def _wider(bar: ErrorBar, geometry: float) -> ErrorBar:
     return replace(bar, width=bar.width + geometry, geometry=geometry)
 
@@ -263,7 +283,7 @@ def _bar(
 def _static_scores(
     body: Body,
     supports: Supports,
-    bounds: HarmonicBounds | SolidBounds,
+    bounds: Any,
     statics: Statics,
     names: Sequence[Quantity],
 ) -> dict[Quantity, np.ndarray]:

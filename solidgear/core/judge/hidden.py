@@ -39,7 +39,7 @@ def complete_list(scene: Scene, body: Body, supports: Supports, listed: ModeSet)
     all_modes = replace(extended, beyond=(*extended.beyond, *extended.above), above=())
     elastic = [mode for mode in listed.modes if mode.frequency_hz > 0]
     names = [mode.name for mode in (*elastic, *first)]
-    bounds = bounds_of(scene, body, False, all_modes, names)
+    bounds = bounds_of(scene, body, supports, False, all_modes, names)
     limit = listed.evidence[COUNTED]
     for mode in first:
         least = bounds.frequency(mode)

@@ -114,7 +114,7 @@ def corrected(
         exact = exact.first(_fewer(exact))
         numbers = _corrected(exact, before, after, families)
     blocks = tuple(_block(numbers, base, exact, name, family) for name, family in families)
-    return Body(
+    body = Body(
         "corrected",
         blocks,
         base.ports,
@@ -130,6 +130,18 @@ def corrected(
         },
         _Drawing(base.geometry, _shares(base, families)) if base.geometry else None,
     )
+    body.cache.keep(Origin(base, without, with_, ~cut_mesh.cut))
+    return body
+
+
+@dataclass(frozen=True)
+class Origin:
+    """The bodies that a corrected one was made of."""
+
+    plain: Body  #: harmonic
+    without: Body  #: 3D, features left in
+    with_: Body  #: 3D, features cut out
+    kept: np.ndarray  #: (ne,) whether a cell of the plain part is one of the other
 
 
 @dataclass

@@ -9,7 +9,7 @@ edge or face has a sign in every cell, so that it is one function for all of the
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
 from itertools import product
@@ -34,6 +34,8 @@ if TYPE_CHECKING:
 #: values (q,) at some points, and slopes (3, q) along the reference coordinates
 Sample = tuple[np.ndarray, np.ndarray]
 Legendre = np.polynomial.legendre.Legendre
+#: cells whose stiffness is in memory at once
+CELLS = 400
 
 
 @dataclass(frozen=True)
@@ -232,11 +234,7 @@ class Addition:
         cells, multiples = orbits(images[:2], m.dofs.shape[1])
         summed, places = np.unique(numbers[:, cells], return_inverse=True)
         n = m.nodes.shape[1]
-        points, weights = _cell_rule(m.name) if m.name.startswith("tet") else gauss_box(4, 3)
-        basis = Tabulation(m.element, m.element, points)
-        value, slope = further.at(points)
-        basis.value = np.vstack([basis.value, value])
-        basis.slope = np.concatenate([basis.slope, slope])
+        basis, weights = _with_further(m, further)
         part = replace(m, dofs=m.dofs[:, cells], segment=m.segment[cells])
         stiffness, mass = integrals(
             part,
@@ -329,3 +327,43 @@ def enrichment(
         more.numbers,
         tuple(zip(reflections, more.reflected(reflections))),
     )
+
+
+def _with_further(m: SolidMesh, further: Further) -> tuple[Tabulation, np.ndarray]:
+    """Tabulate the functions of a mesh and further ones at the points of these weights."""
+    points, weights = _cell_rule(m.name) if m.name.startswith("tet") else gauss_box(4, 3)
+    basis = Tabulation(m.element, m.element, points)
+    value, slope = further.at(points)
+    basis.value, basis.slope = np.vstack([basis.value, value]), np.concatenate([basis.slope, slope])
+    return basis, weights
+
+
+def by_cells(m: SolidMesh, on_mesh: np.ndarray, beyond: np.ndarray) -> np.ndarray:
+    """Return the values (ne, 3 k, l) in every cell of displacements (3 n, l) in the functions of a
+    mesh and (m, l) in further ones.
+    """
+    numbers, signs = Further.beyond(m.name).numbered(m)
+    count = on_mesh.shape[1]
+    inner = on_mesh.reshape(-1, 3, count)[m.dofs]
+    outer = beyond.reshape(-1, 3, count)[numbers] * signs[:, :, None, None]
+    cells = m.dofs.shape[1]
+    return np.concatenate([inner, outer]).transpose(1, 0, 2, 3).reshape(cells, -1, count)
+
+
+def products_by_cells(
+    m: SolidMesh, materials: Sequence[Material], values: Sequence[np.ndarray]
+) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """Yield the numbers (e,) of some cells after others and the products of energy (e, l, l) there
+    of displacements from :func:`by_cells` side by side.
+    """
+    basis, weights = _with_further(m, Further.beyond(m.name))
+    functions = len(basis.value)
+    for start in range(0, m.dofs.shape[1], CELLS):
+        part = np.arange(start, min(start + CELLS, m.dofs.shape[1]))
+        some = replace(m, dofs=m.dofs[:, part], segment=m.segment[part])
+        # every cell by itself: no function is that of another
+        numbers = np.arange(functions * len(part)).reshape(len(part), functions).T
+        stiffness, _ = integrals(some, materials, basis, weights, numbers)
+        here = np.concatenate([x[part] for x in values], axis=2)
+        loads = (stiffness.matrix() @ here.reshape(-1, here.shape[2])).reshape(here.shape)
+        yield part, here.transpose(0, 2, 1) @ loads
