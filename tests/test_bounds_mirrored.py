@@ -12,7 +12,7 @@ from solidgear import Bearing, Port, Scene, Segment
 from solidgear.core.body.cache import Cache
 from solidgear.core.bounds import solid as bounds_solid
 from solidgear.core.bounds.pieces import independent
-from solidgear.core.bounds.solid import enriched_errors
+from solidgear.core.bounds.solid import enriched_errors, on_mesh
 from solidgear.core.machine import memory
 from solidgear.core.machine.memory import NoRoom
 from solidgear.core.models.solid.enriched import Further
@@ -50,11 +50,14 @@ def test_a_part_of_the_mesh_has_the_energies_of_all(around, tie, monkeypatch):
     monkeypatch.setattr(bounds_solid, "MISSING", 1e-5)
     body = sg.build(short(tie), "solid", element="hex20", around=around, **MESH)
     loads = unlike(body)
-    folded, whole = (enriched_errors(b, 0, *loads) for b in (body, apart(body)))
+    bodies = body, apart(body)
+    folded, whole = (enriched_errors(b, 0, *loads) for b in bodies)
     scale = np.sqrt(np.diag(whole.energies))
     # what is missing at the end, and what is expected of it, is not the same to the last digit
     assert np.abs((folded.energies - whole.energies) / np.outer(scale, scale)).max() < 1e-4
     assert np.abs(folded.fields - whole.fields).max() < 1e-2 * np.abs(whole.fields).max()
+    on_part, on_all = (on_mesh(b, 0, folded) for b in bodies)
+    assert np.abs(on_part - on_all).max() < 1e-9 * np.abs(on_all).max()
 
 
 def test_a_quarter_of_the_cells_is_summed_up_and_twins_are_solved_once():
