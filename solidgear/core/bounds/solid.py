@@ -157,7 +157,8 @@ def solid_bounds(
     by_cells: dict[str, np.ndarray] = {}
     for shape, energy in zip(shapes, cells_of):
         name = shape.mode.name
-        by_cells[name] = by_cells[name] + energy if name in by_cells else energy
+        # the mean of a pair, of which some bodies hold one shape only
+        by_cells[name] = by_cells.get(name, 0.0) + energy / len(shape.mode.vectors)
     solved = () if modes is None else modes.solved
 
     def cells(forces: np.ndarray) -> np.ndarray:
@@ -260,7 +261,10 @@ def _lowest(
         places = [k for k in pending if blocks & set(shapes[k].vectors)]
         pending = [k for k in pending if k not in places]
         group = [shapes[k].mode for k in places]
-        highest = max(eigenvalues(m)[-1] for m in solved if blocks & set(m.vectors[0]))
+        # planes of a pair are blocks of their own
+        highest = max(
+            eigenvalues(m)[-1] for m in solved if any(blocks & set(u) for u in m.vectors)
+        )
         ends = lower_ends(
             np.array([shapes[k].value for k in places]),
             products[np.ix_(places, places)],
