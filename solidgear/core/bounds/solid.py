@@ -262,9 +262,7 @@ def _lowest(
         pending = [k for k in pending if k not in places]
         group = [shapes[k].mode for k in places]
         # planes of a pair are blocks of their own
-        highest = max(
-            eigenvalues(m)[-1] for m in solved if any(blocks & set(u) for u in m.vectors)
-        )
+        highest = max(eigenvalues(m)[-1] for m in solved if any(blocks & set(u) for u in m.vectors))
         ends = lower_ends(
             np.array([shapes[k].value for k in places]),
             products[np.ix_(places, places)],
