@@ -179,7 +179,7 @@ def write_page(sheet: Sheet, path: Path) -> Path:
         )
         for section in sheet.sections
     ]
-    page = template("train_sheet.html").render(
+    page = template("sheet.html").render(
         contents=Contents(),
         title=sheet.title,
         lead=f"{sheet.lead} {sheet.headline}".strip(),
