@@ -21,6 +21,12 @@ from tests.command import command
 ROOT = Path(__file__).parent.parent
 
 
+@pytest.mark.parametrize("folder", [".", "..", "/"])
+def test_a_folder_is_no_name_for_a_new_file(folder):
+    done = command("new", folder)
+    assert done.exit_code == 1 and "is a folder; give the name of a file" in str(done.exception)
+
+
 @pytest.mark.parametrize("kind", [kind for kind in STARTS if kind not in SHAFTS])
 def test_a_new_scene_runs(kind, tmp_path):
     done = command("new", tmp_path / "deep" / "my fan 2", "--kind", kind)

@@ -269,7 +269,7 @@ def test_numbers_of_three_shafts_are_those_of_each_train_alone(three):
     assert told["models"] == dict(zip(("input", "middle", "output"), mix))
     for key, assembly in zip("ab", three):
         alone = respond(assembly, *mix, **how)
-        assert [p[key] for p in told["peaks"] if p[key]] == [vars(p) for p in alone.peaks]
+        assert [p[key] for p in told["peaks"] if p[key]] == [p._asdict() for p in alone.peaks]
         for column in (*MESHES, "middle bearing E z [N]", "output thx [rad]"):
             own = np.abs(alone.columns[column])
             assert told["responses"][key]["amplitude"][column] == own.tolist()

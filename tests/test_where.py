@@ -264,7 +264,7 @@ def test_command_line(tmp_path):
     bars = {value["quantity"]: value["bar"] for value in told["values"]}
     assert told["steps"][-1]["only"] == ["torsion 1"] and bars["axial 1"] > bars["torsion 1"]
     assert (told["where"]["quantity"], told["where"]["order"]) == ("axial 1", first)
-    words = run(scene, "--tol", 0.05, "--ask", "torsion", "--where").stdout
+    words = " ".join(run(scene, "--tol", 0.05, "--ask", "torsion", "--where").stdout.split())
     assert "of the error bar of torsion 1 arises at the shoulder at y = 68.25 mm" in words
     assert "(a bound by local problems, 0.0" in words
     assert "error of torsion 1" in words and "within, mm" in words

@@ -25,6 +25,8 @@ def new(
     name: Annotated[Path, typer.Argument(help="Scene file to write, with or without .toml.")],
     kind: Annotated[str, typer.Option(help=f"{KINDS}.")] = "overhung",
 ) -> None:
+    if name.name in ("", ".."):
+        raise SolidgearError(f"new: {name} is a folder; give the name of a file, such as shaft")
     path = name if name.suffix == ".toml" else name.with_name(f"{name.name}.toml")
     contents = {path.parent / file: content for file, content in start(kind, path.stem).items()}
     _write({file: content.encode() for file, content in contents.items()})

@@ -147,8 +147,10 @@ def modes_sheet(modes: ModeSet, judged: Judged, proof: dict[str, Any], counted: 
     notes += [caution(f"{mixture.sentence}.") for mixture in mixtures(modes)]
     if evidence["error"] > 1e-6:
         notes.append(
-            f"caution: rounding leaves errors of {evidence['error']:.0e} in frequencies, since the "
-            "smallest cells are too stiff beside the shaft; use a coarser mesh."
+            caution(
+                f"rounding leaves errors of {evidence['error']:.0e} in frequencies, since the "
+                "smallest cells are too stiff beside the shaft; use a coarser mesh."
+            )
         )
     if counted:
         notes += [

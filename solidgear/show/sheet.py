@@ -7,7 +7,7 @@ command was asked to.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -165,20 +165,33 @@ def _written(sheet: Sheet, folder: Path) -> list[Path]:
 
 
 def write_page(sheet: Sheet, path: Path) -> Path:
-    """Write the page of a sheet alone."""
-    return write_sheet(
-        path,
-        sheet.title,
-        f"{sheet.lead} {sheet.headline}".strip(),
-        sheet.tables,
-        charts=sheet.charts,
+    """Write the page of a sheet, without network: conclusions, cautions, charts, HTML of shapes,
+    tables, sections and notes.
+    """
+    from markupsafe import Markup
+
+    sections = [
+        (
+            section,
+            [table for table in section.tables if table],
+            [*_given(section), *_drawn(section.charts, section.title, sheet.words)],
+            Markup(section.viewer),
+        )
+        for section in sheet.sections
+    ]
+    page = template("sheet.html").render(
+        contents=Contents(),
+        title=sheet.title,
+        lead=f"{sheet.lead} {sheet.headline}".strip(),
+        tables=[table for table in sheet.tables if table],
+        charts=_drawn(sheet.charts, sheet.title, sheet.words),
+        viewer=Markup(sheet.viewer),
         notes=sheet.notes,
         cautions=sheet.cautions,
         verdict=sheet.verdict,
-        viewer=sheet.viewer,
-        sections=sheet.sections,
-        words=sheet.words,
+        sections=[part for part in sections if part[0].words or any(part[1:])],
     )
+    return write_whole(path, page)
 
 
 def _is_filed(section: Section, chart: str) -> bool:
@@ -199,50 +212,6 @@ def write_charts(stem: Path, make: Make) -> list[Path]:
     files = [stem.with_suffix(f".{kind}") for kind in KINDS]
     chart.write(*files)
     return files
-
-
-def write_sheet(
-    path: Path,
-    title: str,
-    lead: str,
-    tables: Iterable[Table] = (),
-    *,
-    charts: Mapping[str, Make] | None = None,
-    viewer: str = "",
-    notes: Sequence[str] = (),
-    cautions: Sequence[str] = (),
-    verdict: Sequence[str] = (),
-    sections: Sequence[Section] = (),
-    words: Mapping[str, str] | None = None,
-) -> Path:
-    """Write a page without network: conclusions, cautions, charts, HTML of shapes, tables and
-    notes.
-    """
-    from markupsafe import Markup
-
-    captions = words or {}
-    drawn = [
-        (
-            s,
-            [table for table in s.tables if table],
-            [*_given(s), *_drawn(s.charts, s.title, captions)],
-            Markup(s.viewer),
-        )
-        for s in sections
-    ]
-    page = template("train_sheet.html").render(
-        contents=Contents(),
-        title=title,
-        lead=lead,
-        tables=[table for table in tables if table],
-        charts=_drawn(charts or {}, title, captions),
-        viewer=Markup(viewer),
-        notes=notes,
-        cautions=cautions,
-        verdict=verdict,
-        sections=[part for part in drawn if part[0].words or any(part[1:])],
-    )
-    return write_whole(path, page)
 
 
 def _drawn(

@@ -25,7 +25,7 @@ from solidgear.core.reduction.effective_mass import synthesise
 from solidgear.core.scene import Scene
 from solidgear.core.system.steady import peaks
 from solidgear.show.plot import Make
-from solidgear.show.sheet import Section, write_sheet
+from solidgear.show.sheet import Section, Sheet, write_page
 from solidgear.show.words import capital
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.file.train import Train
@@ -404,7 +404,8 @@ def main() -> None:
     show("Claims of chapters 2 and 3", rows)
     PAGE.write_text(page(rows), encoding="utf-8")
     lead = f"{taken().replace('*', '')}. A: {CASES[0]}, B: {CASES[1]}."
-    print(write_sheet(folder / "claims.html", TITLE, lead, sections=sections))
+    sheet = Sheet("claims", TITLE, lead, tables=[], data={}, sections=sections)
+    print(write_page(sheet, folder / "claims.html"))
 
 
 def picture(curve: Make, file: Path) -> None:

@@ -5,6 +5,7 @@ and shows of them.
 from __future__ import annotations
 
 import os
+from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -73,7 +74,7 @@ class NumberChange:
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Beside(Generic[S, M]):
+class Beside(ABC, Generic[S, M]):
     """Two designs of a kind beside each other."""
 
     kind: ClassVar[str]  #: in words
@@ -116,17 +117,17 @@ class Beside(Generic[S, M]):
         """Conclusions in engineering units."""
         return self.told()
 
+    @abstractmethod
     def told(self, units: Units = ENGINEERING) -> list[str]:
         """Return the conclusions, with their numbers in the given units."""
-        raise NotImplementedError
 
+    @abstractmethod
     def sheet(self, units: Units = ENGINEERING) -> Sheet:
         """Return the sheet of terminal, page and JSON."""
-        raise NotImplementedError
 
+    @abstractmethod
     def data(self) -> dict[str, Any]:
         """Return the JSON data of this kind alone."""
-        raise NotImplementedError
 
     @cached_property
     def results(self) -> dict[str, Any]:

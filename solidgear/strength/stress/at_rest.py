@@ -1,8 +1,9 @@
 """Stress of the shafts of a train at rest, or of a shaft alone, under the loads of their equilibrium.
 
 A shaft of a train is free but for the loads on its ports: teeth, springs, bearings, the weight of a
-wheel on it. A shaft alone has a load at the port and the reactions of the bearings. Both settle as plain bodies of revolution: cuts change reactions by next to nothing. Models that are made
-for cuts settle with them.
+wheel on it. A shaft alone has a load at the port and the reactions of the bearings. Both settle as
+plain bodies of revolution: cuts change reactions by next to nothing. Models that are made for cuts
+settle with them.
 """
 
 from __future__ import annotations

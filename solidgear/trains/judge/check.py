@@ -111,11 +111,11 @@ def _facts(assembly: Assembly, limit: float) -> Iterator[str]:
             f"rpm of the {teeth.of}"
         )
     for stage in train.stages:
-        mesh, teeth_of_stage = stage.table.mesh, stage.teeth
+        mesh, gears, (sun, carrier) = stage.table.mesh, stage.teeth, stage.shafts
         yield (
-            f"{stage.called}: {teeth_of_stage.sun}, {teeth_of_stage.planet} and "
-            f"{teeth_of_stage.ring} teeth, {len(teeth_of_stage.azimuths)} planets, one turn of the {stage.shafts[1]} in {stage.ratio:.6g} of the "
-            f"{stage.shafts[0]}; pins at {1e3 * teeth_of_stage.pin_radius:.6g} mm, meshes "
+            f"{stage.called}: {gears.sun}, {gears.planet} and {gears.ring} teeth, "
+            f"{len(gears.azimuths)} planets, one turn of the {carrier} in {stage.ratio:.6g} of the "
+            f"{sun}; pins at {1e3 * gears.pin_radius:.6g} mm, meshes "
             f"{mesh.sun_stiffness:.4g} N/m with the sun and {mesh.ring_stiffness:.4g} N/m with the ring"
         )
     yield senses_sentence(senses(train, assembly.contacts))
