@@ -24,16 +24,17 @@ from solidgear.core import (
 from solidgear.core import modes as solve
 from solidgear.core.bounds.solid import NoBounds
 from solidgear.core.judge.at_rest import spin_caution
-from solidgear.core.judge.bounded import NOTHING_BEYOND, mode_bars
+from solidgear.core.judge.bounded import NOTHING_BEYOND
 from solidgear.core.judge.completeness import completeness, cut_short, split_apart
 from solidgear.core.judge.hidden import complete_list, less_bars
+from solidgear.core.machine.memory import NoRoom
 from solidgear.core.plain import plain
 from solidgear.core.solve.mixtures import mixtures
 from solidgear.show import open_words
 from solidgear.show.command import Progress, caution, command
 from solidgear.show.options import Run, SceneFile, Solved, speed_of
 from solidgear.show.remarks import cautions, load, open_ranges
-from solidgear.show.settled import ONE_ORDER_MORE, Judged, bar_lines
+from solidgear.show.settled import Judged, bar_lines, source_of_bars
 from solidgear.show.sheet import Sheet, present
 from solidgear.show.table import Column, Table, text
 from solidgear.show.words import by_plane, hertz, percent
@@ -78,18 +79,16 @@ def modes(
     def study(progress: Progress) -> Sheet:
         body, settled = model.body(loaded, "modes", progress)
         mode_set = solve(body, loaded, asked, max_frequency=highest_hz, count=count)
-        bounded = LADDER[body.fidelity].bounded
-        if settled is not None and bounded:
+        is_solid = bool(LADDER[body.fidelity].bars_by)
+        if settled is not None and is_solid:
             mode_set = complete_list(loaded, body, as_supports(loaded), mode_set)
-        whole = mode_set.whole if count and not bounded else mode_set
+        whole = mode_set.whole if count and not is_solid else mode_set
         reason = model.without_bars(settled)
         bars: dict[str, float] = {}
-        if settled is not None:
-            bars = bars_of_modes(loaded, body, whole, settled)
-        elif not reason:
+        if not reason:
             try:
-                bars = mode_bars(loaded, body, as_supports(loaded), whole)
-            except NoBounds as error:
+                bars = bars_of_modes(loaded, body, whole, settled)
+            except (NoBounds, NoRoom) as error:
                 reason = str(error)
         above = [mode for mode in whole.modes if mode.name not in mode_set.names]
         evidence = less_bars(mode_set.evidence, bars, above)
@@ -117,7 +116,7 @@ def modes_sheet(modes: ModeSet, judged: Judged, proof: dict[str, Any], counted: 
     settled, model = judged.settled, judged.body.fidelity
     bars = {str(name): bar for name, bar in judged.bars.items()}
     bare = [m.name for m in modes.modes if m.frequency_hz > 0 and m.name not in bars]
-    reason = judged.reason or _unjudged(bare, model)
+    reason = judged.reason or (NOTHING_BEYOND if bare else "")
     data = {
         "scene": judged.scene.name,
         "fidelity": model,
@@ -160,7 +159,7 @@ def modes_sheet(modes: ModeSet, judged: Judged, proof: dict[str, Any], counted: 
         ]
     notes += bar_lines(settled, judged.bars)
     if bars and settled is None:
-        notes.append(ONE_ORDER_MORE)
+        notes.append(source_of_bars(model))
     if not bars and reason:
         notes.append(f"No error bars: {reason}.")
     elif reason:
@@ -211,12 +210,3 @@ def _beyond(bars: Mapping[str, float], settled: Settled | None) -> list[str]:
         f"Beyond {percent(settled.tolerance, signed=False)}: {names}; --tol holds the first mode "
         "of every family, and a smaller one narrows these too."
     ]
-
-
-def _unjudged(names: Sequence[str], model: str) -> str:
-    """Return the reason why some modes have no error bar; empty without such modes."""
-    if not names:
-        return ""
-    if LADDER[model].bounded:
-        return NOTHING_BEYOND
-    return "higher modes need finer meshes"

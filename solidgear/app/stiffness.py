@@ -22,6 +22,7 @@ from solidgear.core import (
 from solidgear.core.body import as_supports
 from solidgear.core.bounds.solid import NoBounds
 from solidgear.core.judge.bounded import static_bars
+from solidgear.core.machine.memory import NoRoom
 from solidgear.core.plain import plain
 from solidgear.core.scene.rules import no_such_point
 from solidgear.core.solve.condensed import Coupled
@@ -30,7 +31,7 @@ from solidgear.show.command import Progress, caution, command
 from solidgear.show.open_words import table as open_table
 from solidgear.show.options import SceneFile, Shown, Solved
 from solidgear.show.remarks import cautions, load, open_ranges
-from solidgear.show.settled import ONE_ORDER_MORE, Judged, bar_lines, largest_bar
+from solidgear.show.settled import Judged, bar_lines, largest_bar, source_of_bars
 from solidgear.show.sheet import Sheet, Terminal, present
 from solidgear.show.table import Column, Table
 from solidgear.show.terminal import matrix_table
@@ -72,7 +73,7 @@ def stiffness(
         if settled is None and not reason:
             try:
                 bars = static_bars(loaded, body, as_supports(loaded), names)
-            except NoBounds as error:
+            except (NoBounds, NoRoom) as error:
                 reason = str(error)
         statics = condense(body, loaded, names if len(names) > 1 else names[0])
         open_ = open_ranges(loaded, body)
@@ -132,7 +133,7 @@ def stiffness_sheet(statics: Condensed | Coupled, judged: Judged, units: Units) 
     elif judged.reason:
         closing.append(f"No error bars: {judged.reason}.")
     else:
-        closing += [*largest_bar(bars, point), ONE_ORDER_MORE]
+        closing += [*largest_bar(bars, point), source_of_bars(judged.body.fidelity)]
     return Sheet(
         name="stiffness",
         title=head,

@@ -242,7 +242,7 @@ def _model_record(solution: Solution, judgement: Judgement) -> ModelRecord:
             compliance=max(
                 (bar.width for q, bar in bars.items() if q.kind == COMPLIANCE), default=None
             ),
-            method=f"{method}, {len(solution.levels)} meshes",
+            method=method,
             each={name: bar.width for name, bar in bars.items()},
         )
         record.convergence = ConvergenceRecord(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -17,16 +17,15 @@ from solidgear.core import (
     Mode,
     ModeSet,
     Scene,
-    Settled,
     as_supports,
-    bars_of_modes,
     build,
     modes,
     pinned,
     settle,
-    without_axis,
 )
-from solidgear.core.judge.bounded import has_bounds, mode_bars
+from solidgear.core.bounds.solid import NoBounds
+from solidgear.core.judge.bounded import mode_bars
+from solidgear.core.machine.memory import NoRoom
 from solidgear.variants.sensitivity.adjoint import mode_form
 from solidgear.variants.sweep.bench import surface
 
@@ -103,8 +102,7 @@ def computed_up_to(
     begins on the mesh of an earlier result `before` of a similar scene.
     """
     limit = BEYOND * highest
-    settled = None
-    if before is None or not (LADDER[before.model].bounded or without_axis(scene)):
+    if before is None:
         settled = settle(scene, tolerance, "modes", progress=progress)
         model, options, body = settled.rung, dict(settled.options), settled.body
     else:
@@ -112,8 +110,8 @@ def computed_up_to(
         same_surface = surface(scene) == surface(before.scene)
         body = before.body if same_surface else build(scene, model, **options)
     progress("modes and their error bars")
-    listed, bars = _barred(scene, body, limit, options, settled)
-    while LADDER[model].bounded and options.get("order", 3) + STEP <= HIGHEST:
+    listed, bars = _barred(scene, body, limit)
+    while LADDER[model].follows and options.get("order", 3) + STEP <= HIGHEST:
         # the highest mode of a family may have no bar
         known = [b for m, b in zip(listed, bars) if m.frequency_hz <= highest and math.isfinite(b)]
         if max(known, default=0.0) <= tolerance:
@@ -121,7 +119,7 @@ def computed_up_to(
         options["order"] = options.get("order", 3) + STEP
         progress(f"order {options['order']}: error bars of all modes")
         body = build(scene, model, **options)
-        listed, bars = _barred(scene, body, limit, options, settled)
+        listed, bars = _barred(scene, body, limit)
     return Computed(scene, body, tuple(listed), tuple(bars), model, options, limit)
 
 
@@ -150,7 +148,7 @@ def motions_up_to(computed: Computed, limit: float) -> list[tuple[Mode, float]]:
     scene, body = computed.scene, computed.body
     solved = _modes(scene, body, limit, 2 * len(computed.modes))
     known_bars = {str(mode.name): bar for mode, bar in zip(computed.modes, computed.bars)}
-    bars = known_bars | _bars(scene, body, solved, computed.options, None)
+    bars = known_bars | _bars(scene, body, solved)
     usual = max((bar for bar in bars.values() if math.isfinite(bar)), default=math.inf)
     all_bars = [
         usual if math.isinf(bars.get(str(m.name), math.inf)) else bars[str(m.name)]
@@ -159,23 +157,20 @@ def motions_up_to(computed: Computed, limit: float) -> list[tuple[Mode, float]]:
     return [(m, bar if m.frequency_hz > 0 else 0.0) for m, bar in zip(solved.modes, all_bars)]
 
 
-def _barred(
-    scene: Scene, body: Body, limit: float, options: Mapping[str, Any], settled: Settled | None
-) -> tuple[list[Mode], list[float]]:
+def _barred(scene: Scene, body: Body, limit: float) -> tuple[list[Mode], list[float]]:
     """Return modes of a body and their error bars."""
     solved = _modes(scene, body, limit)
-    by_name = _bars(scene, body, solved, options, settled)
+    by_name = _bars(scene, body, solved)
     listed = _elastic(solved)
     return listed, [by_name.get(str(mode.name), math.inf) for mode in listed]
 
 
-def _bars(
-    scene: Scene, body: Body, solved: ModeSet, options: Mapping[str, Any], settled: Settled | None
-) -> dict[str, float]:
-    """Return relative error bars by the names of modes."""
-    if has_bounds(body):
+def _bars(scene: Scene, body: Body, solved: ModeSet) -> dict[str, float]:
+    """Return relative error bars by the names of modes; none where they cannot be computed."""
+    try:
         return mode_bars(scene, body, as_supports(scene), solved)
-    return bars_of_modes(scene, body, solved, settled)
+    except (NoBounds, NoRoom):
+        return {}
 
 
 def _modes(scene: Scene, body: Body, limit: float, count: int = FEW) -> ModeSet:

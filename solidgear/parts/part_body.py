@@ -15,7 +15,7 @@ from solidgear.core.kernel.room import assemblable
 from solidgear.core.machine.isolated import IsolatedError, isolated
 from solidgear.core.meshing.element_size import size_formulas
 from solidgear.core.meshing.placing import Placing
-from solidgear.core.meshing.quality import MeshError, cell_sizes
+from solidgear.core.meshing.quality import MeshError
 from solidgear.core.meshing.revolved import graded_corners
 from solidgear.core.meshing.tetrahedra import check_filling
 from solidgear.core.models.solid.plan import tetrahedra_of, tetrahedra_plan
@@ -81,7 +81,7 @@ def part_body(
             element=element,
             wanted=wanted,
             clipped=True,
-            facts=facts | {"axis": not free, "cell_sizes": cell_sizes(part.mesh)},
+            facts=facts | {"axis": not free},
             owner=part.owner if materials else None,
             materials=materials,
             patches=part.patches,

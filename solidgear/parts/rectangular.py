@@ -11,7 +11,6 @@ from skfem import Mesh, MeshHex
 
 from solidgear.core import Body, SolidgearError
 from solidgear.core.kernel.room import assemblable
-from solidgear.core.meshing.quality import cell_sizes
 from solidgear.core.scene.patches import FACES
 from solidgear.parts.own_mesh import solid_body
 
@@ -31,7 +30,7 @@ def block_body(
     :func:`solidgear.core.models.solid.body.solid`.
     """
     mesh = block_mesh(scene, wanted, element, size, refinement)
-    facts = {"refinement": refinement, "axis": False, "cell_sizes": cell_sizes(mesh)}
+    facts = {"refinement": refinement, "axis": False}
     middle = mesh.p[:, mesh.facets].mean(axis=1)
     low, high = mesh.p.min(axis=1), mesh.p.max(axis=1)
     near = 1e-9 * (high - low).max()

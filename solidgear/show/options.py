@@ -32,8 +32,6 @@ MODEL = "harmonic"
 AUTO = "auto"
 #: spellings of the option that names a model
 BY_MODEL = ("--model", "--fidelity", "-f")
-#: models that have error bars where their mesh is set
-BOUNDED = ("solid",)
 #: units of tables and pages unless told otherwise
 UNITS = ENGINEERING.name
 
@@ -185,7 +183,7 @@ class Solved(Chosen):
         bool,
         typer.Option(
             "--bars/--no-bars",
-            help="With -f solid: error bars by the error in one order more, about twice the time.",
+            help="Error bars of a solid whose mesh is set: of a 3D solid about twice the time.",
         ),
     ] = True
 
@@ -198,8 +196,8 @@ class Solved(Chosen):
         """Return the reason why numbers have no error bar; empty where they have one."""
         if settled is not None:
             return ""
-        if self.name not in BOUNDED:
-            return "model and mesh were given; -f auto has error bars"
+        if not LADDER[self.name].bars_by:
+            return f"the {LADDER[self.name].title} cannot show its own; -f auto has error bars"
         return "" if self.bars else "--no-bars leaves them out"
 
     def body(

@@ -14,8 +14,10 @@ from solidgear.core.judge.settle import widest
 from solidgear.show.command import NOT_REACHED
 from solidgear.show.words import is_number, percent
 
-#: where bars of a 3D solid come from whose mesh was set
-ONE_ORDER_MORE = "Error bars: the error that one order more finds on this mesh."
+
+def source_of_bars(model: str) -> str:
+    """Return the sentence on where the error bars of a model come from whose mesh was set."""
+    return f"Error bars: {LADDER[model].bars_by}, on this mesh."
 
 
 @dataclass(frozen=True)

@@ -465,13 +465,12 @@ def levels(record: Record, units: Units = ENGINEERING) -> Table:
 
 
 def orders(record: Record) -> Table:
-    """Return changes from mesh to mesh, and the error bars made of them."""
+    """Return the error bars of the last mesh of every solid, and what they are made of."""
     columns = [
         "quantity",
         word("error bar from"),
-        Column("last change", write=unsigned),
-        Column("over the one before", write=small),
-        Column("factor", write=small),
+        Column("other end of the bounds", write=unsigned),
+        Column("safety in it", write=small),
         Column("of the solver", write=unsigned),
         Column("error bar", write=bar_percent),
     ]
@@ -483,14 +482,15 @@ def orders(record: Record) -> Table:
             if judged and name not in judged:
                 continue
             label = f"{name}, Hz" if Quantity(name).is_frequency else name
-            widths = [bar.change, bar.reduction, bar.factor, bar.solver, bar.gci]
+            widths = [bar.change, bar.factor, bar.solver, bar.gci]
             rows.append([f"{record.title(key)}: {label}", bar.method or None, *widths])
     return Table(
-        "Changes and error bars",
+        "Error bars",
         columns,
         rows,
-        "With layers errors shrink by a nearly fixed share; the factor is measured on random "
-        "shafts. Couplings: relative to the geometric mean of both diagonal entries.",
+        "The exact number lies between that of the mesh and the other end, in the safety that is "
+        "measured on drawn bodies. Couplings: relative to the geometric mean of both diagonal "
+        "entries.",
     )
 
 

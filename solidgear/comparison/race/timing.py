@@ -245,7 +245,7 @@ def _reference(
             "must resist z there)"
         )
     like: dict[Quantity, float] = {}
-    if model.bounded:  # beams are of revolution, as it is; section ties ask less of its mesh
+    if model.section_ties:  # beams are of revolution, as it is; section ties ask less of its mesh
         progress("reference with section ties")
         like = answer(scene.with_attachment("section"), model.name, settled.options, n).quantities
     record = Reference(

@@ -1,10 +1,10 @@
-"""Numbers of a harmonic solid between two bounds, and the places on the mesh where their
-uncertainty lies.
+"""Numbers of a solid between two bounds, and the places on the mesh where their uncertainty lies.
 
 Compliances lie between that of the body and that of its softest relative, stiffnesses the other way
 round, as quadratic forms; a coupling lies within half the geometric mean of the uncertainties of
 both diagonal entries, about the middle of its own two values. Frequencies lie between the Rayleigh
-quotient and the lower bound of Kato and Temple (:mod:`solidgear.core.bounds.harmonic`).
+quotient and the lower bound of Kato and Temple.  The bounds are those of
+:mod:`solidgear.core.bounds.harmonic` and :mod:`solidgear.core.bounds.solid`.
 """
 
 from __future__ import annotations
@@ -22,7 +22,6 @@ from solidgear.core.bounds.solid import solid_bounds
 from solidgear.core.judge.bars import LEAST, ErrorBar
 from solidgear.core.judge.quantities import Values, in_order, size
 from solidgear.core.judge.solving import MOST_SHAPES, Statics, extended_modes, numbers
-from solidgear.core.judge.steps import METHOD
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.quantity import STIFFNESS, Quantity
 from solidgear.core.registry import addition
@@ -61,15 +60,14 @@ def bounded(
     solver: Values,
     later: ModeSet | None = None,
 ) -> Bounded:
-    """Bound some numbers of a harmonic body by local problems, from the condensed statics and the
-    modes found and the relative error that the solver may have left; `later` are modes in other
-    supports, whose error bars will be asked for.
+    """Bound some numbers of a solid from the condensed statics and the modes found and the relative
+    error that the solver may have left; `later` are modes in other supports, whose error bars will
+    be asked for.
     """
     frequencies = [q for q in names if q.is_frequency]
     bounds = bounds_of(
         scene, body, supports, statics is not None, modes, list(dict.fromkeys(frequencies)), later
     )
-    misshapen = geometry_share(body)
     bars: dict[Quantity, ErrorBar] = {}
     scores: dict[Quantity, np.ndarray] = {}
     if statics is not None:
@@ -84,10 +82,9 @@ def bounded(
                 continue
             left = solver.get(name, 0.0)
             if bounds.two_sided:
-                within = _within(name, stiff, near, two_orders, left)
+                bars[name] = _within(name, stiff, near, two_orders, left)
             else:
-                within = _between(name, stiff, two_orders, one_order, near, left)
-            bars[name] = _wider(within, misshapen)
+                bars[name] = _between(name, stiff, two_orders, one_order, near, left)
         static_names = [q for q in names if q in bars]
         scores |= _static_scores(body, supports, bounds, statics, static_names)
     for name in names:
@@ -97,10 +94,12 @@ def bounded(
         least = bounds.frequency(mode)
         if least is None:
             continue
-        open_ = 1 - least / mode.frequency_hz
-        within = _bar(mode.frequency_hz, open_, mode.error, least)
-        bars[name] = _wider(within, misshapen / 2)
+        bars[name] = _bar(mode.frequency_hz, 1 - least / mode.frequency_hz, mode.error, least)
         scores[name] = bounds.of_modes[mode.name] / bounds.of_modes[mode.name].sum()
+    method, misshapen = LADDER[body.fidelity].bars_by, geometry_share(body)
+    for name, bar in bars.items():
+        share = misshapen / 2 if name.is_frequency else misshapen
+        bars[name] = replace(bar, width=bar.width + share, geometry=share, method=method)
     return Bounded(bars, scores)
 
 
@@ -121,7 +120,7 @@ def bounds_of(
         return computed(
             scene, body, supports, statics=statics, modes=modes, wanted=wanted, safety=LOCAL
         )
-    if body.blocks[0].enrich is not None:
+    if not LADDER[body.fidelity].follows:
         return solid_bounds(scene, body, statics=statics, modes=modes, wanted=wanted, safety=LOCAL)
     return harmonic_bounds(
         coned(scene), body, statics=statics, modes=modes, wanted=wanted, safety=LOCAL, later=later
@@ -142,9 +141,9 @@ def geometry_share(body: Body) -> float:
 def mode_bars(
     scene: Scene, body: Body, supports: Supports, modes_listed: ModeSet
 ) -> dict[str, float]:
-    """Compute error bars of the frequencies of a harmonic body, which lie above the exact ones, of
-    all families: relative, by the names of elastic modes; without modes beyond whose neighbours
-    nothing was found.
+    """Compute error bars of the frequencies of a solid, which lie above the exact ones, of all
+    families: relative, by the names of elastic modes; without modes beyond whose neighbours nothing
+    was found.
     """
     names = [m.name for m in modes_listed.modes if m.frequency_hz > 0]
     if not names:
@@ -178,11 +177,6 @@ def static_bars(
     names = [name for name in values.quantities if not name.is_frequency]
     judged = bounded(scene, body, supports, statics, None, names, values.solver)
     return {name: bar.width for name, bar in judged.error_bars.items()}
-
-
-def has_bounds(body: Body) -> bool:
-    """Return whether error bars of a body can be computed on its own mesh."""
-    return LADDER[body.fidelity].bounded or all(block.enrich is not None for block in body.blocks)
 
 
 def _all_below(mode_set: ModeSet) -> bool:
@@ -254,10 +248,6 @@ def _within(name: Quantity, value: Values, near: Values, far: Values, solver: fl
     return _bar(value[name], open_, solver, far[name], float(middle), scale)
 
 
-def _wider(bar: ErrorBar, geometry: float) -> ErrorBar:
-    return replace(bar, width=bar.width + geometry, geometry=geometry)
-
-
 def _bar(
     value: float,
     open_: float,
@@ -267,14 +257,11 @@ def _bar(
     scale: float | None = None,
 ) -> ErrorBar:
     return ErrorBar(
-        values=(float(value),),
         width=float(open_ + solver + LEAST),
         change=float(abs(far_end - value) / (scale or abs(value) or 1.0)),
-        reduction=None,
         factor=LOCAL,
         solver=float(solver),
         extrapolated=float(value + (far_end - value) / LOCAL),
-        method=METHOD,
         middle=middle,
         aside=0.0 if middle is None else float(abs(middle - value) / (scale or abs(value) or 1.0)),
     )

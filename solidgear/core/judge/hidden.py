@@ -13,6 +13,7 @@ from dataclasses import replace
 from solidgear.core.body import Body, Supports
 from solidgear.core.bounds.harmonic import by_problem, is_bounded
 from solidgear.core.judge.bounded import bounds_of, extended_until
+from solidgear.core.ladder.registry import LADDER
 from solidgear.core.scene import Scene
 from solidgear.core.solve.modes import Mode, ModeSet
 
@@ -34,7 +35,7 @@ def complete_list(scene: Scene, body: Body, supports: Supports, listed: ModeSet)
     if first is None:
         return listed
     needed = [mode.name for mode in first]
-    if body.blocks[0].enrich is not None:
+    if not LADDER[body.fidelity].follows:
         first = _first_of_families(extended)
     all_modes = replace(extended, beyond=(*extended.beyond, *extended.above), above=())
     elastic = [mode for mode in listed.modes if mode.frequency_hz > 0]

@@ -13,7 +13,6 @@ import numpy as np
 from solidgear.core.body import Body, as_supports
 from solidgear.core.body.mode_names import ModeName
 from solidgear.core.bounds.solid import NoBounds
-from solidgear.core.judge.bars import sizes_of
 from solidgear.core.judge.bounded import bounded
 from solidgear.core.judge.refinement import Refinement, Solved
 from solidgear.core.judge.solving import ENOUGH, Numbers, Statics, numbers, search_modes
@@ -63,22 +62,20 @@ class FamilySolver:
         refinement = self.refinement
         if refinement.whole:
             return [(None, refinement.wanted)]
-        if not refinement.started:
+        if not refinement.levels:
             families = None if self.groups is None else tuple(f for g in self.groups for f in g)
             return [(families, refinement.wanted)]
-        floors, tol = refinement.floors(), refinement.tol
-        improvable = [q for q in refinement.unmet() if not floors.get(q, 0.0) > tol]
+        unmet = tuple(refinement.unmet())
         if self.groups is None:
-            return [(None, tuple(improvable))]
-        by_group = [(g, tuple(q for q in improvable if family_of(q) in g)) for g in self.groups]
+            return [(None, unmet)]
+        by_group = [(g, tuple(q for q in unmet if family_of(q) in g)) for g in self.groups]
         return [(group, names) for group, names in by_group if names]
 
     def solve(self, options: Mapping[str, Any]) -> Solved:
-        """Solve a mesh for all open questions, of a harmonic solid with error bars."""
+        """Solve a mesh for all open questions, with error bars."""
         values: dict[Quantity, float] = {}
         solver: dict[Quantity, float] = {}
         unknowns, body, score = 0, None, None
-        cells: tuple[float, ...] = ()
         for families, names in self.questions():
             body = self.build_body(options, families)
             if not self.refinement.levels and self.groups is None and not self.refinement.whole:
@@ -88,13 +85,9 @@ class FamilySolver:
             solver |= solved.solver
             if weights is not None:
                 score = weights if score is None else np.maximum(score, weights)
-            unknowns, cells = unknowns + body.size, sizes_of(body.mesh)
+            unknowns += body.size
         assert body is not None  # there is something to ask for
-        return Solved(body, Numbers(values, solver), unknowns, cells, score)
-
-    def judge(self) -> float | None:
-        """Return the largest error bar of all quantities to be judged."""
-        return self.refinement.judge()
+        return Solved(body, Numbers(values, solver), unknowns, score)
 
     def _needed_groups(self, body: Body) -> list[tuple[str, ...]] | None:
         """Return the groups of families that the quantities wanted need, each with all families that
@@ -114,7 +107,6 @@ class FamilySolver:
     ) -> tuple[Numbers, np.ndarray | None]:
         """Return the numbers of a body, and weights of the cells by error bars that are too wide."""
         refinement, scene = self.refinement, self.refinement.scene
-        has_bounds = refinement.model.bounded
         supports = as_supports(scene)
         if families is not None:
             supports = supports.on(c for f in families for c in FAMILIES[f])
@@ -132,12 +124,10 @@ class FamilySolver:
                 supports,
                 shapes(families, names),
                 frequencies,
-                spare=has_bounds,
+                spare=True,
                 ovalising=False,
             )
         values = numbers(statics, modes)
-        if not has_bounds:
-            return values, None
         judged_names = self._judged_names(values, names)
         try:
             judged = bounded(scene, body, supports, statics, modes, judged_names, values.solver)

@@ -149,10 +149,8 @@ class ModeRecord(Part):
 class BarRecord(Part):
     """Error bar of one quantity; see :class:`solidgear.core.judge.bars.ErrorBar`."""
 
-    values: Numbers = []
     gci: Number = None
     change: Number = None
-    reduction: Number = None
     factor: Number = None
     solver: Number = None
     extrapolated: Number = None
@@ -178,7 +176,7 @@ class LevelRecord(Part):
 
 
 class ConvergenceRecord(Part):
-    """Meshes from coarse to fine, and the error bar that each quantity has from them."""
+    """Meshes from coarse to fine, and the error bar of each quantity on the last one."""
 
     levels: list[LevelRecord] = []
     quantities: dict[str, BarRecord] = {}

@@ -6,8 +6,8 @@ solves it: for single numbers or a whole body (:mod:`solidgear.core.judge.questi
 tying (:mod:`solidgear.core.judge.study`).
 
 Every mesh gives its error bars by itself (:mod:`solidgear.core.judge.bounded`).  The meshes of a
-harmonic solid follow them (:mod:`solidgear.core.bounds.refining`), those of a 3D solid are listed; of
-corrected solids two of a list make an error bar (:mod:`solidgear.core.judge.sequence_bars`).
+harmonic solid follow them (:mod:`solidgear.core.bounds.refining`), those of 3D solids are listed, and
+the list is left where the bars allow.
 """
 
 from __future__ import annotations
@@ -22,11 +22,10 @@ import numpy as np
 
 from solidgear.core.body import Body
 from solidgear.core.bounds.refining import MOST_MESHES, Meshed, refined
-from solidgear.core.judge.bars import ErrorBar, moves_freely
+from solidgear.core.judge.bars import ErrorBar
 from solidgear.core.judge.bounded import Bounded
 from solidgear.core.judge.effort import HEAVY, cost_text
-from solidgear.core.judge.quantities import Values, in_order, size
-from solidgear.core.judge.sequence_bars import feature_effect, sequence_bars
+from solidgear.core.judge.quantities import in_order, size
 from solidgear.core.judge.singular_places import singular_places
 from solidgear.core.judge.solving import Numbers
 from solidgear.core.judge.steps import ABOVE, BELOW, BOTH, Step, Value
@@ -43,9 +42,6 @@ Progress = Callable[[str], None]
 NO_FINER = "no finer mesh is calibrated"
 FINER_FILE = "list a finer mesh beside those of the file"
 
-#: a frequency that rises with a finer mesh of a list, by more than the eigensolver leaves, is
-#: rounding: the bar is this many times the rise
-RISE = 2.0
 #: a bar has one side where the solver has left no more than this share of it
 SOLVER_SHARE = 0.01
 #: ratio of the largest bar to that two meshes before, above which finer meshes do not help
@@ -72,24 +68,18 @@ class Solved:
     body: Body  #: the last one that was built on it
     numbers: Numbers
     unknowns: int  #: of all bodies
-    cells: tuple[float, ...]  #: sizes of the cells, m
     #: (ne,) weights of the cells of a meridian by the error bars that exceed the tolerance
     score: np.ndarray | None = None
 
 
 class Solver(Protocol):
-    """Solves the meshes of a refinement for the numbers of a question."""
+    """Solves the meshes of a refinement, with error bars, for the numbers of a question."""
 
     def next_quantities(self) -> tuple[Quantity, ...]:
         """Return the quantities that the next mesh is solved for."""
 
-    def solve(self, options: Mapping[str, Any]) -> Solved | None:
-        """Solve a mesh, of a harmonic solid with error bars; None to go on without this mesh."""
-
-    def judge(self) -> float | None:
-        """Update the error bars; return the largest of all numbers asked for, None before there are
-        meshes enough to end with it.
-        """
+    def solve(self, options: Mapping[str, Any]) -> Solved:
+        """Solve a mesh."""
 
 
 @dataclass(eq=False)
@@ -108,7 +98,6 @@ class Refinement:
     middles: bool = True
     most: int | None = None  #: largest number of meshes
     levels: list[Numbers] = field(default_factory=list)  #: of every mesh
-    sizes: list[tuple[float, ...]] = field(default_factory=list)  #: of the cells of every mesh, m
     steps: list[Step] = field(default_factory=list)
     #: of every quantity, on the finest mesh that was solved for it
     error_bars: dict[Quantity, ErrorBar] = field(default_factory=dict)
@@ -119,7 +108,6 @@ class Refinement:
     #: bound on the change by couplings of families that were left out, relative
     left_out: float = 0.0
     mesh: Meshed = field(init=False)  #: of a harmonic solid, the first mesh and later the last
-    _changes: list[Values] = field(default_factory=list)  #: by features, on every mesh
 
     def __post_init__(self):
         self.mesh = Meshed(fixed=self.plan.levels[0])
@@ -134,16 +122,10 @@ class Refinement:
         """The last body that was solved."""
         return None if self.last is None else self.last.body
 
-    @property
-    def started(self) -> bool:
-        """Whether there are meshes enough for error bars of all quantities."""
-        return len(self.levels) >= (1 if self.model.bounded else 2)
-
     def add(self, solved: Solved, options: Mapping[str, Any], requested: set[Quantity]) -> None:
         """Add the solution of a mesh, solved for some quantities."""
         self.last = solved
         self.levels.append(solved.numbers)
-        self.sizes.append(solved.cells)
         self.options = dict(options)
         self.missing = (self.missing | requested) - set(solved.numbers.quantities)
 
@@ -170,40 +152,11 @@ class Refinement:
         return [level for level in self.levels if name in level.quantities]
 
     def unmet(self) -> list[Quantity]:
-        """Return the quantities that exist and are not yet within the tolerance; of a whole body
-        only those that no mesh brings there, if any, for one of them is enough to refuse it.
-        """
-        wide = [q for q in self.existing() if not self.bar(q) <= self.tol]
-        if not self.whole:
-            return wide
-        floors = self.floors()
-        return [q for q in wide if floors.get(q, 0.0) > self.tol] or wide
+        """Return the quantities that exist and are not yet within the tolerance."""
+        return [q for q in self.existing() if not self.bar(q) <= self.tol]
 
-    def floors(self) -> dict[Quantity, float]:
-        """Return the least error bars that any mesh gives: a share of the change by features, where
-        the model has one.
-        """
-        safety = self.model.safety
-        if safety is None or not safety.share:
-            return {}
-        for level in self.levels[len(self._changes) :]:
-            self._changes.append(feature_effect(self.scene, safety, level.quantities))
-        finest = {name: change for level in self._changes for name, change in level.items()}
-        meshes = len(self.plan.levels)
-        return {q: safety.least_share(moves_freely(q), meshes) * c for q, c in finest.items()}
-
-    def judge(self) -> float | None:
-        """Update the error bars of a list of meshes; return the largest of all quantities to be
-        judged, None before there are meshes enough.
-        """
-        if not self.started:
-            return None
-        if not self.model.bounded:
-            values, solver = [x.quantities for x in self.levels], self.levels[-1].solver
-            shape = self.last.body.mesh.get("geometry", 0.0) if self.last else 0.0
-            self.error_bars |= sequence_bars(
-                self.scene, self.plan, self.model, values, solver, self.sizes, shape=shape
-            )
+    def largest(self) -> float | None:
+        """Return the largest error bar of all quantities to be judged; None without any."""
         bars = [self.bar(q) for q in self.existing()]
         return max(bars, default=None) if self.error_bars else None
 
@@ -213,17 +166,7 @@ class Refinement:
             return math.inf
         bar = self.error_bars[name]
         width = bar.about_middle if self.middles else bar.width
-        return max(width, RISE * self._rise(name)) + self.left_out
-
-    def _rise(self, name: Quantity) -> float:
-        """Return the rise of a frequency at the last step of a list, beyond the solver's error."""
-        history = self._history(name)
-        if self.model.bounded or not name.is_frequency or len(history) < 2:
-            return 0.0
-        before, last = history[-2:]
-        rise = last.quantities[name] / before.quantities[name] - 1
-        allowed = before.solver.get(name, 0.0) + last.solver.get(name, 0.0)
-        return max(0.0, rise - allowed)
+        return width + self.left_out
 
     def bars(self) -> dict[Quantity, float]:
         """Return relative error bars of a whole body, those of the other plane and of torsion
@@ -250,7 +193,6 @@ class Refinement:
             value,
             name.unit,
             self.bar(name),
-            1 if self.model.bounded else len(history),
             size(finest, name),
             self._side(name),
             method,
@@ -287,8 +229,6 @@ class Refinement:
 
     def no_further_mesh(self) -> str:
         """Return the reason why there is no further mesh."""
-        if self.without_bars:
-            return self.without_bars
         if not self.model.follows:
             return FINER_FILE if self.of_files else NO_FINER
         count = len(self.levels)
@@ -297,18 +237,12 @@ class Refinement:
 
     def in_vain(self) -> str:
         """Return the reason why no finer mesh would help; empty if one may."""
+        if self.without_bars:
+            return self.without_bars
         bars = [step.bar for step in self.steps if step.bar is not None]
         if self.model.follows and len(bars) > 3 and bars[-1] > FUTILE * bars[-3]:
             return f"finer meshes no longer help; most of the error bar comes from {self.worst_place()}"
-        floors, wide = self.floors(), self.unmet()
-        if not wide or not all(floors.get(q, 0.0) > self.tol for q in wide):
-            return ""
-        top = max(wide, key=floors.__getitem__)
-        return (
-            f"no mesh makes the error bars of {few(wide)} as narrow: the {self.model.title} "
-            f"leaves an error that grows with what features change, here {100 * floors[top]:.2g} "
-            f"% of {top} at least"
-        )
+        return ""
 
 
 def refine(refinement: Refinement, solver: Solver, progress: Progress, label: str) -> None:
@@ -320,7 +254,7 @@ def refine(refinement: Refinement, solver: Solver, progress: Progress, label: st
         if unknowns >= HEAVY:
             progress(f"{label}: {cost_text(unknowns, mb)}")
 
-    wanted, tol, bounded = refinement.wanted, refinement.tol, refinement.model.bounded
+    wanted, tol = refinement.wanted, refinement.tol
     for options in _meshes(refinement):
         start = time.perf_counter()
         requested = set(solver.next_quantities())
@@ -331,10 +265,8 @@ def refine(refinement: Refinement, solver: Solver, progress: Progress, label: st
         progress(f"{label}: {setting}")
         with listening(announce):
             solved = solver.solve(options)
-        if solved is None:
-            continue
         refinement.add(solved, options, requested)
-        bar = solver.judge()
+        bar = refinement.largest()
         refinement.steps.append(
             Step(
                 refinement.model.name,
@@ -347,12 +279,10 @@ def refine(refinement: Refinement, solver: Solver, progress: Progress, label: st
                 options=refinement.options,
             )
         )
-        if (bounded or len(refinement.levels) == 2) and not refinement.existing():
+        if not refinement.existing():
             refinement.end("nothing that was asked for exists in this scene")
             return
-        if bar is None:
-            continue
-        if bar <= tol:
+        if bar is not None and bar <= tol:
             refinement.end("")
             return
         if reason := refinement.in_vain():

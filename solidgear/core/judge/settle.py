@@ -25,7 +25,7 @@ from solidgear.core.bounds.refining import Meshed
 from solidgear.core.bounds.solid import NoBounds
 from solidgear.core.errors import SolidgearError
 from solidgear.core.judge.answer import read_tolerance, solve_cheapest
-from solidgear.core.judge.bounded import has_bounds, mode_bars, static_bars
+from solidgear.core.judge.bounded import mode_bars, static_bars
 from solidgear.core.judge.quantities import at_points, between
 from solidgear.core.judge.question import FamilySolver, build_families
 from solidgear.core.judge.refinement import FINER_FILE, NO_FINER, Progress, Refinement, mesh_words
@@ -171,25 +171,19 @@ def settle(
         reached=judged and all(bar <= tol for bar in bars.values()),
         missing=tuple(q for q in wanted if q not in bars),
         point=scene.port.name,
-        mesh=refinement.mesh if refinement.model.bounded else None,
+        mesh=refinement.mesh if refinement.model.follows else None,
     )
 
 
 def bars_of_modes(
     scene: Scene, body: Body, mode_set: ModeSet, settled: Settled | None
 ) -> dict[str, float]:
-    """Return relative error bars of frequencies by the names of their modes: of a harmonic solid of
-    all, of others of those that were judged, and none of a mesh that was set, which may be as large
-    as one likes.
+    """Return relative error bars of frequencies of a solid by the names of their modes; those that
+    its mesh was chosen by keep the bar it was chosen with.
     """
-    if settled is None:
-        return {}
-    bars: dict[str, float] = {}
-    if has_bounds(body):
-        bars = mode_bars(scene, body, as_supports(scene), mode_set)
-    if without_axis(scene):
+    bars = mode_bars(scene, body, as_supports(scene), mode_set)
+    if settled is None or without_axis(scene):
         return bars
-    # frequencies that the mesh was chosen by keep the bar it was chosen with
     judged = [name for name in map(Quantity, mode_set.names) if name in settled.bars]
     return bars | {name: settled.bars[name] for name in judged}
 

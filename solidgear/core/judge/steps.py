@@ -8,8 +8,6 @@ from typing import Any
 
 from solidgear.core.quantity import Quantity
 
-#: error bars computed from the solution on one mesh
-METHOD = "local problems"
 #: a coupling this small against its diagonal entries is zero
 ROUNDING = 1e-9
 #: sides on which the exact answer may lie
@@ -26,7 +24,6 @@ class Value:
     #: relative; of couplings, to the geometric mean of their diagonal entries. Infinite where
     #: nothing is known.
     bar: float
-    meshes: int  #: solutions that the value and its bar rest on
     size: float  #: scale that the bar is relative to, SI
     #: where the exact answer of the model lies: ``above`` or ``below`` the value, or ``both`` where
     #: it may be either
@@ -36,9 +33,7 @@ class Value:
     @property
     def how(self) -> str:
         """Origin of the error bar, in words."""
-        if self.method == METHOD:
-            return METHOD
-        return f"{self.meshes} meshes" if self.meshes > 1 else "one mesh only, not judged"
+        return self.method or "not judged"
 
     @property
     def zero(self) -> bool:

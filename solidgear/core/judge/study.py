@@ -16,20 +16,18 @@ import numpy as np
 from solidgear.core.body import Body, Supports, as_supports
 from solidgear.core.bounds.solid import NoBounds
 from solidgear.core.errors import SolidgearError
-from solidgear.core.judge.bars import ErrorBar, sizes_of
 from solidgear.core.judge.bounded import Bounded, bounded
 from solidgear.core.judge.hidden import complete_list
-from solidgear.core.judge.quantities import change, judged, usual
+from solidgear.core.judge.quantities import judged, usual
 from solidgear.core.judge.record import LevelRecord
-from solidgear.core.judge.refinement import Progress, Refinement, Solved, mesh_words, refine
-from solidgear.core.judge.sequence_bars import sequence_bars
+from solidgear.core.judge.refinement import Progress, Refinement, Solved, refine
 from solidgear.core.judge.solution import Solution
 from solidgear.core.judge.solving import ENOUGH, Answer, Numbers, Statics, search_modes
 from solidgear.core.judge.ties import SCENE, SECTION, attached
 from solidgear.core.ladder import build
-from solidgear.core.ladder.meshes import HEAVY
 from solidgear.core.ladder.model import SOLID
 from solidgear.core.ladder.registry import LADDER
+from solidgear.core.machine.memory import NoRoom
 from solidgear.core.machine.meter import Meter
 from solidgear.core.models.options import ATTACHMENTS
 from solidgear.core.quantity import C_ZZ, FIRST_BENDING, Quantity
@@ -60,8 +58,7 @@ def study(
     Parameters
     ----------
     options : mapping, optional
-        Of the builder; where they concern the mesh, that mesh is solved, and of a solid on a list
-        of meshes two coarser ones.
+        Of the builder; where they concern the mesh, that mesh is solved.
     share : float, optional
         Error bars of the judged quantities are wanted below the tolerance of the scene divided by
         this; by default the share of the model, 10 for the harmonic solid, which judges.
@@ -110,10 +107,7 @@ class TiedSolver:
         self.solution: Solution | None = None  #: of the last mesh
         self.meter = Meter()
         self.failed: dict[str, str] = {}  #: part left out -> reason
-        self.numbers: list[dict[str, Numbers]] = []  #: of every mesh, by way of tying
         self.meshes: list[LevelRecord] = []
-        #: by way of tying, the relative error that the cells around leave in each quantity
-        self.around: dict[str, dict[Quantity, float]] = {}
 
     def study(self) -> Solution:
         """Refine, and return the solution of the last mesh that could be solved."""
@@ -126,147 +120,52 @@ class TiedSolver:
                 raise
             self.failed["finer mesh"] = _reason(error)
         assert self.solution is not None
-        if model.bounded:
-            reason = refinement.steps[-1].why
-            if reason and refinement.most is None and not fixed:
-                self.failed["narrower bars"] = reason
-            self._finish(self.solution)
-        elif refinement.of_files and len(refinement.sizes) > 1 and not refinement.error_bars:
-            self.failed["error bar"] = refinement.no_further_mesh()
+        reason = refinement.steps[-1].why
+        if reason and refinement.most is None and not fixed and not refinement.without_bars:
+            self.failed["narrower bars"] = reason
+        self._finish(self.solution)
         return self.solution
 
     def next_quantities(self) -> tuple[Quantity, ...]:
         """Return the quantities that the next mesh is solved for: all."""
         return self.refinement.wanted
 
-    def solve(self, options: Mapping[str, Any]) -> Solved | None:
-        """Solve a mesh in all ways of tying; of a mesh that was set, coarser ones that cannot be
-        solved are left out.
-        """
-        plan = self.refinement.plan
-        try:
-            return self._solve(options)
-        except (SolidgearError, MemoryError) as error:
-            if not plan.fixed or options is plan.levels[-1]:
-                raise
-            self.failed["error bar"] = _reason(error)
-            return None
-
-    def _solve(self, options: Mapping[str, Any]) -> Solved:
-        refinement, model = self.refinement, self.refinement.model
+    def solve(self, options: Mapping[str, Any]) -> Solved:
+        """Solve a mesh in all ways of tying."""
+        refinement = self.refinement
         before = dict(self.meter.seconds)
         if self.solution is not None:
             self.solution.body.cache.clear()  # its factor need not be held beside the next one
-        counted_from = self._counted_from(len(refinement.levels))
-        ties = solved_ties(
-            refinement.scene, model.name, options, self.meter, counted_from, model.bounded
-        )
+        ties = solved_ties(refinement.scene, refinement.model.name, options, self.meter, spare=True)
         if self.solution is not None:
             _book_as_evidence(self.meter, before)
         answer = ties[SCENE]
-        self.numbers.append({tie: tied.numbers for tie, tied in ties.items()})
-        self.meshes.append(_level_of(answer))
-        self.solution = solution = Solution(model.name, ties, self.meter)
-        solution.levels, solution.failed, solution.options = self.meshes, self.failed, dict(options)
-        score = None
+        solution = Solution(refinement.model.name, ties, self.meter, failed=self.failed)
+        solution.levels, solution.options = self.meshes, dict(options)
         with self.meter.stage("band"):
-            if model.bounded:
-                score = self._judge_mesh(solution)
-            else:
-                self._measure_around()
-                solution.error_bars = self._error_bars()
+            score = self._judge_mesh(solution)
+        self.meshes.append(_level_of(answer))
+        self.solution = solution
         self.keep(solution)
-        body = answer.body
-        return Solved(body, answer.numbers, body.size, sizes_of(body.mesh), score)
+        bars = refinement.error_bars
+        # no frequency without an error bar
+        barred = {q: v for q, v in answer.quantities.items() if q in bars or not q.is_frequency}
+        return Solved(answer.body, Numbers(barred, answer.numbers.solver), answer.body.size, score)
 
     def _judge_mesh(self, solution: Solution) -> np.ndarray | None:
         """Add the error bars of a mesh to its solution; return weights of its cells by those that
-        are too wide.
+        are too wide. Where bars of the first mesh find no room, it is shown without them.
         """
         refinement, ties = self.refinement, solution.ties
+        unbounded = (NoBounds,) if refinement.levels else (NoBounds, NoRoom)
         try:
             judged = _judged(refinement.scene, ties[SCENE], refinement.wanted, ties.get(SECTION))
-        except NoBounds as error:
+        except unbounded as error:
             self.failed["error bar"] = refinement.without_bars = str(error)
             return None
         solution.error_bars, solution.scores = {SCENE: judged.error_bars}, judged.scores
         refinement.error_bars = judged.error_bars
         return refinement.score(judged, refinement.wanted)
-
-    def _counted_from(self, k: int) -> float:
-        """Return the unknowns from which on modes of mesh `k` of a list are counted."""
-        plan = self.refinement.plan
-        if not self.count_modes or self.refinement.model.bounded:
-            return math.inf
-        if plan.fixed:
-            return 0 if k == len(plan.levels) - 1 else math.inf
-        if k >= 2:
-            return 0
-        # the second level is counted as well where a third one may be too dear to be solved
-        return HEAVY + 1 if k == 1 else math.inf
-
-    def judge(self) -> float | None:
-        """Return the largest error bar of the quantities wanted, None before there are meshes enough
-        to end with it.
-        """
-        refinement = self.refinement
-        if not refinement.model.bounded:
-            assert self.solution is not None
-            refinement.error_bars = self.solution.error_bars.get(SCENE, {})
-        bars = [
-            bar.width for name, bar in refinement.error_bars.items() if name in refinement.wanted
-        ]
-        return max(bars, default=None) if self._has_enough_meshes() else None
-
-    def _has_enough_meshes(self) -> bool:
-        """Return whether error bars may end the refinement: of a list after three meshes, or two
-        large ones.
-        """
-        refinement = self.refinement
-        k = len(refinement.levels)
-        if refinement.model.bounded:
-            return True
-        if refinement.plan.fixed:
-            return k == len(refinement.plan.levels)
-        return k > 2 or k == 2 and refinement.last is not None and refinement.last.unknowns > HEAVY
-
-    def _measure_around(self) -> None:
-        """Measure the error that the cells around leave, on the first mesh."""
-        refinement = self.refinement
-        turned = refinement.plan.turned
-        if turned is None or self.around:
-            return
-        self.progress(f"{refinement.model.name}: {mesh_words(turned)}")
-        ties = solved_ties(refinement.scene, refinement.model.name, turned, Meter())
-        first, share = self.numbers[0], refinement.plan.left_around
-        for tie in set(first) & set(ties):
-            finer = ties[tie].quantities
-            changes = {q: change(first[tie].quantities, finer, q) for q in finer}
-            self.around[tie] = {q: share * abs(c) for q, c in changes.items() if c is not None}
-
-    def _error_bars(self) -> dict[str, dict[Quantity, ErrorBar]]:
-        """Return error bars of the finest mesh of a list by way of tying, as far as the last meshes
-        have it.
-        """
-        scene, plan, model = self.refinement.scene, self.refinement.plan, self.refinement.model
-        out = {}
-        for tie in (SCENE, SECTION):
-            levels = [numbers[tie] for numbers in self.numbers if tie in numbers]
-            if len(levels) < 2 or tie not in self.numbers[-1]:
-                continue
-            error_bars = sequence_bars(
-                scene if tie == SCENE else scene.with_attachment("section"),
-                plan,
-                model,
-                [level.quantities for level in levels],
-                levels[-1].solver,
-                [sizes_of(level.mesh) for level in self.meshes],
-                self.around.get(tie),
-                self.meshes[-1].mesh.get("geometry", 0.0),
-            )
-            if error_bars:
-                out[tie] = error_bars
-        return out
 
     def _finish(self, solution: Solution) -> None:
         """Add error bars with section ties, and count modes."""
@@ -295,7 +194,7 @@ def _reason(error: Exception) -> str:
 def _judged(
     scene: Scene, answer: Answer, names: Listed[Quantity], later: Answer | None = None
 ) -> Bounded:
-    """Return error bars of an answer by local problems, and of the modes of another answer of the
+    """Return error bars of an answer on its mesh, and of the modes of another answer of the
     same body the data that both share.
     """
     existing = [q for q in dict.fromkeys((*names, *answer.quantities)) if q in answer.quantities]

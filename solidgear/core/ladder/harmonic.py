@@ -28,7 +28,7 @@ class Harmonic(Model):
     coarser = (
         "lower order, refinement or layers, or raise size, or ask for fewer ovalising harmonics"
     )
-    bounded = True
+    bars_by = "local problems"
     follows = True
     share = 10.0
     most_seats = 60
@@ -42,7 +42,7 @@ class Harmonic(Model):
         """Return the mesh that was asked for, or the start of refinement by error bars
         (:mod:`solidgear.core.bounds.refining`).
         """
-        return Sequence((dict(options),), bool(set(options) - set(FREE)), False)
+        return Sequence((dict(options),), bool(set(options) - set(FREE)))
 
     def series(self, scene: Shaft, full: bool) -> list[Series]:
         """Return refinement at order 2 and rising orders, each on uniform and on graded meshes."""

@@ -14,7 +14,6 @@ from solidgear.core.registry import added
 
 if TYPE_CHECKING:
     from solidgear.core.body import Body
-    from solidgear.core.bounds.safety import Safety
     from solidgear.core.ladder.meshes import Sequence
     from solidgear.core.models.size import Size
     from solidgear.core.scene.shaft import Shaft
@@ -54,9 +53,8 @@ class Model:
     together: ClassVar[frozenset[str]] = frozenset()
     #: whether it is made for these features alone
     for_features: ClassVar[bool] = False
-    #: whether the error of every mesh is computed on it (:mod:`solidgear.core.judge.bounded`). Such a
-    #: body is too stiff, so that compliances come from below, stiffnesses and frequencies from above.
-    bounded: ClassVar[bool] = False
+    #: where error bars of its mesh come from, in a table; empty for models that cannot show their error
+    bars_by: ClassVar[str] = ""
     #: whether the next mesh is made from the error bars of the last one, on the exact geometry
     follows: ClassVar[bool] = False
     #: error bars are wanted below the tolerance asked for divided by this
@@ -66,9 +64,6 @@ class Model:
     #: relative tolerance of mass and inertia against the closed form
     mass_tolerance: ClassVar[float] = 1e-9
     most_seats: ClassVar[int] = 12  #: seats that one body carries in a sweep
-    #: safety of error bars over its meshes, where it differs from that of meshes with layers or of
-    #: plain refinement
-    safety: ClassVar[Safety | None] = None
     #: nature of its body, in refusals of a feature
     _nature: ClassVar[str] = "of revolution"
 

@@ -26,6 +26,7 @@ class Volume(Model):
     """A model on a 3D mesh: without section ties, the volume off by arcs between nodes."""
 
     family = SOLID
+    bars_by = "one order more"
     section_ties = False
     mass_tolerance = 1e-3
 
@@ -97,7 +98,6 @@ class Solid(Volume):
     coarser = "lower refinement or the layers, or raise size"
     holds = (CUTS, CYCLIC, PARTS, BODIES)
     together = frozenset((CUTS, CYCLIC))
-    bounded = True
     _nature = "one mesh of tetrahedra,"
 
     def builder(self) -> Callable[..., Body]:
@@ -159,20 +159,20 @@ class Solid(Volume):
         body = getattr(scene, "body", None)
         if body is not None and body.one_mesh:
             files = range(len(body.coarser), -1, -1)
-            return Sequence(tuple({**full_options, "coarser": k} for k in files), False, False)
+            return Sequence(tuple({**full_options, "coarser": k} for k in files), False)
         return self.meshes(full_options)
 
     def meshes(self, options: Options) -> Sequence:
         """Return meshes with ever more layers towards corners, or plain refinement of tetrahedra."""
         if set(options) - set(FREE):
-            return Sequence((dict(options),), True, False)
+            return Sequence((dict(options),), True)
         element = self.checked({"element": options.get("element", "hex20")})["element"]
         second = ELEMENTS[element].order == 2
         if second and element.startswith("hex"):
             around = {"around": AROUND, **options}
-            return Sequence(tuple({**level, **around} for level in HEXAHEDRA), False, False)
+            return Sequence(tuple({**level, **around} for level in HEXAHEDRA), False)
         tetrahedra = TETRAHEDRA if second else LINEAR
-        return Sequence(tuple({**level, **options} for level in tetrahedra), False, False)
+        return Sequence(tuple({**level, **options} for level in tetrahedra), False)
 
     def series(self, scene: Shaft, full: bool) -> list[Series]:
         """Return every element type, on uniform and on graded meshes."""

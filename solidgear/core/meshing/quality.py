@@ -131,23 +131,6 @@ def element_volumes(mesh: Mesh) -> np.ndarray:
     return np.concatenate([_polynomials(mesh, part)[2] for part in _parts(mesh)])
 
 
-def cell_sizes(mesh: Mesh) -> tuple[float, float, float]:
-    """Return the sizes of the cells, m, along their longest, their middle and their shortest
-    direction: each the mean over the volume.
-
-    Of a box they are its edges: of any cell, twice the standard deviation of its corners along its
-    principal directions.
-    """
-    corners = mesh.p[:, mesh.t]
-    spokes = corners - corners.mean(axis=1, keepdims=True)
-    spread = np.einsum("ike,jke->eij", spokes, spokes) / len(mesh.t)
-    # rounding may leave a direction of a flat cell below zero
-    sizes = 2 * np.sqrt(np.maximum(np.linalg.eigvalsh(spread), 0.0))
-    volumes = element_volumes(mesh)
-    short, middle, long = (float(size) for size in volumes @ sizes / volumes.sum())
-    return long, middle, short
-
-
 def outward(mesh: Mesh, facets: np.ndarray) -> np.ndarray:
     """Return (3, k) normals of boundary facets by their first three corners, out of the material,
     as long as the parallelogram of these is large, m^2.

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from solidgear.core.bounds.safety import FEATURES
 from solidgear.core.ladder.meshes import FREE, Sequence
 from solidgear.core.ladder.model import Options, Series
 from solidgear.core.ladder.solid import PER_TETRAHEDRON, Volume
@@ -45,8 +44,8 @@ class Corrected(Volume):
     coarser = "lower refinement, order or layers"
     holds = (CUTS,)
     for_features = True
+    bars_by = "one order more, with features and without"
     share = 3.0
-    safety = FEATURES
     _nature = "made of two meshes, with cuts and without,"
 
     def builder(self) -> Callable[..., Body]:
@@ -69,12 +68,10 @@ class Corrected(Volume):
         return PER_TETRAHEDRON * tetrahedra_of(scene, plan, full_options["refinement"], edges=True)
 
     def meshes(self, options: Options) -> Sequence:
-        """Return the mesh that was asked for and a coarser one, or the usual list."""
+        """Return the mesh that was asked for, or the usual list."""
         if set(options) - set(FREE):
-            finest = {**CORRECTED[1], **options}
-            coarser = {**finest, "refinement": finest["refinement"] / 1.4}
-            return Sequence((coarser, finest), True, True)
-        return Sequence(tuple({**level, **options} for level in CORRECTED), False, True)
+            return Sequence(({**CORRECTED[1], **options},), True)
+        return Sequence(tuple({**level, **options} for level in CORRECTED), False)
 
     def series(self, scene: Shaft, full: bool) -> list[Series]:
         """Return the meshes, for a scene with such features."""

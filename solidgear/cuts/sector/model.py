@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from solidgear.core.bounds.safety import REFINEMENT
-from solidgear.core.ladder.meshes import FREE, Sequence, fixed_refinements
+from solidgear.core.ladder.meshes import FREE, Sequence
 from solidgear.core.ladder.model import Options, Series
 from solidgear.core.ladder.solid import PER_TETRAHEDRON, Volume
 from solidgear.core.models.kinds import CYCLIC
@@ -37,7 +36,6 @@ class Sector(Volume):
     coarser = "lower refinement, or raise size and graded_size"
     holds = (CYCLIC,)
     for_features = True
-    safety = REFINEMENT
     _nature = "one sector that repeats itself around the axis,"
 
     def builder(self) -> Callable[..., Body]:
@@ -69,10 +67,10 @@ class Sector(Volume):
         return halved(scene, sectors_around(scene, options))
 
     def meshes(self, options: Options) -> Sequence:
-        """Return meshes of plain refinement."""
+        """Return the mesh that was asked for, or meshes of plain refinement."""
         if set(options) - set(FREE):
-            return fixed_refinements(options)
-        return Sequence(tuple({**level, **options} for level in SECTOR), False, False)
+            return Sequence((dict(options),), True)
+        return Sequence(tuple({**level, **options} for level in SECTOR), False)
 
     def series(self, scene: Shaft, full: bool) -> list[Series]:
         """Return the meshes, for a scene with such features."""

@@ -3,23 +3,17 @@
 from __future__ import annotations
 
 import argparse
-import hashlib
 import itertools
-import json
 import tempfile
 import time
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 
 import solidgear as sg
-from solidgear.core.judge.bars import sizes_of
 from solidgear.core.judge.quantities import JUDGED, size
-from solidgear.core.judge.sequence_bars import sequence_bars
-from solidgear.core.judge.solution import Solution
 from solidgear.core.judge.study import study
 from solidgear.core.judge.ties import SCENE
 from solidgear.core.ladder.registry import LADDER
-from solidgear.core.quantity import Quantity
 from validation.campaign.case import Case, Run
 from validation.campaign.rows import (
     DECIDED,
@@ -38,8 +32,6 @@ from validation.campaign.truths.features import PAIR, Numbers, numbers, truth
 MESHES = {"corrected": 3, "sector": 3, "solid": 3}
 #: unknowns of the last mesh of a model above which it is left out
 HEAVY = {"corrected": 18_500, "sector": 170_000, "solid": 10_000}
-#: what is asked for, so that no mesh is the last before its time
-NEVER = 1e-7
 #: tolerances at which a model is called valid
 TOLERANCES = (1e-3, 3e-3, 1e-2, 3e-2)
 
@@ -83,40 +75,25 @@ class Features(Case):
             if heavy(scene, model):
                 out.problems.append(f"{body}: {model} left out, too large")
                 continue
-            meshes, problem = _kept(run, kept, scene, model, drawn.text)
-            if problem:
-                out.problems.append(f"{body}: {model} left out: {problem}")
-                continue
-            out.costs.append(Cost(body, {"model": model}, meshes[-1].seconds))
-            for mesh in range(1, len(meshes) + 1):
-                judged(out, scene, model, meshes[:mesh], true, body)
+            for place in range(MESHES[model]):
+                mesh, problem = run.call(solved, scene, model, place)
+                if problem:
+                    out.problems.append(f"{body}: {model} {place + 1} left out: {problem}")
+                    continue
+                label = f"{model} {place + 1}"
+                out.costs.append(Cost(body, {"model": label}, mesh.seconds))
+                judged(out, label, mesh, true, body)
         return out
 
 
 @dataclass(frozen=True)
 class Mesh:
-    """Numbers of a model on one mesh.
+    """Numbers of a model on one mesh."""
 
-    Attributes
-    ----------
-    numbers : dict of str to float
-        With the first bending pair by plane or by frequency.
-    quantities, solver : dict of str to float
-        As bars ask for them.
-    split : bool
-        "bending 2" is the second of the first pair.
-    mesh : dict
-        Facts.
-    seconds : float
-        Of processor time up to here.
-    """
-
-    numbers: dict[str, float]
-    quantities: dict[str, float]
-    solver: dict[str, float]
-    split: bool
-    mesh: dict
-    seconds: float
+    numbers: dict[str, float]  #: with the first bending pair by plane or by frequency
+    bars: dict[str, float]
+    split: bool  #: whether "bending 2" is the second of the first pair
+    seconds: float  #: of processor time
 
 
 def loaded(text: str) -> sg.Scene:
@@ -155,65 +132,36 @@ def _options(model: str) -> dict:
     return {"element": "tet10"} if model == "solid" else {}
 
 
-def _kept(run: Run, folder: Path, scene: sg.Scene, model: str, text: str) -> tuple[list[Mesh], str]:
-    """Meshes of a model, as it said the last time where only bars are asked for anew."""
-    path = folder / f"{hashlib.sha256((model + text).encode()).hexdigest()[:16]}_said.json"
-    if run.given.again and path.exists():
-        return [Mesh(**one) for one in json.loads(path.read_text())], ""
-    found, problem = run.call(said, scene, model)
-    if not problem:
-        path.write_text(json.dumps([asdict(one) for one in found]))
-    return found, problem
-
-
-def said(scene: sg.Scene, model: str) -> list[Mesh]:
-    """A model on its first meshes."""
-    asked = scene.with_changes(ask=scene.ask.with_changes(tolerance=NEVER))
-    out: list[Mesh] = []
+def solved(scene: sg.Scene, model: str, place: int) -> Mesh:
+    """A model on one mesh of its list, with the bars of that mesh."""
     start = time.process_time()
-
-    def keep(one: Solution) -> None:
-        found, mesh = one.ties[SCENE], one.body.mesh
-        given = found.numbers
-        split = "bending z 1" not in {m.name for m in one.modes.modes}
-        facts = {k: v for k, v in mesh.items() if isinstance(v, (int, float, str))}
-        spent = time.process_time() - start
-        out.append(Mesh(numbers(found), given.quantities, given.solver, split, facts, spent))
-
-    more = {"most": MESHES[model], "evidence": False, "counted": False, "keep": keep}
-    study(asked, model, _options(model), **more)
-    return out
+    options = _options(model)
+    level = LADDER[model].meshes(options).levels[place]
+    one = study(scene, model, {**options, **level}, evidence=False, counted=False)
+    bars = {str(q): bar.width for q, bar in one.error_bars[SCENE].items()}
+    split = "bending z 1" not in {m.name for m in one.modes.modes}
+    return Mesh(numbers(one.ties[SCENE]), bars, split, time.process_time() - start)
 
 
-def judged(
-    out: Found, scene: sg.Scene, model: str, meshes: list[Mesh], true: Numbers, body: str
-) -> None:
-    """Hold the bars that some meshes give, and what is valid by them, against the truth."""
-    known, last, label = LADDER[model], meshes[-1], f"{model} {len(meshes)}"
-    bars = sequence_bars(
-        scene,
-        known.meshes(_options(model)),
-        known,
-        [{Quantity(q): v for q, v in one.quantities.items()} for one in meshes],
-        last.solver,
-        [sizes_of(one.mesh) for one in meshes],
-    )
-    own, tags = last.numbers, {"model": label, "part": body}
+def judged(out: Found, label: str, mesh: Mesh, true: Numbers, body: str) -> None:
+    """Hold the bars of a mesh, and what is valid by them, against the truth."""
+    bars = mesh.bars
+    own, tags = mesh.numbers, {"model": label, "part": body}
     errors = {q: (own[q] - v) / size(true.values, q) for q, v in true.values.items() if q in own}
-    split = "bending 2" in bars and last.split
+    split = "bending 2" in bars and mesh.split
     called = {"pair 1": "bending 1", **({"pair 2": "bending 2"} if split else {})}
     for q, error in errors.items():
         bar = bars.get(called.get(q, q))
         if bar is not None and q != PAIR[1]:
             told = {"how": "finer meshes", "rule": DECIDED}
-            out.rows.append(Row(body, q, tags, bar.width, error, true.doubt[q], **told))
+            out.rows.append(Row(body, q, tags, bar, error, true.doubt[q], **told))
     names = {q: "pair 1" if q == "bending 1" else q for q in JUDGED}
     asked = {q: n for q, n in names.items() if n in errors}
     if not asked or any(q not in bars for q in asked):
         return
     found = {n: (errors[n], true.doubt[n]) for n in asked.values()}
     for tolerance in TOLERANCES:
-        valid = all(bars[q].width <= tolerance for q in asked)
+        valid = all(bars[q] <= tolerance for q in asked)
         sort = sorted_verdict(valid, within(found, tolerance))
         why = "a bar is within the tolerance, its error is not" if sort == FALSE_VALID else ""
         out.verdicts.append(Verdict(body, label, tolerance, sort, why))
