@@ -155,7 +155,7 @@ def _values(record: Record, name: Quantity, called: str, units: Units) -> Row:
 
 def _bar(model: ModelRecord, bar: float | None) -> Value:
     if model.band is None:
-        # beams are solved on one mesh
+        # beams cannot show their own error
         return Cell("none given", "quiet") if model.family == BEAM else None
     return bar_percent(bar)
 
@@ -495,7 +495,7 @@ def orders(record: Record) -> Table:
 
 
 def algebra(record: Record) -> Table:
-    """Return residuals and counts that need no second mesh."""
+    """Return residuals and counts of the solution itself."""
     columns = [
         "model",
         Column("asymmetry of the flexibility", write=small),

@@ -58,7 +58,7 @@ def trusted(
 
 
 def _reason(solution: Solution) -> str:
-    return "; ".join(dict.fromkeys(solution.failed.values())) or "it was solved on one mesh only"
+    return "; ".join(dict.fromkeys(solution.failed.values())) or "none of its numbers is bounded"
 
 
 def judge(
