@@ -404,7 +404,7 @@ def test_a_resolved_change_goes_the_way_of_its_theorem(monkeypatch):
 
 def test_of_a_solid_both_ends_of_a_number_are_held_against_the_truth():
     # ends at 1.1 and 1.5, the middle 1.3
-    bar = ErrorBar((1.0,), 0.5, 0.5, None, 1.25, 0.0, 1.4, middle=1.3, aside=0.3)
+    bar = ErrorBar(0.5, 0.5, 1.25, 0.0, 1.4, middle=1.3, aside=0.3)
 
     def ends(name, value, truth):
         rows = solids.rows_of(Quantity(name), value, bar, 1.0, Truth(truth, 0.0, 1.0, "made up"))
@@ -415,7 +415,7 @@ def test_of_a_solid_both_ends_of_a_number_are_held_against_the_truth():
     limit, error = ends("C_zz", 1.0, 1.05)["lower side"]
     assert limit.expected < error.expected
     assert ends("C_z,thx", 1.0, 1.2) == {"coupling": (0.2, 0.1)}
-    softer = ErrorBar((1.0,), 0.5, 0.5, None, 1.25, 0.0, 0.6, middle=0.7, aside=0.3)
+    softer = ErrorBar(0.5, 0.5, 1.25, 0.0, 0.6, middle=0.7, aside=0.3)
     rows = solids.rows_of(Quantity("K_zz"), 1.0, softer, 1.0, Truth(0.65, 0.0, 1.0, "made up"))
     assert [row[1:] for row in rows] == [pytest.approx((0.2, 0.05)), pytest.approx((0.35, 0.1))]
 

@@ -118,8 +118,8 @@ def test_an_axis_beside_the_origin_is_told_as_it_can_be_written(tmp_path):
 def test_a_round_part_from_a_mesh_file_is_answered_as_its_segments_are(tmp_path):
     # revolution is meshed coarse to fine whatever the mesh of the file, which the solid alone has
     scene = scene_of(tmp_path, 24)
-    assert LADDER["solid"].meshes_of(scene, {}).fixed
-    assert not LADDER["harmonic"].meshes_of(scene, {}).fixed
+    assert len(LADDER["solid"].meshes_of(scene, {}).levels) == 1
+    assert LADDER["harmonic"].follows
     plain = sg.answer(scene.plain, 0.01, "bending")
     found = sg.answer(scene, 0.01, "bending")
     assert found.reached and found.rung == "harmonic"

@@ -54,7 +54,7 @@ def tied(c_zz=1.0, bending=100.0, **others):
 
 
 def barred(size, names):
-    return {n: ErrorBar((1.0, 1.0), size, size, None, 1.0, 0.0, 1.0) for n in names}
+    return {n: ErrorBar(size, size, 1.0, 0.0, 1.0) for n in names}
 
 
 def solution(c_zz=1.0, bending=100.0, *, model="beam", bar=None, section=None, **others):

@@ -292,9 +292,9 @@ MUTATIONS = (
     Mutation(
         "energy of waves counted once a sector",
         "solidgear/cuts/sector/cyclic.py",
-        "_block",
-        "count / 2",
-        "count / 1",
+        "copies",
+        "self.sector.count / 2",
+        "self.sector.count / 1",
         "tests/test_sector.py::test_a_sector_is_the_whole[spiral]",
     ),
     Mutation(

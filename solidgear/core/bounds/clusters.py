@@ -157,6 +157,8 @@ def _before(
 
 def _by_family(ends: np.ndarray, shapes: np.ndarray, families: Sequence[str]) -> np.ndarray:
     """Return lower ends, each given to a mode of the family that its combination is made of."""
+    from scipy.optimize import linear_sum_assignment  # slow to import, and seldom needed
+
     weight = shapes**2 / (shapes**2).sum(axis=0)
     same = np.array([[a == b for b in families] for a in families], float)
     modes, places = linear_sum_assignment(-(same @ weight))
