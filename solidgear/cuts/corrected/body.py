@@ -127,11 +127,21 @@ def corrected(
             "harmonic_unknowns": base.size,
             "solid_unknowns": with_.size,
             "volume": with_.mesh["volume"],
+            "geometry": without.mesh["geometry"] * _change(before, after),
         },
         _Drawing(base.geometry, _shares(base, families)) if base.geometry else None,
     )
     body.cache.keep(Origin(base, without, with_, ~cut_mesh.cut))
     return body
+
+
+def _change(before: Modal, after: Modal) -> float:
+    """Return the largest share of a flexibility that features change: an error of the shape that both
+    3D solids have counts as far.
+    """
+    plain, change = np.diag(before.static), np.diag(after.static - before.static)
+    moved = plain > NOTHING * plain.max()
+    return float(np.abs(change[moved] / plain[moved]).max())
 
 
 @dataclass(frozen=True)
