@@ -116,7 +116,9 @@ def modes_sheet(modes: ModeSet, judged: Judged, proof: dict[str, Any], counted: 
     settled, model = judged.settled, judged.body.fidelity
     bars = {str(name): bar for name, bar in judged.bars.items()}
     bare = [m.name for m in modes.modes if m.frequency_hz > 0 and m.name not in bars]
-    reason = judged.reason or (NOTHING_BEYOND if bare else "")
+    reason = judged.reason
+    if bare and not reason:
+        reason = NOTHING_BEYOND
     data = {
         "scene": judged.scene.name,
         "fidelity": model,

@@ -21,7 +21,6 @@ from collections.abc import Sequence
 
 import numpy as np
 import scipy.linalg as sla
-from scipy.optimize import linear_sum_assignment
 
 #: gap between eigenvalues, relative to the upper one, below which they are bounded as one
 BESIDE = 0.05
