@@ -269,7 +269,6 @@ def _lowest(
             highest,
             # the mesh mixes families no more than its own error, so that each keeps its order
             families=[mode.family for mode in group],
-            pairs=[id(mode) for mode in group],
         )
         for mode, end in zip(group, ends):
             lowest[mode.name] = min(float(end), lowest.get(mode.name, np.inf))
