@@ -26,8 +26,8 @@ from scipy.optimize import linear_sum_assignment
 
 #: gap between eigenvalues, relative to the upper one, below which modes are near each other
 BESIDE = 0.05
-#: gap to the highest mode that is solved on for: a bar is no wider than four times what the energy says
-ROOM = 0.25
+#: gap that is solved on for: a bar is no wider than three times what the energy says
+ROOM = 1 / 3
 
 
 def clusters(values: Sequence[float] | np.ndarray) -> list[range]:
@@ -64,7 +64,8 @@ def lower_ends(
     products : (k, k) array
         Of energy of the errors of modes of unit mass.
     highest : float
-        Highest eigenvalue that was solved of the problem.
+        Eigenvalue that nothing orthogonal to the modes solved lies below: on meshes whose modes are
+        hardly off the highest that was solved.
     families : sequence of str, optional
         Of the modes, where a mesh holds several that the body does not mix: each keeps its order.
 
