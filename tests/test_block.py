@@ -204,7 +204,7 @@ def test_a_thin_bar_of_a_block_is_divided_by_each_of_its_edges(tmp_path):
         'material = "steel"\nbody = { block = [0.1, 0.02, 0.005] }\nask = { modes = 4 }\n'
     )
     scene = sg.load(path)
-    settled = settle(scene, 0.05, "modes")
+    settled = settle(scene, 0.01, "modes")
     assert settled.reached and settled.body.size < 20_000
     assert sg.modes(settled.body, scene, n=1).frequency_hz[6] == pytest.approx(2638.8, rel=2e-4)
 

@@ -273,22 +273,18 @@ def with_neighbours(modes: ModeSet | None, wanted: Sequence[str]) -> list[Mode]:
 
 
 def _cluster(modes: Sequence[Mode], mode: Mode) -> Sequence[Mode]:
-    """Return the modes near one, of some in ascending order, and those up to one that leaves them
-    room; none of one that is alone.
+    """Return the modes near one, of some in ascending order, and the next one; none of one that is
+    alone.
     """
     values = [eigenvalue(m) for m in modes]
     run = cluster_of(values, modes.index(mode))
-    if len(run) == 1:
-        return []
-    far = (k for k in range(run.stop, len(values)) if values[run.stop - 1] < ROOM * values[k])
-    return modes[run.start : next(far, len(values) - 1) + 1]
+    return modes[run.start : run.stop + 1] if len(run) > 1 else []
 
 
 def is_bounded(modes: ModeSet, mode: Mode) -> bool:
-    """Return whether a mode was solved beyond those near another."""
+    """Return whether a mode was solved so far above another that this one's bar is hardly wider."""
     coupled = [m for m in modes.solved if m.frequency_hz > 0 and shares_blocks(m, mode)]
-    values = sorted(eigenvalue(m) for m in coupled)
-    return cluster_of(values, values.index(eigenvalue(mode))).stop < len(values)
+    return 1 - eigenvalue(mode) / max(map(eigenvalue, coupled)) >= ROOM
 
 
 def of_one_problem(a: Mode, b: Mode) -> bool:

@@ -28,11 +28,12 @@ import numpy as np
 from solidgear.core.body import Body
 from solidgear.core.body.cache import Cache
 from solidgear.core.body.model import Enrichment
-from solidgear.core.bounds.clusters import lower_ends
+from solidgear.core.bounds.clusters import ROOM, lower_ends
 from solidgear.core.bounds.harmonic import (
     eigenvalue,
     least_frequency,
     on_ports,
+    shares_blocks,
     with_neighbours,
 )
 from solidgear.core.bounds.narrow import RIGID, narrow_share
@@ -148,7 +149,9 @@ def solid_bounds(
                 rows = body.rows(block)
                 reached[np.ix_(rows, rows)] = twin_matrix(body, block, reached)
                 parts[k] = rows, np.tile(signs, len(body.ports)), parts[original][2]
+    solved = () if modes is None else modes.solved
     chosen = with_neighbours(modes, wanted)
+    chosen += _farther(chosen, solved)
     shapes = sorted(
         (_Shape(m, value, u) for m in chosen for value, u in zip(eigenvalues(m), m.vectors)),
         key=lambda shape: shape.value,
@@ -159,7 +162,6 @@ def solid_bounds(
         name = shape.mode.name
         # the mean of a pair, of which some bodies hold one shape only
         by_cells[name] = by_cells.get(name, 0.0) + energy / len(shape.mode.vectors)
-    solved = () if modes is None else modes.solved
 
     def cells(forces: np.ndarray) -> np.ndarray:
         by_block = [
@@ -168,7 +170,7 @@ def solid_bounds(
         ]
         return np.sum(by_block, axis=0)
 
-    lowest = _lowest(shapes, safety * share * products, solved)
+    lowest = _lowest(shapes, safety * share * products)
     return SolidBounds(body, share, reached, lowest, by_cells, cells)
 
 
@@ -248,9 +250,24 @@ def _original(body: Body, index: int) -> int:
     return index if mirror is None else mirror[0]
 
 
-def _lowest(
-    shapes: Sequence[_Shape], products: np.ndarray, solved: Sequence[Mode]
-) -> dict[str, float]:
+def _farther(chosen: Sequence[Mode], solved: Sequence[Mode]) -> list[Mode]:
+    """Return a mode of every eigenproblem that lies farther above those chosen: the first that leaves
+    them room, or the last that was solved.
+    """
+    out: dict[str, Mode] = {}
+    for mode in sorted(chosen, key=eigenvalue, reverse=True):
+        coupled = [m for m in (*chosen, *out.values()) if shares_blocks(m, mode)]
+        highest = max(map(eigenvalue, coupled))
+        above = [m for m in solved if shares_blocks(m, mode) and eigenvalue(m) > highest]
+        above.sort(key=eigenvalue)
+        if above and 1 - eigenvalue(mode) / highest < ROOM:
+            with_room = (m for m in above if 1 - eigenvalue(mode) / eigenvalue(m) >= ROOM)
+            farther = next(with_room, above[-1])
+            out[farther.name] = farther
+    return list(out.values())
+
+
+def _lowest(shapes: Sequence[_Shape], products: np.ndarray) -> dict[str, float]:
     """Return the least eigenvalue of modes by their names, from shapes in ascending order and the
     products of energy of their errors, of every eigenproblem for itself; of twins the lesser.
     """
@@ -261,15 +278,16 @@ def _lowest(
         places = [k for k in pending if blocks & set(shapes[k].vectors)]
         pending = [k for k in pending if k not in places]
         group = [shapes[k].mode for k in places]
-        # planes of a pair are blocks of their own
-        highest = max(eigenvalues(m)[-1] for m in solved if any(blocks & set(u) for u in m.vectors))
+        values = np.array([shapes[k].value for k in places])
+        shared = products[np.ix_(places, places)]
+        # modes of a coarse mesh lie far too high: the highest at least as far as any other
+        off = float((shared.diagonal() / values).max())
         ends = lower_ends(
-            np.array([shapes[k].value for k in places]),
-            products[np.ix_(places, places)],
-            highest,
+            values,
+            shared,
+            values[-1] * max(1 - off, 0.0),
             # the mesh mixes families no more than its own error, so that each keeps its order
             families=[mode.family for mode in group],
-            pairs=[id(mode) for mode in group],
         )
         for mode, end in zip(group, ends):
             lowest[mode.name] = min(float(end), lowest.get(mode.name, np.inf))

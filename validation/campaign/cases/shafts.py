@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -40,14 +41,29 @@ MOST_UNKNOWNS = 100_000
 #: a reference that is known worse than this share of a bar is refined, but not below solver noise
 SHARE, FINE = 0.1, 1e-8
 #: models whose verdicts are judged, and those whose bars are
-RUNGS, SOLIDS = ("lumped", "euler", "timoshenko", "harmonic"), ("harmonic", "solid")
+BEAMS, SOLIDS = ("lumped", "euler", "timoshenko"), ("harmonic", "solid")
 #: what a lumped model answers for
 LUMPED = ("C_zz", "C_thx", "C_yy", "C_z,thx", "bending 1")
-#: what is run: name -> (models, builder settings, ask `check` too)
-LANES: dict[str, tuple[tuple[str, ...], dict | None, bool]] = {
-    "all": (RUNGS, None, True),
-    "hex20": (("solid",), None, False),
-    "tet10": (("solid",), {"solid": {"element": "tet10"}}, False),
+
+
+@dataclass(frozen=True)
+class Lane:
+    """Models that are compared."""
+
+    models: tuple[str, ...]
+    judged: tuple[str, ...] = ()  #: those whose verdicts are
+    element: str = "hex20"  #: of the 3D solid
+    check: bool = False  #: whether `check` is asked too
+
+
+ALL = "all"
+#: 3D solids that judge beams with no harmonic solid beside them
+ALONE = {f"{element} alone": element for element in ("tet10", "hex20")}
+LANES = {
+    ALL: Lane((*BEAMS, "harmonic"), (*BEAMS, "harmonic"), check=True),
+    "hex20": Lane(("solid",)),
+    "tet10": Lane(("solid",), element="tet10"),
+    **{name: Lane((*BEAMS, "solid"), BEAMS, element) for name, element in ALONE.items()},
 }
 
 
@@ -63,6 +79,11 @@ class Shafts(Case):
         add = parser.add_argument
         add("--solid", type=int, default=0, help="shafts for bars of HEX20 and TET10 each")
         add(
+            "--alone",
+            action="store_true",
+            help="verdicts by 3D solids alone, TET10 and HEX20 in turn, and nothing else",
+        )
+        add(
             "--tolerance",
             type=float,
             nargs="+",
@@ -72,25 +93,29 @@ class Shafts(Case):
 
     def bodies(self, given: argparse.Namespace) -> list[tuple]:
         seeds, first = range(given.seeds[0], given.seeds[1] + 1), given.tolerance[0]
-        plain = [(seed, tolerance, "all") for tolerance in given.tolerance for seed in seeds]
+        if given.alone:
+            turns = [list(ALONE)[seed % len(ALONE)] for seed in seeds]
+            return [(s, t, lane) for t in given.tolerance for s, lane in zip(seeds, turns)]
+        plain = [(seed, tolerance, ALL) for tolerance in given.tolerance for seed in seeds]
         solid = [
             (seed, first, lane) for lane in ("hex20", "tet10") for seed in seeds[: given.solid]
         ]
         return plain + solid
 
     def judge(self, run: Run, seed: int, tolerance: float | None, lane: str) -> Found:
-        scene = scene_of(seed, tolerance)
+        scene, compared = scene_of(seed, tolerance), LANES[lane]
         drawn = traits(scene)
         body = f"seed {seed} ({drawn['kind']}, {drawn['ties']}, L/D {drawn['l_over_d']:.2f})"
-        said, problem = run.call(outcome, scene, *LANES[lane])
+        said, problem = run.call(outcome, scene, compared)
         if problem:
             return Found(problems=[f"{body}, {lane}: {problem}"])
-        truths = refined(run, scene, said)
+        # of solids that judge alone verdicts are asked for, which need no fine reference
+        truths = refined(run, scene, {"models": {}} if lane in ALONE else said)
         if truths.finest is None:
             return Found(problems=[f"{body}: no reference within {MOST_UNKNOWNS} unknowns"])
         out = Found()
         for name in (name for name in SOLIDS if name in said["models"]):
-            model, label = said["models"][name], name if lane == "all" else lane
+            model, label = said["models"][name], name if lane == ALL else lane
             tags = {"model": label, "ties": drawn["ties"]}
             out.rows += rows_of(model, truths, body, tags)
             if not model["bars"]:
@@ -98,9 +123,12 @@ class Shafts(Case):
                 out.problems.append(f"{body}, {lane}: no bar of {name}: {why}")
             elif model["seconds"]:
                 out.costs.append(Cost(body, {"model": label}, model["seconds"], model["unknowns"]))
-        if lane == "all":
-            fair = refined(run, scene.with_attachment("section"), {"models": {}})
-            out.verdicts += verdicts_of(said, truths.references, fair.references, scene, body)
+        if compared.judged:
+            models = [said["models"].get(name, {}) for name in compared.judged]
+            refused = any(not model.get("valid") for model in models)
+            like = scene.with_attachment("section")
+            fair = refined(run, like, {"models": {}}).references if refused else {}
+            out.verdicts += verdicts_of(said, truths.references, fair, scene, body, lane)
         return out
 
 
@@ -162,13 +190,15 @@ def verdicts_of(
     fair: dict[str, Reference],
     scene: Scene,
     body: str,
+    lane: str = ALL,
 ) -> list[Verdict]:
-    """Verdicts of all models; `fair` are references with section ties everywhere."""
+    """Verdicts of all models of a lane; `fair` are references with section ties everywhere."""
     tolerance, out = scene.ask.tolerance, []
-    for name in RUNGS:
+    for name in LANES[lane].judged:
         model = said["models"].get(name)
+        label = f"{name} by {lane}" if lane in ALONE else name
         if not model or not model["values"]:
-            out.append(Verdict(body, name, tolerance, UNSOLVED))
+            out.append(Verdict(body, label, tolerance, UNSOLVED))
             continue
         names = LUMPED if name == "lumped" else JUDGED
         errors = errors_of(model, references, names)
@@ -180,7 +210,7 @@ def verdicts_of(
             why = f"{worst} is {100 * errors[worst][0]:+.2f} % off"
         elif sort == FALSE_INVALID:
             why = str(model["why_not"])
-        out.append(Verdict(body, name, tolerance, sort, why))
+        out.append(Verdict(body, label, tolerance, sort, why))
     return out + _checked(said, tolerance, body)
 
 
@@ -204,15 +234,14 @@ def _checked(said: dict, tolerance: float, body: str) -> list[Verdict]:
 
 # ------------------------------------------------------------------------------------------------
 # - asked of a worker
-def outcome(
-    scene: Scene, models: tuple[str, ...], settings: dict | None = None, check: bool = True
-) -> dict[str, Any]:
+def outcome(scene: Scene, lane: Lane) -> dict[str, Any]:
     """Verdicts, values and bars of every model, and what `check` says, as plain data."""
-    comparison = compare(scene, models=models, settings=settings)
+    settings = {"solid": {"element": lane.element}} if "solid" in lane.models else None
+    comparison = compare(scene, models=lane.models, settings=settings)
     records = comparison.results["models"]
     out = {name: _model(record, comparison.solutions.get(name)) for name, record in records.items()}
     said = {}
-    if check:
+    if lane.check:
         verdicts = check_scene(scene, build(scene, "timoshenko")).verdicts
         said = {name: verdict.verdict for name, verdict in verdicts.items()}
     return {"models": out, "check": said}
