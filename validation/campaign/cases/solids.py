@@ -42,7 +42,7 @@ from validation.campaign.truths import features
 from validation.campaign.truths.kept import name_of
 
 #: relative error of the true values asked for
-FINE = 1e-5
+FINE = 3e-5
 #: shapes that are searched for
 SHAPES = 10
 #: modes of a body without an axis that are judged

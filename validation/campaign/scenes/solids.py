@@ -112,7 +112,7 @@ def step_part(seed: int, folder: Path) -> Part:
         write_step(path, segments, splines=True)
     body = f'[body]\nstep = "{path.name}"\nunit = "mm"\n'
     scene = _loaded(path.with_suffix(".toml"), STEEL + body + seats)
-    meshes = [Mesh(scene, "tet10", {"refinement": r}) for r in (0.15, 0.25, 0.4)]
+    meshes = [Mesh(scene, "tet10", {"refinement": r}) for r in (0.15, 0.3)]
     return Part("STEP", meshes, HARMONIC, [_plain(scene)])
 
 
@@ -150,8 +150,8 @@ def cut_part(seed: int, folder: Path) -> Part:
     """A shaft with keyways, flats and cross holes, by itself and as a correction."""
     drawn, scene = _drawn(seed, "cut", folder)
     sort = "cut" if mirror_plane(scene.features) is None else "half"
-    meshes = [Mesh(scene, "tet10", {"refinement": r}) for r in (0.12, 0.2, 0.3)]
-    corrected = LADDER["corrected"].meshes({}).levels[:2]
+    meshes = [Mesh(scene, "tet10", {"refinement": r}) for r in (0.12, 0.25)]
+    corrected = LADDER["corrected"].meshes({}).levels[:1]
     meshes += [Mesh(scene, "corrected", dict(level), "corrected") for level in corrected]
     return Part(sort, meshes, FEATURES, [scene], drawn.text)
 
@@ -159,7 +159,7 @@ def cut_part(seed: int, folder: Path) -> Part:
 def sector_part(seed: int, folder: Path) -> Part:
     """A shaft with teeth, splines or bolt circles, as one of its sectors."""
     drawn, scene = _drawn(seed, "cyclic", folder)
-    meshes = [Mesh(scene, "sector", {"refinement": r}, "sector") for r in (0.08, 0.3)]
+    meshes = [Mesh(scene, "sector", {"refinement": 0.08}, "sector")]
     return Part("sector", meshes, SECTORS, [scene], drawn.text)
 
 
@@ -216,7 +216,7 @@ def block_part(seed: int, folder: Path) -> Part:
     scene = _loaded(folder / f"block-{seed}.toml", material + block + own)
     meshes = [
         Mesh(scene, element, {"element": element, "refinement": r})
-        for element, refinements in (("hex20", (0.25, 0.5)), ("hex27", (0.5, 0.75)))
+        for element, refinements in (("hex20", (0.25, 0.5)), ("hex27", (0.25, 0.5)))
         for r in refinements
     ]
     meshes += [Mesh(tetrahedron, "tet10", {}) for tetrahedron in tetrahedra]
