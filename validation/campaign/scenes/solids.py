@@ -25,6 +25,8 @@ from validation.campaign.scenes.parts import draw
 from validation.mesh_files import write_boxes, write_mesh
 from validation.step_parts import write_step
 
+#: sorts of turned shafts in files: meshes that promise no twins
+STEP, MESH_FILE = "STEP", "mesh file"
 #: where the truth of a body comes from
 HARMONIC, FEATURES, SECTORS, BRICKS = "harmonic", "features", "sectors", "bricks"
 STEEL = 'material = { E = "207 GPa", nu = 0.3, density = 7850.0 }\n'
@@ -62,7 +64,7 @@ class Part:
 # ------------------------------------------------------------------------------------------------
 # - turned shafts in files
 def _turned(dice: random.Random) -> tuple[list[Segment], str]:
-    """Segments of a shaft of two or three diameters, and its seats as text, mm."""
+    """Segments of a shaft of two or three diameters, and its seats as text, mm, alike in both planes."""
     segments: list[Segment] = []
     y, bore = 0.0, dice.choice((0.0, 0.0, 8.0))
     for k in range(dice.choice((2, 2, 3))):
@@ -113,14 +115,14 @@ def step_part(seed: int, folder: Path) -> Part:
     body = f'[body]\nstep = "{path.name}"\nunit = "mm"\n'
     scene = _loaded(path.with_suffix(".toml"), STEEL + body + seats)
     meshes = [Mesh(scene, "tet10", {"refinement": r}) for r in (0.15, 0.3)]
-    return Part("STEP", meshes, HARMONIC, [_plain(scene)])
+    return Part(STEP, meshes, HARMONIC, [_plain(scene)])
 
 
 def mesh_part(seed: int, folder: Path) -> Part:
     """A turned shaft as meshes of tetrahedra in a file, of every other seed of hexahedra."""
     segments, seats = _turned(random.Random(seed))
     element = "tet10" if seed % 2 else "hex20"
-    levels: Sequence[dict[str, Any]] = [{"refinement": r} for r in (0.15, 0.25, 0.4)]
+    levels: Sequence[dict[str, Any]] = [{"refinement": r} for r in (0.1, 0.2, 0.3)]
     if element == "hex20":
         usual = LADDER["solid"].meshes({"element": element}).levels[:3]
         levels = [{**level, "around": AROUND} for level in usual]
@@ -129,11 +131,15 @@ def mesh_part(seed: int, folder: Path) -> Part:
     for file, level in zip(files, levels):
         if not file.exists():
             _write(file, build(shaft, "solid", element=element, **level))
-    names = ", ".join(f'"{file.name}"' for file in files)
-    body = f'[body]\nmesh = [{names}]\nunit = "mm"\n'
-    scene = _loaded(folder / f"mesh-{seed}.toml", STEEL + body + seats)
-    meshes = [Mesh(scene, element, {"coarser": k}) for k in (2, 1, 0)]
-    return Part("mesh file", meshes, HARMONIC, [_plain(scene)])
+    scenes = [
+        _loaded(
+            file.with_suffix(".toml"), f'{STEEL}[body]\nmesh = "{file.name}"\nunit = "mm"\n{seats}'
+        )
+        for file in files
+    ]
+    meshes = [Mesh(scene, element, {}) for scene in scenes]
+    scene = scenes[-1]
+    return Part(MESH_FILE, meshes, HARMONIC, [_plain(scene)])
 
 
 def _write(path: Path, body: Any) -> None:
