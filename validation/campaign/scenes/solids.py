@@ -66,7 +66,7 @@ class Part:
 def _turned(dice: random.Random) -> tuple[list[Segment], str]:
     """Segments of a shaft of two or three diameters, and its seats as text, mm, alike in both planes."""
     segments: list[Segment] = []
-    y, bore = 0.0, dice.choice((0.0, 0.0, 8.0))
+    y, bore = 0.0, dice.choice((0.0, 0.0, 14.0))
     for k in range(dice.choice((2, 2, 3))):
         sizes = {"length": dice.randint(30, 50), "diameter": dice.randint(22, 55), "bore": bore}
         place = {"y0": y / 1e3, **{name: value / 1e3 for name, value in sizes.items()}}
@@ -122,7 +122,9 @@ def mesh_part(seed: int, folder: Path) -> Part:
     """A turned shaft as meshes of tetrahedra in a file, of every other seed of hexahedra."""
     segments, seats = _turned(random.Random(seed))
     element = "tet10" if seed % 2 else "hex20"
-    levels: Sequence[dict[str, Any]] = [{"refinement": r} for r in (0.1, 0.2, 0.3)]
+    levels: Sequence[dict[str, Any]] = [
+        {"element": element, "refinement": r} for r in (0.1, 0.2, 0.3)
+    ]
     if element == "hex20":
         usual = LADDER["solid"].meshes({"element": element}).levels[:3]
         levels = [{**level, "around": AROUND} for level in usual]
@@ -130,7 +132,7 @@ def mesh_part(seed: int, folder: Path) -> Part:
     shaft = Scene.from_parts(segments)
     for file, level in zip(files, levels):
         if not file.exists():
-            _write(file, build(shaft, "solid", element=element, **level))
+            _write(file, build(shaft, "solid", **level))
     scenes = [
         _loaded(
             file.with_suffix(".toml"), f'{STEEL}[body]\nmesh = "{file.name}"\nunit = "mm"\n{seats}'
