@@ -64,6 +64,20 @@ def series(folder, ending, first, second, planes=(0, 20, 40, 60, 80, 120, 160, 2
     )
 
 
+def test_a_rigid_seat_between_the_nodes_of_a_file_is_refused(tmp_path):
+    """Its faces reach beyond it, and it would hold none of their nodes."""
+    points, cells = rod((0.0, 10.0), (0, 100, 200))
+    write_mesh(tmp_path / "part.msh", points, "tetra", cells, {"all": range(len(cells))})
+    port = 'position = "{} mm"\nspan = ["{} mm", "{} mm"]\nattachment = "rigid"'
+    scene = scene_of(tmp_path, "part.msh", {}, port=port.format(25, 20, 30))
+    with pytest.raises(
+        sg.SolidgearError, match="'end': no node lies between the ends of its rigid"
+    ):
+        sg.build(scene, "solid")
+    scene = scene_of(tmp_path, "part.msh", {}, port=port.format(50, 40, 60))
+    assert sg.build(scene, "solid").size > 0
+
+
 @pytest.mark.parametrize(
     "ending",
     # the other formats are read in the last test here

@@ -18,7 +18,7 @@ from solidgear.core.ladder import build
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.meshing.quality import MeshError
 from solidgear.core.models.kinds import CYCLIC
-from solidgear.core.scene import Scene, Segment
+from solidgear.core.scene import Bearing, Material, Port, Scene, Segment
 from solidgear.cuts.solid.cuts import mirror_plane
 from solidgear.show.outputs import node_order
 from validation.campaign.scenes.parts import draw
@@ -29,6 +29,7 @@ from validation.step_parts import write_step
 STEP, MESH_FILE = "STEP", "mesh file"
 #: where the truth of a body comes from
 HARMONIC, FEATURES, SECTORS, BRICKS = "harmonic", "features", "sectors", "bricks"
+MATERIAL = Material(E=2.07e11, nu=0.3, density=7850.0)
 STEEL = 'material = { E = "207 GPa", nu = 0.3, density = 7850.0 }\n'
 SOFT = 'material = { E = "2 GPa", nu = 0.45, density = 1400.0 }\n'
 #: hexahedra of a mesh file: twice as many around as meshes of the product have, which know their arcs
@@ -63,8 +64,8 @@ class Part:
 
 # ------------------------------------------------------------------------------------------------
 # - turned shafts in files
-def _turned(dice: random.Random) -> tuple[list[Segment], str]:
-    """Segments of a shaft of two or three diameters, and its seats as text, mm, alike in both planes."""
+def _turned(dice: random.Random) -> tuple[Scene, str]:
+    """A shaft of two or three diameters, and its seats as text, mm, alike in both planes."""
     segments: list[Segment] = []
     y, bore = 0.0, dice.choice((0.0, 0.0, 14.0))
     for k in range(dice.choice((2, 2, 3))):
@@ -74,18 +75,20 @@ def _turned(dice: random.Random) -> tuple[list[Segment], str]:
         y += sizes["length"]
     first, last = segments[0], segments[-1]
     tie = dice.choice(("average", "average", "rigid"))
-    firm = 'kxx = "{0} N/m", kyy = "{0} N/m", kzz = "{0} N/m"'
-    bearings = [
-        (first, 3, 11, firm.format(f"{10 ** dice.uniform(7.5, 9.5):.4g}")),
-        (last, 1e3 * last.length - 12, 1e3 * last.length - 4, 'kxx = "3e8 N/m", kzz = "3e8 N/m"'),
-    ]
-    lines = [f"[[bearing]]\nname = '{name}'" for name in "AB"]
-    text = [
-        f'{head}\nattachment = "{tie}"\n{_seat(segment, lo, hi)}\nstiffness = {{ {springs} }}'
-        for head, (segment, lo, hi, springs) in zip(lines, bearings)
-    ]
+    firm = float(f"{10 ** dice.uniform(7.5, 9.5):.4g}")
+    seats = {"A": (first, 3.0, 11.0), "B": (last, 1e3 * last.length - 12, 1e3 * last.length - 4)}
+    springs = {"A": {"kxx": firm, "kyy": firm, "kzz": firm}, "B": {"kxx": 3e8, "kzz": 3e8}}
+    bearings, text = [], []
+    for name, (segment, lo, hi) in seats.items():
+        given = {"seat_width": (hi - lo) / 1e3, "stiffness": springs[name], "attachment": tie}
+        bearings.append(Bearing(name=name, y=segment.y0 + (lo + hi) / 2e3, **given))
+        numbers = ", ".join(f'{key} = "{k:.6g} N/m"' for key, k in springs[name].items())
+        seat = _seat(segment, lo, hi)
+        head = f'[[bearing]]\nname = "{name}"\nattachment = "{tie}"'
+        text.append(f"{head}\n{seat}\nstiffness = {{ {numbers} }}")
+    port = Port(name="gear", y=first.y0 + 19e-3, lo=first.y0 + 14e-3, hi=first.y0 + 24e-3)
     text.append(f'[port]\nname = "gear"\n{_seat(first, 14, 24)}')
-    return segments, "\n".join(text)
+    return Scene.from_parts(segments, MATERIAL, bearings, port), "\n".join(text)
 
 
 def _seat(segment: Segment, lo: float, hi: float) -> str:
@@ -101,26 +104,21 @@ def _loaded(path: Path, text: str) -> Scene:
     return sg.load(path)
 
 
-def _plain(scene: Scene) -> Scene:
-    """The shaft of revolution that a file is of."""
-    return Scene.from_parts(scene.segments, scene.material, scene.bearings, scene.port)
-
-
 def step_part(seed: int, folder: Path) -> Part:
     """A turned shaft whose faces are B-splines."""
-    segments, seats = _turned(random.Random(seed))
+    shaft, seats = _turned(random.Random(seed))
     path = folder / f"step-{seed}.step"
     if not path.exists():
-        write_step(path, segments, splines=True)
+        write_step(path, shaft.segments, splines=True)
     body = f'[body]\nstep = "{path.name}"\nunit = "mm"\n'
     scene = _loaded(path.with_suffix(".toml"), STEEL + body + seats)
     meshes = [Mesh(scene, "tet10", {"refinement": r}) for r in (0.15, 0.3)]
-    return Part(STEP, meshes, HARMONIC, [_plain(scene)])
+    return Part(STEP, meshes, HARMONIC, [shaft])
 
 
 def mesh_part(seed: int, folder: Path) -> Part:
     """A turned shaft as meshes of tetrahedra in a file, of every other seed of hexahedra."""
-    segments, seats = _turned(random.Random(seed))
+    shaft, seats = _turned(random.Random(seed))
     element = "tet10" if seed % 2 else "hex20"
     levels: Sequence[dict[str, Any]] = [
         {"element": element, "refinement": r} for r in (0.1, 0.2, 0.3)
@@ -129,7 +127,6 @@ def mesh_part(seed: int, folder: Path) -> Part:
         usual = LADDER["solid"].meshes({"element": element}).levels[:3]
         levels = [{**level, "around": AROUND} for level in usual]
     files = [folder / f"mesh-{seed}-{k}.vtu" for k in range(len(levels))]
-    shaft = Scene.from_parts(segments)
     for file, level in zip(files, levels):
         if not file.exists():
             _write(file, build(shaft, "solid", **level))
@@ -140,8 +137,7 @@ def mesh_part(seed: int, folder: Path) -> Part:
         for file in files
     ]
     meshes = [Mesh(scene, element, {}) for scene in scenes]
-    scene = scenes[-1]
-    return Part(MESH_FILE, meshes, HARMONIC, [_plain(scene)])
+    return Part(MESH_FILE, meshes, HARMONIC, [shaft])
 
 
 def _write(path: Path, body: Any) -> None:
