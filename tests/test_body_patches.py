@@ -2,7 +2,6 @@
 hexahedra of scikit-fem, an L bracket beside a mesh that is graded towards its edges.
 """
 
-import meshio
 import numpy as np
 import pytest
 from scipy.sparse.linalg import splu
@@ -12,6 +11,7 @@ from skfem.models.elasticity import lame_parameters, linear_elasticity
 import solidgear as sg
 from solidgear.core.judge.settle import settle
 from solidgear.core.quantity import Quantity
+from validation.mesh_files import write_boxes
 
 E, NU = 207e9, 0.29
 HEAD = f"material = {{ E = {E}, nu = {NU}, density = 7850 }}\n"
@@ -27,27 +27,6 @@ hold = "clamped"
 name = "tip"
 patch = "eye"
 """
-
-
-def write(path, lines, patches, hollow=None):
-    """Tetrahedra between lines along x, y and z (m), in mm, with patches by what their middles are."""
-    mesh = MeshTet.init_tensor(*lines)
-    if hollow is not None:
-        mesh = mesh.remove_elements(np.flatnonzero(hollow(mesh.p[:, mesh.t].mean(axis=1))))
-    turned = np.linalg.det(np.diff(mesh.p[:, mesh.t], axis=1).transpose(2, 0, 1)) < 0
-    mesh.t[:2, turned] = mesh.t[1::-1, turned]
-    outside = mesh.boundary_facets()
-    middle = mesh.p[:, mesh.facets[:, outside]].mean(axis=1)
-    cells, tags = [("tetra", mesh.t.T)], [np.full(mesh.t.shape[1], 1)]
-    names = {"body": np.array([1, 3])}
-    for tag, (name, on) in enumerate(patches.items(), 2):
-        faces = mesh.facets[:, outside[on(middle)]].T
-        cells.append(("triangle", faces))
-        tags.append(np.full(len(faces), tag))
-        names[name] = np.array([tag, 2])
-    data = {"gmsh:physical": tags, "gmsh:geometrical": tags}
-    out = meshio.Mesh(1e3 * mesh.p.T, cells, cell_data=data, field_data=names)
-    meshio.write(path, out, file_format="gmsh22")
 
 
 def scene(folder, *files, more=HELD):
@@ -66,7 +45,7 @@ def beam(tmp_path_factory):
     for cells in (2, 4):
         counts = cells, 3 * cells, cells
         lines = [np.linspace(0, e, n + 1) for e, n in zip(EDGES, counts)]
-        write(folder / f"{cells}.msh", lines, ENDS)
+        write_boxes(folder / f"{cells}.msh", lines, ENDS)
     return folder
 
 
@@ -137,7 +116,7 @@ def bracket(path, around, between):
         "eye": lambda m: m[0] > 2 * ARM - 1e-9,
     }
     hollow = lambda m: (m[0] > ARM) & (m[1] > ARM)  # noqa: E731
-    write(path, [ARM * two, ARM * two, ARM * one], patches, hollow)
+    write_boxes(path, [ARM * two, ARM * two, ARM * one], patches, hollow)
 
 
 @pytest.mark.long

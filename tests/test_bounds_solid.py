@@ -15,7 +15,7 @@ from solidgear.core.body import as_supports
 from solidgear.core.bounds import solid as bounds_solid
 from solidgear.core.bounds.safety import LOCAL
 from solidgear.core.bounds.solid import enriched_errors, solid_bounds
-from solidgear.core.judge.bounded import bounded
+from solidgear.core.judge.bounded import _between, bounded
 from solidgear.core.judge.quantities import size
 from solidgear.core.judge.solving import Statics, numbers, search_modes
 from solidgear.core.kernel.assembly import reference
@@ -230,6 +230,17 @@ def test_what_did_not_converge_is_refused(monkeypatch):
     monkeypatch.setattr(bounds_solid, "MOST_STEPS", 2)
     with pytest.raises(sg.SolidgearError, match="one order more"):
         solid_bounds(scene, body, statics=True)
+
+
+def test_a_coupling_that_only_rounding_moves_has_a_bar_of_nothing():
+    """Of a point in the seat of the only bearing: the larger of both ends is either one."""
+    names = [Quantity(name) for name in ("C_zz", "C_thx", "C_z,thx")]
+    ulp = np.finfo(float).eps
+    stiff = dict(zip(names, (1.0, 1.0, 0.5)))
+    far = dict(zip(names, (1.0 + ulp, 1.0 + 4 * ulp, 0.5)))
+    near = dict(zip(names, (1.0 + 2 * ulp, 1.0, 0.5)))
+    bar = _between(names[2], stiff, far, stiff, near, 0.0)
+    assert 0 <= bar.about_middle < 1e-8 and 0 <= bar.width < 1e-8
 
 
 def test_half_a_part_has_the_bars_of_the_whole():

@@ -38,7 +38,9 @@ from validation.campaign.scenes.bodies import BODIES
 from validation.campaign.scenes.parts import SORTS, draw
 from validation.campaign.scenes.shafts import KINDS, TIES, random_scene, traits
 from validation.campaign.scenes.small import small
+from validation.campaign.scenes.solids import PARTS, Mesh, Part
 from validation.campaign.scenes.springs import random_springs
+from validation.campaign.truths import features
 from validation.campaign.truths.kept import Truths, name_of, partner_of, truth_of
 from validation.campaign.truths.reference import Reference
 from validation.campaign.worker import Worker
@@ -410,24 +412,72 @@ def test_of_a_solid_both_ends_of_a_number_are_held_against_the_truth():
         rows = solids.rows_of(Quantity(name), value, bar, 1.0, Truth(truth, 0.0, 1.0, "made up"))
         return {kind: (pytest.approx(limit), pytest.approx(error)) for kind, limit, error in rows}
 
-    assert ends("C_zz", 1.0, 1.35) == {"static": (0.2, -0.05), "lower side": (0.35, 0.1)}
+    held = {"static": (0.2, -0.05), "value of the mesh": (0.5, -0.35), "lower side": (0.35, 0.1)}
+    assert ends("C_zz", 1.0, 1.35) == held
     # a truth nearer than the least growth shows
     limit, error = ends("C_zz", 1.0, 1.05)["lower side"]
     assert limit.expected < error.expected
-    assert ends("C_z,thx", 1.0, 1.2) == {"coupling": (0.2, 0.1)}
+    held = {"coupling": (0.2, 0.1), "value of the mesh": (0.5, -0.2)}
+    assert ends("C_z,thx", 1.0, 1.2) == held
     softer = ErrorBar(0.5, 0.5, 1.25, 0.0, 0.6, middle=0.7, aside=0.3)
     rows = solids.rows_of(Quantity("K_zz"), 1.0, softer, 1.0, Truth(0.65, 0.0, 1.0, "made up"))
-    assert [row[1:] for row in rows] == [pytest.approx((0.2, 0.05)), pytest.approx((0.35, 0.1))]
+    sizes = (0.2, 0.05), (0.5, 0.35), (0.35, 0.1)
+    assert [row[1:] for row in rows] == [pytest.approx(pair) for pair in sizes]
 
 
 def test_a_solid_is_judged_on_one_mesh_and_told_what_it_costs():
     truths = {"C_zz": Truth(1e-10, 1e-15, 1e-10, "made up")}
     options = {"element": "hex20", "layers": 0, "relative_size": 2.0, "around": 8}
-    tags = {"element": "hex20", "mesh": "1"}
-    found = solids.judged("short plate", options, tags, truths, 30_000)
-    assert [row.tags["kind"] for row in found.rows] == ["static", "lower side"]
+    mesh = Mesh(BODIES["short plate"].make(), "hex20", options)
+    found = solids.judged("short plate", mesh, {"element": "hex20", "mesh": "1"}, truths, 1000)
+    kinds = ["static", "value of the mesh", "lower side"]
+    assert [row.tags["kind"] for row in found.rows] == kinds
     # the number is larger than that, though it can only grow
-    assert [row.held for row in found.rows] == [False, False]
+    assert not any(row.held for row in found.rows)
     assert [cost.tags["stage"] for cost in found.costs] == ["build", "statics", "modes", "estimate"]
-    with pytest.raises(ValueError, match="unknowns are more than"):
-        solids.judged("short plate", options, tags, truths, 100)
+
+
+def test_a_body_that_no_mesh_is_light_enough_for_is_not_solved(tmp_path):
+    given = command.parsed(["solids", "--limit", "100", "--no-random", "--elements", "hex20"])
+    called = []
+
+    def call(function, *arguments):
+        called.append(function)
+        return function(*arguments), ""
+
+    found = solids.Solids().judge(Run(given, tmp_path, call, print), "short plate")
+    assert [word in found.problems[0] for word in ("hex20 1", "more than 100")] == [True, True]
+    assert not found.rows and called == [solids.part_of, solids.unknowns_of]
+
+
+@pytest.mark.parametrize("sort", ["block", "bracket"])
+def test_bodies_of_boxes_are_one_body_by_any_mesh(sort, tmp_path):
+    part = PARTS[sort](3, tmp_path)
+    scenes = [*part.exact, *(mesh.scene for mesh in part.meshes)]
+    assert {scene.body.element for scene in scenes} >= {"tet4", "hex8"}
+    assert [s.body.volume for s in scenes] == pytest.approx([scenes[0].body.volume] * len(scenes))
+    assert all(scene.bearings[0].patch and scene.port.patch for scene in scenes)
+    sizes = solids.unknowns_of(part)
+    # what is true is finer than what is judged
+    assert max(sizes) < int(build(part.exact[-1], "solid").size)
+
+
+def test_a_shaft_in_a_mesh_file_is_that_of_its_segments(tmp_path):
+    part = PARTS["mesh"](2, tmp_path)
+    plain = part.exact[0]
+    volume = sum(np.pi * (s.outer0**2 - s.inner0**2) * s.length for s in plain.segments)
+    assert [mesh.element for mesh in part.meshes] == ["hex20"] * 3
+    assert part.meshes[0].scene.body.volume == pytest.approx(volume, rel=2e-4)
+    assert plain.body is None and len(plain.bearings) == 2
+
+
+def test_pairs_of_parts_with_features_have_the_names_of_their_modes():
+    given = {"pair 1": 10.0, "pair 2": 11.0, "axial 1": 5.0}
+    numbers = features.Numbers(given, dict.fromkeys(given, 0.1), {})
+    names = {}
+    for sort, source in (("half", "features"), ("cut", "features"), ("sector", "sectors")):
+        found = solids._by_names(Part(sort, [], source, []), numbers)
+        names[sort] = {name: row["value"] for name, row in found.items()}
+    assert names["half"] == {"bending z 1": 10.0, "bending x 1": 11.0, "axial 1": 5.0}
+    assert names["cut"] == {"bending 1": 10.0, "bending 2": 11.0, "axial 1": 5.0}
+    assert names["sector"] == {"bending 1": 10.0, "axial 1": 5.0}

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import solidgear as sg
+from solidgear.core.bounds.solid import NoBounds, solid_bounds
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.machine.isolated import isolated
 from validation.mesh_files import rod, write_mesh, written_by_gmsh
@@ -62,6 +63,26 @@ def series(folder, ending, first, second, planes=(0, 20, 40, 60, 80, 120, 160, 2
         seats=HELD,
         port=END.format(200, 190, 200),
     )
+
+
+def test_a_rigid_seat_between_the_nodes_of_a_file_is_refused(tmp_path):
+    """Its faces reach beyond it, and it would hold none of their nodes."""
+    points, cells = rod((0.0, 10.0), (0, 100, 200))
+    write_mesh(tmp_path / "part.msh", points, "tetra", cells, {"all": range(len(cells))})
+    port = 'position = "{} mm"\nspan = ["{} mm", "{} mm"]\nattachment = "rigid"'
+    scene = scene_of(tmp_path, "part.msh", {}, port=port.format(25, 20, 30))
+    with pytest.raises(
+        sg.SolidgearError, match="'end': no node lies between the ends of its rigid"
+    ):
+        sg.build(scene, "solid")
+    # those of half its length
+    scene = scene_of(tmp_path, "part.msh", {}, port=port.format(50, 25, 75))
+    body = sg.build(scene, "solid")
+    with pytest.raises(NoBounds, match="the rigid seat of 'end' ends between nodes"):
+        solid_bounds(scene, body, statics=True)
+    scene = scene_of(tmp_path, "part.msh", {}, port=port.format(50, 0, 100))
+    bounds = solid_bounds(scene, sg.build(scene, "solid"), statics=True)
+    assert np.linalg.eigvalsh(bounds.reached)[-1] > 0
 
 
 @pytest.mark.parametrize(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -121,6 +121,61 @@ def _vtk(points, kind, cells, groups) -> str:
         mesh = meshio.Mesh(np.round(points, 9) + 0.0, [(kind, cells)], cell_data=data)
         meshio.write(path, mesh, binary=False)
         return path.read_text()
+
+
+def write_boxes(
+    path: Path,
+    lines: Sequence[np.ndarray],
+    patches: Mapping[str, Callable[[np.ndarray], np.ndarray]],
+    hollow: Callable[[np.ndarray], np.ndarray] | None = None,
+    bricks: bool = False,
+) -> None:
+    """Write boxes between lines as a gmsh file, mm, with patches of the surface.
+
+    Parameters
+    ----------
+    lines : sequence of ndarray
+        Along x, y and z, m.
+    patches : dict of str to callable
+        Which of the middles (3, n) of faces of the surface are of a patch.
+    hollow : callable, optional
+        Which of the middles of cells are none.
+    bricks : bool
+        In place of tetrahedra, into which boxes are cut.
+    """
+    import meshio
+    from skfem import MeshHex, MeshTet
+
+    mesh = (MeshHex if bricks else MeshTet).init_tensor(*lines)
+    if hollow is not None:
+        mesh = mesh.remove_elements(np.flatnonzero(hollow(mesh.p[:, mesh.t].mean(axis=1))))
+    if bricks:
+        cells = _in_order(mesh)
+    else:
+        turned = np.linalg.det(np.diff(mesh.p[:, mesh.t], axis=1).transpose(2, 0, 1)) < 0
+        mesh.t[:2, turned] = mesh.t[1::-1, turned]
+        cells = mesh.t.T
+    outside = mesh.boundary_facets()
+    middle = mesh.p[:, mesh.facets[:, outside]].mean(axis=1)
+    blocks, tags = [("hexahedron" if bricks else "tetra", cells)], [np.full(len(cells), 1)]
+    names = {"body": np.array([1, 3])}
+    for tag, (name, on) in enumerate(patches.items(), 2):
+        faces = mesh.facets[:, outside[on(middle)]].T
+        blocks.append(("quad" if bricks else "triangle", faces))
+        tags.append(np.full(len(faces), tag))
+        names[name] = np.array([tag, 2])
+    data = {"gmsh:physical": tags, "gmsh:geometrical": tags}
+    out = meshio.Mesh(1e3 * mesh.p.T, blocks, cell_data=data, field_data=names)
+    meshio.write(path, out, file_format="gmsh22")
+
+
+def _in_order(mesh: Any) -> np.ndarray:
+    """Corners (ne, 8) of boxes in VTK's order, from the place of each in its box."""
+    corners = mesh.p[:, mesh.t]
+    above = corners > corners.mean(axis=1, keepdims=True)
+    places = (above * np.array([1, 2, 4])[:, None, None]).sum(axis=0)
+    order = np.argsort(places, axis=0)[[0, 1, 3, 2, 4, 5, 7, 6]]
+    return np.take_along_axis(mesh.t, order, axis=0).T
 
 
 def rod(

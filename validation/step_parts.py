@@ -44,6 +44,7 @@ def write_step(
     unit: str = "mm",
     turn: np.ndarray | None = None,
     shift: Sequence[float] = (0.0, 0.0, 0.0),
+    splines: bool = False,
 ) -> float:
     """Write a shaft as STEP.
 
@@ -57,6 +58,8 @@ def write_step(
         Rotation from the axes of the shaft to those of the file.
     shift : (float, float, float)
         And then where it is put, m.
+    splines : bool
+        Faces and edges are B-splines, whatever they are.
 
     Returns
     -------
@@ -64,10 +67,10 @@ def write_step(
         Its volume as the kernel has it, m^3.
     """
     parts = tuple(segments), tuple(features), tuple(corners)
-    return isolated(_write, path, *parts, unit, turn, shift, seconds=120)
+    return isolated(_write, path, *parts, unit, turn, shift, splines, seconds=120)
 
 
-def _write(path, segments, features, corners, unit, turn, shift) -> float:
+def _write(path, segments, features, corners, unit, turn, shift, splines) -> float:
     gmsh, scale = import_gmsh(), 1 / UNITS[unit]
     shapes = [Frustum(*(scale * v for v in Frustum.of_segment(s))) for s in segments]
     with Session(gmsh):
@@ -87,6 +90,8 @@ def _write(path, segments, features, corners, unit, turn, shift) -> float:
             axis, angle = axis_angle(np.asarray(turn))
             occ.rotate(solids, 0.0, 0.0, 0.0, *axis, angle)
         occ.translate(solids, *(scale * v for v in shift))
+        if splines:
+            occ.convertToNURBS(solids)
         occ.synchronize()
         volume = occ.getMass(3, solids[0][1]) / scale**3
         gmsh.write(str(path))

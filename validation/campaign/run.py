@@ -21,7 +21,7 @@ from validation.campaign.worker import Worker
 #: options that change nothing of what is found of a body
 ASIDE = {"campaign", "seeds", "jobs", "seconds", "folder", "again"}
 #: and those that choose bodies
-CHOICE = {"words", "no_drawn", "no_random", "scenes", "solid", "parts"}
+CHOICE = {"words", "no_drawn", "no_random", "no_parts", "scenes", "solid", "parts", "sorts"}
 
 
 def stamp() -> str:

@@ -45,6 +45,8 @@ from solidgear.core.errors import SolidgearError
 from solidgear.core.kernel.room import MB
 from solidgear.core.machine.memory import NoRoom, require
 from solidgear.core.meshing.corners import SHOULDER, is_notched
+from solidgear.core.models.solid.mesh import SolidMesh
+from solidgear.core.models.solid.seat_faces import Seats
 from solidgear.core.scene.shaft import without_axis
 from solidgear.core.solve.inertia_relief import ratio
 from solidgear.core.solve.modes import Mode, ModeSet
@@ -132,6 +134,7 @@ def solid_bounds(
     """Compute bounds of the flexibility and of some modes of a 3D body; parameters are those of
     :func:`solidgear.core.bounds.harmonic.harmonic_bounds`.
     """
+    _refuse_cut_seats(scene, body)
     share = share_of_error(scene, body)
     size = 6 * len(body.ports)
     reached = np.zeros((size, size))
@@ -172,6 +175,26 @@ def solid_bounds(
 
     lowest = _lowest(shapes, safety * share * products)
     return SolidBounds(body, share, reached, lowest, by_cells, cells)
+
+
+def _refuse_cut_seats(scene: Scene, body: Body) -> None:
+    """Refuse a mesh from a file in which a rigid seat ends between nodes: those inside hold less of it,
+    so that no function of the mesh moves as the body would.
+    """
+    mesh, hair = body.geometry, 1e-7 * scene.length
+    if "file" not in body.mesh or not isinstance(mesh, SolidMesh):
+        return
+    seats = Seats(mesh, scene.segments, clipped=True)
+    rigid = {port.name for port in body.ports if port.attachment == "rigid"}
+    for station in scene.stations:
+        if station.name not in rigid or getattr(station, "patch", None) is not None:
+            continue
+        y = mesh.mesh.p[1, mesh.mesh.facets[:, seats(station, "rigid")]]
+        if y.min() < station.lo - hair or y.max() > station.hi + hair:
+            raise NoBounds(
+                f"the rigid seat of {station.name!r} ends between nodes of the mesh, which hold less of "
+                "it than it is long: put nodes at its ends, or use attachment 'average'"
+            )
 
 
 def share_of_error(scene: Scene, body: Body) -> float:

@@ -227,7 +227,8 @@ def _between(
     reach = float(np.sqrt(abs(np.prod([two_orders[d] - stiff[d] for d in pair]))))
     far = most / reach * (two_orders[name] - stiff[name]) if reach else 0.0
     far_end = stiff[name] + np.clip(far, -most, most)
-    left = [move(d) - abs(near[d] - stiff[d]) for d in pair]
+    # of a number that the mesh does not move both are rounding
+    left = [max(move(d) - abs(near[d] - stiff[d]), 0.0) for d in pair]
     half = float(np.sqrt(left[0] * left[1])) / 2
     middle = (near[name] + far_end) / 2
     # the number itself stands aside of the middle

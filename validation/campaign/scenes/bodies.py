@@ -18,6 +18,7 @@ MM = 1e-3
 STEEL = Material(E=2.07e11, nu=0.3, density=7850)
 ALUMINIUM = Material(E=7.0e10, nu=0.34, density=2700)
 RUBBERY = Material(E=2.0e9, nu=0.49, density=1400)
+RUBBER = Material(E=2.0e7, nu=0.4999, density=1100)
 
 #: walls of the rings in which a shaft meets a sleeve, mm
 RINGS = (2.0, 1.0, 0.5, 0.2, 0.05, 0.02)
@@ -224,6 +225,23 @@ def _incompressible() -> Scene:
     return _scene(pieces, _point(85, 10), *_ends(200, 1e7), material=RUBBERY)
 
 
+@_drawn(
+    "rubber shoulder of Poisson's ratio 0.4999", "shear gives way five thousand times as easily"
+)
+def _rubber_shoulder() -> Scene:
+    pieces = [_piece(40, 40), _piece(30, 60)]
+    held = _seat(8, 8, 1e6, kthy=20), _seat(60, 10, 1e6)
+    return _scene(pieces, _point(25, 10), *held, material=RUBBER)
+
+
+@_drawn(
+    "rubber bush between steel rings", "a soft joint that hardly changes its volume, glued to both"
+)
+def _bush() -> Scene:
+    pieces = [_piece(30, 40), _piece(6, 40, material=RUBBER), _piece(30, 40)]
+    return _scene(pieces, _point(8, 10), *_ends(66, 1e7, 8))
+
+
 @_drawn("aluminium sleeve on steel", "the material changes at corners of its own exponent")
 def _sleeve() -> Scene:
     pieces = [_piece(80, 40), _piece(50, 90, material=ALUMINIUM), _piece(80, 40)]
@@ -304,6 +322,12 @@ for _wall in (0.05, 0.02):
             [_piece(300, 100, bore=100 * (1 - wall))], _point(150, 20), *_ends(300, 3e8, 20)
         )
     )
+
+
+@_drawn("short tube, wall 0.005 radii", "walls of a quarter millimetre, cells of it slender")
+def _foil() -> Scene:
+    held = _seat(3, 4, 1e7, kthy=2e4), _seat(27, 4, 1e7)
+    return _scene([_piece(30, 100, bore=99.5)], _point(15, 4), *held)
 
 
 @_drawn("section beside a rigid seat on a thin tube", "two edge effects 2 mm apart")

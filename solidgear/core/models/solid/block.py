@@ -135,7 +135,7 @@ def free_block(
     reflections: tuple[Reflection, ...] = (),
 ) -> Block:
     """Build the free block of a mesh, of all six components, with its ports; refuse a seat without
-    faces.
+    faces, and a rigid one without nodes.
 
     `facets_of` is that of :func:`seat_facets`, say; `clipped`: facets may reach beyond the ends of
     their seat, where integrals stop; `materials` are those that the elements name, by default those of
@@ -160,6 +160,11 @@ def free_block(
             if span is not None:
                 y, hair = mesh.nodes[1], 1e-7 * scene.length
                 mask[(y < span[0] - hair) | (y > span[1] + hair)] = False
+            if not mask.any():
+                raise SolidgearError(
+                    f"port {station.name!r}: no node lies between the ends of its rigid seat: use a "
+                    "finer mesh there, or attachment 'average'"
+                )
             ports.append(Attached(place, held=mask.ravel()))
         else:
             ports.append(Attached(place, _mean(mesh, facets, place, n, within=span)))
