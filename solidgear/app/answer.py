@@ -110,7 +110,8 @@ def answer_sheet(
         cells = {"model", "points", "cells", "shares"}
         data["where"] = places.model_dump(exclude=cells)
         total, time = percent(places.total, signed=False), seconds(places.seconds)
-        sentence = f"{places.sentence} (a bound by local problems, {total}; {time} s)."
+        by = "by local problems" if places.cells else "in one order more"
+        sentence = f"{places.sentence} (a bound {by}, {total}; {time} s)."
         closing += [_where_table(places, units), sentence]
         if picture is not None:
             closing.append(f"Picture: {picture}")
@@ -181,18 +182,13 @@ def _places(scene: Scene, answered: Answered) -> WhereRecord:
     Raises
     ------
     SolidgearError
-        For the answer of another model than the harmonic solid, or where nothing was answered.
+        Where nothing was answered, or the answer has no error bar by cells.
     """
-    if answered.rung != "harmonic":
-        raise SolidgearError(
-            "only the harmonic solid shows it, and this answer is by the "
-            f"{LADDER[answered.rung].title}"
-        )
     if not answered.values:
         raise SolidgearError("nothing that was asked for exists in this scene")
     widest = max(answered.values, key=lambda value: value.bar)
     solved = [step for step in _solved(answered) if not step.only or widest.quantity in step.only]
-    places = error_places(scene, widest.quantity, solved[-1].options)
+    places = error_places(scene, widest.quantity, solved[-1].options, answered.rung)
     return places.model_copy(update={"total": widest.bar})
 
 
