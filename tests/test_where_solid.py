@@ -213,7 +213,9 @@ def test_a_corrected_solid_has_its_error_at_the_cut_that_corrects_it():
 
 
 def test_teeth_of_a_sector_are_named():
-    found = places(sg.load(GEOMETRY / "pinion_toothed.toml"), "C_zz", {"refinement": 0.25}, "sector")
+    found = places(
+        sg.load(GEOMETRY / "pinion_toothed.toml"), "C_zz", {"refinement": 0.25}, "sector"
+    )
     assert whole(found) and found.rows[0].what in ("teeth teeth", "shoulder")
     assert shares(found)["teeth teeth"] > 0.2
 

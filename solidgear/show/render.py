@@ -1,4 +1,4 @@
-"""Pictures of mode shapes, drawn in a child process.
+"""Pictures of mode shapes and of shares of an error bar, drawn in a child process.
 
 Without the system's OpenGL libraries VTK does not raise, it takes the process down with a
 segmentation fault. So a child draws, the caller reads how it ended, and a failed picture never costs
@@ -48,6 +48,9 @@ class RenderJob:
     #: factors on the displacement and what is written over each, side by side
     frames: Sequence[tuple[float, str]] = STILL
     along: bool = True  #: one shaft along y, seen across its motion; else a train, seen from above
+    #: (m,) of its faces, in the colours of which it is drawn at rest, and what they are
+    shades: np.ndarray | None = None
+    shade: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,8 +152,12 @@ class Drawing:
             for i, job in enumerate(self.jobs)
             for name in ARRAYS
         }
-        np.savez(self._room / "surfaces.npz", **arrays)
-        jobs = [{"title": j.title, "frames": list(j.frames), "along": j.along} for j in self.jobs]
+        shaded = {f"{i}.shades": j.shades for i, j in enumerate(self.jobs) if j.shades is not None}
+        np.savez(self._room / "surfaces.npz", **arrays, **shaded)
+        jobs = [
+            {"title": j.title, "frames": list(j.frames), "along": j.along, "shade": j.shade}
+            for j in self.jobs
+        ]
         (self._room / "jobs.json").write_text(json.dumps(jobs), encoding="utf-8")
 
     def _start(self) -> str:
