@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from PIL import Image
 from skfem import MeshHex
 
 import solidgear as sg
@@ -13,6 +14,8 @@ from solidgear.core.judge.where import error_places, least_certain, recorded_pla
 from solidgear.core.meshing.corners import concave_edges
 from solidgear.core.quantity import Quantity
 from solidgear.cuts.features import CrossHole, Keyway
+from solidgear.show.render import render_modes
+from solidgear.show.where_surface import draw_surface, where_surface
 from tests.test_body_patches import HEAD
 from tests.test_body_patches import scene as body_file
 from tests.test_body_patches import write as write_mesh
@@ -223,3 +226,49 @@ def test_teeth_of_a_sector_are_named():
 def test_a_model_without_computed_bars_says_so():
     with pytest.raises(SolidgearError, match="the Timoshenko beam has no error bar by cells"):
         places(shaft(), "C_zz", {}, "timoshenko")
+
+
+def test_the_surface_is_drawn_in_the_colours_of_its_cells(tmp_path):
+    body = sg.build(shaft(), "solid", **HEX)
+    mesh = body.geometry.solved
+    # the only cells with a share are those at the far end
+    middle = mesh.mesh.p[:, mesh.mesh.t].mean(axis=1)
+    by_cells = np.where(middle[1] > 0.12, 1.0, 0.0)
+    job = where_surface(body, by_cells, "C_zz", tmp_path / "error.png")
+    surface = job.surface
+    y = surface.points[surface.faces].mean(axis=1)[:, 1]
+    assert len(job.shades) == len(surface.faces) and set(job.shades.tolist()) == {0.0, 1.0}
+    assert y[job.shades > 0].min() > 0.11 and y[job.shades == 0].max() < 0.13
+    (result,) = render_modes([job])
+    if "OpenGL" in result.reason:
+        pytest.skip(result.reason)
+    assert result.ok and job.path.stat().st_size < 100_000
+    with Image.open(job.path) as kept:
+        red, green, _ = np.asarray(kept.convert("RGB")).astype(int).transpose(2, 0, 1)
+    dark = (red > 2 * green + 40)[90:390]  # of the surface, not of its colour bar
+    columns = np.flatnonzero(dark.sum(axis=0) > 20)  # letters have less
+    # the end of a shaft that fills the picture: what has a share lies at the right of it
+    assert dark.sum() > 2000 and columns.min() > 0.75 * dark.shape[1]
+
+
+def test_halves_and_sectors_are_drawn_whole(tmp_path):
+    half = sg.build(shaft(0.046, (keyway(0.012),)), "solid", **TET)
+    sector = sg.build(sg.load(GEOMETRY / "pinion_toothed.toml"), "sector", refinement=0.25)
+    for body, copies in ((half, 2), (sector, 28)):
+        mesh = body.geometry.solved
+        job = where_surface(body, np.arange(mesh.mesh.t.shape[1]) + 1.0, "C_zz", tmp_path / "a.png")
+        owners = mesh.outline.owners
+        assert len(job.shades) == copies * len(owners)
+        assert np.array_equal(job.shades[: len(owners)], job.shades[-len(owners) :])
+        # a face lies in the cell that it has the colour of
+        corners = mesh.mesh.p[:, mesh.mesh.t[:, owners]]
+        at = mesh.outline.points[mesh.outline.triangles].mean(axis=1).T
+        near = 0.2 * np.ptp(corners, axis=1).max(axis=0)
+        assert np.all(at > corners.min(axis=1) - near) and np.all(at < corners.max(axis=1) + near)
+
+
+def test_a_picture_that_cannot_be_drawn_costs_no_number(tmp_path):
+    body = sg.build(shaft(), "solid", **HEX)
+    shares_of_cells = np.ones(body.geometry.solved.mesh.t.shape[1])
+    reason = draw_surface(body, shares_of_cells, "C_zz", tmp_path / "error.svg")
+    assert reason == "the surface of a 3D solid is drawn as .png, not as .svg"

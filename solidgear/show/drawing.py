@@ -27,7 +27,7 @@ ARRAYS = ("points", "displacement", "faces", "triangles", "lines")
 #: rad; by which a viewer stands from the middle of a shaft towards its start
 TURN = np.deg2rad(22)
 #: size of a shaded surface
-SHADED = (960, 560)
+SHADED = (840, 490)
 #: shades of faces are logarithmic, and those below this share of the largest of one colour
 FAINT = 1e-3
 

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from solidgear.core import Body
-from solidgear.show.render import RenderJob
+from solidgear.show.plot import check_ending
+from solidgear.show.render import RenderJob, render_modes
 
 
 def where_surface(body: Body, by_cells: np.ndarray, title: str, path: Path) -> RenderJob:
@@ -24,3 +25,13 @@ def where_surface(body: Body, by_cells: np.ndarray, title: str, path: Path) -> R
     count = len(surface.faces) + len(surface.triangles)
     shades = by_cells[np.tile(owners, count // len(owners))]
     return RenderJob(surface, title, path, shades=shades, shade="share of the cell / largest")
+
+
+def draw_surface(body: Body, by_cells: np.ndarray, title: str, path: Path) -> str:
+    """Draw the picture of shares (ne,) of the cells of a 3D solid as ``.png``; return why it could not
+    be drawn, or an empty text.
+    """
+    if check_ending(path) != ".png":
+        return f"the surface of a 3D solid is drawn as .png, not as {path.suffix}"
+    (result,) = render_modes([where_surface(body, by_cells, title, path)])
+    return result.reason

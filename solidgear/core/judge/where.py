@@ -9,11 +9,13 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from solidgear.core.body import Body, Supports, as_supports
+from solidgear.core.elements import ELEMENTS
 from solidgear.core.errors import SolidgearError
 from solidgear.core.judge.bars import LEAST, ErrorBar
 from solidgear.core.judge.bounded import NOTHING_BEYOND, bounded, has_bounds
@@ -39,10 +41,28 @@ if TYPE_CHECKING:
 ROUNDING = 1e-9
 
 
-@pinned
+@dataclass(frozen=True, eq=False)
+class Located:
+    """The places of the error of a number, and the cells that they are summed over."""
+
+    record: WhereRecord
+    body: Body
+    by_cells: np.ndarray  #: (ne,) shares of the error bar, in sum one
+
+
 def error_places(
     scene: Scene, quantity: Quantity, options: Mapping[str, Any], model: str = "harmonic"
 ) -> WhereRecord:
+    """Return the places of the error of a number; parameters and errors are those of
+    :func:`located`.
+    """
+    return located(scene, quantity, options, model).record
+
+
+@pinned
+def located(
+    scene: Scene, quantity: Quantity, options: Mapping[str, Any], model: str = "harmonic"
+) -> Located:
     """Locate the error of a number of a solid that was answered on a mesh of some options: a
     compliance, a stiffness or a frequency, also of a further point or between two. SolidgearError
     for a number whose error bar is no more than rounding, and for a model whose error bars are not
@@ -56,7 +76,8 @@ def error_places(
         error_bar, shares = _shares(scene, body, supports, quantity)
         # a body with several attachments answers with the first
         cells = CellPlaces.of_body(scene, body, (options.get("attachments") or ())[:1] or None)
-        return _record(body, cells, quantity, error_bar.width, shares, start)
+        record = _record(body, cells, quantity, error_bar.width, shares, start)
+        return Located(record, body, shares)
 
 
 def recorded_places(scene: Scene, solution: Solution) -> WhereRecord | None:
@@ -145,7 +166,7 @@ def _record(
     record = WhereRecord(
         model=body.fidelity,
         quantity=quantity,
-        order=int(body.mesh.get("order") or 0),
+        order=_order(body, cells),
         total=total,
         sentence=_sentence(quantity, cells, shares),
         rows=[_row(cells, share) for share in shares],
@@ -155,6 +176,14 @@ def _record(
         record.points = cells.points[:2].tolist()
         record.cells, record.shares = cells.cells.tolist(), by_cells.tolist()
     return record
+
+
+def _order(body: Body, cells: CellPlaces) -> int:
+    """Return the order of the elements of a body."""
+    if cells.flat:
+        return int(body.mesh["order"])
+    geometry: Any = body.geometry
+    return ELEMENTS[geometry.solved.name].order
 
 
 def _row(cells: CellPlaces, share: Share) -> PlaceRecord:
