@@ -13,7 +13,7 @@ from solidgear.core import LADDER, OpenNumbers, Scene, SolidgearError, WhereReco
 from solidgear.core.judge.answer import Answered, Step
 from solidgear.core.judge.answer import answer as solve
 from solidgear.core.judge.steps import ABOVE, BELOW
-from solidgear.core.judge.where import Located, located
+from solidgear.core.judge.where import ErrorMap, map_error
 from solidgear.core.models.kinds import PARTS
 from solidgear.core.plain import plain
 from solidgear.show.command import Progress, caution, command
@@ -79,13 +79,13 @@ def answer(
         if where or picture is not None:
             progress("where the error comes from")
             try:
-                found, bar = _located(loaded, answered)
+                error_map, bar = _mapped(loaded, answered)
             except SolidgearError as error:
                 places = str(error)
             else:
-                places = found.record.model_copy(update={"total": bar})
+                places = error_map.record.model_copy(update={"total": bar})
                 if picture is not None:
-                    drawn = _drawn(found, picture)
+                    drawn = _drawn(error_map, picture)
         sheet = answer_sheet(loaded, answered, open_, places, drawn, units)
         # the usual question is of what there is; one that names a number wants that number
         wanted = bool(ask or loaded.ask.quantities)
@@ -177,7 +177,7 @@ def _of_round_part(scene: Scene, answered: Answered) -> list[str]:
     ]
 
 
-def _located(scene: Scene, answered: Answered) -> tuple[Located, float]:
+def _mapped(scene: Scene, answered: Answered) -> tuple[ErrorMap, float]:
     """Return places of the error of the number with the widest bar, on the finest mesh it was
     solved on, and that bar.
 
@@ -190,19 +190,19 @@ def _located(scene: Scene, answered: Answered) -> tuple[Located, float]:
         raise SolidgearError("nothing that was asked for exists in this scene")
     widest = max(answered.values, key=lambda value: value.bar)
     solved = [step for step in _solved(answered) if not step.only or widest.quantity in step.only]
-    return located(scene, widest.quantity, solved[-1].options, answered.rung), widest.bar
+    return map_error(scene, widest.quantity, solved[-1].options, answered.rung), widest.bar
 
 
-def _drawn(found: Located, picture: Path) -> str:
+def _drawn(error_map: ErrorMap, picture: Path) -> str:
     """Draw the cells of a meridian, or of the surface of a 3D solid, and return where they are, or
     why they could not be drawn.
     """
-    places = found.record
+    places = error_map.record
     title = f"Error bar of {places.quantity} by cells, order {places.order}"
     if places.cells:
         draw_where(picture, places, title)
         return f"Picture: {picture}"
-    reason = draw_surface(found.body, found.by_cells, title, picture)
+    reason = draw_surface(error_map.body, error_map.by_cells, title, picture)
     return f"No picture: {reason}." if reason else f"Picture: {picture}"
 
 

@@ -16,7 +16,7 @@ import tempfile
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -147,13 +147,15 @@ class Drawing:
 
     def _hand_over(self) -> None:
         """Write the jobs as files for the child."""
-        arrays = {
+        arrays: dict[str, Any] = {
             f"{i}.{name}": getattr(job.surface, name)
             for i, job in enumerate(self.jobs)
             for name in ARRAYS
         }
-        shaded = {f"{i}.shades": j.shades for i, j in enumerate(self.jobs) if j.shades is not None}
-        np.savez(self._room / "surfaces.npz", **arrays, **shaded)
+        for i, job in enumerate(self.jobs):
+            if job.shades is not None:
+                arrays[f"{i}.shades"] = job.shades
+        np.savez(self._room / "surfaces.npz", **arrays)
         jobs = [
             {"title": j.title, "frames": list(j.frames), "along": j.along, "shade": j.shade}
             for j in self.jobs

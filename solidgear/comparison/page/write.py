@@ -131,9 +131,8 @@ def _error_jobs(record: Record, shapes: dict[str, Solution], folder: Path) -> li
 
 def _note_error(record: Record, results: Iterable[RenderResult]) -> None:
     """Record the picture of an error bar, or why there is none."""
-    assert record.where_solid is not None or not results
     for result in results:
-        if result.ok:
+        if result.ok and record.where_solid is not None:
             record.where_solid.picture = result.path.name
         else:
             _leave_out(record, f"picture of the error bar left out: {result.reason}")

@@ -96,13 +96,13 @@ def _off_outline(outline: Outline, mesh: SolidMesh) -> np.ndarray:
     """Return the nodes (b, k) of the facets of a mesh that lie on no surface of an outline, and in
     no mirror plane through the axis.
     """
-    on = np.array([*_on_surfaces(outline, mesh.nodes), *_in_mirrors(outline, mesh.nodes)])
+    on_surface = np.array([*_on_surfaces(outline, mesh.nodes), *_in_mirrors(outline, mesh.nodes)])
     out = []
     for place, elements in mesh.local_facets(mesh.boundary):
         points, _, _ = mesh.on_facet(place, np.array([[0.2, 0.5, 0.1], [0.3, 0.1, 0.6]]))
         alive = np.abs(reference(mesh.element, points)[0]).max(axis=1) > 1e-9
         nodes = mesh.dofs[alive][:, elements]
-        out.append(nodes[:, ~on[:, nodes].all(axis=1).any(axis=0)])
+        out.append(nodes[:, ~on_surface[:, nodes].all(axis=1).any(axis=0)])
     return np.concatenate(out, axis=1)
 
 
@@ -113,11 +113,11 @@ def _on_surfaces(outline: Outline, nodes: np.ndarray) -> Iterator[np.ndarray]:
     for piece in outline.pieces:
         inside = (y > piece.y0 - near) & (y < piece.y1 + near)
         if piece.corner is None:
-            on = np.abs(r - np.interp(y, [piece.y0, piece.y1], [piece.r0, piece.r1])) < near
+            near_by = np.abs(r - np.interp(y, [piece.y0, piece.y1], [piece.r0, piece.r1])) < near
         else:  # an arc lies between its ends
             low, high = sorted((piece.r0, piece.r1))
-            on = (r > low - near) & (r < high + near)
-        yield inside & on
+            near_by = (r > low - near) & (r < high + near)
+        yield inside & near_by
     for place in {y for s in outline.segments for y in (s.y0, s.y1)}:
         yield np.abs(y - place) < near
 
@@ -139,9 +139,8 @@ def _edges(mesh: SolidMesh, known: tuple[Place, ...]) -> Iterator[Spots]:
     edges = concave_edges(mesh.mesh)
     size = float(np.ptp(points, axis=1).max())
     for place in known:
-        edges = edges[
-            :, (place.distance(points[:, edges.ravel()]) > NEAR * size).reshape(2, -1).any(0)
-        ]
+        away = place.distance(points[:, edges.ravel()]).reshape(2, -1)
+        edges = edges[:, (away > SAME * size).any(axis=0)]
     vertices, numbers = np.unique(edges, return_inverse=True)
     start, end = numbers.reshape(2, -1)
     graph = coo_matrix((np.ones(len(start)), (start, end)), shape=2 * (len(vertices),))
@@ -177,5 +176,5 @@ def _carrying(body: Body, index: int) -> np.ndarray:
     weights = abs(block.ports[6 * index : 6 * index + 6]).sum(axis=0)
     moved = np.asarray(weights).ravel() > 0
     if block.expand is not None:
-        moved = abs(block.expand) @ moved.astype(float) > 0
-    return moved.reshape(-1, 3).any(axis=1)
+        moved = np.asarray(abs(block.expand) @ moved.astype(float)) > 0
+    return np.any(moved.reshape(-1, 3), axis=1)

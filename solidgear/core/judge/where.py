@@ -42,7 +42,7 @@ ROUNDING = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class Located:
+class ErrorMap:
     """The places of the error of a number, and the cells that they are summed over."""
 
     record: WhereRecord
@@ -54,15 +54,15 @@ def error_places(
     scene: Scene, quantity: Quantity, options: Mapping[str, Any], model: str = "harmonic"
 ) -> WhereRecord:
     """Return the places of the error of a number; parameters and errors are those of
-    :func:`located`.
+    :func:`map_error`.
     """
-    return located(scene, quantity, options, model).record
+    return map_error(scene, quantity, options, model).record
 
 
 @pinned
-def located(
+def map_error(
     scene: Scene, quantity: Quantity, options: Mapping[str, Any], model: str = "harmonic"
-) -> Located:
+) -> ErrorMap:
     """Locate the error of a number of a solid that was answered on a mesh of some options: a
     compliance, a stiffness or a frequency, also of a further point or between two. SolidgearError
     for a number whose error bar is no more than rounding, and for a model whose error bars are not
@@ -77,7 +77,7 @@ def located(
         # a body with several attachments answers with the first
         cells = CellPlaces.of_body(scene, body, (options.get("attachments") or ())[:1] or None)
         record = _record(body, cells, quantity, error_bar.width, shares, start)
-        return Located(record, body, shares)
+        return ErrorMap(record, body, shares)
 
 
 def recorded_places(scene: Scene, solution: Solution) -> WhereRecord | None:
