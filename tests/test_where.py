@@ -15,8 +15,8 @@ from solidgear.core.judge.record import PlaceRecord, WhereRecord
 from solidgear.core.judge.singular_places import singular_places
 from solidgear.core.judge.study import study
 from solidgear.core.judge.ties import SCENE
-from solidgear.core.judge.where import recorded_places
 from solidgear.core.judge.where import error_places as places_of
+from solidgear.core.judge.where import recorded_places
 from solidgear.core.quantity import Quantity
 from solidgear.show.where_chart import draw_where
 from tests.command import command

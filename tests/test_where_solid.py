@@ -1,13 +1,17 @@
 """Where the error of a 3D solid sits: beside the harmonic solid, and beside meshes made finer there."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from PIL import Image
 from skfem import MeshHex
 
 import solidgear as sg
+from solidgear.core.bounds.solid import solid_bounds
 from solidgear.core.errors import SolidgearError
-from solidgear.core.judge.cell_places import CellPlaces, place_of_most
+from solidgear.core.judge.cell_places import ELSEWHERE, CellPlaces, place_of_most
+from solidgear.core.judge.singular_places import Place
 from solidgear.core.judge.study import study
 from solidgear.core.judge.ties import SCENE
 from solidgear.core.judge.where import error_places, least_certain, recorded_places
@@ -102,6 +106,40 @@ def test_a_shaft_has_its_error_where_the_harmonic_solid_has_it(options):
 def test_a_shoulder_that_is_higher_has_more_of_the_error():
     low, high = (shares(places(shaft(step), "C_thx", TET)) for step in (0.047, 0.03))
     assert high["shoulder"] > 2 * low["shoulder"]
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.7])
+def test_a_cell_belongs_to_the_sharpest_place_it_touches_or_to_the_nearest_in_reach(turn):
+    mesh = MeshHex.init_tensor(np.array([1.0, 2.0]), np.arange(6.0), np.array([0.0, 1.0]))
+    x, y, z = mesh.p
+    c, s = np.cos(turn), np.sin(turn)
+    points = np.array([c * x - s * z, y, s * x + c * z])
+    sharp = Place("shoulder", 1.0, 1.0, reach=0.5, exponent=0.5)
+    blunt = Place("seat end", 2.0, 1.0, reach=1.7, exponent=1.0)
+    cells = CellPlaces((blunt, sharp), points, mesh.t, flat=False, axis=True)
+    along = np.argsort(points[1, mesh.t].mean(axis=0))
+    # one touches both, the fourth is 1.6 away from the seat, the last one 2.6
+    assert cells.owners[:, along].tolist() == [[0, 0, 1, 1, 0], [1, 1, 0, 0, 0]]
+    by_cells = np.zeros(5)
+    by_cells[along] = 0.1, 0.2, 0.3, 0.15, 0.25
+    listed = {share.what: share.share for share in cells.shares(by_cells)}
+    assert listed == pytest.approx({"seat end": 0.45, "shoulder": 0.3, ELSEWHERE: 0.25})
+    # two that are alike have a half each
+    twin = CellPlaces((sharp, replace(blunt, exponent=0.5)), points, mesh.t, flat=False, axis=True)
+    assert twin.owners[:, along[1]].tolist() == [0.5, 0.5]
+
+
+def test_energies_of_cells_are_all_of_the_energy():
+    scene = shaft()
+    body = sg.build(scene, "solid", **TET)
+    bounds = solid_bounds(scene, body, statics=True)
+    forces = np.random.default_rng(4).normal(size=len(bounds.reached)) * np.tile(
+        [1, 1, 1, 9, 9, 9], 3
+    )
+    by_cells = bounds.energy_by_cells(forces)
+    assert len(by_cells) == body.geometry.solved.mesh.t.shape[1] and by_cells.min() >= 0
+    # a little more, where the work of a function in one cell is below zero
+    assert by_cells.sum() == pytest.approx(forces @ bounds.reached @ forces, rel=0.02)
 
 
 def keyway(depth):
