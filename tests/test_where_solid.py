@@ -93,7 +93,7 @@ def test_layers_at_a_shoulder_take_away_its_part_of_the_bar_and_no_other():
     assert fine.total - after == pytest.approx(coarse.total - before, rel=0.1)
 
 
-@pytest.mark.parametrize("options", [HEX, TET])
+@pytest.mark.parametrize("options", [pytest.param(HEX, marks=pytest.mark.long), TET])
 def test_a_shaft_has_its_error_where_the_harmonic_solid_has_it(options):
     found, flat = (
         shares(places(shaft(), "bending 1", how, model))
@@ -103,6 +103,7 @@ def test_a_shaft_has_its_error_where_the_harmonic_solid_has_it(options):
     assert max(found, key=found.get) == max(flat, key=flat.get) == "shoulder"
 
 
+@pytest.mark.long
 def test_a_shoulder_that_is_higher_has_more_of_the_error():
     low, high = (shares(places(shaft(step), "C_thx", TET)) for step in (0.047, 0.03))
     assert high["shoulder"] > 2 * low["shoulder"]
