@@ -14,7 +14,7 @@ from solidgear.core.judge.cell_places import ELSEWHERE, CellPlaces, place_of_mos
 from solidgear.core.judge.singular_places import Place
 from solidgear.core.judge.study import study
 from solidgear.core.judge.ties import SCENE
-from solidgear.core.judge.where import error_places, least_certain, recorded_places
+from solidgear.core.judge.where import error_places, least_certain, map_error, recorded_places
 from solidgear.core.meshing.corners import concave_edges
 from solidgear.core.quantity import Quantity
 from solidgear.cuts.features import CrossHole, Keyway
@@ -248,10 +248,12 @@ def test_a_study_keeps_where_its_widest_bar_sits():
 
 
 @pytest.mark.long
-def test_a_corrected_solid_has_its_error_at_the_cut_that_corrects_it():
+def test_a_corrected_solid_has_its_error_at_the_cut_that_corrects_it(tmp_path):
     scene = shaft(0.046, (keyway(0.012),))
-    found = places(scene, "torsion 1", {"refinement": 0.3}, "corrected")
-    assert whole(found) and found.rows[0].what == "keyway key"
+    error_map = map_error(scene, Quantity("torsion 1"), {"refinement": 0.3}, "corrected")
+    assert whole(error_map.record) and error_map.record.rows[0].what == "keyway key"
+    job = where_surface(error_map.body, error_map.by_cells, "", tmp_path / "error.png")
+    assert len(job.shades) == len(job.surface.triangles) and job.shades.max() > 0
 
 
 def test_teeth_of_a_sector_are_named():
