@@ -124,6 +124,27 @@ def test_page_says_where_the_error_sits(page):
     assert "1: shoulder, y = 186 mm, 97 %" in page  # beside the picture
 
 
+def test_page_shows_the_surface_that_the_error_of_a_3d_solid_sits_on(tmp_path, no_charts):
+    picture = tmp_path / "error_solid.png"
+    picture.write_bytes(b"\x89PNG made up")
+    where = {
+        "model": "solid",
+        "quantity": "C_thx",
+        "total": 4e-3,
+        "sentence": "71 % of the error bar of C_thx arises at the shoulder at y = 60 mm",
+        "picture": "../elsewhere/error_solid.png",  # inside the folder only
+    }
+    page = render_page(fixture_results() | {"where_solid": where}, tmp_path)
+    assert page.count(data_uri("solid", picture)) == 1
+    (words,) = re.findall(r'alt="(Surface of the 3D solid: [^"]*)"', page)
+    assert "of the error bar of C_thx" in words and "at the shoulder at y = 60 mm" in words
+    told = f"{where['sentence']} (a bound in one order more, 0.40 %, on the mesh of the 3D solid)."
+    assert f"<p>{told}</p>" in page
+    # without the file, or without a 3D solid
+    assert "Surface of" not in render_page(fixture_results() | {"where_solid": where})
+    assert told not in render_page(fixture_results(), tmp_path)
+
+
 def test_every_matrix_names_its_units(page, si_page):
     for text, turn, soft in ((page, "N m/rad", "µrad/(kN m)"), (si_page, "N m/rad", "rad/(N m)")):
         matrices = re.findall(r'<table class="matrix">.*?</table>', text, re.S)

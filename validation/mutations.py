@@ -258,6 +258,23 @@ MUTATIONS = (
         "tests/test_settle.py::test_bars_of_a_body_hold_its_own_couplings",
     ),
     Mutation(
+        "a cell belongs to the place nearest to its middle, whatever it touches",
+        "solidgear/core/judge/cell_places.py",
+        "CellPlaces.owners",
+        "np.where(touched.any(axis=0), sharpest, nearest)",
+        "nearest",
+        "tests/test_where_solid.py"
+        "::test_a_cell_belongs_to_the_sharpest_place_it_touches_or_to_the_nearest_in_reach",
+    ),
+    Mutation(
+        "a function gives all of its energy to each of its cells",
+        "solidgear/core/bounds/solid.py",
+        "_by_cells",
+        "np.bincount(more.functions, work, minlength=len(count)) / np.maximum(count, 1)",
+        "np.bincount(more.functions, work, minlength=len(count))",
+        "tests/test_where_solid.py::test_energies_of_cells_are_all_of_the_energy",
+    ),
+    Mutation(
         "error bars know nothing of a mesh that is not the body",
         "solidgear/core/judge/bounded.py",
         "_wider",

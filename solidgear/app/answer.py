@@ -13,7 +13,7 @@ from solidgear.core import LADDER, OpenNumbers, Scene, SolidgearError, WhereReco
 from solidgear.core.judge.answer import Answered, Step
 from solidgear.core.judge.answer import answer as solve
 from solidgear.core.judge.steps import ABOVE, BELOW
-from solidgear.core.judge.where import error_places
+from solidgear.core.judge.where import ErrorMap, map_error
 from solidgear.core.models.kinds import PARTS
 from solidgear.core.plain import plain
 from solidgear.show.command import Progress, caution, command
@@ -27,6 +27,7 @@ from solidgear.show.sheet import Sheet, Terminal, present
 from solidgear.show.table import Column, Table, text
 from solidgear.show.units import Units, units_named
 from solidgear.show.where_chart import draw_where, worth_naming
+from solidgear.show.where_surface import draw_surface
 from solidgear.show.words import bar_of, count, percent, seconds
 
 
@@ -74,17 +75,18 @@ def answer(
         progress("what the data leave open")
         open_ = open_ranges(loaded)
         places: WhereRecord | str = ""
+        drawn = ""
         if where or picture is not None:
             progress("where the error comes from")
             try:
-                places = _places(loaded, answered)
+                error_map, bar = _mapped(loaded, answered)
             except SolidgearError as error:
                 places = str(error)
             else:
+                places = error_map.record.model_copy(update={"total": bar})
                 if picture is not None:
-                    title = f"Error bar of {places.quantity} by cells, order {places.order}"
-                    draw_where(picture, places, title)
-        sheet = answer_sheet(loaded, answered, open_, places, picture, units)
+                    drawn = _drawn(error_map, picture)
+        sheet = answer_sheet(loaded, answered, open_, places, drawn, units)
         # the usual question is of what there is; one that names a number wants that number
         wanted = bool(ask or loaded.ask.quantities)
         return replace(sheet, reached=answered.reached and not (answered.missing and wanted))
@@ -97,11 +99,11 @@ def answer_sheet(
     answered: Answered,
     open_: OpenNumbers,
     places: WhereRecord | str,
-    picture: Path | None,
+    drawn: str,
     units: Units,
 ) -> Sheet:
     """Return the sheet of an answer, with the places of its error, or the reason why they are not
-    known; empty where nobody asked.
+    known, and a sentence on their picture; both empty where nobody asked.
     """
     data = answered.as_dict() | {"open": plain(open_)}
     closing: list[str | Table] = [*sentences(answered), *_of_round_part(scene, answered)]
@@ -110,10 +112,11 @@ def answer_sheet(
         cells = {"model", "points", "cells", "shares"}
         data["where"] = places.model_dump(exclude=cells)
         total, time = percent(places.total, signed=False), seconds(places.seconds)
-        sentence = f"{places.sentence} (a bound by local problems, {total}; {time} s)."
+        by = "by local problems" if places.cells else "in one order more"
+        sentence = f"{places.sentence} (a bound {by}, {total}; {time} s)."
         closing += [_where_table(places, units), sentence]
-        if picture is not None:
-            closing.append(f"Picture: {picture}")
+        if drawn:
+            closing.append(drawn)
     elif places:
         data["where"] = {"error": places}
         closing.append(f"Where the error comes from is not known: {places}.")
@@ -174,26 +177,33 @@ def _of_round_part(scene: Scene, answered: Answered) -> list[str]:
     ]
 
 
-def _places(scene: Scene, answered: Answered) -> WhereRecord:
+def _mapped(scene: Scene, answered: Answered) -> tuple[ErrorMap, float]:
     """Return places of the error of the number with the widest bar, on the finest mesh it was
-    solved on.
+    solved on, and that bar.
 
     Raises
     ------
     SolidgearError
-        For the answer of another model than the harmonic solid, or where nothing was answered.
+        Where nothing was answered, or the answer has no error bar by cells.
     """
-    if answered.rung != "harmonic":
-        raise SolidgearError(
-            "only the harmonic solid shows it, and this answer is by the "
-            f"{LADDER[answered.rung].title}"
-        )
     if not answered.values:
         raise SolidgearError("nothing that was asked for exists in this scene")
     widest = max(answered.values, key=lambda value: value.bar)
     solved = [step for step in _solved(answered) if not step.only or widest.quantity in step.only]
-    places = error_places(scene, widest.quantity, solved[-1].options)
-    return places.model_copy(update={"total": widest.bar})
+    return map_error(scene, widest.quantity, solved[-1].options, answered.rung), widest.bar
+
+
+def _drawn(error_map: ErrorMap, picture: Path) -> str:
+    """Draw the cells of a meridian, or of the surface of a 3D solid, and return where they are, or
+    why they could not be drawn.
+    """
+    places = error_map.record
+    title = f"Error bar of {places.quantity} by cells, order {places.order}"
+    if places.cells:
+        draw_where(picture, places, title)
+        return f"Picture: {picture}"
+    reason = draw_surface(error_map.body, error_map.by_cells, title, picture)
+    return f"No picture: {reason}." if reason else f"Picture: {picture}"
 
 
 def _where_table(places: WhereRecord, units: Units) -> Table:

@@ -29,7 +29,6 @@ from solidgear.core.judge.causes import SHOWN, attachment_causes, beam_causes, s
 from solidgear.core.judge.lumped import synthesise_all
 from solidgear.core.judge.study import study
 from solidgear.core.judge.ties import SECTION
-from solidgear.core.judge.where import recorded_places
 from solidgear.core.ladder.meshes import FREE
 from solidgear.core.ladder.model import LUMPED, SOLID
 from solidgear.core.machine.memory import one_run
@@ -227,14 +226,14 @@ def _run(scene: Scene, models, options, findings: Findings, progress: Progress) 
         if lumped and not _after_a_solid(model, findings.lumped):
             progress(f"lumped: synthesis from {model}")
             findings.lumped |= synthesise_all(scene, {model: solution}, log.info)
+        if solution.scores:
+            progress(f"{model}: where the error comes from")
+            findings.add_places(scene, solution)
         # Factors are the largest thing a body holds, and no further solution is needed.
         solution.body.cache.clear()
     if findings.solutions:
         progress("guards")
         findings.guards = notices(scene, findings.solutions)
-    if "harmonic" in findings.solutions:
-        progress("where the error comes from")
-        findings.where = recorded_places(scene, findings.solutions["harmonic"])
     findings.causes = _causes(scene, findings.solutions, options, progress)
 
 

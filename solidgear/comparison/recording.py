@@ -50,6 +50,7 @@ from solidgear.core.judge.record import (
 )
 from solidgear.core.judge.solving import ENOUGH, Answer
 from solidgear.core.judge.verdict import Judgement, judge, percent, trusted
+from solidgear.core.judge.where import recorded_places
 from solidgear.core.ladder.model import LUMPED, SOLID
 from solidgear.core.machine.environment import environment
 from solidgear.core.solve.mixtures import mixtures
@@ -64,9 +65,17 @@ class Findings:
     causes: list[CauseRecord] = field(default_factory=list)
     lumped: dict[str, LumpedRecord] = field(default_factory=dict)
     guards: list[GuardRecord] = field(default_factory=list)
-    where: WhereRecord | None = None
+    where: WhereRecord | None = None  #: of the harmonic solid
+    where_solid: WhereRecord | None = None  #: of the first 3D solid
     open_: OpenNumbers = field(default_factory=OpenNumbers)
     complete: bool = True  #: False after an interrupt
+
+    def add_places(self, scene: Scene, solution: Solution) -> None:
+        """Add the places of the error of a solid."""
+        if solution.model == "harmonic":
+            self.where = recorded_places(scene, solution)
+        elif self.where_solid is None:
+            self.where_solid = recorded_places(scene, solution)
 
 
 def recorded(scene: Scene, findings: Findings) -> Record:
@@ -102,6 +111,7 @@ def recorded(scene: Scene, findings: Findings) -> Record:
         verdict=verdict,
         guards=guards,
         where=findings.where,
+        where_solid=findings.where_solid,
         open=findings.open_,
         environment=environment(),
         models=models,

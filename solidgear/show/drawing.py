@@ -1,4 +1,4 @@
-"""The drawing process: deformed shapes as PNG files, one or several frames each.
+"""The drawing process: deformed shapes as PNG files, one or several frames each, and shaded surfaces.
 
     python -m solidgear.show.drawing FOLDER
 
@@ -24,6 +24,12 @@ SWING = 0.08
 USABLE = (0.90, 0.68)
 OUTLINE = "#5c6b7a"
 ARRAYS = ("points", "displacement", "faces", "triangles", "lines")
+#: rad; by which a viewer stands from the middle of a shaft towards its start
+TURN = np.deg2rad(22)
+#: size of a shaded surface
+SHADED = (840, 490)
+#: shades of faces are logarithmic, and those below this share of the largest of one colour
+FAINT = 1e-3
 
 
 def _main(room: Path) -> int:
@@ -44,7 +50,11 @@ def _main(room: Path) -> int:
             if target.exists():
                 continue  # by an earlier child
             try:
-                _draw(pv, job, partial, *(store[f"{i}.{name}"] for name in ARRAYS))
+                arrays = [store[f"{i}.{name}"] for name in ARRAYS]
+                if f"{i}.shades" in store:
+                    _draw_shaded(pv, job, partial, store[f"{i}.shades"], *arrays)
+                else:
+                    _draw(pv, job, partial, *arrays)
                 os.replace(partial, target)
             except Exception as error:  # a bad picture must not cost the others
                 (room / f"{i}.txt").write_text(
@@ -63,9 +73,7 @@ def _draw(pv, job, path, points, displacement, faces, triangles, lines):
     displacement = displacement * (SWING * length / size.max())
     view = _view(displacement) if job["along"] else FROM_ABOVE
     displacement = displacement * _sign(points, displacement, view[0])
-    cells = np.concatenate(
-        [np.insert(f, 0, f.shape[1], axis=1).ravel() for f in (faces, triangles)]
-    )
+    cells = _cells(faces, triangles)
     undeformed = pv.PolyData(points, cells)
     frames = job["frames"]
     extremes = np.vstack([points, *(points + factor * displacement for factor, _ in frames)])
@@ -95,11 +103,74 @@ def _draw(pv, job, path, points, displacement, faces, triangles, lines):
     _in_few_colours(Image.fromarray(np.concatenate([head, picture]))).save(path, optimize=True)
 
 
-def _in_few_colours(picture):
-    """Return the picture with a dithered palette, in half the bytes."""
+def _draw_shaded(pv, job, path, shades, points, _, faces, triangles, lines):
+    """Draw a surface at rest, its faces in the colours of shades, seen from the side of the largest."""
+    from PIL import Image
+
+    if not np.isfinite(shades).all() or not shades.max() > 0:
+        raise ValueError("the shades are zero or not finite")
+    surface = pv.PolyData(points, _cells(faces, triangles))
+    surface.cell_data["shade"] = np.clip(shades / shades.max(), FAINT, 1.0)
+    view = _facing(points, faces if len(faces) else triangles, shades)
+    length = np.ptp(points, axis=0).max()
+    p = pv.Plotter(off_screen=True, window_size=list(SHADED), lighting="none")
+    p.set_background("white")
+    p.enable_anti_aliasing("ssaa")
+    _lamps(pv, p, length, view)
+    body = p.add_mesh(
+        surface,
+        scalars="shade",
+        cmap="YlOrRd",
+        log_scale=True,
+        clim=(FAINT, 1.0),
+        show_scalar_bar=False,
+        ambient=0.6,
+        diffuse=0.5,
+        specular=0.0,
+    )
+    nearer = 0.004 * length * view[3]
+    p.add_mesh(
+        _wires(pv, points + nearer, lines),
+        color="black",
+        line_width=1.0,
+        opacity=0.25,
+        lighting=False,
+    )
+    p.add_silhouette(surface, color=OUTLINE, line_width=3.5, feature_angle=None)
+    _words(p, job["title"], "")
+    _axes(p)
+    _bar(p, body, 1, job["shade"], 4, "%.3g")
+    _aim(p, points, points, SHADED[1] / SHADED[0], *view[1:])
+    drawn = p.screenshot(return_img=True)
+    p.close()
+    # flat faces have few colours, and dots between them would take twice the bytes
+    _in_few_colours(Image.fromarray(drawn[..., :3]), dots=False).save(path, optimize=True)
+
+
+def _facing(points, faces, shades):
+    """Return the view from the side of the largest shade and, of both ends of the shaft, from the
+    one that more of what is shaded faces.
+    """
+    corners = points[faces]
+    x, _, z = corners[np.argmax(shades)].mean(axis=0)
+    away = np.hypot(x, z)
+    side = np.array([x, 0.0, z]) / away if away else np.array([1.0, 0.0, 0.0])
+    areas = np.cross(corners[:, 1] - corners[:, 0], corners[:, -1] - corners[:, 0])
+    views = [_seen_from(side, turn) for turn in (-TURN, TURN)]
+    return max(views, key=lambda view: shades @ np.maximum(areas @ view[3], 0.0))
+
+
+def _cells(faces, triangles) -> np.ndarray:
+    """Return faces as VTK lists them."""
+    return np.concatenate([np.insert(f, 0, f.shape[1], axis=1).ravel() for f in (faces, triangles)])
+
+
+def _in_few_colours(picture, dots=True):
+    """Return the picture with a palette, dithered with `dots`, in half the bytes."""
     # every fourth pixel of every fourth row has all colours, and takes a tenth of the time
     sample = picture.resize((picture.width // 4, picture.height // 4), resample=0)
-    return picture.quantize(palette=sample.quantize(kmeans=1))
+    palette = sample.quantize(kmeans=1) if dots else sample.quantize(method=1)
+    return picture.quantize(palette=palette, dither=3 if dots else 0)
 
 
 def _layout(count: int, points, view) -> tuple[int, int]:
@@ -117,20 +188,8 @@ def _layout(count: int, points, view) -> tuple[int, int]:
 
 def _frame(pv, p, undeformed, deformed, lines, length, view, along):
     """Draw one deformed shape over the shape at rest; return the actor with the colours."""
-    _, right, upward, back = view
-    # A lamp over the left shoulder of the viewer and a weak one from the other side.
-    for offset, strength in (
-        (0.7 * upward - 0.5 * right + back, 0.75),
-        (-0.5 * upward + 0.6 * right + 0.8 * back, 0.35),
-    ):
-        p.add_light(
-            pv.Light(
-                position=10 * length * offset,
-                focal_point=(0, 0, 0),
-                light_type="scene light",
-                intensity=strength,
-            )
-        )
+    _lamps(pv, p, length, view)
+    back = view[3]
     look = {
         "smooth_shading": True,
         "split_sharp_edges": True,
@@ -174,6 +233,23 @@ def _frame(pv, p, undeformed, deformed, lines, length, view, along):
     return body
 
 
+def _lamps(pv, p, length, view) -> None:
+    """Put a lamp over the left shoulder of the viewer and a weak one on the other side."""
+    _, right, upward, back = view
+    for offset, strength in (
+        (0.7 * upward - 0.5 * right + back, 0.75),
+        (-0.5 * upward + 0.6 * right + 0.8 * back, 0.35),
+    ):
+        p.add_light(
+            pv.Light(
+                position=10 * length * offset,
+                focal_point=(0, 0, 0),
+                light_type="scene light",
+                intensity=strength,
+            )
+        )
+
+
 def _heading(pv, title: str) -> np.ndarray:
     """Return pixels (height, width, 3) of a title over several frames."""
     p = pv.Plotter(off_screen=True, window_size=[SIZE[0], HEADING], lighting="none")
@@ -198,17 +274,19 @@ def _text(p, words: str, height: float, font: int) -> None:
     text.prop.justification_horizontal = "center"
 
 
-def _bar(p, body, count: int) -> None:
-    """Draw the scale of colours: displacement as a share of the largest."""
+def _bar(
+    p, body, count: int, what: str = "displacement / max", labels: int = 6, form: str = "%.1f"
+) -> None:
+    """Draw the scale of colours: of a displacement or a shade as a share of the largest."""
     alone = count == 1
-    _text(p, "displacement / max", 0.105 if alone else 0.12, 10 if alone else 8)
+    _text(p, what, 0.105 if alone else 0.12, 10 if alone else 8)
     # The bar's own title would sit on its labels.
     bar = {
         "title": "",
         "label_font_size": 20 if alone else 16,
         "color": "black",
-        "n_labels": 6 if alone else 3,
-        "fmt": "%.1f",
+        "n_labels": labels if alone else 3,
+        "fmt": form,
         "font_family": "arial",
     }
     wide = 0.36 if alone else 0.7
@@ -255,10 +333,17 @@ def _view(displacement):
     # Motion without a plane of its own (torsion, axial, a ring breathing) is seen from +x.
     d = v[:, 1] if w[1] > 2 * w[0] else np.array([0.0, 1.0])
     d = d if d[np.argmax(np.abs(d))] > 0 else -d
-    y, plane = np.array([0.0, 1.0, 0.0]), np.array([d[0], 0.0, d[1]])
-    side = np.cross(y, plane)
+    return _seen_from(np.cross([0.0, 1.0, 0.0], [d[0], 0.0, d[1]]))
+
+
+def _seen_from(side, turn=-TURN):
+    """Return the directions of :func:`_view` for a viewer on a side of the shaft, turned from there
+    towards its end.
+    """
+    y = np.array([0.0, 1.0, 0.0])
+    plane = np.cross(side, y)
     # Seen a little from above and from the end, so that a round thing looks round.
-    height, turn = np.deg2rad(18), np.deg2rad(-22)
+    height = np.deg2rad(18)
     back = np.cos(height) * (np.cos(turn) * side + np.sin(turn) * y) + np.sin(height) * plane
     right = y - (y @ back) * back
     right /= np.linalg.norm(right)

@@ -28,7 +28,7 @@ except ImportError:  # Windows
 LOCK = ".solidgear.lock"
 #: what is ever listed, and so ever removed: a damaged list can name nothing else
 OWN = re.compile(
-    r"(report\.html|mode_\w+\.png|modes\.html|system_mode_\d+\.png"
+    r"(report\.html|(mode|error)_\w+\.png|modes\.html|system_mode_\d+\.png"
     r"|(response|orders|shares)\.(csv|png|svg|html)|response_[ab]\.csv"
     rf"|{'|'.join(output.pattern for output in OUTPUTS)})"
 )

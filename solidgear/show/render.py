@@ -1,4 +1,4 @@
-"""Pictures of mode shapes, drawn in a child process.
+"""Pictures of mode shapes and of shares of an error bar, drawn in a child process.
 
 Without the system's OpenGL libraries VTK does not raise, it takes the process down with a
 segmentation fault. So a child draws, the caller reads how it ended, and a failed picture never costs
@@ -16,7 +16,7 @@ import tempfile
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -48,6 +48,9 @@ class RenderJob:
     #: factors on the displacement and what is written over each, side by side
     frames: Sequence[tuple[float, str]] = STILL
     along: bool = True  #: one shaft along y, seen across its motion; else a train, seen from above
+    #: (m,) of its faces, in the colours of which it is drawn at rest, and what they are
+    shades: np.ndarray | None = None
+    shade: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,13 +147,19 @@ class Drawing:
 
     def _hand_over(self) -> None:
         """Write the jobs as files for the child."""
-        arrays = {
+        arrays: dict[str, Any] = {
             f"{i}.{name}": getattr(job.surface, name)
             for i, job in enumerate(self.jobs)
             for name in ARRAYS
         }
+        for i, job in enumerate(self.jobs):
+            if job.shades is not None:
+                arrays[f"{i}.shades"] = job.shades
         np.savez(self._room / "surfaces.npz", **arrays)
-        jobs = [{"title": j.title, "frames": list(j.frames), "along": j.along} for j in self.jobs]
+        jobs = [
+            {"title": j.title, "frames": list(j.frames), "along": j.along, "shade": j.shade}
+            for j in self.jobs
+        ]
         (self._room / "jobs.json").write_text(json.dumps(jobs), encoding="utf-8")
 
     def _start(self) -> str:

@@ -104,6 +104,8 @@ def render_page(record: Record, folder: Path, drawn: Drawn | None = None) -> str
         where=where,
         where_model=record.name(where.model) if where else "solid",
         where_total=percent(where.total, signed=False) if where else "",
+        where_solid=_in_solid(record),
+        where_picture=_picture_in_solid(record, folder),
         levels=tables.levels(record, units),
         orders=tables.orders(record),
         algebra=tables.algebra(record),
@@ -114,6 +116,23 @@ def render_page(record: Record, folder: Path, drawn: Drawn | None = None) -> str
         environment=pairs_of(record.environment, "Environment of the run"),
         mesh=tables.mesh(record),
     )
+
+
+def _in_solid(record: Record) -> str:
+    """Return the sentence on where the error of a 3D solid arises; empty without one."""
+    where = record.where_solid
+    if where is None:
+        return ""
+    total = percent(where.total, signed=False)
+    return f"{where.sentence} (a bound in one order more, {total}, on the mesh of the {record.name(where.model)})."
+
+
+def _picture_in_solid(record: Record, folder: Path) -> str | None:
+    """Return the picture of the cells that the error of a 3D solid arises in, from the folder."""
+    where = record.where_solid
+    if where is None or not where.picture:
+        return None
+    return data_uri(f"the error of {where.model}", folder / Path(where.picture).name)
 
 
 class Drawn(NamedTuple):

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from solidgear.comparison.page.html import drawn_charts, write_report
-from solidgear.core import FIRST_BENDING, ModeSet, Record, Solution
+from solidgear.core import FIRST_BENDING, ModeSet, Quantity, Record, Solution
 from solidgear.show.folder import begun
 from solidgear.show.outputs import OUTPUTS
 from solidgear.show.page_parts import data_uri
@@ -17,6 +17,7 @@ from solidgear.show.render import Drawing, Drawn, RenderJob, RenderResult
 from solidgear.show.sheet import write_json
 from solidgear.show.turning import Turned, turned
 from solidgear.show.viewer import TURNED, Turning
+from solidgear.show.where_surface import where_surface
 
 R = TypeVar("R")
 
@@ -45,21 +46,25 @@ def write_all(
             "report.html",
             *(output.name(m) for m in shapes for output in OUTPUTS),
             *(f"mode_{m}.png" for m in shapes if renders),
+            *(f"error_{m}.png" for m in shapes if renders and m == _shaded(record)),
             *([TURNED] if shapes and renders else []),
         ]
         write_json(folder / "results.json", record.as_dict())
         if renders and shapes:
             progress("renders")
         jobs = _jobs(record, shapes, folder) if renders else {}
+        error_jobs = _error_jobs(record, shapes, folder) if renders else []
         # They are drawn in a process beside this one, which writes and draws the rest meanwhile.
-        with Drawing(jobs.values()) as drawing:
+        with Drawing([*jobs.values(), *error_jobs]) as drawing:
             for model, solution in shapes.items():
                 for output in OUTPUTS:
                     what, target = f"{output.what} of {model}", folder / output.name(model)
                     _try(record, what, partial(output.write, solution, target))
             progress("report")
             drawn = drawn_charts(record, folder)
-            _note(record, jobs, drawing.results())
+            results = drawing.results()
+            _note(record, jobs, results)
+            _note_error(record, results[len(jobs) :])
         if renders and shapes:
             write = partial(_write_turned, record, shapes, folder)
             _try(record, "viewer of mode shapes", write)
@@ -103,6 +108,34 @@ def _jobs(record: Record, shapes: dict[str, Solution], folder: Path) -> dict[str
         if job is not None:
             jobs[model] = job
     return jobs
+
+
+def _shaded(record: Record) -> str:
+    """Return the model on whose surface its error bar is shown; empty without one."""
+    return record.where_solid.model if record.where_solid else ""
+
+
+def _error_jobs(record: Record, shapes: dict[str, Solution], folder: Path) -> list[RenderJob]:
+    """Return the picture of the cells that the widest error bar of a 3D solid comes from, if any."""
+    where, solution = record.where_solid, shapes.get(_shaded(record))
+    if where is None or solution is None:
+        return []
+    path = folder / f"error_{where.model}.png"
+    path.unlink(missing_ok=True)
+    by_cells = solution.scores[Quantity(where.quantity)]
+    title = f"{record.name(where.model)}: error bar of {where.quantity} by cells"
+    draw = partial(where_surface, solution.body, by_cells, title, path)
+    job = _try(record, "picture of the error bar", draw)
+    return [] if job is None else [job]
+
+
+def _note_error(record: Record, results: Iterable[RenderResult]) -> None:
+    """Record the picture of an error bar, or why there is none."""
+    for result in results:
+        if result.ok and record.where_solid is not None:
+            record.where_solid.picture = result.path.name
+        else:
+            _leave_out(record, f"picture of the error bar left out: {result.reason}")
 
 
 def _note(record: Record, jobs: Iterable[str], results: Iterable[RenderResult]) -> None:

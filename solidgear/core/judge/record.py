@@ -442,12 +442,16 @@ class PortRecord(Part):
 class PlaceRecord(Part):
     """A place, ``shoulder``, ``seat end of A``, ... or ``elsewhere``, and a share of the error.
 
-    ``y`` and ``r`` (m) of ``elsewhere`` are the middle of the cell with most of it. Cells whose
-    middle lies within ``reach`` (m) count as of the place, where no other is nearer.
+    ``y`` and ``r`` (m) of ``elsewhere`` are the middle of the cell with most of it. A place of a 3D
+    solid that is no circle around the axis has ``x`` and ``z`` too, of what of it is nearest to its
+    cell with the most, and no ``r`` where there is no axis. Cells whose middle lies within ``reach``
+    (m) count as of the place, where no other is nearer.
     """
 
     what: str = ""
+    x: Number = None
     y: Number = None
+    z: Number = None
     r: Number = None
     share: Number = None
     reach: Number = None
@@ -457,8 +461,9 @@ class WhereRecord(Part):
     """Places of the error of a number of a solid, the largest share first.
 
     ``order`` is that of the elements, ``total`` the relative error bar of the quantity; of a
-    coupling, it is relative to the geometric mean of the diagonal entries. ``points`` are r and y
-    (m) of the corners of the cells, ``shares`` those of every cell, in sum one.
+    coupling, it is relative to the geometric mean of the diagonal entries. Of a harmonic solid,
+    ``points`` are r and y (m) of the corners of the cells, ``shares`` those of every cell, in sum
+    one. ``picture`` is the name of a file that shows the cells of a 3D solid, empty without one.
     """
 
     model: str = ""
@@ -470,12 +475,14 @@ class WhereRecord(Part):
     points: list[list[float]] = []
     cells: list[list[int]] = []
     shares: list[float] = []
+    picture: str = ""
     seconds: Number = None
 
 
 class Record(Part):
     """Results of a comparison.
 
+    ``where`` has the places of the error of the harmonic solid, ``where_solid`` those of a 3D solid.
     ``missing`` are titles of models that have a body of their own and no record here. ``shown_in``
     is the choice of units of the page (:mod:`solidgear.show.units`); the record itself is in SI.
 
@@ -503,6 +510,7 @@ class Record(Part):
     verdict: VerdictRecord = VerdictRecord()
     guards: list[GuardRecord] = []
     where: WhereRecord | None = None
+    where_solid: WhereRecord | None = None
     open: OpenNumbers = OpenNumbers()
     environment: Facts = {}
     images: dict[str, str] = {}

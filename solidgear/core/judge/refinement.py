@@ -24,9 +24,9 @@ from solidgear.core.body import Body
 from solidgear.core.bounds.refining import MOST_MESHES, Meshed, refined
 from solidgear.core.judge.bars import ErrorBar
 from solidgear.core.judge.bounded import Bounded
+from solidgear.core.judge.cell_places import place_of_most
 from solidgear.core.judge.effort import HEAVY, cost_text
 from solidgear.core.judge.quantities import in_order, size
-from solidgear.core.judge.singular_places import singular_places
 from solidgear.core.judge.solving import Numbers
 from solidgear.core.judge.steps import ABOVE, BELOW, BOTH, Step, Value
 from solidgear.core.ladder.meshes import Sequence as Plan
@@ -225,7 +225,7 @@ class Refinement:
     def worst_place(self) -> str:
         """Return the place that holds most of the error bars that exceed the tolerance, in words."""
         assert self.last is not None and self.last.score is not None
-        return _place_of_most(self.scene, self.last.body, self.last.score)
+        return place_of_most(self.scene, self.last.body, self.last.score)
 
     def no_further_mesh(self) -> str:
         """Return the reason why there is no further mesh."""
@@ -349,14 +349,3 @@ def mesh_words(options: Mapping[str, Any]) -> str:
 def few(names: Sequence[str]) -> str:
     """Return some names, or how many there are."""
     return ", ".join(names) if len(names) <= FEW else f"{len(names)} numbers"
-
-
-def _place_of_most(scene: Scene, body: Body, score: np.ndarray) -> str:
-    """Return the place of the largest score by cells of a harmonic body, in words."""
-    flat = body.geometry.meridian  # type: ignore[union-attr]
-    r, y = flat.points[:, flat.cells[:, int(score.argmax())]].mean(axis=1)
-    places = singular_places(scene)
-    nearest = min(places, key=lambda p: np.hypot(p.y - y, p.r - r), default=None)
-    if nearest is None or np.hypot(nearest.y - y, nearest.r - r) > nearest.reach:
-        return f"cells at y = {1e3 * y:.4g} mm, r = {1e3 * r:.4g} mm"
-    return f"the {nearest.what} at y = {1e3 * nearest.y:.4g} mm, r = {1e3 * nearest.r:.4g} mm"

@@ -107,6 +107,13 @@ def is_notched(mesh: Any) -> bool:
     >>> is_notched(cube), is_notched(cube.remove_elements([0]))
     (False, True)
     """
+    return bool(concave_edges(mesh).size)
+
+
+def concave_edges(mesh: Any) -> np.ndarray:
+    """Return the vertices (2, k) of the sharp concave edges of the surface of a volume mesh of
+    scikit-fem.
+    """
     outside = mesh.boundary_facets()
     middle = mesh.p[:, mesh.facets[:, outside]].mean(axis=1)
     normal = outward(mesh, outside)
@@ -117,4 +124,4 @@ def is_notched(mesh: Any) -> bool:
     a, b = facet[order[::2]], facet[order[1::2]]  # on both sides of each edge
     turned = np.sum(normal[:, a] * normal[:, b], axis=0) < np.cos(EDGE)
     rising = np.sum(normal[:, a] * (middle[:, b] - middle[:, a]), axis=0) > 0
-    return bool(np.any(turned & rising))
+    return mesh.edges[:, edge.ravel()[order[::2]][turned & rising]]

@@ -44,6 +44,7 @@ from solidgear.core import Block, Body, SolidgearError, Surface, modes
 from solidgear.core.body.sections import Sections
 from solidgear.core.body.surface import Drawing, Volume
 from solidgear.core.models.harmonic.body import harmonic
+from solidgear.core.models.solid.mesh import SolidMesh
 from solidgear.core.scene.shaft import attached_stations
 from solidgear.core.solve.statics import port_fields, twin_matrix
 from solidgear.cuts.corrected.mesh import meshed_cuts
@@ -129,7 +130,7 @@ def corrected(
             "volume": with_.mesh["volume"],
             "geometry": without.mesh["geometry"] * _change(before, after),
         },
-        _Drawing(base.geometry, _shares(base, families)) if base.geometry else None,
+        _drawing(base, families, without, with_),
     )
     body.cache.keep(Origin(base, without, with_, ~cut_mesh.cut))
     return body
@@ -366,12 +367,26 @@ def _sections(base: Body, members, shapes) -> Sections:
     return sections
 
 
+def _drawing(base: Body, families: Families, without: Body, with_: Body) -> _Drawing | None:
+    """Return the drawing of a corrected body; None where the harmonic one has none."""
+    if base.geometry is None:
+        return None
+    return _Drawing(base.geometry, _shares(base, families), without.geometry, with_.geometry)
+
+
 @dataclass(frozen=True, eq=False)
 class _Drawing:
     """Drawing on the plain shaft, which moves as the corrected body does."""
 
     plain: Drawing
     members: dict[str, list[Block]]
+    uncut: Any  #: the 3D solid with its features left in, among whose cells error bars are shared
+    cut: Any  #: the one with features cut out
+
+    @property
+    def solved(self) -> SolidMesh:
+        """The mesh among whose cells error bars are shared."""
+        return self.uncut.solved
 
     def surface(self, moved: Mapping[str, Any]) -> Surface:
         """Return the plain shaft, moved."""

@@ -97,6 +97,11 @@ class HalfDrawing:
     mesh: SolidMesh
     axis: int  #: at right angles to the mirror plane
 
+    @property
+    def solved(self) -> SolidMesh:
+        """The mesh among whose cells error bars are shared: that of the half."""
+        return self.mesh
+
     def surface(self, moved: Mapping[str, np.ndarray]) -> Surface:
         """Return both halves, the second as a mirror image of the first."""
         first, second = self._halves(moved)

@@ -19,6 +19,7 @@ class Outline:
     quads: np.ndarray
     triangles: np.ndarray
     lines: np.ndarray
+    owners: np.ndarray  #: (m,) cell of every quadrilateral or triangle
     #: values of the basis in a face, and the unknowns of elements that have such a face
     parts: list[tuple[np.ndarray, np.ndarray]]
     first: np.ndarray  #: (n,) place of each point among all points of all faces

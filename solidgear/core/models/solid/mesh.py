@@ -39,6 +39,11 @@ class SolidMesh:
     nodes: np.ndarray  #: (3, n) m
     segment: np.ndarray  #: (ne,) that every element lies in
 
+    @property
+    def solved(self) -> SolidMesh:
+        """The mesh among whose cells error bars are shared: this one."""
+        return self
+
     def motion(self, moved: Mapping[str, np.ndarray]) -> np.ndarray:
         """Return the displacements (n, 3) of the nodes."""
         return moved["full"].reshape(-1, 3)
@@ -76,7 +81,7 @@ class SolidMesh:
         # Every rim point lies k pieces along the edge from corner a to corner b (k = 0 at a).
         a = np.repeat(np.arange(corners), m)
         b, k = (a + 1) % corners, np.tile(np.arange(m), corners)
-        parts, keys, faces, lines, count = [], [], [], [], 0
+        parts, keys, faces, lines, owners, count = [], [], [], [], [], 0
         for place, elements in self.local_facets(self.boundary):
             points, s, t = self.on_facet(place, grid.T / m)
             parts.append((reference(element, points)[0], dofs[:, elements]))
@@ -94,6 +99,7 @@ class SolidMesh:
             middle = refdom.p[:, refdom.facets[place]].mean(axis=1)
             outward = np.cross(s, t) @ (middle - refdom.p.mean(axis=1)) > 0
             faces.append(serial[:, cells if outward else cells[:, ::-1]].reshape(-1, corners))
+            owners.append(np.repeat(elements, len(cells)))
             lines.append(serial[:, np.column_stack([rim, np.roll(rim, -1)])].reshape(-1, 2))
         _, first, number = np.unique(
             np.concatenate(keys), axis=0, return_index=True, return_inverse=True
@@ -103,7 +109,7 @@ class SolidMesh:
         edges = np.unique(np.sort(number[np.concatenate(lines)], axis=1), axis=0)
         quads, triangles = (by_corners.get(n, np.zeros((0, n), int)) for n in (4, 3))
         at_rest = on_faces(parts, self.nodes.T)[first]
-        return Outline(at_rest, quads, triangles, edges, parts, first)
+        return Outline(at_rest, quads, triangles, edges, np.concatenate(owners), parts, first)
 
     def local_facets(self, facets: np.ndarray):
         """Group facets by their place in the element they are seen from; yield (place, elements)."""

@@ -1,0 +1,180 @@
+"""Singular places of a 3D solid, read off its mesh: features, concave edges, ends of patches."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from solidgear.core.body import Body
+from solidgear.core.bounds.refining import corner_strength
+from solidgear.core.judge.singular_places import Place, Singular, singular_places
+from solidgear.core.kernel.assembly import reference
+from solidgear.core.meshing.corners import SHOULDER, concave_edges
+from solidgear.core.meshing.grading import corner_length
+from solidgear.core.scene.feature import SMALLEST
+from solidgear.core.scene.shaft import without_axis
+
+if TYPE_CHECKING:
+    from solidgear.core.models.solid.mesh import SolidMesh
+    from solidgear.core.scene import Scene
+    from solidgear.core.scene.outline import Outline
+
+#: distance of a node from a surface of revolution that it lies on, in largest radii: a tenth of the
+#: least size of a feature, since nodes between corners are moved to keep the volume
+NEAR = SMALLEST / 10
+#: distance of points that are the same, in lengths of the body
+SAME = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class Spots:
+    """Points of the surface of a 3D solid at which stress is singular."""
+
+    what: str
+    points: np.ndarray  #: (3, k) m
+    reach: float
+    exponent: float
+
+    def distance(self, points: np.ndarray) -> np.ndarray:
+        """Return the distance (n,) of points (3, n) from the nearest one, m."""
+        from scipy.spatial import cKDTree  # slow to import, and seldom needed
+
+        return cKDTree(self.points.T).query(points.T)[0]
+
+    def nearest(self, point: np.ndarray) -> np.ndarray:
+        """Return the place (3,) of the one that is nearest to a point, m."""
+        away = np.linalg.norm(self.points - point[:, None], axis=0)
+        return self.points[:, away.argmin()] + 0.0  # no zero below zero
+
+
+def solid_places(
+    scene: Scene, body: Body, attachments: tuple[str, ...] | None = None
+) -> tuple[Singular, ...]:
+    """Return the singular places of the 3D solid of a scene, with all stations tied by `attachments`
+    or as the scene says.
+    """
+    drawing: Any = body.geometry
+    # where features are cut out of some of the cells that a bar is shared among
+    mesh: SolidMesh = getattr(drawing, "cut", drawing).solved
+    if without_axis(scene):
+        return (*_edges(mesh, ()), *_ends_of_patches(scene, body, mesh))
+    around = singular_places(scene, attachments)
+    if scene.body is not None:
+        return (*around, *_edges(mesh, around))
+    return (*around, *_features(scene, mesh))
+
+
+def _features(scene: Scene, mesh: SolidMesh) -> Iterator[Spots]:
+    """Yield the features of a shaft, as what its mesh has of the surface that is none of the
+    outline's; of those at the same place along the shaft all as one.
+    """
+    if not scene.features:
+        return
+    nodes = _off_outline(scene.outline, mesh)
+    spans = [feature.span(scene.segments) for feature in scene.features]
+    y = mesh.nodes[1, nodes].mean(axis=0)
+    held = np.array([(lo <= y) & (y <= hi) for lo, hi in spans])
+    for kind in np.unique(held, axis=1).T:
+        members = [f for f, is_there in zip(scene.features, kind) if is_there]
+        if not members:
+            continue
+        points = mesh.nodes[:, np.unique(nodes[:, (held == kind[:, None]).all(axis=0)])]
+        segment = next(s for s in scene.segments if s.name == members[0].segment)
+        lengths = [hi - lo for (lo, hi), is_there in zip(spans, kind) if is_there]
+        yield Spots(
+            " or ".join(f"{f.what} {f.name}" for f in members),
+            points,
+            min(corner_length(segment), *lengths),
+            SHOULDER if any(f.notched for f in members) else 1.0,
+        )
+
+
+def _off_outline(outline: Outline, mesh: SolidMesh) -> np.ndarray:
+    """Return the nodes (b, k) of the facets of a mesh that lie on no surface of an outline, and in
+    no mirror plane through the axis.
+    """
+    on_surface = np.array([*_on_surfaces(outline, mesh.nodes), *_in_mirrors(outline, mesh.nodes)])
+    out = []
+    for place, elements in mesh.local_facets(mesh.boundary):
+        points, _, _ = mesh.on_facet(place, np.array([[0.2, 0.5, 0.1], [0.3, 0.1, 0.6]]))
+        alive = np.abs(reference(mesh.element, points)[0]).max(axis=1) > 1e-9
+        nodes = mesh.dofs[alive][:, elements]
+        out.append(nodes[:, ~on_surface[:, nodes].all(axis=1).any(axis=0)])
+    return np.concatenate(out, axis=1)
+
+
+def _on_surfaces(outline: Outline, nodes: np.ndarray) -> Iterator[np.ndarray]:
+    """Yield for every surface of revolution which nodes lie on it."""
+    r, y = np.hypot(nodes[0], nodes[2]), nodes[1]
+    near = NEAR * outline.largest_radius
+    for piece in outline.pieces:
+        inside = (y > piece.y0 - near) & (y < piece.y1 + near)
+        if piece.corner is None:
+            near_by = np.abs(r - np.interp(y, [piece.y0, piece.y1], [piece.r0, piece.r1])) < near
+        else:  # an arc lies between its ends
+            low, high = sorted((piece.r0, piece.r1))
+            near_by = (r > low - near) & (r < high + near)
+        yield inside & near_by
+    for place in {y for s in outline.segments for y in (s.y0, s.y1)}:
+        yield np.abs(y - place) < near
+
+
+def _in_mirrors(outline: Outline, nodes: np.ndarray) -> Iterator[np.ndarray]:
+    """Yield for both planes of a half model which nodes lie in it."""
+    for axis in (0, 2):
+        yield np.abs(nodes[axis]) < NEAR * outline.largest_radius
+
+
+def _edges(mesh: SolidMesh, known: tuple[Place, ...]) -> Iterator[Spots]:
+    """Yield the concave edges of the surface of a mesh that are none of the places known, every
+    line of them that hangs together as one.
+    """
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components
+
+    points = mesh.mesh.p
+    edges = concave_edges(mesh.mesh)
+    size = float(np.ptp(points, axis=1).max())
+    for place in known:
+        away = place.distance(points[:, edges.ravel()]).reshape(2, -1)
+        edges = edges[:, (away > SAME * size).any(axis=0)]
+    vertices, numbers = np.unique(edges, return_inverse=True)
+    start, end = numbers.reshape(2, -1)
+    graph = coo_matrix((np.ones(len(start)), (start, end)), shape=2 * (len(vertices),))
+    count, line = connected_components(graph, directed=False)
+    for k in range(count):
+        on_line = points[:, vertices[line == k]]
+        extent = float(np.linalg.norm(np.ptp(on_line, axis=1)))
+        yield Spots("concave edge", on_line, extent, SHOULDER)
+
+
+def _ends_of_patches(scene: Scene, body: Body, mesh: SolidMesh) -> Iterator[Spots]:
+    """Yield the borders of patches, where their loads end."""
+    outside = mesh.boundary
+    corners = mesh.mesh.facets[:, outside]
+    edges = mesh.mesh.f2e[:, outside]
+    stations = {station.name: station for station in scene.stations}
+    for index, port in enumerate(body.ports):
+        patch = getattr(stations[port.name], "patch", None)
+        if patch is None:
+            continue
+        on_patch = _carrying(body, index)[corners].all(axis=0)
+        numbers, times = np.unique(edges[:, on_patch], return_counts=True)
+        border = np.unique(mesh.mesh.edges[:, numbers[times == 1]])
+        if len(border):
+            exponent = corner_strength("rigid" if port.attachment == "rigid" else "load", np.pi)
+            what = f"end of patch {patch.name}"
+            yield Spots(what, mesh.mesh.p[:, border], patch.extent, exponent)
+
+
+def _carrying(body: Body, index: int) -> np.ndarray:
+    """Return which nodes of a body in one block carry the loads on a port."""
+    (block,) = body.blocks
+    weights = abs(block.ports[6 * index : 6 * index + 6]).sum(axis=0)
+    moved = np.asarray(weights).ravel() > 0
+    if block.expand is not None:
+        moved = np.asarray(abs(block.expand) @ moved.astype(float)) > 0
+    return np.any(moved.reshape(-1, 3), axis=1)
