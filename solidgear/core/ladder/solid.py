@@ -112,6 +112,7 @@ class Solid(Volume):
 
     def rough_unknowns(self, scene: Shaft, options: Options) -> float:
         """Estimate the unknowns of tetrahedra."""
+        from solidgear.core.models.solid.body import layers_of
         from solidgear.core.models.solid.plan import tetrahedra_of, tetrahedra_plan
 
         full_options = self.defaults() | self.given(scene, options)
@@ -119,7 +120,10 @@ class Solid(Volume):
             return 0.0
         sizes = {n: full_options[n] for n in ("size", "graded_size", "refinement", "around")}
         plan = tetrahedra_plan(scene, self.wanted(scene, full_options), **sizes)
-        return PER_TETRAHEDRON * tetrahedra_of(scene, plan, full_options["refinement"])
+        layers = layers_of(full_options["element"], full_options["layers"])
+        return PER_TETRAHEDRON * tetrahedra_of(
+            scene, plan, full_options["refinement"], layers=layers
+        )
 
     def can_halve(self, scene: Shaft, options: Options) -> bool:
         """Return True where all cuts of a shaft have one mirror plane."""
