@@ -168,17 +168,30 @@ def step_plan(
     :func:`solidgear.core.models.solid.body.solid`.
     """
     plan = tetrahedra_plan(
-        scene, wanted, size=size, graded_size=graded_size, refinement=refinement, around=around
+        scene,
+        wanted,
+        size=size,
+        graded_size=graded_size,
+        refinement=refinement,
+        around=around,
+        layers=layers,
     )
     assemblable(tetrahedra_of(scene, plan, refinement, layers=layers), 10)
-    corners = graded_corners(scene.outline, plan["planes"], plan["circles"])
+    corners = graded_corners(
+        scene.outline, plan["planes"], plan["circles"], plan.get("convex", True)
+    )
     graded = plan["graded_size"] or plan["size"]
     largest = scene.outline.largest_radius
     return {
         "circles": [(y, r) for y in plan["circles"] for r in _radii(scene, y)],
         "planes": [(y, BEYOND * largest) for y in plan["planes"]],
         "formulas": size_formulas(
-            scene.outline, corners, plan["size"], plan["graded_size"], None, plan["around"]
+            scene.outline,
+            corners,
+            plan["size"],
+            plan["graded_size"],
+            plan.get("reach"),
+            plan["around"],
         ),
         "size": plan["size"],
         "graded": graded,

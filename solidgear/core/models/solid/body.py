@@ -99,7 +99,7 @@ def solid(
         if all(f.sort == CYCLIC for f in features):
             return addition("solid body", CYCLIC)(scene, wanted, **sizes)
 
-        plan = tetrahedra_plan(scene, wanted, around=around, **sizes)
+        plan = tetrahedra_plan(scene, wanted, around=around, layers=layers or 0, **sizes)
         return addition("solid body", CUTS)(scene, wanted, plan, refinement, half, **towards)
     tet = element.startswith("tet")
     reflections: tuple[Reflection, ...] = ()
@@ -167,7 +167,13 @@ def tetrahedra_with_layers(
 
 def _tets(scene, wanted, element, layers, *, size, graded_size, refinement, around):
     plan = tetrahedra_plan(
-        scene, wanted, size=size, graded_size=graded_size, refinement=refinement, around=around
+        scene,
+        wanted,
+        size=size,
+        graded_size=graded_size,
+        refinement=refinement,
+        around=around,
+        layers=layers,
     )
     assemblable(tetrahedra_of(scene, plan, refinement, layers=layers), 10)
     curved = tetrahedra(scene.outline, **plan)

@@ -78,9 +78,14 @@ def turns_of(around: int, refinement: float) -> int:
     return max(8, 4 * int(round(around * refinement / 4)))
 
 
-def tetrahedra_plan(scene, wanted, *, size, graded_size, refinement, around) -> dict:
+def tetrahedra_plan(
+    scene, wanted, *, size, graded_size, refinement, around, layers: int = 0
+) -> dict:
     """Return the arguments of :func:`~solidgear.core.meshing.tetrahedra.tetrahedra` for the stations
     ``wanted`` with their attachments.
+
+    What layers leave of an error lies around them, where elements that grow fast from a small radius to
+    a size by the largest one are far too large; and at convex edges there is none to be small for.
     """
     size = countable("solid", scene, size or usual_size(scene), refinement) / refinement
     graded_size = (graded_size / refinement) if graded_size else size / 4
@@ -88,10 +93,13 @@ def tetrahedra_plan(scene, wanted, *, size, graded_size, refinement, around) -> 
     circles = sorted({y for s, a in wanted if a != "section" for y in (s.lo, s.hi)})
     # Meshes of one sequence are similar only if the circumference is refined with the rest.
     turns = max(8, int(round(max(16, around) * refinement)))
-    return {
+    plan = {
         "planes": planes,
         "circles": circles,
         "size": size,
         "graded_size": None if graded_size >= size else graded_size,
         "around": turns,
     }
+    if layers:
+        plan |= {"reach": scene.outline.largest_radius, "convex": False}
+    return plan

@@ -53,7 +53,7 @@ def solid_size(
         mesh, _, _ = addition("solid mesh", CYCLIC)(scene, wanted, **sizes)
         return size_of_mesh(mesh, basis_of("tet10"))
     if CUTS in sorts:
-        plan = tetrahedra_plan(scene, wanted, around=around, **sizes)
+        plan = tetrahedra_plan(scene, wanted, around=around, layers=layers or 0, **sizes)
         return addition("solid size", CUTS)(
             scene, wanted, plan, refinement, half, layers=layers or 0, ratio=ratio
         )
