@@ -148,19 +148,19 @@ def test_seats_keep_their_faces(solid):
 
 @pytest.mark.parametrize("tie", ["average", "rigid"])
 def test_what_a_mesh_can_do_it_can_do_with_layers(tie):
-    # displacements of the coarse mesh are some of the finer one, so that flexibility grows
+    # displacements with fewer layers are some of those with more, so that flexibility grows
     coarse, fine = (
         flexibility(
             sg.build(stepped(tie), "solid", element="tet10", refinement=0.3, layers=k)
         ).matrix
-        for k in (None, 2)
+        for k in (1, 3)
     )
     size = np.sqrt(np.diag(fine))
     ends = np.linalg.eigvalsh((fine - coarse) / np.outer(size, size))
     assert ends.min() > -1e-7 and ends.max() > 1e-3
 
 
-def test_layers_halve_the_error_that_one_order_more_still_finds():
+def test_layers_leave_less_error_of_which_one_order_more_finds_more():
     scene = stepped()
     exact = condense(
         sg.build(scene, "harmonic", order=5, layers=3, edge_layers=2), scene, "gear"
@@ -173,7 +173,7 @@ def test_layers_halve_the_error_that_one_order_more_still_finds():
         found = condense(bounds.softer(bounds.reached), scene, "gear").compliance[3, 3] - value
         errors.append(exact - value)
         shares.append(found / errors[-1])
-    assert errors[1] < 0.65 * errors[0]
+    assert errors[1] < 0.75 * errors[0]
     # at an edge of a plain mesh 0.587, of smooth displacements nearly all
     assert 1 / bounds.share < min(shares) and max(shares) < 1.0
     assert shares[1] > shares[0]
@@ -184,13 +184,13 @@ def test_layers_in_a_half_with_a_keyway_are_counted():
     scene = stepped(features=[key])
     options = {"element": "tet10", "refinement": 0.3, "layers": 1}
     body = sg.build(scene, "solid", **options)
-    plain = sg.build(scene, "solid", **(options | {"layers": 0}))
+    finer = sg.build(scene, "solid", **(options | {"layers": 2}))
     assert len(body.blocks) == 2
     model = LADDER["solid"]
-    assert model.size(scene, options).unknowns == body.size > 1.2 * plain.size
+    assert model.size(scene, options).unknowns == body.size < finer.size / 1.2
     assert 1 / 3 < model.rough_unknowns(scene, options) / body.size < 3
-    more = np.diag(flexibility(body).matrix - flexibility(plain).matrix)
-    assert more.min() > -1e-9 * np.diag(flexibility(body).matrix).max()
+    coarse, fine = (np.diag(flexibility(b).matrix) for b in (body, finer))
+    assert (fine > coarse * (1 - 1e-9)).all() and (fine > coarse * (1 + 1e-3)).any()
 
 
 def test_layers_are_counted_before_a_mesh_is_made():
