@@ -10,12 +10,14 @@ import numpy as np
 from solidgear.core import Body
 from solidgear.core.meshing.quality import check_mesh
 from solidgear.core.models.solid.block import body_of, free_block, mesh_facts
+from solidgear.core.models.solid.lines import with_layers
 from solidgear.core.models.solid.mesh import _isoparametric
 from solidgear.core.models.solid.seat_faces import Seats
 
 if TYPE_CHECKING:
     from skfem import Mesh
 
+    from solidgear.core.models.solid.block import Facets
     from solidgear.core.scene import Material, Scene
     from solidgear.core.scene.shaft import Station
 
@@ -31,6 +33,8 @@ def solid_body(
     owner: np.ndarray | None = None,
     materials: Sequence[Material] | None = None,
     patches: Mapping[str, np.ndarray] | None = None,
+    layers: int = 0,
+    ratio: float = 1.0,
 ) -> Body:
     """Build the free body of a mesh, with ports on cylinders and cones of the surface, or on patches.
 
@@ -39,8 +43,9 @@ def solid_body(
     integrals stop at the ends of a seat where faces reach beyond it, else only whole faces within the
     seat count. `owner` (ne,) is the place of each element's material among `materials`; by default
     each has that of the segment in which its middle lies. `patches` are facets of the patches that
-    stations without an axis lie on; `facts` are added to ``body.mesh``. A seat without faces, or with
-    faces missing, and inverted elements are refused.
+    stations without an axis lie on; `facts` are added to ``body.mesh``. Ten-node tetrahedra are split in
+    `layers` of a ratio towards singular lines. A seat without faces, or with faces missing, and inverted
+    elements are refused.
 
     Examples
     --------
@@ -66,7 +71,12 @@ def solid_body(
         patch = getattr(station, "patch", None)
         return seats(station, attachment) if patch is None else (patches or {})[patch.name]
 
-    block = free_block(solid, shaft, wanted, facets, clipped=clipped, materials=materials)
+    facets_of: Facets = facets
+    if layers:
+        kinds = materials or [segment.material for segment in shaft.segments]
+        split = with_layers(solid, quality, facets, wanted, kinds, layers=layers, ratio=ratio)
+        solid, quality, facets_of = split.mesh, split.quality, split.facets
+    block = free_block(solid, shaft, wanted, facets_of, clipped=clipped, materials=materials)
     all_facts = {
         **mesh_facts(solid, quality),
         # no symmetry promises twins

@@ -43,10 +43,12 @@ def part_body(
     refinement: float,
     around: int,
     coarser: int,
+    layers: int,
+    ratio: float,
 ) -> Body:
     """Build the free body, in one block, of the part of a scene with a ``body``; sizes as for
-    :func:`solidgear.core.models.solid.body.solid`, while a mesh file is meshed already, and ``coarser``
-    counts back in its list.
+    :func:`solidgear.core.models.solid.body.solid`, and so are `layers` and their ratio, while a mesh
+    file is meshed already, and ``coarser`` counts back in its list.
 
     Refused where the file has changed since the scene was read, where no face lies on a seat, and
     where it cannot be meshed.
@@ -88,7 +90,13 @@ def part_body(
         )
         return replace(body, scale=_rough_scale(file, scene.material)) if free else body
     plan = step_plan(
-        scene, wanted, size=size, graded_size=graded_size, refinement=refinement, around=around
+        scene,
+        wanted,
+        size=size,
+        graded_size=graded_size,
+        refinement=refinement,
+        around=around,
+        layers=layers,
     )
     filling, owner = _meshed(
         file, isolated, step.mesh, file.path, place, plan, named, seconds=MESH_SECONDS
@@ -108,6 +116,8 @@ def part_body(
         facts=facts,
         owner=owner if materials else None,
         materials=materials,
+        layers=layers,
+        ratio=ratio,
     )
 
 
@@ -150,22 +160,38 @@ def _meshed(file: BodyFile | CoarseMesh, function: Any, *arguments: Any, **limit
         raise MeshError(f"{file.name} {error}") from None
 
 
-def step_plan(scene: Scene, wanted: Sequence, *, size, graded_size, refinement, around) -> dict:
+def step_plan(
+    scene: Scene, wanted: Sequence, *, size, graded_size, refinement, around, layers=0
+) -> dict:
     """Return cuts and sizes of the mesh of a STEP part for :func:`solidgear.parts.step.mesh`,
-    those of the round part inside it; sizes as for :func:`solidgear.core.models.solid.body.solid`.
+    those of the round part inside it; sizes and layers as for
+    :func:`solidgear.core.models.solid.body.solid`.
     """
     plan = tetrahedra_plan(
-        scene, wanted, size=size, graded_size=graded_size, refinement=refinement, around=around
+        scene,
+        wanted,
+        size=size,
+        graded_size=graded_size,
+        refinement=refinement,
+        around=around,
+        layers=layers,
     )
-    assemblable(tetrahedra_of(scene, plan, refinement), 10)
-    corners = graded_corners(scene.outline, plan["planes"], plan["circles"])
+    assemblable(tetrahedra_of(scene, plan, refinement, layers=layers), 10)
+    corners = graded_corners(
+        scene.outline, plan["planes"], plan["circles"], plan.get("convex", True)
+    )
     graded = plan["graded_size"] or plan["size"]
     largest = scene.outline.largest_radius
     return {
         "circles": [(y, r) for y in plan["circles"] for r in _radii(scene, y)],
         "planes": [(y, BEYOND * largest) for y in plan["planes"]],
         "formulas": size_formulas(
-            scene.outline, corners, plan["size"], plan["graded_size"], None, plan["around"]
+            scene.outline,
+            corners,
+            plan["size"],
+            plan["graded_size"],
+            plan.get("reach"),
+            plan["around"],
         ),
         "size": plan["size"],
         "graded": graded,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from solidgear.core.elements import ELEMENTS
@@ -62,7 +63,9 @@ HEXAHEDRA: tuple[Level, ...] = (
     _hexahedra(3, 3, 0.5),
     _hexahedra(4, 4, 0.35),
 )
-TETRAHEDRA: tuple[Level, ...] = tuple({"refinement": r} for r in (0.45, 0.65, 0.95, 1.4, 2.0))
+#: refinements of tetrahedra with their layers
+_TETRAHEDRA = ((0.45, 1), (0.65, 2), (0.95, 2), (1.4, 3), (2.0, 3))
+TETRAHEDRA: tuple[Level, ...] = tuple({"refinement": r, "layers": k} for r, k in _TETRAHEDRA)
 LINEAR: tuple[Level, ...] = tuple({"refinement": r} for r in (0.6, 0.9, 1.35, 2.0))
 #: cells around of hexahedra that bend as a whole: eight are good to some 6e-4, and the error falls
 #: with the fourth power
@@ -112,6 +115,7 @@ class Solid(Volume):
 
     def rough_unknowns(self, scene: Shaft, options: Options) -> float:
         """Estimate the unknowns of tetrahedra."""
+        from solidgear.core.models.solid.body import layers_of
         from solidgear.core.models.solid.plan import tetrahedra_of, tetrahedra_plan
 
         full_options = self.defaults() | self.given(scene, options)
@@ -119,7 +123,10 @@ class Solid(Volume):
             return 0.0
         sizes = {n: full_options[n] for n in ("size", "graded_size", "refinement", "around")}
         plan = tetrahedra_plan(scene, self.wanted(scene, full_options), **sizes)
-        return PER_TETRAHEDRON * tetrahedra_of(scene, plan, full_options["refinement"])
+        layers = layers_of(full_options["element"], full_options["layers"])
+        return PER_TETRAHEDRON * tetrahedra_of(
+            scene, plan, full_options["refinement"], layers=layers
+        )
 
     def can_halve(self, scene: Shaft, options: Options) -> bool:
         """Return True where all cuts of a shaft have one mirror plane."""
@@ -160,10 +167,15 @@ class Solid(Volume):
         if body is not None and body.one_mesh:
             files = range(len(body.coarser), -1, -1)
             return Sequence(tuple({**full_options, "coarser": k} for k in files), False)
-        return self.meshes(full_options)
+        sequence = self.meshes(full_options)
+        if full_options.get("element") != "tet10" or _has_lines(scene, full_options):
+            return sequence
+        return replace(sequence, levels=tuple(_without_layers(k) for k in sequence.levels))
 
     def meshes(self, options: Options) -> Sequence:
-        """Return meshes with ever more layers towards corners, or plain refinement of tetrahedra."""
+        """Return meshes with ever more layers towards corners, tetrahedra that are smaller too, or
+        plain refinement of linear ones.
+        """
         if set(options) - set(FREE):
             return Sequence((dict(options),), True)
         element = self.checked({"element": options.get("element", "hex20")})["element"]
@@ -192,6 +204,25 @@ class Solid(Volume):
             *_elements("hexahedra", "uniform", even_hexahedra, full),
             *_elements("hexahedra", "graded", {}, full),
         ]
+
+
+def _has_lines(scene: Shaft, options: Options) -> bool:
+    """Return whether stress is singular along lines of a mesh of tetrahedra, other than the ends of
+    averaged seats.
+    """
+    from solidgear.core.bounds.sharpest import LOAD_EDGE, sharpest_exponent
+    from solidgear.core.scene.shaft import without_axis
+
+    # of a sector that repeats, edges are meshed by themselves
+    if without_axis(scene) or CYCLIC in {f.sort for f in features_of(scene)}:
+        return False
+    ties = options.get("attachments") or ()
+    rigid = [s.name for s in scene.stations if "rigid" in (*ties, s.attachment)]
+    return sharpest_exponent(scene, rigid) < LOAD_EDGE
+
+
+def _without_layers(level: Options) -> Level:
+    return {name: value for name, value in level.items() if name != "layers"}
 
 
 def _elements(family: str, grading: str, extra: dict, full: bool) -> list[Series]:

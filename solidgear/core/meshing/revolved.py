@@ -225,10 +225,10 @@ def _rounded_row(
 
 
 def graded_corners(
-    outline: Outline, planes: Iterable[float], circles: Sequence[float]
+    outline: Outline, planes: Iterable[float], circles: Sequence[float], convex: bool = True
 ) -> list[Point]:
     """Return points (y, radius) of the meridian to grade the size of elements at, m: circles on the
-    surface, and where the outline turns.
+    surface, and where the outline turns, only outwards unless `convex`.
 
     A fillet or chamfer leaves no corner, but for the two ends of a chamfer at a root.
     """
@@ -236,7 +236,15 @@ def graded_corners(
     slabs = _slabs(outline.segments, planes, tolerance)
     corners = [(y, r) for slab in slabs for r, y in _cuts(slab, circles, tolerance)]
     on_end = [y for y in circles if not _near(y, [y for y, _ in corners], tolerance)]
-    corners += _kinks(slabs, on_end, tolerance)
+    kinks = _kinks(slabs, on_end, tolerance)
+    if not convex:
+        kept = [(e.y, e.r) for e in outline.edges if e.angle > pi] + [(y, None) for y in on_end]
+        kinks = [
+            (y, r)
+            for y, r in kinks
+            if any(_near(y, [at], tolerance) and radius in (r, None) for at, radius in kept)
+        ]
+    corners += kinks
     sharp = [
         (y, r)
         for y, r in corners

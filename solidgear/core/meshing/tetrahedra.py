@@ -54,6 +54,7 @@ def tetrahedra(
     graded_size=None,
     reach=None,
     around=16,
+    convex=True,
     progress=None,
 ):
     """Mesh a shaft of revolution about y with curved ten-node tetrahedra; the same arrays for the
@@ -64,9 +65,9 @@ def tetrahedra(
     the outer surface is split along a circle (ends of seats), m. `size` is the target length of an
     element edge in the bulk, m, which gmsh keeps below about a tenth of the shaft's diagonal;
     `graded_size` that at `circles` and at every kink of the outline (shoulders, cone ends,
-    corners), the same everywhere when None; `reach` the distance over which the edge grows from the
-    one to the other, m, the local radius when None. `around` is the least number of elements around
-    a circle. Where a segment lacks volume or second moments, as edges that would fold are straight,
+    corners), of which `convex` ones may be left out, the same everywhere when None; `reach` the
+    distance over which the edge grows from the one to the other, m, the local radius when None.
+    `around` is the least number of elements around a circle. Where a segment lacks volume or second moments, as edges that would fold are straight,
     elements are made smaller at `graded_size`; `progress` is called as progress(fraction, message) between the stages.
     """
     segments = outline.segments
@@ -80,7 +81,7 @@ def tetrahedra(
         with Session(gmsh):
             report(0.0, "drawing the meridian")
             draw_revolved(gmsh, outline, planes, circles)
-            corners = graded_corners(outline, planes, circles)
+            corners = graded_corners(outline, planes, circles, convex)
             least = (graded_size or size) / finer
             formulas = size_formulas(outline, corners, size, least, reach, around)
             set_size(gmsh, formulas, size)

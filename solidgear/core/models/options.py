@@ -201,7 +201,9 @@ SOLID_OPTIONS = {
     "element": Option("element type", "choice", choices=tuple(ELEMENTS)),
     "relative_size": _RELATIVE,
     "size": _SIZE,
-    "layers": _layers("shoulders"),
+    "layers": replace(
+        _layers("shoulders, by default 4 of hexahedra and none of tetrahedra"), optional=True
+    ),
     "edge_layers": _layers("seat ends"),
     "radial_layers": _layers("surfaces, across the shaft"),
     "ratio": _RATIO,
@@ -249,7 +251,7 @@ def thick_enough(model: str, options: Mapping[str, Any]) -> None:
     if "ratio" not in options:
         return
     for name in ("layers", "radial_layers"):
-        count = options.get(name, 0)
+        count = options.get(name) or 0
         if options["ratio"] ** count < THINNEST_LAYER:
             most = int(math.log(THINNEST_LAYER) / math.log(options["ratio"]))
             raise SolidgearError(

@@ -16,6 +16,7 @@ from solidgear.core.meshing.quality import check_mesh
 from solidgear.core.models.kinds import CYCLIC
 from solidgear.core.models.size import Size, size_of_mesh
 from solidgear.core.models.solid.block import Facets, body_of, free_block, mesh_facts
+from solidgear.core.models.solid.lines import LayeredMesh, with_layers
 from solidgear.core.models.solid.mesh import SolidMesh, _isoparametric, basis_of
 from solidgear.core.models.solid.plan import tetrahedra_of
 from solidgear.core.models.solid.seat_faces import Seats
@@ -24,14 +25,18 @@ from solidgear.cuts.solid.halves import HalfDrawing, half_blocks
 from solidgear.cuts.solid.meshing import FeaturedMesh, featured_mesh, submesh
 
 if TYPE_CHECKING:
+    from skfem import MeshTet2
+
     from solidgear.core import Scene
 
 
-def meshed(scene, plan: dict, refinement: float, half: bool, edges: bool = False) -> FeaturedMesh:
-    """Mesh a scene with features; ``plan`` holds planes, circles and sizes, and ``edges`` asks for
-    smaller elements at the re-entrant edges of features.
+def meshed(
+    scene, plan: dict, refinement: float, half: bool, edges: bool = False, layers: int = 0
+) -> FeaturedMesh:
+    """Mesh a scene with features; ``plan`` holds planes, circles and sizes, ``edges`` asks for
+    smaller elements at the re-entrant edges of features, and there is to be room for `layers`.
     """
-    assemblable(tetrahedra_of(scene, plan, refinement, edges=edges), 10)
+    assemblable(tetrahedra_of(scene, plan, refinement, edges=edges, layers=layers), 10)
     return featured_mesh(
         scene.outline,
         resolved(scene),
@@ -42,9 +47,21 @@ def meshed(scene, plan: dict, refinement: float, half: bool, edges: bool = False
     )
 
 
-def cut_body(scene: Scene, wanted: Sequence, plan: dict, refinement: float, half: bool) -> Body:
-    """Build the free body of a scene with cuts; parameters as for :func:`meshed`."""
-    return featured_body(scene, wanted, meshed(scene, plan, refinement, half), refinement)
+def cut_body(
+    scene: Scene,
+    wanted: Sequence,
+    plan: dict,
+    refinement: float,
+    half: bool,
+    *,
+    layers: int,
+    ratio: float,
+) -> Body:
+    """Build the free body of a scene with cuts; parameters as for :func:`meshed`, and the ratio of the
+    layers.
+    """
+    cut_mesh = meshed(scene, plan, refinement, half, layers=layers)
+    return featured_body(scene, wanted, cut_mesh, refinement, layers=layers, ratio=ratio)
 
 
 def featured_body(
@@ -54,16 +71,15 @@ def featured_body(
     refinement: float,
     *,
     plain: bool = False,
+    layers: int = 0,
+    ratio: float = 1.0,
 ) -> Body:
     """Build the free body of a meshed scene with its features cut out or, `plain`, left in: two
-    blocks where there is a mirror plane, one where there is none; refuse a seat without faces and
-    inverted elements.
+    blocks where there is a mirror plane, one where there is none, with layers of a ratio towards
+    singular lines; refuse a seat without faces and inverted elements.
     """
-    keep = np.ones(len(cut_mesh.cut), bool) if plain else ~cut_mesh.cut
-    mesh = cut_mesh.mesh if plain else submesh(cut_mesh.mesh, keep)
-    quality = replace(check_mesh(mesh), geometry=cut_mesh.quality.geometry)
-    solid = _isoparametric(mesh, "tet10", cut_mesh.segment[keep])
-    facets = _facets(solid, scene)
+    split = _with_layers(scene, wanted, cut_mesh, plain, layers, ratio)
+    solid, quality, facets = split.mesh, split.quality, split.facets
     if cut_mesh.plane is None:
         blocks: tuple[Block, ...] = (free_block(solid, scene, wanted, facets),)
         drawing: SolidMesh | HalfDrawing = solid
@@ -82,19 +98,60 @@ def featured_body(
     return body_of(scene, wanted, blocks, facts, drawing)
 
 
-def cut_size_of(scene: Scene, plan: dict, refinement: float, half: bool) -> Size:
-    """Mesh a scene with cuts and count; parameters as for :func:`meshed`."""
-    return cut_size(meshed(scene, plan, refinement, half))
+def _with_layers(
+    scene: Scene,
+    wanted: Sequence,
+    cut_mesh: FeaturedMesh,
+    plain: bool,
+    layers: int,
+    ratio: float,
+) -> LayeredMesh:
+    """Return the mesh of a scene without its cuts or, `plain`, with them, and with layers."""
+    keep = np.ones(len(cut_mesh.cut), bool) if plain else ~cut_mesh.cut
+    mesh = cut_mesh.mesh if plain else submesh(cut_mesh.mesh, keep)
+    solid = _isoparametric(mesh, "tet10", cut_mesh.segment[keep])
+    return with_layers(
+        solid,
+        replace(check_mesh(mesh), geometry=cut_mesh.quality.geometry),
+        _facets(solid, scene),
+        wanted,
+        [segment.material for segment in scene.segments],
+        layers=layers,
+        ratio=ratio,
+        plane=cut_mesh.plane,
+    )
+
+
+def cut_size_of(
+    scene: Scene,
+    wanted: Sequence,
+    plan: dict,
+    refinement: float,
+    half: bool,
+    *,
+    layers: int,
+    ratio: float,
+) -> Size:
+    """Mesh a scene with cuts and count; parameters as for :func:`cut_body`."""
+    cut_mesh = meshed(scene, plan, refinement, half, layers=layers)
+    if not layers:
+        return cut_size(cut_mesh)
+    split = _with_layers(scene, wanted, cut_mesh, False, layers, ratio)
+    return _size_of(split.mesh.mesh, cut_mesh.plane)
 
 
 def cut_size(cut_mesh: FeaturedMesh) -> Size:
     """Count a mesh without its cuts."""
-    mesh = submesh(cut_mesh.mesh, ~cut_mesh.cut)
-    if cut_mesh.plane is None:
+    return _size_of(submesh(cut_mesh.mesh, ~cut_mesh.cut), cut_mesh.plane)
+
+
+def _size_of(mesh: MeshTet2, plane: int | None) -> Size:
+    """Count a mesh, of a half where there is a plane."""
+    if plane is None:
         return size_of_mesh(mesh, basis_of("tet10"))
     halves = size_of_mesh(mesh, basis_of("tet10"), parts=2)
     # of a node on the mirror plane one half has one component and the other two
-    on_plane = int((np.abs(mesh.doflocs[cut_mesh.plane]) < 1e-9).sum())
+    on_plane = int((np.abs(mesh.doflocs[plane]) < 1e-9).sum())
     return replace(halves, unknowns=halves.unknowns - 3 * on_plane)
 
 

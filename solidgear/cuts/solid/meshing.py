@@ -82,6 +82,8 @@ def featured_mesh(
     refinement: float,
     half: bool = True,
     edges: bool = False,
+    reach: float | None = None,
+    convex: bool = True,
 ) -> FeaturedMesh:
     """Mesh a shaft with keyways, flats and cross holes, and beside them teeth, splines and bolt
     circles, with which there are no halves; half of it where features have a mirror plane, if
@@ -117,9 +119,9 @@ def featured_mesh(
                 sector_drawing.draw_toothed(gmsh, outline, around_axis, planes, circles)
             else:
                 draw_revolved(gmsh, outline, planes, circles, start, turn)
-            corners = graded_corners(outline, planes, circles)
+            corners = graded_corners(outline, planes, circles, convex)
             pieces = _cut(gmsh, features, radii)
-            formulas = size_formulas(outline, corners, size, graded, None, around)
+            formulas = size_formulas(outline, corners, size, graded, reach, around)
             formulas += sizes_around
             formulas += [feature_size(f, radii[f.segment], refinement, finer)[0] for f in features]
             if edges:

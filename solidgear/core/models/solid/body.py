@@ -7,7 +7,7 @@ blocks from one Gram matrix of basis gradients per element.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from solidgear.core.body import Body, Reflection
 from solidgear.core.elements import ELEMENTS
@@ -20,11 +20,19 @@ from solidgear.core.meshing.tetrahedra import tetrahedra
 from solidgear.core.models.kinds import BODIES, CUTS, CYCLIC, PARTS
 from solidgear.core.models.options import thick_enough
 from solidgear.core.models.solid.block import body_of, free_block, mesh_facts, mirrored, seat_facets
-from solidgear.core.models.solid.mesh import _isoparametric
+from solidgear.core.models.solid.lines import with_layers
+from solidgear.core.models.solid.mesh import SolidMesh, _isoparametric
 from solidgear.core.models.solid.plan import hexahedra_layout, tetrahedra_of, tetrahedra_plan
 from solidgear.core.registry import addition
 from solidgear.core.scene.closed_form import moments_of_parts, volume_of
 from solidgear.core.scene.shaft import attached_stations, feature_labels, resolved, without_axis
+
+if TYPE_CHECKING:
+    from solidgear.core.meshing.quality import MeshQuality
+    from solidgear.core.models.solid.block import Facets
+
+#: layers of hexahedra unless others are asked for
+LAYERS = 4
 
 
 def solid(
@@ -33,7 +41,7 @@ def solid(
     element: str = "hex20",
     relative_size: float = 0.4,
     size: float | None = None,
-    layers: int = 4,
+    layers: int | None = None,
     edge_layers: int = 1,
     radial_layers: int = 4,
     ratio: float = 0.35,
@@ -52,13 +60,14 @@ def solid(
     largest outer radius, unless ``size`` is given, and at shoulders and seat ends a quarter of
     that; there are at least 16 of these around. The defaults of hexahedra give 1.4e-3 in stiffness at
     37k unknowns on the overhung pinion; 1.2e-2, 6e-3 and 3e-3 at 5k, 7k and 14k come of 1, 2 and 3
-    layers of both kinds, none at seat ends and 8 cells around. A part from a file is solved whole.
-    Layers thinner than digits and cells around that do not fit are refused.
+    layers of both kinds, none at seat ends and 8 cells around. Ten-node tetrahedra have layers where
+    these are asked for: towards concave edges, ends of rigid seats and joints of materials. A part from
+    a file is solved whole. Layers thinner than digits and cells around that do not fit are refused.
     """
     grading = {
         "relative_size": relative_size,
         "size": size,
-        "layers": layers,
+        "layers": layers_of(element, layers),
         "edge_layers": edge_layers,
         "radial_layers": radial_layers,
         "ratio": ratio,
@@ -83,27 +92,35 @@ def solid(
             )
         sizes: dict[str, Any] = {"size": size, "graded_size": graded_size}
         sizes["refinement"] = refinement
+        towards = {"layers": layers or 0, "ratio": ratio}
         if all(f.sort in (PARTS, BODIES) for f in features):
             part_body = addition("solid body", PARTS)
-            return part_body(scene, wanted, around=around, coarser=coarser, **sizes)
+            return part_body(scene, wanted, around=around, coarser=coarser, **towards, **sizes)
         if all(f.sort == CYCLIC for f in features):
             return addition("solid body", CYCLIC)(scene, wanted, **sizes)
 
-        plan = tetrahedra_plan(scene, wanted, around=around, **sizes)
-        return addition("solid body", CUTS)(scene, wanted, plan, refinement, half)
+        plan = tetrahedra_plan(scene, wanted, around=around, layers=layers or 0, **sizes)
+        return addition("solid body", CUTS)(scene, wanted, plan, refinement, half, **towards)
     tet = element.startswith("tet")
+    reflections: tuple[Reflection, ...] = ()
     if tet:
-        mesh, segment, quality = _tets(
-            scene, wanted, element, size, graded_size, refinement, around
+        body_mesh, facets, quality = tetrahedra_with_layers(
+            scene,
+            wanted,
+            element,
+            size=size,
+            graded_size=graded_size,
+            refinement=refinement,
+            around=around,
+            layers=layers_of(element, layers),
+            ratio=ratio,
         )
     else:
         mesh, segment, quality = _hexes(scene, wanted, grading)
-    body_mesh = _isoparametric(mesh, element, segment)
-    reflections: tuple[Reflection, ...] = ()
-    if not tet:
+        body_mesh = _isoparametric(mesh, element, segment)
         nodes, reflections = mirrored(body_mesh.nodes, 1e-7 * scene.length)
         body_mesh = replace(body_mesh, nodes=nodes)
-    facets = seat_facets(body_mesh, scene.segments, 1e-7 * scene.length)
+        facets = seat_facets(body_mesh, scene.segments, 1e-7 * scene.length)
     block = free_block(body_mesh, scene, wanted, facets, reflections=reflections)
     exact = moments_of_parts(scene.outline)
     facts = {
@@ -123,11 +140,42 @@ def _hexes(scene, wanted, grading):
     return mesh, segment, check_mesh(mesh, volume=volume_of(scene.outline), rtol=1e-3)
 
 
-def _tets(scene, wanted, element, size, graded_size, refinement, around):
+def layers_of(element: str, layers: int | None) -> int:
+    """Return the layers of an element type: ten-node tetrahedra and hexahedra have those asked for."""
+    if element == "tet4":
+        return 0
+    if layers is None:
+        return 0 if element == "tet10" else LAYERS
+    return layers
+
+
+def tetrahedra_with_layers(
+    scene, wanted, element, *, layers, ratio, **sizes
+) -> tuple[SolidMesh, Facets, MeshQuality]:
+    """Mesh a body of revolution with tetrahedra and their layers; return with it the function that gives
+    the facets of stations.
+    """
+    mesh, segment, quality = _tets(scene, wanted, element, layers, **sizes)
+    plain = _isoparametric(mesh, element, segment)
+    facets = seat_facets(plain, scene.segments, 1e-7 * scene.length)
+    if not layers:
+        return plain, facets, quality
+    materials = [s.material for s in scene.segments]
+    split = with_layers(plain, quality, facets, wanted, materials, layers=layers, ratio=ratio)
+    return split.mesh, split.facets, split.quality
+
+
+def _tets(scene, wanted, element, layers, *, size, graded_size, refinement, around):
     plan = tetrahedra_plan(
-        scene, wanted, size=size, graded_size=graded_size, refinement=refinement, around=around
+        scene,
+        wanted,
+        size=size,
+        graded_size=graded_size,
+        refinement=refinement,
+        around=around,
+        layers=layers,
     )
-    assemblable(tetrahedra_of(scene, plan, refinement), 10)
+    assemblable(tetrahedra_of(scene, plan, refinement, layers=layers), 10)
     curved = tetrahedra(scene.outline, **plan)
     if ELEMENTS[element].order == 2:
         return curved.mesh, curved.segment, curved.quality

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import pi
+
 from solidgear.core.meshing.element_size import rough_cells
 from solidgear.core.meshing.grading import Grading
 from solidgear.core.meshing.layout import layout
@@ -9,6 +11,9 @@ from solidgear.core.models.kinds import CUTS
 from solidgear.core.models.limits import countable
 from solidgear.core.registry import addition
 from solidgear.core.scene.shaft import resolved
+
+#: tetrahedra that a layer adds around each edge on a line
+PER_LINE = 35.0
 
 
 def hexahedra_layout(
@@ -45,16 +50,22 @@ def hexahedra_layout(
     return layout(scene, grading, attachments), turns_of(around, refinement)
 
 
-def tetrahedra_of(scene, plan: dict, refinement: float, *, edges: bool = False) -> float:
+def tetrahedra_of(
+    scene, plan: dict, refinement: float, *, edges: bool = False, layers: int = 0
+) -> float:
     """Estimate the number of tetrahedra in a scene with its cuts; ``plan`` is that of
-    :func:`tetrahedra_plan`, and ``edges`` asks for smaller ones at re-entrant edges.
+    :func:`tetrahedra_plan`, ``edges`` asks for smaller ones at re-entrant edges, and `layers` are those
+    towards concave edges.
     """
     radii = {s.name: s.outer0 for s in scene.segments}
     cuts = [f for f in resolved(scene) if f.sort == CUTS]
     fine_lines = addition("question of features", "fine lines")
     fine = [fine_lines(f, radii[f.segment], refinement, edges) for f in cuts]
     sizes = {name: plan[name] for name in ("circles", "size", "graded_size")}
-    return rough_cells(scene.outline, fine=fine, **sizes)
+    graded = plan["graded_size"] or plan["size"]
+    lines = sum(2 * pi * edge.r / graded for edge in scene.outline.edges if edge.angle > pi)
+    lines += sum(length / least for length, least, _ in fine)
+    return rough_cells(scene.outline, fine=fine, **sizes) + layers * PER_LINE * lines
 
 
 def usual_size(scene) -> float:
@@ -67,9 +78,14 @@ def turns_of(around: int, refinement: float) -> int:
     return max(8, 4 * int(round(around * refinement / 4)))
 
 
-def tetrahedra_plan(scene, wanted, *, size, graded_size, refinement, around) -> dict:
+def tetrahedra_plan(
+    scene, wanted, *, size, graded_size, refinement, around, layers: int = 0
+) -> dict:
     """Return the arguments of :func:`~solidgear.core.meshing.tetrahedra.tetrahedra` for the stations
     ``wanted`` with their attachments.
+
+    What layers leave of an error lies around them, where elements that grow fast from a small radius to
+    a size by the largest one are far too large; and at convex edges there is none to be small for.
     """
     size = countable("solid", scene, size or usual_size(scene), refinement) / refinement
     graded_size = (graded_size / refinement) if graded_size else size / 4
@@ -77,10 +93,13 @@ def tetrahedra_plan(scene, wanted, *, size, graded_size, refinement, around) -> 
     circles = sorted({y for s, a in wanted if a != "section" for y in (s.lo, s.hi)})
     # Meshes of one sequence are similar only if the circumference is refined with the rest.
     turns = max(8, int(round(max(16, around) * refinement)))
-    return {
+    plan = {
         "planes": planes,
         "circles": circles,
         "size": size,
         "graded_size": None if graded_size >= size else graded_size,
         "around": turns,
     }
+    if layers:
+        plan |= {"reach": scene.outline.largest_radius, "convex": False}
+    return plan

@@ -9,7 +9,7 @@ from solidgear.core.kernel.room import assemblable
 from solidgear.core.meshing.hexahedra import straight_hexahedra
 from solidgear.core.models.kinds import BODIES, CUTS, CYCLIC
 from solidgear.core.models.size import Size, coupled, size_of_mesh
-from solidgear.core.models.solid.body import _tets
+from solidgear.core.models.solid.body import layers_of, tetrahedra_with_layers
 from solidgear.core.models.solid.mesh import basis_of
 from solidgear.core.models.solid.plan import hexahedra_layout, tetrahedra_plan
 from solidgear.core.registry import addition
@@ -29,6 +29,8 @@ def solid_size(
     around: int,
     half: bool,
     coarser: int,
+    layers: int | None,
+    ratio: float,
     attachments: tuple[str, ...] | None,
     **grading: Any,
 ) -> Size:
@@ -51,11 +53,15 @@ def solid_size(
         mesh, _, _ = addition("solid mesh", CYCLIC)(scene, wanted, **sizes)
         return size_of_mesh(mesh, basis_of("tet10"))
     if CUTS in sorts:
-        plan = tetrahedra_plan(scene, wanted, around=around, **sizes)
-        return addition("solid size", CUTS)(scene, plan, refinement, half)
+        plan = tetrahedra_plan(scene, wanted, around=around, layers=layers or 0, **sizes)
+        return addition("solid size", CUTS)(
+            scene, wanted, plan, refinement, half, layers=layers or 0, ratio=ratio
+        )
+    grading |= {"layers": layers_of(element, layers), "ratio": ratio}
     if element.startswith("tet"):
-        mesh, _, _ = _tets(scene, wanted, element, around=around, **sizes)
-        return size_of_mesh(mesh, basis_of(element))
+        sizes |= {"around": around, "layers": grading["layers"], "ratio": ratio}
+        solid_mesh, _, _ = tetrahedra_with_layers(scene, wanted, element, **sizes)
+        return size_of_mesh(solid_mesh.mesh, basis_of(element))
     grading |= {"around": around, "size": size, "refinement": refinement}
     plan, turns = hexahedra_layout(scene, tuple(dict.fromkeys(a for _, a in wanted)), **grading)
     assemblable(plan.cells * turns, 20)
