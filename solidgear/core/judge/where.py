@@ -18,7 +18,7 @@ from solidgear.core.body import Body, Supports, as_supports
 from solidgear.core.elements import ELEMENTS
 from solidgear.core.errors import SolidgearError
 from solidgear.core.judge.bars import LEAST, ErrorBar
-from solidgear.core.judge.bounded import NOTHING_BEYOND, bounded, has_bounds
+from solidgear.core.judge.bounded import NOTHING_BEYOND, bounded
 from solidgear.core.judge.cell_places import CellPlaces, Share
 from solidgear.core.judge.quantities import usual
 from solidgear.core.judge.record import PlaceRecord, WhereRecord
@@ -30,7 +30,6 @@ from solidgear.core.ladder.registry import LADDER
 from solidgear.core.machine.memory import one_run
 from solidgear.core.machine.threads import pinned
 from solidgear.core.quantity import Quantity
-from solidgear.core.registry import addition
 from solidgear.core.solve.statics import SOLVED, flexibility
 
 if TYPE_CHECKING:
@@ -71,7 +70,7 @@ def map_error(
     start = time.perf_counter()
     with one_run():
         body, supports = build(scene, model, **options), as_supports(scene)
-        if not has_bounds(body) and addition("bounds", model) is None:
+        if not LADDER[model].bars_by:
             raise SolidgearError(f"the {LADDER[model].title} has no error bar by cells")
         error_bar, shares = _shares(scene, body, supports, quantity)
         # a body with several attachments answers with the first

@@ -30,7 +30,15 @@ def plan_of(scene, refinement: float, attachments: tuple[str, ...] | None) -> di
     :func:`solidgear.cuts.corrected.body.corrected`.
     """
     wanted = [*attached_stations(scene.stations, attachments)]
-    return tetrahedra_plan(scene, wanted, refinement=refinement, around=12, **sizes(scene))
+    by_name = sizes(scene)
+    return tetrahedra_plan(
+        scene,
+        wanted,
+        size=by_name["size"],
+        graded_size=by_name["graded_size"],
+        refinement=refinement,
+        around=12,
+    )
 
 
 def meshed_cuts(scene, refinement: float, attachments: tuple[str, ...] | None) -> FeaturedMesh:
