@@ -277,8 +277,8 @@ MUTATIONS = (
     Mutation(
         "error bars know nothing of a mesh that is not the body",
         "solidgear/core/judge/bounded.py",
-        "_wider",
-        "bar.width + geometry",
+        "bounded",
+        "bar.width + share",
         "bar.width",
         "tests/test_mesh_geometry.py::test_statics_have_all_of_it_and_frequencies_half",
     ),
