@@ -206,7 +206,7 @@ class Solid(Volume):
         ]
 
 
-def _has_lines(scene: Shaft, options: Options) -> bool:
+def _has_lines(scene: Any, options: Options) -> bool:
     """Return whether stress is singular along lines of a mesh of tetrahedra, other than the ends of
     averaged seats.
     """
