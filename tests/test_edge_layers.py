@@ -203,3 +203,33 @@ def test_layers_are_counted_before_a_mesh_is_made():
     more = [model.rough_unknowns(scene, options | {"layers": k}) for k in (0, 1, 2)]
     assert more[2] - more[1] == pytest.approx(more[1] - more[0])
     assert more[1] > more[0]
+
+
+def test_a_step_part_has_layers():
+    scene = sg.load("geometry/shaft_step.toml")
+    coarse, fine = (
+        sg.build(scene, "solid", element="tet10", refinement=0.2, layers=k) for k in (1, 2)
+    )
+    assert fine.mesh["elements"] > 1.1 * coarse.mesh["elements"]
+    assert fine.mesh["volume"] == pytest.approx(coarse.mesh["volume"], rel=1e-12)
+    seats = [[port.name for port in body.ports] for body in (coarse, fine)]
+    assert seats[0] == seats[1] == [station.name for station in scene.stations]
+
+
+def test_meshes_of_a_list_have_layers_where_there_are_lines():
+    model = LADDER["solid"]
+
+    def layers(scene, **options):
+        levels = model.meshes_of(scene, {"element": "tet10", **options}).levels
+        return [level.get("layers", 0) for level in levels]
+
+    smooth = Scene.from_parts([Segment.cylinder("rod", length=0.1, diameter=0.04)])
+    assert set(layers(smooth)) == {0}
+    assert layers(stepped()) == sorted(layers(stepped())) and min(layers(stepped())) > 0
+    seated = Scene.from_parts(
+        smooth.segments, port=Port(name="p", y=0.05, lo=0.04, hi=0.06, attachment="rigid")
+    )
+    assert min(layers(seated)) > 0
+    assert layers(stepped(), refinement=0.5) == [0]  # one that was asked for stays as it is
+    assert set(layers(sg.load("geometry/pinion_toothed.toml"))) == {0}
+    assert min(layers(sg.load("geometry/shaft_step.toml"))) > 0

@@ -315,6 +315,22 @@ MUTATIONS = (
         "tests/test_mesh_geometry.py::test_a_mesh_far_from_the_shaft_is_refused",
     ),
     Mutation(
+        "layers on straight sides",
+        "solidgear/core/meshing/edge_layers.py",
+        "_mapped",
+        "4 * a[start] * a[end]",
+        "0 * a[start] * a[end]",
+        "tests/test_edge_layers.py::test_layers_fill_the_same_body[1]",
+    ),
+    Mutation(
+        "faces of layers cut from any vertex",
+        "solidgear/core/meshing/edge_layers.py",
+        "Polyhedra.in_tetrahedra",
+        "cells.corners[rows].argmin(axis=0)",
+        "0 * cells.corners[0]",
+        "tests/test_edge_layers.py::test_layers_fill_the_same_body[1]",
+    ),
+    Mutation(
         "segments are compared by volume alone",
         "solidgear/core/meshing/geometry.py",
         "misshapen",

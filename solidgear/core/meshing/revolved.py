@@ -228,7 +228,7 @@ def graded_corners(
     outline: Outline, planes: Iterable[float], circles: Sequence[float], convex: bool = True
 ) -> list[Point]:
     """Return points (y, radius) of the meridian to grade the size of elements at, m: circles on the
-    surface, and where the outline turns, only outwards unless `convex`.
+    surface, and where the outline turns, unless `convex` only inwards.
 
     A fillet or chamfer leaves no corner, but for the two ends of a chamfer at a root.
     """
@@ -238,11 +238,10 @@ def graded_corners(
     on_end = [y for y in circles if not _near(y, [y for y, _ in corners], tolerance)]
     kinks = _kinks(slabs, on_end, tolerance)
     if not convex:
-        kept = [(e.y, e.r) for e in outline.edges if e.angle > pi] + [(y, None) for y in on_end]
         kinks = [
             (y, r)
             for y, r in kinks
-            if any(_near(y, [at], tolerance) and radius in (r, None) for at, radius in kept)
+            if _near(y, on_end, tolerance) or _turns_inwards(y, r, outline, tolerance)
         ]
     corners += kinks
     sharp = [
@@ -252,6 +251,14 @@ def graded_corners(
     ]
     chamfered = [c for c in outline.corners if c.root and c.kind == "chamfer"]
     return sharp + [(y, r) for c in chamfered for r, y in (c.on_face, c.on_cylinder)]
+
+
+def _turns_inwards(y: float, r: float, outline: Outline, tolerance: float) -> bool:
+    """Return whether the material around a point of the outline takes more than half a turn."""
+    return any(
+        edge.angle > pi and _near(y, [edge.y], tolerance) and _near(r, [edge.r], tolerance)
+        for edge in outline.edges
+    )
 
 
 def _kinks(slabs: Sequence[Frustum], circles: Sequence[float], tolerance: float) -> list[Point]:

@@ -78,9 +78,7 @@ def turns_of(around: int, refinement: float) -> int:
     return max(8, 4 * int(round(around * refinement / 4)))
 
 
-def tetrahedra_plan(
-    scene, wanted, *, size, graded_size, refinement, around, layers: int = 0
-) -> dict:
+def tetrahedra_plan(scene, wanted, *, size, graded_size, refinement, around, layers=0) -> dict:
     """Return the arguments of :func:`~solidgear.core.meshing.tetrahedra.tetrahedra` for the stations
     ``wanted`` with their attachments.
 
