@@ -162,6 +162,21 @@ def test_meshes_of_a_body_have_bars_of_their_own(meshed):
     assert settled.reached and scene.body.edges == pytest.approx(EDGES)
 
 
+def test_bars_of_many_near_modes_hold_and_are_no_wider_than_those_of_few(meshed):
+    """Of a spectrum as dense as this many modes lie within 5 % of the next one."""
+    scene = sg.load(free(meshed, "2.vtu"))
+    body, exact = sg.build(scene, "solid"), by_polynomials(12)
+    bars = []
+    for count in (10, 24):
+        found = sg.modes(body, scene, n=count)
+        bars.append(mode_bars(scene, body, as_supports(scene), found))
+        elastic = [mode for mode in found.modes if mode.frequency_hz > 0]
+        over_error = [bars[-1][m.name] / (1 - hz / m.frequency_hz) for m, hz in zip(elastic, exact)]
+        assert min(over_error) > 1 and np.median(over_error) < 4
+    few, many = bars
+    assert all(many[name] < 1.5 * few[name] for name in few)
+
+
 def test_a_single_mesh_of_a_body_has_bars_and_the_way_to_narrower_ones(meshed, run):
     code, out, _ = run("modes", free(meshed, "4.vtu"), "-n", 3, "--tol", "0.001")
     assert code == 3 and "mode 3" in out and "Largest error bar" in out

@@ -307,6 +307,14 @@ MUTATIONS = (
         "tests/test_bounds_solid.py::test_bars_hold_and_are_hardly_wider_than_errors",
     ),
     Mutation(
+        "bounds of 3D solids: the highest mode of a coarse mesh is believed",
+        "solidgear/core/bounds/solid.py",
+        "_lowest",
+        "max(1 - off, 0.0)",
+        "1.0",
+        "tests/test_bars_of_a_mesh.py::test_a_mesh_of_the_fewest_cells_has_bars_that_hold",
+    ),
+    Mutation(
         "bounds of 3D solids: a mesh of another shaft is not refused",
         "solidgear/core/meshing/geometry.py",
         "refuse_misshapen",
