@@ -14,7 +14,7 @@ from solidgear import STEEL, Bearing, Material, Port, Scene, Segment
 from solidgear.core.body import as_supports
 from solidgear.core.bounds import solid as bounds_solid
 from solidgear.core.bounds.safety import LOCAL
-from solidgear.core.bounds.solid import enriched_errors, solid_bounds
+from solidgear.core.bounds.solid import _converged, _Search, enriched_errors, solid_bounds
 from solidgear.core.judge.bounded import _between, bounded
 from solidgear.core.judge.quantities import size
 from solidgear.core.judge.solving import Statics, numbers, search_modes
@@ -241,6 +241,21 @@ def test_a_coupling_that_only_rounding_moves_has_a_bar_of_nothing():
     near = dict(zip(names, (1.0 + 2 * ulp, 1.0, 0.5)))
     bar = _between(names[2], stiff, far, stiff, near, 0.0)
     assert 0 <= bar.about_middle < 1e-8 and 0 <= bar.width < 1e-8
+
+
+def test_columns_that_were_found_long_ago_keep_none_waiting():
+    """Gains of the first ones are rounding when the last one is found, and rise as often as they fall."""
+    size = 80
+    chain = sp.diags([2.0, -1.0, -1.0], [0, 1, -1], (size, size)).tocsr()
+    own = np.linalg.eigh(chain.toarray())[1]
+    loads = np.column_stack([own[:, k : k + 3].sum(axis=1) for k in range(0, size - 3, 3)])
+    slow = np.eye(size)[:, :1]
+    search = _Search(chain.__matmul__, np.ones(size), np.hstack([loads, slow]))
+    steps = _converged([search])
+    alone = _converged([_Search(chain.__matmul__, np.ones(size), slow)])
+    assert steps < alone + 3
+    exact = np.einsum("ij,ij->j", loads, np.linalg.solve(chain.toarray(), loads))
+    assert search.energy[:-1] == pytest.approx(exact, rel=1e-9)
 
 
 def test_half_a_part_has_the_bars_of_the_whole():

@@ -67,6 +67,8 @@ ROUND = 0.97
 CONVEX, PATCH = 1.5, 1.0
 #: steps after which they have failed
 MOST_STEPS = 200
+#: share of an energy below which gains are rounding, and fall no more
+ROUNDING = 1e-12
 #: vectors of every column that are held while they go on
 COPIES = 8
 #: way out of an estimate that finds no room
@@ -502,8 +504,10 @@ class _Search:
         """(k,) energy that is still missing, if gains go on to fall as they have."""
         if len(self._gains) < 3:
             return np.full(self.energy.shape, np.inf)
-        left = np.sqrt(ratio(self._gains[-1], self._gains[-3]))
-        return np.where(left < 1, self._gains[-1] * left / np.maximum(1 - left, 1e-9), np.inf)
+        gain = self._gains[-1]
+        left = np.sqrt(ratio(gain, self._gains[-3]))
+        missing = np.where(left < 1, gain * left / np.maximum(1 - left, 1e-9), np.inf)
+        return np.where(gain > ROUNDING * self.energy, missing, 0.0)
 
     @property
     def converged(self) -> bool:

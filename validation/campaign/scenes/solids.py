@@ -200,7 +200,8 @@ def block_part(seed: int, folder: Path) -> Part:
     """A block held by one of its faces, thin by every other seed, of bricks and of tetrahedra."""
     dice = random.Random(seed)
     x, y, z = (dice.uniform(10, 20) for _ in range(3))
-    edges = [x / 1e3, 2 * y / 1e3, z / (dice.uniform(6, 12) if seed % 2 else 1.0) / 1e3]
+    thin = dice.uniform(6, 12) if seed % 2 else 1.0
+    edges = [x / 1e3, 2 * y / 1e3, max(z / thin, 1.2) / 1e3]
     material, held = _material(dice), _held(dice, "foot", "eye")
     counts = [max(1, round((edge / min(edges)) ** 0.5)) for edge in edges]
     patches = {"foot": lambda m: m[1] < 1e-9, "eye": lambda m: m[1] > edges[1] - 1e-9}
