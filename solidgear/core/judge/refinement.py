@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
 Progress = Callable[[str], None]
 #: reasons for no narrower one
-NO_FINER = "no finer mesh is calibrated"
+NO_FINER = "there is no finer mesh in the list"
 FINER_FILE = "list a finer mesh beside those of the file"
 
 #: a bar has one side where the solver has left no more than this share of it
@@ -230,7 +230,10 @@ class Refinement:
     def no_further_mesh(self) -> str:
         """Return the reason why there is no further mesh."""
         if not self.model.follows:
-            return FINER_FILE if self.of_files else NO_FINER
+            reason = FINER_FILE if self.of_files else NO_FINER
+            if self.last is None or self.last.score is None:
+                return reason
+            return f"{reason}; most of the error bar comes from {self.worst_place()}"
         count = len(self.levels)
         tried = "one mesh" if count == 1 else f"{count} meshes"
         return f"{tried} was too coarse; most of the error bar comes from {self.worst_place()}"
