@@ -14,7 +14,7 @@ from solidgear import STEEL, Bearing, Material, Port, Scene, Segment
 from solidgear.core.body import as_supports
 from solidgear.core.bounds import solid as bounds_solid
 from solidgear.core.bounds.safety import LOCAL
-from solidgear.core.bounds.solid import _converged, _Search, enriched_errors, solid_bounds
+from solidgear.core.bounds.solid import NoBounds, _converged, _Search, enriched_errors, solid_bounds
 from solidgear.core.judge.bounded import _between, bounded
 from solidgear.core.judge.quantities import size
 from solidgear.core.judge.solving import Statics, numbers, search_modes
@@ -266,3 +266,30 @@ def test_half_a_part_has_the_bars_of_the_whole():
         widths.append([bar.width for _, bar, _ in found.values()])
     # other meshes: their errors differ by a quarter
     assert np.allclose(*widths, rtol=0.4)
+
+
+def bush(thickness):
+    """Two steel bars with a layer of rubber between them."""
+    parts, y = [], 0.0
+    for name, length, material in (
+        ("a", 0.03, STEEL),
+        ("layer", thickness, RUBBER),
+        ("b", 0.03, STEEL),
+    ):
+        parts.append(Segment.cylinder(name, y0=y, length=length, diameter=0.04, material=material))
+        y += length
+    return Scene.from_parts(parts, port=Port(y=0.008, lo=0.003, hi=0.013), bearings=[])
+
+
+def test_a_bonded_layer_of_rubber_one_cell_thick_has_no_bar():
+    """Its frequencies had bars of 0.02 to 0.4 of their errors: it locks in one order more too."""
+    coarse = {"element": "hex20", "layers": 0, "radial_layers": 0, "edge_layers": 0, "around": 8}
+    scene = bush(0.004)
+    body = sg.build(scene, "solid", relative_size=1.5, **coarse)
+    with pytest.raises(NoBounds, match="'layer', of Poisson's ratio 0.499") as refused:
+        solid_bounds(scene, body, statics=False)
+    assert refused.value.finer_helps
+    # a thick piece has several cells
+    scene = bush(0.06)
+    body = sg.build(scene, "solid", relative_size=1.5, **coarse)
+    assert solid_bounds(scene, body, statics=False).share > 1

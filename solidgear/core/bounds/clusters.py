@@ -77,6 +77,8 @@ def lower_ends(
     number = np.searchsorted(ends_of_runs, np.arange(len(values)), side="right")
     shared = np.where(np.equal.outer(number, number), products, 0.0)
     ends = np.full(len(values), np.nan)
+    if not highest > 0:
+        return ends
     for k, gap in enumerate(1 - values / highest):
         if gap < BESIDE:
             continue

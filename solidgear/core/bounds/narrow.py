@@ -43,7 +43,7 @@ def narrow_share(scene: Scene, body: Body, order: int) -> float:
     a body on a mesh of some order; one where nothing is known of its seats.
     """
     # half a part is drawn from the mesh of its half
-    mesh = next((m for m in _meshes(body) if isinstance(m, SolidMesh)), None)
+    mesh = next((m for m in meshes(body) if isinstance(m, SolidMesh)), None)
     if without_axis(scene) or mesh is None:
         return 1.0
     seats = _seats(scene, body, mesh)
@@ -84,7 +84,7 @@ def share_of_gap(order: int, slimness: float) -> float:
     return (1 + taken * stiffer) / (1 - taken)
 
 
-def _meshes(body: Body) -> tuple[object, object]:
+def meshes(body: Body) -> tuple[object, object]:
     """Return the geometry of a body, and the mesh that it may have."""
     return body.geometry, getattr(body.geometry, "mesh", None)
 

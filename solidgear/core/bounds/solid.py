@@ -36,7 +36,7 @@ from solidgear.core.bounds.harmonic import (
     shares_blocks,
     with_neighbours,
 )
-from solidgear.core.bounds.narrow import RIGID, narrow_share
+from solidgear.core.bounds.narrow import RIGID, meshes, narrow_share
 from solidgear.core.bounds.pieces import Part, Piece, independent, pieces_of
 from solidgear.core.bounds.safety import SLOWER
 from solidgear.core.bounds.sharpest import sharpest_exponent
@@ -65,6 +65,9 @@ ROUND = 0.97
 #: exponents of a body without an axis: at no concave edge, and at the end of a patch that a load on
 #: average acts on
 CONVEX, PATCH = 1.5, 1.0
+#: Poisson's ratio from which on a bonded layer one cell thick locks, and share of it that most of its
+#: cells reach across
+LOCKING, ACROSS = 0.45, 0.75
 #: steps after which they have failed
 MOST_STEPS = 200
 #: share of an energy below which gains are rounding, and fall no more
@@ -76,7 +79,11 @@ COARSER = "use a coarser mesh"
 
 
 class NoBounds(SolidgearError):
-    """A 3D body whose error cannot be bounded."""
+    """A 3D body whose error cannot be bounded, on a finer mesh perhaps."""
+
+    def __init__(self, reason: str, finer_helps: bool = False):
+        super().__init__(reason)
+        self.finer_helps = finer_helps
 
 
 @dataclass
@@ -137,6 +144,7 @@ def solid_bounds(
     :func:`solidgear.core.bounds.harmonic.harmonic_bounds`.
     """
     _refuse_cut_seats(scene, body)
+    _refuse_locked_layers(scene, body)
     share = share_of_error(scene, body)
     size = 6 * len(body.ports)
     reached = np.zeros((size, size))
@@ -196,6 +204,29 @@ def _refuse_cut_seats(scene: Scene, body: Body) -> None:
             raise NoBounds(
                 f"the rigid seat of {station.name!r} ends between nodes of the mesh, which hold less of "
                 "it than it is long: put nodes at its ends, or use attachment 'average'"
+            )
+
+
+def _refuse_locked_layers(scene: Scene, body: Body) -> None:
+    """Refuse a mesh with one cell across a bonded layer that hardly changes its volume: it locks, and in
+    one order more too, so that most of the error remains unseen.
+    """
+    mesh = next((m for m in meshes(body) if isinstance(m, SolidMesh)), None)
+    if without_axis(scene) or mesh is None:
+        return
+    for k, (before, layer, after) in enumerate(
+        zip(scene.segments, scene.segments[1:], scene.segments[2:]), 1
+    ):
+        bonded = layer.material not in (before.material, after.material)
+        inside = mesh.segment == k
+        if layer.material.nu <= LOCKING or not bonded or not inside.any():
+            continue
+        y = mesh.mesh.p[1][mesh.mesh.t[:, inside]]
+        if np.median(np.ptp(y, axis=0)) > ACROSS * layer.length:
+            raise NoBounds(
+                f"{layer.name!r}, of Poisson's ratio {layer.material.nu:g} between other materials, is "
+                "one cell thick, and such a layer locks unseen: use smaller cells there",
+                finer_helps=True,
             )
 
 

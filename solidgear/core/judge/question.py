@@ -132,8 +132,9 @@ class FamilySolver:
         try:
             judged = bounded(scene, body, supports, statics, modes, judged_names, values.solver)
         except NoBounds as error:
-            refinement.without_bars = str(error)
+            refinement.leave_without_bars(error)
             return values, None
+        refinement.without_bars = ""
         barred = [q for q in judged_names if q in judged.error_bars]
         refinement.error_bars |= {q: judged.error_bars[q] for q in barred}
         # no frequency without an error bar

@@ -105,6 +105,7 @@ class Refinement:
     options: dict[str, Any] = field(default_factory=dict)  #: of the last mesh
     last: Solved | None = None
     without_bars: str = ""  #: why the last mesh has none
+    finer_helps: bool = False  #: whether a finer mesh may have some nevertheless
     #: bound on the change by couplings of families that were left out, relative
     left_out: float = 0.0
     mesh: Meshed = field(init=False)  #: of a harmonic solid, the first mesh and later the last
@@ -128,6 +129,11 @@ class Refinement:
         self.levels.append(solved.numbers)
         self.options = dict(options)
         self.missing = (self.missing | requested) - set(solved.numbers.quantities)
+
+    def leave_without_bars(self, error: Exception) -> None:
+        """Take the reason for no error bars on the last mesh."""
+        self.without_bars = str(error)
+        self.finer_helps = getattr(error, "finer_helps", False)
 
     def end(self, reason: str) -> None:
         """Take the last mesh, for a reason."""
@@ -229,6 +235,8 @@ class Refinement:
 
     def no_further_mesh(self) -> str:
         """Return the reason why there is no further mesh."""
+        if self.without_bars:
+            return self.without_bars
         if not self.model.follows:
             reason = FINER_FILE if self.of_files else NO_FINER
             if self.last is None or self.last.score is None:
@@ -240,7 +248,7 @@ class Refinement:
 
     def in_vain(self) -> str:
         """Return the reason why no finer mesh would help; empty if one may."""
-        if self.without_bars:
+        if self.without_bars and not self.finer_helps:
             return self.without_bars
         bars = [step.bar for step in self.steps if step.bar is not None]
         if self.model.follows and len(bars) > 3 and bars[-1] > FUTILE * bars[-3]:

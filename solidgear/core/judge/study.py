@@ -161,8 +161,11 @@ class TiedSolver:
         try:
             judged = _judged(refinement.scene, ties[SCENE], refinement.wanted, ties.get(SECTION))
         except unbounded as error:
-            self.failed["error bar"] = refinement.without_bars = str(error)
+            refinement.leave_without_bars(error)
+            self.failed["error bar"] = refinement.without_bars
             return None
+        refinement.without_bars = ""
+        self.failed.pop("error bar", None)
         solution.error_bars, solution.scores = {SCENE: judged.error_bars}, judged.scores
         refinement.error_bars = judged.error_bars
         return refinement.score(judged, refinement.wanted)
