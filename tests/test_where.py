@@ -256,7 +256,7 @@ def test_command_line(tmp_path):
     first, last = (step["options"]["order"] for step in told["steps"] if step["unknowns"])
     assert first < last == found["order"]
     assert found["total"] == value["bar"] and found["rows"][0]["what"] == "shoulder"
-    assert set(found) == {"quantity", "order", "total", "sentence", "seconds", "rows"}
+    assert set(found) == {"quantity", "order", "total", "sentence", "seconds", "rows", "picture"}
     assert file.read_bytes().startswith(b"\x89PNG")
     # the last mesh is for torsion alone, and what is widest was solved on the one before
     told = json.loads(

@@ -22,7 +22,7 @@ from solidgear.show.render import render_modes
 from solidgear.show.where_surface import draw_surface, where_surface
 from tests.test_body_patches import HEAD
 from tests.test_body_patches import scene as body_file
-from tests.test_body_patches import write as write_mesh
+from validation.mesh_files import write_boxes
 from validation.shipped import GEOMETRY
 
 #: a mesh of hexahedra of one layer at shoulders and none at the ends of seats, and of tetrahedra
@@ -183,7 +183,7 @@ def bracket(folder, inner=THICK):
     """An L bracket of a mesh file, with its concave edge along x at y = z = `inner`."""
     lines = [np.linspace(0, THICK, 3), *(2 * [np.linspace(0, TALL, 7)])]
     patches = {"foot": lambda m: m[2] > TALL - 1e-9, "eye": lambda m: m[1] > TALL - 1e-9}
-    write_mesh(folder / "l.msh", lines, patches, lambda m: (m[1] > inner) & (m[2] > inner))
+    write_boxes(folder / "l.msh", lines, patches, lambda m: (m[1] > inner) & (m[2] > inner))
     return sg.load(body_file(folder, "l.msh", more=HELD))
 
 

@@ -68,7 +68,8 @@ def _at_ends(scene: Scene, lo: float, hi: float) -> Iterator[list[Wedge]]:
     for end, side in ((lo, -1), (hi, 1)):
         under = [s.y0 < end - side * 2 * near < s.y1 for s in scene.segments].index(True)
         segment = scene.segments[under]
-        if abs(end - (segment.y1 if side > 0 else segment.y0)) < near:
+        end_of_segment = segment.y1 if side > 0 else segment.y0
+        if abs(end - end_of_segment) < near:
             yield _beyond(scene, edges.get(under + (side > 0)), under, side)
         else:
             yield [(pi, segment.material)]

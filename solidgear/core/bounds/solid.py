@@ -347,7 +347,7 @@ def _lowest(shapes: Sequence[_Shape], products: np.ndarray) -> dict[str, float]:
         )
         for mode, end in zip(group, ends):
             lowest[mode.name] = min(float(end), lowest.get(mode.name, np.inf))
-    return {name: end for name, end in lowest.items() if np.isfinite(end)}
+    return {name: end for name, end in lowest.items() if end > 0}
 
 
 def _by_cells(body: Body, index: int, errors: Errors, loads: np.ndarray) -> np.ndarray:

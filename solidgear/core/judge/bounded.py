@@ -34,8 +34,8 @@ if TYPE_CHECKING:
 
 #: why a mode has no error bar
 NOTHING_BEYOND = (
-    "an error bar needs a mode beyond those side by side with it, and none was found among the "
-    f"lowest {MOST_SHAPES} shapes"
+    "an error bar needs a mode beyond those side by side with it that the mesh resolves, and none "
+    f"was found among the lowest {MOST_SHAPES} shapes"
 )
 #: shapes above a list of modes that are looked at for its bars
 ABOVE = 12
