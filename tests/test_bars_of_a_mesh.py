@@ -90,8 +90,8 @@ def test_a_mesh_of_the_fewest_cells_has_bars_that_hold(run, tmp_path):
     exact = sg.modes(sg.build(scene, "solid", refinement=1.5), scene, n=8)
     assert code == 0
     elastic = [mode for mode in json.loads(out)["modes"] if mode["frequency_hz"] > 0]
-    # one cell, whose modes are off by a fifth: of the last nothing is known
-    assert [mode["name"] for mode in elastic if mode["bar"] is None] == ["mode 4"]
+    # one cell, whose modes are off by a fifth: of the last two nothing is known
+    assert [mode["name"] for mode in elastic if mode["bar"] is None] == ["mode 3", "mode 4"]
     for mode in elastic[:3]:
         off = mode["frequency_hz"] / exact.named(mode["name"]).frequency_hz - 1
         assert 0 < off < mode["bar"], mode["name"]

@@ -17,6 +17,14 @@ LOCAL: float = _MEASURED["local problems"]["safety"]
 
 #: energies of errors over what one order more tells of them, by elements where this is not one
 SLOWER: dict[str, float] = _MEASURED["one order more"]["slower"]
+#: share of an energy that may be missing where conjugate gradients end; what is missing is added
+MISSING: float = _MEASURED["one order more"]["missing"]
+#: of the lower side: volume and seats of a mesh are not quite those of the body
+LEAST: float = _MEASURED["one order more"]["least"]
+#: Poisson's ratio from which on a bonded layer one cell thick locks, and share of it that most of its
+#: cells reach across
+LOCKING: float = _MEASURED["bonded layers"]["ratio"]
+ACROSS: float = _MEASURED["bonded layers"]["across"]
 #: distance from a narrow seat that cells of first order see, over their depth
 REACH: float = _MEASURED["narrow seats"]["reach"]
 #: factor by which cells of first order are too stiff in a gap between rigid seats as wide as they are

@@ -38,7 +38,7 @@ from solidgear.core.bounds.harmonic import (
 )
 from solidgear.core.bounds.narrow import RIGID, meshes, narrow_share
 from solidgear.core.bounds.pieces import Part, Piece, independent, pieces_of
-from solidgear.core.bounds.safety import SLOWER
+from solidgear.core.bounds.safety import ACROSS, LEAST, LOCKING, MISSING, SLOWER
 from solidgear.core.bounds.sharpest import sharpest_exponent
 from solidgear.core.elements import ELEMENTS
 from solidgear.core.errors import SolidgearError
@@ -56,18 +56,11 @@ from solidgear.core.solve.statics import flexibility, port_fields, twin_matrix
 if TYPE_CHECKING:
     from solidgear.core.scene import Scene
 
-#: share of an energy that may be missing where conjugate gradients end
-MISSING = 0.04
 #: relative error of the energy of displacements, far below that of the error sought
 FIELDS = 1e-14
-#: of the lower side: volume and seats of a mesh are not quite those of the body
-ROUND = 0.97
 #: exponents of a body without an axis: at no concave edge, and at the end of a patch that a load on
 #: average acts on
 CONVEX, PATCH = 1.5, 1.0
-#: Poisson's ratio from which on a bonded layer one cell thick locks, and share of it that most of its
-#: cells reach across
-LOCKING, ACROSS = 0.45, 0.75
 #: steps after which they have failed
 MOST_STEPS = 200
 #: share of an energy below which gains are rounding, and fall no more
@@ -108,7 +101,7 @@ class SolidBounds:
     @cached_property
     def least(self) -> np.ndarray:
         """(6 p, 6 p) least that the flexibility grows by."""
-        return ROUND * self.reached
+        return LEAST * self.reached
 
     @cached_property
     def less(self) -> np.ndarray:
