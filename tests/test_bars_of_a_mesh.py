@@ -92,6 +92,6 @@ def test_a_mesh_of_the_fewest_cells_has_bars_that_hold(run, tmp_path):
     elastic = [mode for mode in json.loads(out)["modes"] if mode["frequency_hz"] > 0]
     # one cell, whose modes are off by a fifth: of the last two nothing is known
     assert [mode["name"] for mode in elastic if mode["bar"] is None] == ["mode 3", "mode 4"]
-    for mode in elastic[:3]:
+    for mode in elastic[:2]:
         off = mode["frequency_hz"] / exact.named(mode["name"]).frequency_hz - 1
         assert 0 < off < mode["bar"], mode["name"]
