@@ -210,6 +210,7 @@ def test_a_body_that_is_no_shaft_is_told_how_to_say_so(meshed):
         sg.load(path)
 
 
+@pytest.mark.long
 def test_a_thin_bar_of_a_block_is_divided_by_each_of_its_edges(tmp_path):
     """Few cells across the least edge and more along the others: cubes of it, four across, would make
     eighty times as many. 2638.8 Hz are of an independent p-FEM; the mesh leaves 1e-4.
@@ -224,6 +225,7 @@ def test_a_thin_bar_of_a_block_is_divided_by_each_of_its_edges(tmp_path):
     assert sg.modes(settled.body, scene, n=1).frequency_hz[6] == pytest.approx(2638.8, rel=2e-4)
 
 
+@pytest.mark.long
 def test_bars_of_a_block_hold_where_modes_change_places(tmp_path):
     """Cells are few to a wave, and modes change places from mesh to mesh."""
     path = tmp_path / "bar.toml"

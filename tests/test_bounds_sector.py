@@ -134,6 +134,7 @@ def test_no_number_of_a_vertex_matters(monkeypatch):
 
 
 @pytest.mark.usefixtures("small_residuals")
+@pytest.mark.long
 def test_waves_around_err_as_in_the_whole():
     """Blocks without ports, whose phase on the cut face is another one."""
     scene, name = PARTS["straight"], "ovalising n=2 1"
@@ -147,6 +148,7 @@ def test_waves_around_err_as_in_the_whole():
 
 
 @pytest.mark.usefixtures("small_residuals")
+@pytest.mark.long
 def test_a_port_follows_the_material_in_one_order_more_too():
     scene = PARTS["straight"]
     body = entire("straight")
@@ -181,6 +183,7 @@ def judged(scene, refinement):
     return {q: (values.quantities[q], bars[q], size(values.quantities, q)) for q in NAMES}
 
 
+@pytest.mark.long
 def test_bars_reach_beyond_a_finer_mesh():
     scene = PARTS["straight"]
     coarse, fine = (judged(scene, refinement) for refinement in (0.1, 0.7))

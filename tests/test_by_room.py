@@ -30,6 +30,7 @@ def test_every_room_of_features_has_tests():
     assert [room for room in FEATURES if not any(belongs(f, room) for f in files)] == []
 
 
+@pytest.mark.long
 def test_a_run_of_one_room_reads_its_files_alone(listing):
     listed = listing("--room", "petsc")
     assert {line.partition("::")[0] for line in listed.splitlines() if "::" in line} == {

@@ -259,6 +259,7 @@ def test_report_has_the_section_when_its_folder_has_a_race_of_the_scene(raced, t
 
 
 # ------------------------------------------------------------------------------------------------- command
+@pytest.mark.long
 def test_command_writes_everything_and_puts_the_chart_into_a_report(run, tmp_path, no_charts):
     scene = sg.load(SCENE)
     out = tmp_path / "there"

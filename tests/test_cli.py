@@ -134,6 +134,7 @@ def test_tables_for_people(run):
     assert list(Path.cwd().iterdir()) == []
 
 
+@pytest.mark.long
 def test_attachment_for_every_port(run):
     found = {
         a: strict(run("stiffness", SCENE, *FIXED, "--attachment", a, "--json").out)

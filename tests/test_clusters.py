@@ -142,6 +142,7 @@ def test_a_cluster_beyond_which_nothing_is_found_has_no_bar(webs, monkeypatch):
     assert "shapes" in NOTHING_BEYOND
 
 
+@pytest.mark.long
 def test_the_list_of_a_3d_solid_is_complete_below_the_lower_ends_of_what_follows():
     scene = shaft((0.02, 0.08, 0.08), (0.1, 0.03, 0.03), (0.02, 0.08, 0.08))
     stiff = np.diag([5e7, 2e7, 5e7, 0.0, 0.0, 0.0])

@@ -125,6 +125,7 @@ def energies(solid):
     return out
 
 
+@pytest.mark.long
 def test_energies_of_cells_sum_up_to_those_of_the_body(scene, body):
     origin = body.cache.find(Origin)
     scale = np.diag(flexibility(body).matrix)
@@ -157,6 +158,7 @@ def test_nothing_remains_of_errors_that_nothing_changes(scene, body):
 
 
 @pytest.mark.parametrize("name", TRUTH)
+@pytest.mark.long
 def test_the_bars_hold(answer, bars, name):
     quantity = Quantity(name)
     value, bar = answer.numbers.quantities[quantity], bars.error_bars[quantity]
@@ -171,6 +173,7 @@ def test_the_bars_hold(answer, bars, name):
     assert bar.width < 1e-2
 
 
+@pytest.mark.long
 def test_cells_and_modes(scene, body, answer, bars):
     for name in ("C_zz", "bending 1"):
         score = bars.scores[Quantity(name)]

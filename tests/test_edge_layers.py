@@ -160,6 +160,7 @@ def test_what_a_mesh_can_do_it_can_do_with_layers(tie):
     assert ends.min() > -1e-7 and ends.max() > 1e-3
 
 
+@pytest.mark.long
 def test_layers_leave_less_error_of_which_one_order_more_finds_more():
     scene = stepped()
     exact = condense(
@@ -179,6 +180,7 @@ def test_layers_leave_less_error_of_which_one_order_more_finds_more():
     assert shares[1] > shares[0]
 
 
+@pytest.mark.long
 def test_layers_in_a_half_with_a_keyway_are_counted():
     key = Keyway(name="key", segment="thin", y=0.1, length=0.02, width=0.008, depth=0.004)
     scene = stepped(features=[key])
@@ -205,6 +207,7 @@ def test_layers_are_counted_before_a_mesh_is_made():
     assert more[1] > more[0]
 
 
+@pytest.mark.long
 def test_a_step_part_has_layers():
     scene = sg.load("geometry/shaft_step.toml")
     coarse, fine = (

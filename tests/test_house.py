@@ -34,6 +34,7 @@ def read_graph():
     return structure.graph(files())
 
 
+@pytest.mark.long
 def test_a_room_imports_only_what_lies_below():
     """Read as it stands, `TYPE_CHECKING` too: a reader follows these arrows, whatever runs."""
     assert structure.arrows_up(read_graph(), MAY_IMPORT) == []

@@ -146,6 +146,7 @@ def judged(scene, body):
     return values.quantities, bars
 
 
+@pytest.mark.long
 def test_bars_of_straight_elements_hold_on_both_sides():
     """Polygons of eight and of sixteen sides: frequencies lie below the exact ones by up to a tenth of
     them, softer bodies being too heavy by less than they are soft, so that a bar without geometry, which
@@ -162,6 +163,7 @@ def test_bars_of_straight_elements_hold_on_both_sides():
     assert sum(error[q] > bars[q].width - bars[q].geometry for q in NAMES) >= 2
 
 
+@pytest.mark.long
 def test_statics_have_all_of_it_and_frequencies_half():
     scene = dumbbell()
     body = build(scene, "solid", element="tet10", refinement=0.3)

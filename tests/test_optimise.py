@@ -57,6 +57,7 @@ def test_a_gain_is_claimed_only_beyond_both_bars(span, bars, verdict, said):
     assert found.gain.verdict == verdict and said in " ".join(found.sentences)
 
 
+@pytest.mark.long
 def test_limits_are_kept_and_what_cannot_be_is_told():
     vary = ["segment.middle.diameter=70 mm:90 mm"]
     found = sg.optimise(SHAFT, vary, "min mass", ["bending 1 > 800 Hz"], **BEAM)

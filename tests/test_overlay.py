@@ -109,6 +109,7 @@ def test_measured_points_move_as_the_surface_beside_them(found):
     assert abs(points.shapes[0].frequency_hz - bending(1)[1]) < 0.1
 
 
+@pytest.mark.long
 def test_the_page_shows_what_was_found(files, tmp_path):
     out = tmp_path / "out"
     told = command("correlate", files / "rod.toml", files / "rod.unv", "-o", out)

@@ -139,6 +139,7 @@ def drawing(drawable, folder):
     return jobs
 
 
+@pytest.mark.long
 def test_pictures(drawable, tmp_path):
     from matplotlib.image import imread
     from PIL import Image

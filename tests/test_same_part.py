@@ -99,6 +99,7 @@ def test_few_pairs_that_scatter_show_nothing_either_way():
     assert none.sentence == "This may be another part: none of 4 resonances has a mode."
 
 
+@pytest.mark.long
 def test_sentences_open_with_the_doubt(tmp_path):
     peaks = Measured(
         mode=[{"frequency": mode.frequency_hz} for mode in modes(shaft(SHAFTS[1]))[:8]]

@@ -47,6 +47,7 @@ def test_error_bars_hold_against_a_finer_mesh(file, load):
     assert np.linalg.norm(bars[:3]) < 4 * np.linalg.norm(errors[:3])
 
 
+@pytest.mark.long
 def test_a_load_along_the_axis_widens_no_bar_across_it():
     scene = as_written(SPRINGS)
     bars = []

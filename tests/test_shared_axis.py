@@ -49,6 +49,7 @@ def test_the_axis_that_cylinders_share_is_found_to_the_last_digits():
     assert np.linalg.norm(np.cross(foot - at, ALONG)) < 1e-9 * 0.18
 
 
+@pytest.mark.long
 def test_what_is_told_of_an_oblique_part_reads_it(tmp_path):
     """Out of an assembly, of which the file says no more: the sentence has the axis and the point to
     write, and with both the segments are those that were drawn.

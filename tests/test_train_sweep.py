@@ -392,6 +392,7 @@ def test_a_stopped_sweep_goes_on_and_gives_the_same_digits(tmp_path):
             swept(AXLE, VARY, tmp_path / "rows.csv", **other)
 
 
+@pytest.mark.long
 def test_two_processes_give_the_rows_of_one(tmp_path):
     pytest.importorskip("joblib")
     swept(AXLE, VARY, tmp_path / "one.csv", ask=MODES)

@@ -78,6 +78,7 @@ def whole(found):
     return True
 
 
+@pytest.mark.long
 def test_layers_at_a_shoulder_take_away_its_part_of_the_bar_and_no_other():
     coarse, fine = (
         places(shaft(), "C_thx", {**HEX, "layers": n, "radial_layers": n}) for n in (1, 2)
@@ -147,6 +148,7 @@ def keyway(depth):
     return Keyway(name="key", segment="thin", y=0.07, length=0.04, width=0.009, depth=depth)
 
 
+@pytest.mark.long
 def test_a_deeper_keyway_is_named_and_has_more_of_the_error():
     shallow, deep = (
         places(shaft(0.046, (keyway(depth),)), "torsion 1", TET) for depth in (0.002, 0.012)
@@ -234,6 +236,7 @@ def test_concave_edges_are_those_of_a_corner_cut_out():
     assert (np.abs(edges).size, len(np.unique(edges))) == (6, 4)
 
 
+@pytest.mark.long
 def test_a_study_keeps_where_its_widest_bar_sits():
     scene = shaft().with_changes(ask=shaft().ask.with_changes(tolerance=0.5))
     solution = study(scene, "solid", TET, evidence=False)
@@ -269,6 +272,7 @@ def test_a_model_without_computed_bars_says_so():
         places(shaft(), "C_zz", {}, "timoshenko")
 
 
+@pytest.mark.long
 def test_the_surface_is_drawn_in_the_colours_of_its_cells(tmp_path):
     body = sg.build(shaft(), "solid", **HEX)
     mesh = body.geometry.solved
