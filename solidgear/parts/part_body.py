@@ -11,14 +11,13 @@ from typing import TYPE_CHECKING, Any
 
 from solidgear.core import Body, SolidgearError
 from solidgear.core.elements import SOLVED_AS
-from solidgear.core.kernel.room import assemblable
 from solidgear.core.machine.isolated import IsolatedError, isolated
 from solidgear.core.meshing.element_size import size_formulas
 from solidgear.core.meshing.placing import Placing
 from solidgear.core.meshing.quality import MeshError
 from solidgear.core.meshing.revolved import graded_corners
 from solidgear.core.meshing.tetrahedra import check_filling
-from solidgear.core.models.solid.plan import tetrahedra_of, tetrahedra_plan
+from solidgear.core.models.solid.plan import assemblable_plan
 from solidgear.parts import step
 from solidgear.parts.own_mesh import solid_body
 from solidgear.parts.part_file import file_mesh
@@ -167,7 +166,7 @@ def step_plan(
     those of the round part inside it; sizes and layers as for
     :func:`solidgear.core.models.solid.body.solid`.
     """
-    plan = tetrahedra_plan(
+    plan = assemblable_plan(
         scene,
         wanted,
         size=size,
@@ -176,7 +175,6 @@ def step_plan(
         around=around,
         layers=layers,
     )
-    assemblable(tetrahedra_of(scene, plan, refinement, layers=layers), 10)
     corners = graded_corners(
         scene.outline, plan["planes"], plan["circles"], plan.get("convex", True)
     )

@@ -42,8 +42,7 @@ def narrow_share(scene: Scene, body: Body, order: int) -> float:
     """Return the largest energy of an error over that which one order more finds of it, at the seats of
     a body on a mesh of some order; one where nothing is known of its seats.
     """
-    # half a part is drawn from the mesh of its half
-    mesh = next((m for m in meshes(body) if isinstance(m, SolidMesh)), None)
+    mesh = mesh_of(body)
     if without_axis(scene) or mesh is None:
         return 1.0
     seats = _seats(scene, body, mesh)
@@ -84,9 +83,11 @@ def share_of_gap(order: int, slimness: float) -> float:
     return (1 + taken * stiffer) / (1 - taken)
 
 
-def meshes(body: Body) -> tuple[object, object]:
-    """Return the geometry of a body, and the mesh that it may have."""
-    return body.geometry, getattr(body.geometry, "mesh", None)
+def mesh_of(body: Body) -> SolidMesh | None:
+    """Return the mesh of a body, of half a part that of its half; None of a body without one."""
+    geometry = body.geometry
+    candidates = (geometry, getattr(geometry, "mesh", None))
+    return next((mesh for mesh in candidates if isinstance(mesh, SolidMesh)), None)
 
 
 def _seats(scene: Scene, body: Body, mesh: SolidMesh) -> list[Seat]:

@@ -36,7 +36,7 @@ from solidgear.core.bounds.harmonic import (
     shares_blocks,
     with_neighbours,
 )
-from solidgear.core.bounds.narrow import RIGID, meshes, narrow_share
+from solidgear.core.bounds.narrow import RIGID, mesh_of, narrow_share
 from solidgear.core.bounds.pieces import Part, Piece, independent, pieces_of
 from solidgear.core.bounds.safety import ACROSS, LEAST, LOCKING, MISSING, SLOWER
 from solidgear.core.bounds.sharpest import sharpest_exponent
@@ -204,7 +204,7 @@ def _refuse_locked_layers(scene: Scene, body: Body) -> None:
     """Refuse a mesh with one cell across a bonded layer that hardly changes its volume: it locks, and in
     one order more too, so that most of the error remains unseen.
     """
-    mesh = next((m for m in meshes(body) if isinstance(m, SolidMesh)), None)
+    mesh = mesh_of(body)
     if without_axis(scene) or mesh is None:
         return
     for k, (before, layer, after) in enumerate(

@@ -22,7 +22,7 @@ from solidgear.core.models.options import thick_enough
 from solidgear.core.models.solid.block import body_of, free_block, mesh_facts, mirrored, seat_facets
 from solidgear.core.models.solid.lines import with_layers
 from solidgear.core.models.solid.mesh import SolidMesh, _isoparametric
-from solidgear.core.models.solid.plan import hexahedra_layout, tetrahedra_of, tetrahedra_plan
+from solidgear.core.models.solid.plan import assemblable_plan, hexahedra_layout, tetrahedra_plan
 from solidgear.core.registry import addition
 from solidgear.core.scene.closed_form import moments_of_parts, volume_of
 from solidgear.core.scene.shaft import attached_stations, feature_labels, resolved, without_axis
@@ -165,17 +165,8 @@ def tetrahedra_with_layers(
     return split.mesh, split.facets, split.quality
 
 
-def _tets(scene, wanted, element, layers, *, size, graded_size, refinement, around):
-    plan = tetrahedra_plan(
-        scene,
-        wanted,
-        size=size,
-        graded_size=graded_size,
-        refinement=refinement,
-        around=around,
-        layers=layers,
-    )
-    assemblable(tetrahedra_of(scene, plan, refinement, layers=layers), 10)
+def _tets(scene, wanted, element, layers, **sizes):
+    plan = assemblable_plan(scene, wanted, layers=layers, **sizes)
     curved = tetrahedra(scene.outline, **plan)
     if ELEMENTS[element].order == 2:
         return curved.mesh, curved.segment, curved.quality

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from math import pi
 
+from solidgear.core.kernel.room import assemblable
 from solidgear.core.meshing.element_size import rough_cells
 from solidgear.core.meshing.grading import Grading
 from solidgear.core.meshing.layout import layout
@@ -76,6 +77,13 @@ def usual_size(scene) -> float:
 def turns_of(around: int, refinement: float) -> int:
     """Return the hexahedra around at some refinement."""
     return max(8, 4 * int(round(around * refinement / 4)))
+
+
+def assemblable_plan(scene, wanted, *, refinement, layers, **sizes) -> dict:
+    """Return :func:`tetrahedra_plan`, refused where matrices of as many tetrahedra find no room."""
+    plan = tetrahedra_plan(scene, wanted, refinement=refinement, layers=layers, **sizes)
+    assemblable(tetrahedra_of(scene, plan, refinement, layers=layers), 10)
+    return plan
 
 
 def tetrahedra_plan(scene, wanted, *, size, graded_size, refinement, around, layers=0) -> dict:
