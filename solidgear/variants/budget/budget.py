@@ -3,7 +3,7 @@
 **Range**: the lowest and the highest of a number over the points that are solved. Those are the ends
 of every input by itself; the corners of all of them (of more than :data:`MOST_OF_ALL_CORNERS`
 inputs those to which the single effects point, for every number); and, where rows of rolling elements may
-lift, a Sobol sample inside. Springs and moduli move frequencies and compliances one way
+lift, points spread evenly inside. Springs and moduli move frequencies and compliances one way
 (Rayleigh), so that corners hold all of it; a row that comes into contact half way need not.
 
 **Deviation**: every input equally likely anywhere in its range, the deviation by each alone (Gauss,
@@ -25,6 +25,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy.linalg as sla
 
 from solidgear.bearings.catalogue import catalogue_of
 from solidgear.bearings.clearance import clearance_range
@@ -38,22 +39,26 @@ from solidgear.core import (
     Quantity,
     Scene,
     SolidgearError,
+    as_supports,
     build,
     change,
     modes,
+    rubin,
 )
-from solidgear.core.judge.correlation import pair_modes
+from solidgear.core.body import Supports
+from solidgear.core.judge.correlation import FOREIGN
 from solidgear.core.judge.quantities import in_order, measure
 from solidgear.core.judge.record import InputRecord, IntervalRecord, OpenRecord, SampledRecord
 from solidgear.core.loading import SHAFT
 from solidgear.core.scene.uncertain import with_scaled_entry
+from solidgear.core.solve.neighbours import best_assignment
 from solidgear.core.solve.statics import condense
 
 Progress = Callable[[str], None]
 Place = tuple[float, ...]
 #: most open inputs of which every corner is solved, and of which ranges stand beside error bars
 MOST_OF_ALL_CORNERS, MOST_BESIDE_BARS = 4, 12
-#: points of the sample inside; a power of two, for which Sobol's points are balanced
+#: points of the sample inside
 INSIDE_POINTS = 16
 #: samples that can be asked for; the deviation of fewer than the least says nothing
 FEWEST_SAMPLES, MOST_SAMPLES = 20, 100_000
@@ -186,10 +191,7 @@ class _Study:
             if len(group) > 1:
                 self.solve(list(self._corners(group)))
         if any(bearing.catalogue for bearing in self.points.scene.bearings):
-            from scipy.stats import qmc  # as above
-
-            inside = qmc.Sobol(len(self.inputs), scramble=False).random(INSIDE_POINTS)
-            self.solve(tuple(place) for place in inside)
+            self.solve(tuple(place) for place in spread_points(len(self.inputs), INSIDE_POINTS))
         numbers = [self._number(q, groups, sampled) for q in self._quantities()]
         return OpenNumbers(
             model=self.points.model,
@@ -304,10 +306,28 @@ def _recorded(inputs: Iterable[OpenInput]) -> list[InputRecord]:
     return [InputRecord(path=i.path, source=i.source, said=i.said) for i in inputs]
 
 
+def spread_points(dimension: int, count: int) -> np.ndarray:
+    """Return (count, dimension) points that fill a unit cube evenly, by multiples of the inverse powers
+    of the root of ``x^(d + 1) = x + 1`` (Roberts 2018).
+
+    Examples
+    --------
+    >>> spread_points(1, 3).round(3).ravel()
+    array([0.118, 0.736, 0.354])
+    """
+    root = 2.0
+    for _ in range(64):
+        root = (1 + root) ** (1 / (dimension + 1))
+    steps = root ** -np.arange(1.0, dimension + 1)
+    return (0.5 + np.outer(np.arange(1, count + 1), steps)) % 1
+
+
 BEARINGS, LOAD, MATERIAL = "bearings", "load", "material"
 INSIDE, CLEARANCE, PRELOAD = ".inside", ".clearance", ".preload"
 #: modes beyond those asked for, among which a mode may be that has moved up
 FURTHER_MODES = 4
+#: free modes of a beam that are kept for each mode looked at: frequencies to some 1e-9
+KEPT_PER_MODE = 2
 #: ends of an estimated inside; the bearing is one of three and none between them
 ENDS = ("softer", "middle", "stiffer")
 #: places of a smooth input for its variance, with their weights (Gauss, five points), and of an
@@ -384,7 +404,7 @@ class Points:
         self.body = body if _one_modulus(scene, inputs) else None
         self.lost: dict[str, None] = {}  #: names of bearings that carried nothing at a point
         self._beams: dict[tuple, Body] = {}
-        self._first: ModeSet | None = None
+        self._first: NamedShapes | None = None
 
     @property
     def model(self) -> str:
@@ -425,14 +445,81 @@ class Points:
         return numbers | (self._frequencies(body, scene) if frequencies else {})
 
     def _frequencies(self, body: Body, scene: Scene) -> dict[Quantity, float]:
-        """Return the frequencies of the modes of the first point, paired by shapes: names change where
-        other modes come between.
+        """Return the frequencies of the modes of the first point, Hz, paired by shapes: names change
+        where other modes come between.
         """
+        listed = scene.ask.modes
+        reduced = body.cache.get(ReducedBeam, lambda: ReducedBeam(body, listed + FURTHER_MODES))
+        shapes = reduced.shapes(as_supports(scene))
         if self._first is None:
-            self._first = modes(body, scene, scene.ask.modes)
-        shapes = modes(body, scene, scene.ask.modes + FURTHER_MODES)
-        pairs = pair_modes(shapes, self._first)
-        return {Quantity(p.reference.name): p.frequency_hz for p in pairs if p.mode is not None}
+            self._first = NamedShapes.of(modes(body, scene, listed), shapes)
+        return self._first.frequencies(shapes, body)
+
+
+class ReducedBeam:
+    """A beam in its free modes and the fields of its ports (Rubin): on other springs, its modes are
+    those of a small matrix.
+    """
+
+    def __init__(self, body: Body, count: int):
+        self.body, self.count = body, count
+        self.part = rubin(body, KEPT_PER_MODE * count)
+
+    def shapes(self, supports: Supports) -> Shapes:
+        """Return the lowest elastic modes on supports."""
+        part, still = self.part, np.zeros((0, self.part.size))
+        motion = np.vstack([still, *(part.ports[name].rows for name in supports.ports)])
+        stiffness = np.diag(part.value) + motion.T @ supports.stiffness @ motion
+        value, shapes = sla.eigh(stiffness, part.mass + motion.T @ supports.masses @ motion)
+        rigid = supports.unresisted(self.body).shape[1]
+        elastic = slice(rigid, rigid + self.count)
+        return Shapes(np.sqrt(value[elastic]) / (2 * np.pi), part.expand(shapes[:, elastic]))
+
+
+@dataclass(frozen=True)
+class Shapes:
+    """Elastic modes of a beam, shape by shape."""
+
+    frequency_hz: np.ndarray  #: (k,) ascending, twins twice
+    fields: Mapping[int, np.ndarray]  #: (n, k) unknowns of the blocks of the body, by index
+
+
+@dataclass(frozen=True)
+class NamedShapes:
+    """Elastic modes of the first point, shape by shape."""
+
+    names: tuple[Quantity, ...]  #: twins share a name
+    fields: Mapping[int, np.ndarray]  #: (n, k) of :class:`Shapes`
+
+    @classmethod
+    def of(cls, named: ModeSet, shapes: Shapes) -> NamedShapes:
+        """Return the first of some shapes with the names of the same modes."""
+        names = tuple(
+            Quantity(m.name) for m in named.modes for _ in range(m.multiplicity) if m.frequency_hz
+        )
+        return cls(names, {k: field[:, : len(names)] for k, field in shapes.fields.items()})
+
+    def frequencies(self, shapes: Shapes, body: Body) -> dict[Quantity, float]:
+        """Return the frequency of every name, Hz, by the shapes that move most alike; of a pair that
+        has split, the root of the mean square; without those of which nothing is alike.
+        """
+        product, own, others = (
+            sum(np.einsum("ni,nj->ij", a[k], body.blocks[k].mass @ b[k]) for k in self.fields)
+            for a, b in (
+                (self.fields, shapes.fields),
+                (self.fields, self.fields),
+                (shapes.fields, shapes.fields),
+            )
+        )
+        alike = np.square(product) / np.outer(own.diagonal(), others.diagonal())
+        # twins turn into one another as they like
+        of_names = {name: alike[[n == name for n in self.names]].sum(axis=0) for name in self.names}
+        gain = np.array([of_names[name] for name in self.names])
+        squares: dict[Quantity, list[float]] = {name: [] for name in of_names}
+        for row, column in zip(*best_assignment(gain)):
+            if gain[row, column] >= FOREIGN:
+                squares[self.names[row]].append(float(shapes.frequency_hz[column]) ** 2)
+        return {name: math.sqrt(np.mean(hz2)) for name, hz2 in squares.items() if hz2}
 
 
 def _one_modulus(scene: Scene, inputs: Sequence[OpenInput]) -> bool:
