@@ -10,7 +10,7 @@ import scipy.linalg as sla
 
 import solidgear as sg
 from solidgear.core.body import as_supports
-from solidgear.core.bounds.clusters import lower_ends
+from solidgear.core.bounds.clusters import ROOM, lower_ends
 from solidgear.core.judge import bounded
 from solidgear.core.judge.bounded import NOTHING_BEYOND, mode_bars
 from solidgear.core.judge.hidden import COMPLETE, complete_list
@@ -152,7 +152,7 @@ def test_the_list_of_a_3d_solid_is_complete_below_the_lower_ends_of_what_follows
     port = Port(name="p", y=0.01, lo=0.005, hi=0.015)
     scene = Scene.from_parts(scene.segments, bearings=bearings, port=port)
     body = sg.build(scene, "solid", element="tet10", refinement=0.3)
-    found = sg.modes(body, scene, 12, count=True)
+    found = sg.modes(body, scene, 12, count=True, room=ROOM)
     truth = sg.modes(sg.build(scene, "harmonic", **FINE), scene, 24).whole
     bars = mode_bars(scene, body, as_supports(scene), found)
     checked = [m for m in found.modes if m.name in bars]

@@ -7,6 +7,7 @@ import pytest
 
 import solidgear as sg
 from solidgear.core.body import as_supports
+from solidgear.core.bounds.clusters import ROOM
 from solidgear.core.judge.bounded import mode_bars
 from solidgear.core.judge.completeness import completeness
 from solidgear.core.judge.hidden import COMPLETE, COUNTED, complete_list, less_bars
@@ -40,7 +41,7 @@ def rubber_tail():
 def test_a_list_is_complete_below_the_lower_ends_of_what_lies_above(rubber_tail):
     scene = rubber_tail
     body = sg.build(scene, "harmonic", **COARSE)
-    found = sg.modes(body, scene, 24, count=True, ovalising=False)
+    found = sg.modes(body, scene, 24, count=True, ovalising=False, room=ROOM)
     truth = sg.modes(sg.build(scene, "harmonic", **FINE), scene, 40, ovalising=False)
     told = complete_list(scene, body, as_supports(scene), found).evidence
     # the mesh counts right, and the body has a pair more below, which lies 6 % higher on the mesh

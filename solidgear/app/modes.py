@@ -22,6 +22,7 @@ from solidgear.core import (
     show,
 )
 from solidgear.core import modes as solve
+from solidgear.core.bounds.clusters import ROOM
 from solidgear.core.bounds.solid import NoBounds
 from solidgear.core.judge.at_rest import spin_caution
 from solidgear.core.judge.bounded import NOTHING_BEYOND
@@ -78,8 +79,9 @@ def modes(
 
     def study(progress: Progress) -> Sheet:
         body, settled = model.body(loaded, "modes", progress)
-        mode_set = solve(body, loaded, asked, max_frequency=highest_hz, count=count)
         is_solid = bool(LADDER[body.fidelity].bars_by)
+        room = ROOM if is_solid and settled is not None else 0.0
+        mode_set = solve(body, loaded, asked, max_frequency=highest_hz, count=count, room=room)
         if settled is not None and is_solid:
             mode_set = complete_list(loaded, body, as_supports(loaded), mode_set)
         whole = mode_set.whole if count and not is_solid else mode_set

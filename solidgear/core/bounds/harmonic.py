@@ -34,6 +34,8 @@ from solidgear.core.solve.statics import flexibility, twin_matrix
 if TYPE_CHECKING:
     from solidgear.core.scene import Scene
 
+#: shapes of a mode, by blocks and the arrays that hold them
+Same = tuple[tuple[int, int], ...]
 #: an order leaves at most this share of the remaining error
 SLOWEST = 0.8
 
@@ -140,16 +142,16 @@ def harmonic_bounds(
     chosen = with_neighbours(modes, wanted)
     kept = body.cache.get(_OfModes, _OfModes)
     new = kept.missing(chosen) + kept.missing(with_neighbours(later, wanted))
-    new = list({id(mode): mode for mode in new}.values())
+    new = list({same(mode): mode for mode in new}.values())
     of_modes = kept.by_id
-    of_modes |= {id(mode): _OfMode(mode, np.zeros(cells)) for mode in new}
-    kept.products.update({(id(a), id(b)): 0.0 for a in new for b in new})
+    of_modes |= {same(mode): _OfMode(mode, np.zeros(cells)) for mode in new}
+    kept.products.update({(same(a), same(b)): 0.0 for a in new for b in new})
     for index, block in _originals(body, new):
         parts = [_modes_on(body, k, new) for k in (index, *_twins(body, index))]
         count = block.ports.shape[0] if ports_missing and block.components else 0
         if count:
             parts.insert(0, _unit_loads(body, index))
-        owners = [of_modes[id(mode)] for part in parts for mode in part.modes]
+        owners = [of_modes[same(mode)] for part in parts for mode in part.modes]
         if not count and not owners:
             continue
         two_more, one_more = local_energies(space, block, _stacked([p.loading for p in parts]))
@@ -170,7 +172,7 @@ def harmonic_bounds(
                 )
                 of_ports.less[np.ix_(rows, rows)] = twin_matrix(body, block, of_ports.less)
         body.cache.keep(of_ports)
-    by_name: dict[str, _OfMode] = {mode.name: of_modes[id(mode)] for mode in chosen}
+    by_name: dict[str, _OfMode] = {mode.name: of_modes[same(mode)] for mode in chosen}
     solved = () if modes is None else modes.solved
     return HarmonicBounds(
         body,
@@ -215,19 +217,19 @@ class _Part:
 class _OfModes:
     """Energies of modes that were computed before; kept with their body."""
 
-    by_id: dict[int, _OfMode] = field(default_factory=dict)
+    by_id: dict[Same, _OfMode] = field(default_factory=dict)
     #: products of energy of two modes that were computed together
-    products: dict[tuple[int, int], float] = field(default_factory=dict)
+    products: dict[tuple[Same, Same], float] = field(default_factory=dict)
 
     def missing(self, modes: Sequence[Mode]) -> list[Mode]:
         """Return the modes that are yet to be computed: of near ones all together."""
         out = []
         for group in by_problem(modes):
             near = len(clusters([eigenvalue(m) for m in group])) < len(group)
-            known = all(id(m) in self.by_id for m in group) and (
-                not near or all((id(a), id(b)) in self.products for a in group for b in group)
+            known = all(same(m) in self.by_id for m in group) and (
+                not near or all((same(a), same(b)) in self.products for a in group for b in group)
             )
-            out += [m for m in group if near or id(m) not in self.by_id] if not known else []
+            out += [m for m in group if near or same(m) not in self.by_id] if not known else []
         return out
 
     def add(self, parts: Sequence[_Part], products: np.ndarray) -> None:
@@ -238,16 +240,18 @@ class _OfModes:
         for part in parts:
             for i, a in enumerate(part.modes):
                 for j, b in enumerate(part.modes):
-                    self.products[id(a), id(b)] += float(products[first + i, first + j])
+                    self.products[same(a), same(b)] += float(products[first + i, first + j])
             first += len(part.modes)
 
     def energies(self, modes: Sequence[Mode], safety: float) -> np.ndarray:
         """Return (k, k) products of energy of some modes, with tails; zero of those that are not
         near.
         """
-        found = [self.by_id[id(mode)] for mode in modes]
+        found = [self.by_id[same(mode)] for mode in modes]
         grown = [e.energy / e.by_cell.sum() if e.by_cell.any() else 1.0 for e in found]
-        matrix = np.array([[self.products.get((id(a), id(b)), 0.0) for b in modes] for a in modes])
+        matrix = np.array(
+            [[self.products.get((same(a), same(b)), 0.0) for b in modes] for a in modes]
+        )
         matrix = matrix.reshape(len(modes), len(modes)) * np.sqrt(np.outer(grown, grown))
         np.fill_diagonal(matrix, [e.energy for e in found])
         return safety * matrix
@@ -419,6 +423,11 @@ def lower_ends_of(
         # planes that do not mix share their names
         out |= {m.name: end for m, end in zip(known, sorted(ends[m.name] for m in known))}
     return out
+
+
+def same(mode: Mode) -> Same:
+    """Return what a mode has in common with one of another list that has the same shapes."""
+    return tuple((block, id(field)) for shape in mode.vectors for block, field in shape.items())
 
 
 def eigenvalue(mode: Mode) -> float:

@@ -12,7 +12,7 @@ from dataclasses import replace
 
 from solidgear.core.body import Body, Supports
 from solidgear.core.bounds.harmonic import by_problem, is_bounded
-from solidgear.core.judge.bounded import bounds_of, extended_until
+from solidgear.core.judge.bounded import bounds_of
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.scene import Scene
 from solidgear.core.solve.modes import Mode, ModeSet
@@ -30,17 +30,14 @@ def complete_list(scene: Scene, body: Body, supports: Supports, listed: ModeSet)
     """
     if COUNTED not in listed.evidence:
         return listed
-    extended = extended_until(body, supports, listed, lambda found: _first_above(found) is not None)
-    first = _first_above(extended)
+    first = _first_above(listed)
     if first is None:
         return listed
     needed = [mode.name for mode in first]
     if not LADDER[body.fidelity].follows:
-        first = _first_of_families(extended)
-    all_modes = replace(extended, beyond=(*extended.beyond, *extended.above), above=())
-    elastic = [mode for mode in listed.modes if mode.frequency_hz > 0]
-    names = [mode.name for mode in (*elastic, *first)]
-    bounds = bounds_of(scene, body, supports, False, all_modes, names)
+        first = _first_of_families(listed)
+    all_modes = replace(listed, beyond=(*listed.beyond, *listed.above), above=())
+    bounds = bounds_of(scene, body, supports, False, all_modes, [mode.name for mode in first])
     limit = listed.evidence[COUNTED]
     for mode in first:
         least = bounds.frequency(mode)
@@ -48,7 +45,7 @@ def complete_list(scene: Scene, body: Body, supports: Supports, listed: ModeSet)
             return listed
         if least is not None:
             limit = min(limit, least * (1 - mode.error))
-    return replace(extended, evidence=listed.evidence | {COMPLETE: limit})
+    return replace(listed, evidence=listed.evidence | {COMPLETE: limit})
 
 
 def less_bars(evidence: dict, bars: Mapping[str, float], above: Iterable[Mode] = ()) -> dict:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from solidgear.core.body import Body, Supports, as_supports
+from solidgear.core.bounds.clusters import ROOM
 from solidgear.core.bounds.solid import NoBounds
 from solidgear.core.errors import SolidgearError
 from solidgear.core.judge.bounded import Bounded, bounded
@@ -185,7 +186,7 @@ class TiedSolver:
         if self.count_modes:
             assert answer.supports is not None  # of the answer just found
             with self.meter.stage("count"):
-                answer.modes = _modes(scene, answer.body, answer.supports, count=True)
+                answer.modes = _modes(scene, answer.body, answer.supports, count=True, spare=True)
                 complete = complete_list(scene, answer.body, answer.supports, answer.modes)
                 answer.modes = replace(answer.modes, evidence=complete.evidence)
 
@@ -297,6 +298,7 @@ def _modes(
         spare=spare,
         max_frequency=scene.ask.max_frequency,
         count=count,
+        room=ROOM if count or spare else 0.0,
         # Families of two waves and more are reported for the finest mesh; bearings do not move
         # them, nor do error bars rest on them.
         ovalising=count,

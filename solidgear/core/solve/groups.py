@@ -8,7 +8,7 @@ wanted: by a closed form that no family undercuts and that grows with n, then by
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -24,6 +24,10 @@ from solidgear.core.solve.supported import EPS, Supported
 MARGIN = 1.5
 LIGHT = 1.5
 MOST_WAVES = 100
+#: eigenvalues above this many times a limit are clear of it
+BESIDE = 1.01
+#: shapes that a group searches on by, for room above a list, and at most
+FARTHER, MOST_SHAPES = 4, 160
 # Rounding in a factor moves eigenvalues by about eps times the highest one; nearer to the bound
 # than a hundred times that, signs may turn.
 DOUBT = 0.01
@@ -35,7 +39,7 @@ class Part:
 
     supported: Supported
     ask: int  #: number of modes to search for
-    solved: Solved = field(init=False)  #: set by the first search
+    solved: Solved = field(default=None)  # type: ignore[assignment]  # set by the first search
     twins: list[int] = field(default_factory=list)  #: lone blocks that repeat it in the other plane
     #: added to block indices: that of a further circumferential family stands apart from those of
     #: the body's own
@@ -64,6 +68,20 @@ class Part:
                 out.append(Raw(r.value, vectors, r.residual, r.error))
         return out
 
+    def reaches(self, limit: float) -> bool:
+        """Return whether an eigenvalue was found above a limit, rad^2/s^2."""
+        elastic = self.solved.elastic
+        return bool(elastic) and elastic[-1].value > BESIDE * limit
+
+    def has_room(self, limit: float, room: float) -> bool:
+        """Return whether the first eigenvalue above a limit, rad^2/s^2, has another one so far above
+        it, relative, or no more are worth a search.
+        """
+        above = [r.value for r in self.solved.elastic if r.value > BESIDE * limit]
+        if not room or self.ask + FARTHER > min(MOST_SHAPES, self.supported.size // 2):
+            return True
+        return bool(above) and 1 - above[0] / above[-1] >= room
+
     def values(self) -> list[float]:
         """Return elastic eigenvalues with every shape counted, rad^2/s^2."""
         return [r.value for r in self.solved.elastic for _ in range(self.copies)]
@@ -79,12 +97,42 @@ class Uncounted:
 
 
 def solved_parts(
-    body: Body, supports: Supports, spring: np.ndarray, n: int, method: str | None
+    body: Body,
+    supports: Supports,
+    spring: np.ndarray,
+    n: int,
+    method: str | None,
+    room: float = 0.0,
 ) -> list[Part]:
     """Solve all groups of a body's own blocks, each only as far as the lowest `n` shapes of all
-    reach; `spring` (6 m, 6 m) is that of :func:`~solidgear.core.solve.coupling.decoupled`.
-    SolidgearError as :func:`~solidgear.core.solve.eigen.lowest`.
+    reach, and from the first eigenvalue above these on until another leaves it `room`, relative;
+    `spring` (6 m, 6 m) is that of :func:`~solidgear.core.solve.coupling.decoupled`. SolidgearError as
+    :func:`~solidgear.core.solve.eigen.lowest`.
     """
+    kept = body.cache.get(_OwnParts, _OwnParts)
+    parts = kept.on(supports, spring, method)
+    if parts is None:
+        parts = _unsolved_parts(body, supports, spring, n)
+        kept.keep(parts, supports, spring, method)
+    waiting = [part for part in parts if part.solved is None]
+    while True:
+        for part in waiting:
+            part.solved = lowest(part.supported, part.ask, method)
+        values = sorted(v for part in parts for v in part.values())
+        reach = values[n - 1] if len(values) >= n else np.inf
+        short = [p for p in parts if p.ask < n and p.solved.elastic and not p.reaches(reach)]
+        cramped = [p for p in parts if p not in short and not p.has_room(reach, room)]
+        for part in short:
+            part.ask = min(2 * part.ask, n)
+        for part in cramped:
+            part.ask += FARTHER
+        waiting = short + cramped
+        if not waiting:
+            return [replace(part) for part in parts]
+
+
+def _unsolved_parts(body: Body, supports: Supports, spring: np.ndarray, n: int) -> list[Part]:
+    """Return the groups of a body's own blocks, with the number of modes to search each for."""
     parts: list[Part] = []
     for group in groups(body, supports, spring):
         original = next(
@@ -103,20 +151,33 @@ def solved_parts(
             if part.copies > 1:
                 share = 3
             part.ask = n // share + 1
-    waiting = parts
-    while waiting:
-        for part in waiting:
-            part.solved = lowest(part.supported, part.ask, method)
-        values = sorted(v for part in parts for v in part.values())
-        reach = values[n - 1] if len(values) >= n else np.inf
-        waiting = [
-            p
-            for p in parts
-            if p.ask < n and p.solved.elastic and p.solved.elastic[-1].value <= 1.01 * reach
-        ]
-        for part in waiting:
-            part.ask = min(2 * part.ask, n)
     return parts
+
+
+class _OwnParts:
+    """Groups of the own blocks of a body, solved on the last two sets of springs: who asks for more
+    modes, or for their count, goes on from there.
+    """
+
+    def __init__(self) -> None:
+        self._parts: dict[tuple, list[Part]] = {}
+
+    @staticmethod
+    def _key(supports: Supports, spring: np.ndarray, method: str | None) -> tuple:
+        matrices = (supports.stiffness, supports.masses, spring)
+        return supports.ports, supports.attachments, method, *(m.tobytes() for m in matrices)
+
+    def on(self, supports: Supports, spring: np.ndarray, method: str | None) -> list[Part] | None:
+        """Return the groups on some springs; None where these are new."""
+        return self._parts.get(self._key(supports, spring, method))
+
+    def keep(
+        self, parts: list[Part], supports: Supports, spring: np.ndarray, method: str | None
+    ) -> None:
+        """Keep the groups on some springs, in the place of the oldest."""
+        while len(self._parts) >= 2:
+            del self._parts[next(iter(self._parts))]
+        self._parts[self._key(supports, spring, method)] = parts
 
 
 def reach_of(parts: list[Part], n: int, highest: float = np.inf) -> float:
@@ -128,11 +189,17 @@ def reach_of(parts: list[Part], n: int, highest: float = np.inf) -> float:
 
 
 def further_parts(
-    body: Body, parts: list[Part], n: int, highest: float, method: str | None
+    body: Body,
+    parts: list[Part],
+    n: int,
+    highest: float,
+    method: str | None,
+    room: float = 0.0,
 ) -> tuple[list[Part], list[Uncounted]]:
     """Solve circumferential families of two waves and more that begin among the ``n`` lowest
-    shapes, below the largest eigenvalue wanted, rad^2/s^2; return also those that begin above, in
-    ascending order of waves. `parts` are the body's own, solved.
+    shapes, below the largest eigenvalue wanted, rad^2/s^2, with `room` as
+    :func:`solved_parts`; return also those that begin above, in ascending order of waves. `parts` are
+    the body's own, solved.
     """
     have = {waves_of(b) for p in parts for b in p.blocks}
     limit = reach_of(parts, n, highest)
@@ -163,9 +230,12 @@ def further_parts(
                 solved_families[key] = lowest(part.supported, part.ask, method)
             part.solved = solved_families[key]
             # Two shapes for every value: half of n is all that the list has room for.
-            if part.solved.elastic[-1].value > 1.01 * limit or part.ask > n // 2 + 1:
+            if not part.reaches(limit) and part.ask <= n // 2 + 1:
+                part.ask = min(2 * part.ask, n // 2 + 2)
+            elif not part.has_room(limit, room):
+                part.ask += FARTHER
+            else:
                 break
-            part.ask = min(2 * part.ask, n // 2 + 2)
         further.append(part)
     return further, sorted(uncounted, key=lambda u: u.n)
 

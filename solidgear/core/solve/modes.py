@@ -155,6 +155,7 @@ def modes(
     method: str | None = None,
     count: bool = False,
     ovalising: bool = True,
+    room: float = 0.0,
     stations: int = STATIONS,
 ) -> ModeSet:
     """Lowest modes of a supported body.
@@ -180,6 +181,9 @@ def modes(
     ovalising : bool
         Solve the families of two waves around and more that begin below the highest mode reported,
         for a body that can build them (a harmonic solid).
+    room : float
+        Solve every family on, from its first mode above the list to one whose eigenvalue leaves that
+        one so much room, relative to the higher: error bars rest on it. By default none.
     stations : int
         Number of sections along the shaft whose motions are given for every mode.
 
@@ -217,11 +221,11 @@ def modes(
         )
     supports = as_supports(supports)
     spring, bound = decoupled(body, supports, coupling_tolerance)
-    own_parts = solved_parts(body, supports, spring, n, method)
+    own_parts = solved_parts(body, supports, spring, n, method, room)
     highest = np.inf if max_frequency is None else (2 * np.pi * max_frequency) ** 2
     parts, uncounted = own_parts, list[Uncounted]()
     if ovalising and body.further is not None:
-        more, uncounted = further_parts(body, own_parts, n, highest, method)
+        more, uncounted = further_parts(body, own_parts, n, highest, method, room)
         parts = own_parts + more
     start = time.perf_counter()
     verdicts: list[dict] = []
