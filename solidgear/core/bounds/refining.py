@@ -34,8 +34,8 @@ AIM = 0.7
 #: cells beside a corner that was cut leave about this share of its cost before, and an order more a
 #: ninth of the remaining error: neither decides an error bar, both how many meshes are tried
 BY_CUT, BY_ORDER = 0.08, 9.0
-#: cuts that one step may add to a corner, and orders to the mesh
-CUTS, ORDERS = 4, 2
+#: cuts that one step may add to a corner, orders to the mesh, and cuts of a corner in all
+CUTS, ORDERS, MOST_CUTS = 4, 2, 12
 #: largest cell of the first mesh, in local outer radii
 SIZE = 4.0
 #: orders that left more than this each of an error bar are no longer the cure
@@ -73,54 +73,84 @@ class Meshed:
         }
 
 
+@dataclass(frozen=True)
+class Corner:
+    """Corner of a mesh, and what it does to a result."""
+
+    share: float  #: of the relative error bar
+    exponent: float  #: of displacement
+
+    @property
+    def cut(self) -> Corner:
+        """The same corner with the cells around it cut once."""
+        return replace(self, share=self.share * CUT_RATIO ** (2 * self.exponent))
+
+
 def refined(scene: Scene, body: Body, mesh: Meshed, score: np.ndarray, tol: float) -> Meshed:
     """Return the next mesh after the one that the body was built on, from the share of every cell
-    (ne,) in the relative error bar of the result that needs it most, and a relative tolerance.
+    (ne,) in the relative error bar of the result that needs it most, and a relative tolerance: what
+    leaves most is cut, or the order raised, until what is left is predicted within the tolerance.
     """
-    corners, mesh_of = richer_space(coned(scene), body).corners, body.geometry
-    cells, uncut = mesh_of.meridian.cells, mesh_of.uncut  # type: ignore[union-attr]
-    away = score.copy()
-    needs: dict[int, tuple[float, float]] = {}
-    for vertex, (kind, angle) in corners.items():
-        around = (cells == vertex).any(axis=0)
-        needs[vertex] = float(score[around].sum()), corner_strength(kind, angle)
-        away[around] = 0.0
-    aim = AIM * tol
-    most = aim / 2 / max(1, sum(share > aim / 8 for share, _ in needs.values()))
-    cuts, lines, near_cuts = dict(mesh.cuts), Lines(uncut, mesh.across), 0.0
-    for vertex, (share, exponent) in needs.items():
-        if share <= most:
-            continue
+    mesh_of = body.geometry
+    lines = Lines(mesh_of.uncut, mesh.across)  # type: ignore[union-attr]
+    corners, away = _corners(scene, body, score)
+    smooth, orders, added = float(away.sum()), 0, dict.fromkeys(corners, 0)
+    rate, cure = _rate(mesh, smooth)
+    while (left := smooth / rate**orders) + sum(c.share for c in corners.values()) > AIM * tol:
+        may_be_cut = [vertex for vertex in corners if added[vertex] < CUTS]
+        worst = max(may_be_cut, key=lambda vertex: corners[vertex].share, default=None)
+        if worst is not None and corners[worst].share >= left:
+            smooth += BY_CUT * corners[worst].share if not added[worst] else 0.0
+            corners[worst] = corners[worst].cut
+            added[worst] += 1
+        elif cure and orders < min(ORDERS, HIGHEST - mesh.order):
+            orders += 1
+        else:
+            lines.halve(np.bincount(mesh_of.parent, away))  # type: ignore[union-attr]
+            break
+    cuts = dict(mesh.cuts)
+    for vertex in (vertex for vertex, count in added.items() if count):
         place = place_of(mesh_of.meridian.points[:, vertex])  # type: ignore[union-attr]
-        more = math.ceil(math.log(share / most) / (2 * exponent * math.log(1 / CUT_RATIO)))
         if place not in cuts:
             lines.cut_slender(place)
-        cuts[place] = min(cuts.get(place, 0) + min(max(more, 1), CUTS), 12)
-        near_cuts += BY_CUT * share
-    smooth = max(float(away.sum()), near_cuts)
-    order = mesh.order
-    if smooth > aim / 2:
-        slow = mesh.raised > 0 and smooth > SLOW**mesh.raised * mesh.smooth
-        if order >= HIGHEST or slow and not near_cuts:
-            lines.halve(np.bincount(mesh_of.parent, away))  # type: ignore[union-attr]
-        else:
-            rate = BY_ORDER
-            if mesh.raised and not near_cuts:  # as orders did before
-                rate = min(max((mesh.smooth / smooth) ** (1 / mesh.raised), 1 / SLOW), BY_ORDER)
-            more = math.ceil(math.log(2 * smooth / aim) / math.log(rate))
-            if order + more > HIGHEST:
-                lines.halve(np.bincount(mesh_of.parent, away))  # type: ignore[union-attr]
-            order = min(order + min(max(more, 1), ORDERS), HIGHEST)
-    if (cuts, lines.points, order) == (dict(mesh.cuts), list(mesh.across), mesh.order):
-        order = order + 1
+        cuts[place] = min(cuts.get(place, 0) + added[vertex], MOST_CUTS)
+    if not orders and (cuts, lines.points) == (dict(mesh.cuts), list(mesh.across)):
+        orders = 1
     return replace(
         mesh,
-        order=order,
+        order=mesh.order + orders,
         cuts=cuts,
         across=tuple(lines.points),
         smooth=smooth,
-        raised=order - mesh.order,
+        raised=orders,
     )
+
+
+def _corners(scene: Scene, body: Body, score: np.ndarray) -> tuple[dict[int, Corner], np.ndarray]:
+    """Return the corners of a mesh by their vertices, and (ne,) what cells away from them leave: a cell
+    at several corners belongs to the sharpest.
+    """
+    cells = body.geometry.meridian.cells  # type: ignore[union-attr]
+    exponents = {
+        vertex: corner_strength(kind, angle)
+        for vertex, (kind, angle) in richer_space(coned(scene), body).corners.items()
+    }
+    away, corners = score.copy(), {}
+    for vertex in sorted(exponents, key=exponents.__getitem__):
+        around = (cells == vertex).any(axis=0)
+        corners[vertex] = Corner(float(away[around].sum()), exponents[vertex])
+        away[around] = 0.0
+    return corners, away
+
+
+def _rate(mesh: Meshed, smooth: float) -> tuple[float, bool]:
+    """Return the factor by which an order more reduces an error away from corners, as the last orders
+    did, and whether this is a cure.
+    """
+    if not mesh.raised or not smooth:
+        return BY_ORDER, True
+    fallen = (mesh.smooth / smooth) ** (1 / mesh.raised)
+    return min(max(fallen, 1 / SLOW), BY_ORDER), fallen >= 1 / SLOW
 
 
 def corner_strength(kind: str, angle: float) -> float:
