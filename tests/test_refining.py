@@ -188,7 +188,7 @@ def test_orders_are_asked_for_by_what_they_took_before_and_cells_are_halved_wher
     half of it.
     """
     scene, tol = climbed("free tube")[0], 1e-3
-    for order, wanted, halved in ((5, 7, False), (6, 8, True)):
+    for order, wanted, halved in ((5, 7, False), (7, 8, True)):
         mesh = Meshed(order=order)
         body = sg.build(scene, "harmonic", **mesh.options())
         score = np.zeros(body.mesh["cells"])

@@ -73,17 +73,58 @@ class Meshed:
         }
 
 
-@dataclass(frozen=True)
-class Corner:
-    """Corner of a mesh, and what it does to a result."""
+class Corners:
+    """Corners of a mesh and what cells beside them leave of a result while these are being cut."""
 
-    share: float  #: of the relative error bar
-    exponent: float  #: of displacement
+    def __init__(self, scene: Scene, body: Body, score: np.ndarray):
+        cells = body.geometry.meridian.cells  # type: ignore[union-attr]
+        corners = richer_space(coned(scene), body).corners
+        self.exponents = {v: corner_strength(*corner) for v, corner in corners.items()}
+        self.beside = {v: (cells == v).any(axis=0) for v in corners}
+        at_corner = np.any([np.zeros(len(score), bool), *self.beside.values()], axis=0)
+        self.away = np.where(at_corner, 0.0, score)  #: (ne,) what cells away from corners leave
+        self.near = score - self.away  #: (ne,) what cells beside corners leave without any cut
+        self.cuts = dict.fromkeys(corners, 0)
+        self._left = {v: 1.0 for v in corners}
+        self._sharpest = np.full(len(score), np.inf)
+        for vertex, around in self.beside.items():
+            self._sharpest[around] = np.minimum(self._sharpest[around], self.exponents[vertex])
 
     @property
-    def cut(self) -> Corner:
-        """The same corner with the cells around it cut once."""
-        return replace(self, share=self.share * CUT_RATIO ** (2 * self.exponent))
+    def left(self) -> np.ndarray:
+        """(ne,) what cells beside corners leave: as much as the least cut of their corners does."""
+        return np.max([np.zeros(len(self.near)), *map(self._beside, self.exponents)], axis=0)
+
+    def _beside(self, vertex: int) -> np.ndarray:
+        """Return (ne,) what cells beside one corner leave by it: beside a sharper one no more than if
+        they had been cut once.
+        """
+        dull = CUT_RATIO ** (2 * (self.exponents[vertex] - self._sharpest))
+        return np.where(self.beside[vertex], self._left[vertex] * dull, 0.0) * self.near
+
+    def worst(self) -> tuple[int | None, float]:
+        """Return the corner that leaves most and may still be cut, and how much it leaves; None where all
+        are cut.
+        """
+        left = self.left
+        leaves = {
+            v: float(left[self.beside[v] & (self._beside(v) >= left)].sum())
+            for v in self.exponents
+            if self.cuts[v] < CUTS
+        }
+        worst = max(leaves, key=leaves.__getitem__, default=None)
+        return worst, 0.0 if worst is None else leaves[worst]
+
+    def cut(self, vertex: int) -> None:
+        """Cut the cells beside a corner once more."""
+        self.cuts[vertex] += 1
+        self._left[vertex] *= CUT_RATIO ** (2 * self.exponents[vertex])
+
+    def smooth(self) -> float:
+        """Return what an order more reduces: the error away from corners and beside those cut."""
+        touched = [self.beside[v] for v, count in self.cuts.items() if count]
+        beside_cut = np.any([np.zeros(len(self.near), bool), *touched], axis=0)
+        return float(self.away.sum() + BY_CUT * self.near[beside_cut].sum())
 
 
 def refined(scene: Scene, body: Body, mesh: Meshed, score: np.ndarray, tol: float) -> Meshed:
@@ -93,27 +134,23 @@ def refined(scene: Scene, body: Body, mesh: Meshed, score: np.ndarray, tol: floa
     """
     mesh_of = body.geometry
     lines = Lines(mesh_of.uncut, mesh.across)  # type: ignore[union-attr]
-    corners, away = _corners(scene, body, score)
-    smooth, orders, added = float(away.sum()), 0, dict.fromkeys(corners, 0)
-    rate, cure = _rate(mesh, smooth)
-    while (left := smooth / rate**orders) + sum(c.share for c in corners.values()) > AIM * tol:
-        may_be_cut = [vertex for vertex in corners if added[vertex] < CUTS]
-        worst = max(may_be_cut, key=lambda vertex: corners[vertex].share, default=None)
-        if worst is not None and corners[worst].share >= left:
-            smooth += BY_CUT * corners[worst].share if not added[worst] else 0.0
-            corners[worst] = corners[worst].cut
-            added[worst] += 1
+    corners, orders = Corners(scene, body, score), 0
+    rate, cure = _rate(mesh, corners.smooth())
+    while (smooth := corners.smooth() / rate**orders) + corners.left.sum() > AIM * tol:
+        vertex, leaves = corners.worst()
+        if vertex is not None and leaves >= smooth:
+            corners.cut(vertex)
         elif cure and orders < min(ORDERS, HIGHEST - mesh.order):
             orders += 1
         else:
-            lines.halve(np.bincount(mesh_of.parent, away))  # type: ignore[union-attr]
+            lines.halve(np.bincount(mesh_of.parent, corners.away))  # type: ignore[union-attr]
             break
     cuts = dict(mesh.cuts)
-    for vertex in (vertex for vertex, count in added.items() if count):
+    for vertex in (vertex for vertex, count in corners.cuts.items() if count):
         place = place_of(mesh_of.meridian.points[:, vertex])  # type: ignore[union-attr]
         if place not in cuts:
             lines.cut_slender(place)
-        cuts[place] = min(cuts.get(place, 0) + added[vertex], MOST_CUTS)
+        cuts[place] = min(cuts.get(place, 0) + corners.cuts[vertex], MOST_CUTS)
     if not orders and (cuts, lines.points) == (dict(mesh.cuts), list(mesh.across)):
         orders = 1
     return replace(
@@ -121,26 +158,9 @@ def refined(scene: Scene, body: Body, mesh: Meshed, score: np.ndarray, tol: floa
         order=mesh.order + orders,
         cuts=cuts,
         across=tuple(lines.points),
-        smooth=smooth,
+        smooth=corners.smooth(),
         raised=orders,
     )
-
-
-def _corners(scene: Scene, body: Body, score: np.ndarray) -> tuple[dict[int, Corner], np.ndarray]:
-    """Return the corners of a mesh by their vertices, and (ne,) what cells away from them leave: a cell
-    at several corners belongs to the sharpest.
-    """
-    cells = body.geometry.meridian.cells  # type: ignore[union-attr]
-    exponents = {
-        vertex: corner_strength(kind, angle)
-        for vertex, (kind, angle) in richer_space(coned(scene), body).corners.items()
-    }
-    away, corners = score.copy(), {}
-    for vertex in sorted(exponents, key=exponents.__getitem__):
-        around = (cells == vertex).any(axis=0)
-        corners[vertex] = Corner(float(away[around].sum()), exponents[vertex])
-        away[around] = 0.0
-    return corners, away
 
 
 def _rate(mesh: Meshed, smooth: float) -> tuple[float, bool]:
