@@ -1,7 +1,9 @@
 """Deviations of models from a reference.
 
-A gap counts with the bars of both sides: within the tolerance even at their far end it is *within*,
-beyond it even at their near end it is *beyond*, else the question is *open*.
+A difference is *resolved* where it exceeds the error bars of both sides. The error of a model is known
+as well as the reference is: a gap within the tolerance even at the far end of the reference's bar is
+*within*, beyond it even at the near end it is *beyond*, else the question is *open*; what the bar
+of the model's own mesh allows is in the gap already.
 """
 
 from __future__ import annotations
@@ -56,6 +58,7 @@ class Deviation:
     reference_value: float
     relative: float  #: of couplings to the geometric mean of their diagonal entries
     bar: float | None  #: sum of the error bars of both, relative; None where neither has one
+    reference_bar: float  #: relative error bar of the reference; zero without one
     pairing: str = ""  #: in words, how a mode was paired where the name did not decide
 
     @property
@@ -72,7 +75,7 @@ class Deviation:
 
     def standing(self, tolerance: float) -> str:
         """Return ``within``, ``open`` or ``beyond`` a tolerance."""
-        return gap_verdict(self.relative, self.bar or 0.0, tolerance)
+        return gap_verdict(self.relative, self.reference_bar, tolerance)
 
     @property
     def side(self) -> str:
@@ -125,11 +128,8 @@ def _deviations(
         )
         if relative is None:
             continue
-        bars = [
-            r.error_bars[tie][name].width
-            for r in (base, solution)
-            if name in r.error_bars.get(tie, {})
-        ]
+        of_reference, of_model = (r.error_bars.get(tie, {}).get(name) for r in (base, solution))
+        bars = [bar.width for bar in (of_reference, of_model) if bar is not None]
         yield Deviation(
             model,
             reference,
@@ -139,6 +139,7 @@ def _deviations(
             reference_value=reference_answer.quantities[name],
             relative=relative,
             bar=sum(bars) if bars else None,
+            reference_bar=0.0 if of_reference is None else of_reference.width,
             pairing=pairing,
         )
 

@@ -170,7 +170,7 @@ def _gap_reason(gap: Deviation, solutions: dict[str, Solution], kind: str, toler
     if kind == BEYOND:
         return f"{text}, more than the {percent(tolerance)} asked for"
     return (
-        f"{text}, and with an error bar of {percent(gap.bar or 0.0)} may or may not be within "
+        f"{text}, and with an error bar of {percent(gap.reference_bar)} may or may not be within "
         f"the {percent(tolerance)} asked for"
     )
 
