@@ -56,9 +56,10 @@ def _hexahedra(layers: int, edge_layers: int, relative_size: float) -> Level:
     }
 
 
+# layers at the edges of seats tell from the third mesh on: before, shoulders decide
 HEXAHEDRA: tuple[Level, ...] = (
     _hexahedra(0, 0, 1.5),
-    _hexahedra(1, 1, 1.0),
+    _hexahedra(1, 0, 1.0),
     _hexahedra(2, 2, 0.7),
     _hexahedra(3, 3, 0.5),
     _hexahedra(4, 4, 0.35),
