@@ -7,9 +7,12 @@ import signal
 import sys
 import threading
 
+from solidgear.core.machine.later import load_later
 from solidgear.core.machine.threads import pin
 
-pin()  # before anything imports numpy
+# before anything imports numpy
+pin()
+load_later()
 
 
 def _interrupted(*_) -> None:
