@@ -11,7 +11,7 @@ from solidgear.core.machine.later import load_later
 from solidgear.core.machine.threads import pin
 
 # before anything imports numpy
-pin()
+_not_kept = pin()
 load_later()
 
 
@@ -31,9 +31,16 @@ from solidgear.app.application import app
 from solidgear.core import SolidgearError
 from solidgear.core.errors import for_terminal
 from solidgear.core.machine.interruptible import leave
+from solidgear.show.command import Progress
 
 if _hears:
     signal.signal(signal.SIGINT, signal.default_int_handler)
+
+if _not_kept:
+    Progress.first = (
+        f"OPENBLAS_NUM_THREADS={_not_kept} is not kept: dense matrices are small here and take one "
+        "thread; PARDISO takes all cores granted"
+    )
 
 
 #: what the loader says of a library that finds no room
