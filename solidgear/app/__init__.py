@@ -11,7 +11,7 @@ from solidgear.core.machine.later import load_later
 from solidgear.core.machine.threads import pin
 
 # before anything imports numpy
-_not_kept = pin()
+_overruled = pin()
 load_later()
 
 
@@ -36,9 +36,9 @@ from solidgear.show.command import Progress
 if _hears:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
-if _not_kept:
+if _overruled:
     Progress.first = (
-        f"OPENBLAS_NUM_THREADS={_not_kept} is not kept: dense matrices are small here and take one "
+        f"OPENBLAS_NUM_THREADS={_overruled} is not kept: dense matrices are small here and take one "
         "thread; PARDISO takes all cores granted"
     )
 
