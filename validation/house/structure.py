@@ -12,7 +12,7 @@ from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import connected_components
 
 from validation.house.floors import room_of
-from validation.house.source import Source
+from validation.house.source import Source, statements
 
 Graph = dict[str, set[str]]
 
@@ -70,7 +70,7 @@ def _handed_out(package: Source) -> dict[str, str]:
     """Return the names that a package imports, each with its module."""
     return {
         alias.asname or alias.name: node.module
-        for node in ast.walk(package.tree)
+        for node in statements(package.tree)
         if isinstance(node, ast.ImportFrom) and node.module and not node.level
         for alias in node.names
     }
