@@ -198,11 +198,19 @@ if TYPE_CHECKING:
     from solidgear.variants.sweep.file_sweep import sweep
 
 
+class _NoSuch(AttributeError):
+    """Error of a missing name; the hint is searched only when the error is printed."""
+
+    def __str__(self) -> str:
+        from solidgear.core.errors import nearest  # start-up: for this alone
+
+        (name,) = self.args
+        return f"module 'solidgear' has no attribute {name!r}{nearest(name, _WHERE)}"
+
+
 def __getattr__(name: str):
     if name not in _WHERE:
-        from solidgear.core.errors import nearest  # start-up
-
-        raise AttributeError(f"module 'solidgear' has no attribute {name!r}{nearest(name, _WHERE)}")
+        raise _NoSuch(name)
     value = getattr(importlib.import_module(_WHERE[name]), name)
     globals()[name] = value
     return value

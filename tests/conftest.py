@@ -1,5 +1,5 @@
-"""One BLAS thread for the whole suite, as on the command line, before anything imports numpy; and
-Ctrl-C is heard.
+"""One BLAS thread for the whole suite, as on the command line, before anything imports numpy, and one
+that factors: processes of tests are as many as cores. Ctrl-C is heard.
 """
 
 import ctypes
@@ -20,6 +20,7 @@ from solidgear.core.machine.threads import pin
 from tests.by_room import belongs, is_room
 
 pin()
+os.environ.setdefault("MKL_NUM_THREADS", "1")
 # A shell starts what it runs in the background deaf to Ctrl-C; tests that interrupt themselves
 # would wait for ever.
 signal.signal(signal.SIGINT, signal.default_int_handler)

@@ -6,8 +6,8 @@ from types import SimpleNamespace
 import pytest
 
 from solidgear.core.scene.file import load
-from solidgear.guards import GUARDS
 from solidgear.guards.bearings import misfits
+from solidgear.guards.registry import GUARDS
 from solidgear.trains.assembly.layout import contacts, places
 from solidgear.trains.assembly.space import overlaps
 from solidgear.trains.file.reading import load_train

@@ -12,8 +12,9 @@ from solidgear.core.ladder.registry import LADDER
 from solidgear.core.scene import Chamfer, Fillet
 from solidgear.core.scene.closed_form import mass_properties, volume_of
 from solidgear.core.scene.coned import coned
-from solidgear.guards import Probe, elements
+from solidgear.guards import elements
 from solidgear.guards.edges import fillets
+from solidgear.guards.probe import Probe
 
 HEAD, SHAFT = ("head", 0.068, 0.134), ("shaft", 0.208, 0.09)
 

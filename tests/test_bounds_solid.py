@@ -14,7 +14,8 @@ from solidgear import STEEL, Bearing, Material, Port, Scene, Segment
 from solidgear.core.body import as_supports
 from solidgear.core.bounds import solid as bounds_solid
 from solidgear.core.bounds.safety import LOCAL
-from solidgear.core.bounds.solid import NoBounds, _converged, _Search, enriched_errors, solid_bounds
+from solidgear.core.bounds.solid import _converged, _Search, enriched_errors, solid_bounds
+from solidgear.core.errors import NoBounds
 from solidgear.core.judge.bounded import _between, bounded
 from solidgear.core.judge.quantities import size
 from solidgear.core.judge.solving import Statics, numbers, search_modes

@@ -11,18 +11,18 @@ import pytest
 import scipy.linalg as sla
 
 import solidgear as sg
-from solidgear import guards
 from solidgear.bearings.catalogue import Catalogue
 from solidgear.core.judge.record import GuardRecord
 from solidgear.core.judge.study import study
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.scene import STEEL, Ask, Bearing, Fillet, Port, Scene, Segment
 from solidgear.core.scene.closed_form import mass_properties, whole_mass
-from solidgear.guards import GUARDS, Notice, check, elements, models
+from solidgear.guards import check, elements, models
 from solidgear.guards import probe as probe_module
 from solidgear.guards.check import cautions, check_scene, notices
-from solidgear.guards.notice import against, beams, everything
+from solidgear.guards.notice import LEVELS, Notice, against, beams, everything
 from solidgear.guards.probe import Probe
+from solidgear.guards.registry import GUARDS
 from solidgear.guards.sheet import check_sheet, thoughts
 from solidgear.show.command import FAULTY
 from tests.command import command
@@ -787,7 +787,7 @@ def test_a_catalogue_bearing_of_which_few_elements_carry_is_not_told_to_give_dig
 def test_records_are_plain_data(shipped):
     for found in map(shipped, sorted(OFTEN)):
         json.dumps(found.as_dict(), allow_nan=False)
-        assert {r.level for r in found.records} <= set(guards.LEVELS)
+        assert {r.level for r in found.records} <= set(LEVELS)
         assert sorted(found.facts + found.cautions + found.faults) == sorted(
             r.sentence for r in found.records
         )

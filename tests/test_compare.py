@@ -13,8 +13,7 @@ import pytest
 
 import solidgear as sg
 from solidgear.comparison.models import compare
-from solidgear.core.bounds.solid import NoBounds
-from solidgear.core.errors import SolidgearError
+from solidgear.core.errors import NoBounds, SolidgearError
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.meshing.quality import MeshError
 from solidgear.core.models.options import ATTACHMENTS

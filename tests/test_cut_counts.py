@@ -14,7 +14,8 @@ from solidgear.cuts.features import CrossHole
 from solidgear.cuts.solid.cuts import edge_size, feature_size
 from solidgear.cuts.solid.featured import meshed
 from solidgear.cuts.solid.meshing import submesh
-from solidgear.guards import Probe, elements
+from solidgear.guards import elements
+from solidgear.guards.probe import Probe
 
 SMALL = CrossHole(name="small", segment="rod", y=0.12, diameter=0.002)
 WIDE = SMALL.with_changes(diameter=0.012)

@@ -14,7 +14,7 @@ from solidgear.core.registry import addition, register
 from solidgear.rooms import ADDITIONS
 from validation.house import structure
 from validation.house.floors import FEATURES, MAY_IMPORT, room_of
-from validation.house.source import sources
+from validation.house.source import sources, statements
 from validation.house.words import shapes
 
 PACKAGE = Path(__file__).parent.parent / "solidgear"
@@ -84,7 +84,7 @@ def unexplained(source):
     late = [
         node
         for function in source.functions
-        for node in ast.walk(function)
+        for node in statements(function)
         if isinstance(node, ast.Import | ast.ImportFrom)
     ]
     inside = {k for node in late for k in range(node.lineno, node.end_lineno + 1)}
@@ -180,7 +180,7 @@ def test_names_that_features_share_come_through_the_door_of_the_core():
     for source in files():
         if source.room in ("core", "__init__", "rooms", "__main__"):
             continue
-        for node in ast.walk(source.tree):
+        for node in statements(source.tree):
             if isinstance(node, ast.ImportFrom) and (node.module or "").startswith(
                 "solidgear.core"
             ):

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.core.bounds.solid import NoBounds, solid_bounds
+from solidgear.core.bounds.solid import solid_bounds
+from solidgear.core.errors import NoBounds
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.machine.isolated import isolated
 from validation.mesh_files import rod, write_mesh, written_by_gmsh

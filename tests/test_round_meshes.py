@@ -8,7 +8,8 @@ import pytest
 import solidgear as sg
 from solidgear.app.answer import _of_round_part
 from solidgear.core.ladder.registry import LADDER
-from solidgear.guards import Probe, elements
+from solidgear.guards import elements
+from solidgear.guards.probe import Probe
 from solidgear.guards.round_part import described
 from solidgear.parts.round_part import round_part
 from validation.mesh_files import rod, write_mesh

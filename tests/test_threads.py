@@ -84,16 +84,34 @@ set_all(2)
 from solidgear.core.machine import threads
 with threads.single():
     print(numbers())
-threads.pin()
-print(numbers())
+print(numbers(), repr(threads.pin()), numbers())
 """
     )
-    assert said(code, OPENBLAS_NUM_THREADS="2") == ["[1]", "[2]"]
+    kept = ["[1]", "[2] '' [2]"]
+    assert said(code, OPENBLAS_NUM_THREADS="2", SOLIDGEAR_BACKEND="superlu") == kept
+    if not missing("pardiso"):
+        assert said(code, OPENBLAS_NUM_THREADS="2") == ["[1]", "[2] '2' [1]"]
 
 
-def test_the_command_line_has_one_thread_whatever_omp_says():
-    code = "import solidgear.app" + NUMBERS + "print(numbers())"
-    assert said(code, OMP_NUM_THREADS="2") == ["[1]"]
+@pytest.mark.parametrize(
+    ("variable", "line"),
+    [
+        ("OMP_NUM_THREADS", ""),
+        pytest.param(
+            "OPENBLAS_NUM_THREADS",
+            "OPENBLAS_NUM_THREADS=2 is not kept: dense matrices are small here and take one "
+            "thread; PARDISO takes all cores granted",
+            marks=pytest.mark.skipif(bool(missing("pardiso")), reason="needs MKL"),
+        ),
+    ],
+)
+def test_the_command_line_has_one_thread_whatever_is_exported(variable, line):
+    code = (
+        "import solidgear.app"
+        + NUMBERS
+        + "from solidgear.show.command import Progress; print(numbers(), Progress.first)"
+    )
+    assert said(code, **{variable: "2"}) == [f"[1] {line}"]
 
 
 def test_pin_tells_a_numpy_that_is_there_already():

@@ -1352,14 +1352,7 @@ def apply(mutation: Mutation, root: Path) -> None:
 
 def passes(test: str, root: Path) -> bool:
     """Whether a test passes on the source under ``root``."""
-    # One test process per mutation, side by side: two MKL threads each would only get into each
-    # other's way.
-    env = {
-        **os.environ,
-        "PYTHONPATH": str(root),
-        "PYTHONDONTWRITEBYTECODE": "1",
-        "MKL_NUM_THREADS": "1",
-    }
+    env = {**os.environ, "PYTHONPATH": str(root), "PYTHONDONTWRITEBYTECODE": "1"}
     # wide grids too: one of them may be what sees a mutation
     options = ["-q", "-x", "-n0", "-p", "no:cacheprovider", "-m", "not slow"]
     done = subprocess.run(

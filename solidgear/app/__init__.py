@@ -7,9 +7,12 @@ import signal
 import sys
 import threading
 
+from solidgear.core.machine.later import load_later
 from solidgear.core.machine.threads import pin
 
-pin()  # before anything imports numpy
+# before anything imports numpy
+_overruled = pin()
+load_later()
 
 
 def _interrupted(*_) -> None:
@@ -28,9 +31,16 @@ from solidgear.app.application import app
 from solidgear.core import SolidgearError
 from solidgear.core.errors import for_terminal
 from solidgear.core.machine.interruptible import leave
+from solidgear.show.command import Progress
 
 if _hears:
     signal.signal(signal.SIGINT, signal.default_int_handler)
+
+if _overruled:
+    Progress.first = (
+        f"OPENBLAS_NUM_THREADS={_overruled} is not kept: dense matrices are small here and take one "
+        "thread; PARDISO takes all cores granted"
+    )
 
 
 #: what the loader says of a library that finds no room

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -13,7 +13,6 @@ from solidgear.core import LADDER, OpenNumbers, Scene, SolidgearError, WhereReco
 from solidgear.core.judge.answer import Answered, Step
 from solidgear.core.judge.answer import answer as solve
 from solidgear.core.judge.steps import ABOVE, BELOW
-from solidgear.core.judge.where import ErrorMap, map_error
 from solidgear.core.models.kinds import PARTS
 from solidgear.core.plain import plain
 from solidgear.show.command import Progress, caution, command
@@ -26,9 +25,10 @@ from solidgear.show.settled import sentences
 from solidgear.show.sheet import Sheet, Terminal, present
 from solidgear.show.table import Column, Table, text
 from solidgear.show.units import Units, units_named
-from solidgear.show.where_chart import draw_where, worth_naming
-from solidgear.show.where_surface import draw_surface
 from solidgear.show.words import bar_of, count, percent, seconds
+
+if TYPE_CHECKING:
+    from solidgear.core.judge.where import ErrorMap
 
 
 @command
@@ -186,6 +186,8 @@ def _mapped(scene: Scene, answered: Answered) -> tuple[ErrorMap, float]:
     SolidgearError
         Where nothing was answered, or the answer has no error bar by cells.
     """
+    from solidgear.core.judge.where import map_error  # start-up: for --where alone
+
     if not answered.values:
         raise SolidgearError("nothing that was asked for exists in this scene")
     widest = max(answered.values, key=lambda value: value.bar)
@@ -197,6 +199,10 @@ def _drawn(error_map: ErrorMap, picture: Path) -> str:
     """Draw the cells of a meridian, or of the surface of a 3D solid, and return where they are, or
     why they could not be drawn.
     """
+    # start-up: for --picture alone
+    from solidgear.show.where_chart import draw_where
+    from solidgear.show.where_surface import draw_surface
+
     places = error_map.record
     title = f"Error bar of {places.quantity} by cells, order {places.order}"
     if places.cells:
@@ -208,6 +214,7 @@ def _drawn(error_map: ErrorMap, picture: Path) -> str:
 
 def _where_table(places: WhereRecord, units: Units) -> Table:
     """Return places of the error with their shares of it, the largest first."""
+    from solidgear.show.where_chart import worth_naming  # start-up: for --where alone
 
     def length(value: float) -> str:
         return f"{units.value(value, 'm'):.4g}"

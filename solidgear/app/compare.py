@@ -10,16 +10,12 @@ import typer
 from solidgear.comparison.models import check_models
 from solidgear.comparison.models import compare as compared
 from solidgear.comparison.page.sheet import sheet
-from solidgear.comparison.race.command import run_chart
-from solidgear.comparison.two.command import compare_two
 from solidgear.core import ELEMENTS, LADDER, is_train, listed
 from solidgear.core import load as read
 from solidgear.show.command import Progress, command
 from solidgear.show.folder import held
 from solidgear.show.options import MODEL, SceneFile, Shown, options_by_name, refuse
 from solidgear.show.sheet import Sheet, present
-from solidgear.trains.judge.command import compare_train
-from solidgear.trains.options import Pair
 
 
 @command
@@ -102,11 +98,17 @@ def compare(
         "--mesh": bool(mesh),
     }
     if more:
+        # start-up: for two files alone
+        from solidgear.comparison.two.command import compare_two
+        from solidgear.trains.options import Pair
+
         mix = Pair(pinion or MODEL, gear or MODEL, shafts)
         compare_two([scene, *more], out, mix, mesh, run, of_one_shaft, of_trains)
         return
     refuse(of_trains, f"two trains, and {scene} is one, of which every model is solved")
     if is_train(scene):
+        from solidgear.trains.judge.command import compare_train  # start-up: for trains alone
+
         compare_train(scene, out, renders, run, of_one_shaft)
         return
 
@@ -124,6 +126,8 @@ def compare(
             drawn = renders and complete
             comparison.write_report(out, renders=drawn, units=run.units, progress=progress)
             if chart and complete:
+                from solidgear.comparison.race.command import run_chart  # start-up: for --chart
+
                 run_chart(loaded, out, progress=progress)
         exit_code = 0 if comparison.solutions else 1
         files = [f"Report: {out / 'report.html'}"]

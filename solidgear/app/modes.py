@@ -23,7 +23,7 @@ from solidgear.core import (
 )
 from solidgear.core import modes as solve
 from solidgear.core.bounds.clusters import ROOM
-from solidgear.core.bounds.solid import NoBounds
+from solidgear.core.errors import NoBounds
 from solidgear.core.judge.at_rest import spin_caution
 from solidgear.core.judge.bounded import NOTHING_BEYOND
 from solidgear.core.judge.completeness import completeness, cut_short, split_apart

@@ -20,7 +20,7 @@ from solidgear.core import (
     SolidgearError,
 )
 from solidgear.core.body import as_supports
-from solidgear.core.bounds.solid import NoBounds
+from solidgear.core.errors import NoBounds
 from solidgear.core.judge.bounded import static_bars
 from solidgear.core.machine.memory import NoRoom
 from solidgear.core.plain import plain

@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, ClassVar, overload
 
 from solidgear.comparison.page.write import write_all
 from solidgear.comparison.recording import Findings, recorded
-from solidgear.comparison.two.two_shafts import two_shafts
 from solidgear.core import (
     HARMONIC,
     LADDER,
     Displayed,
+    OpenNumbers,
     Record,
     Scene,
     SolidgearError,
@@ -35,9 +35,8 @@ from solidgear.core.machine.memory import one_run
 from solidgear.core.machine.meter import Meter
 from solidgear.guards.check import notices
 from solidgear.guards.models import cells_around
+from solidgear.show.remarks import may_be_open
 from solidgear.show.units import units_named
-from solidgear.trains.file.train import Train
-from solidgear.variants.budget.budget import opened
 
 if TYPE_CHECKING:
     from solidgear.comparison.two.two_shafts import TwoShafts
@@ -162,7 +161,7 @@ def compare(
     >>> shafts["mass"].verdict, round(shafts["mass"].relative, 4)
     ('resolved', 0.21)
     """
-    if isinstance(scene, Train) or isinstance(models, Train):
+    if not isinstance(scene, Scene) or not isinstance(models, Scene | Collection | None):
         raise SolidgearError(
             "compare takes scenes of one shaft; trains are compared by the command: "
             "solidgear compare A.toml B.toml"
@@ -177,6 +176,8 @@ def compare(
             raise SolidgearError(
                 "settings are for models of one scene; for two the program chooses"
             )
+        from solidgear.comparison.two.two_shafts import two_shafts  # start-up: for two alone
+
         return two_shafts((scene, models), progress=progress)
     models = LADDER.names if models is None else models
     check_models(models)
@@ -187,7 +188,7 @@ def compare(
         try:
             _run(scene, models, options, findings, progress)
             progress("what the data leave open")
-            findings.open_ = opened(scene)
+            findings.open_ = _opened(scene)
         except KeyboardInterrupt:
             findings.complete = False
             progress("interrupted; keeping what is there")
@@ -196,6 +197,15 @@ def compare(
     record.peak_mb = overall.peak_mb
     record.expected_peak_mb = run.expected_mb
     return Comparison(scene, record, findings.solutions)
+
+
+def _opened(scene: Scene) -> OpenNumbers:
+    """Return the ranges of numbers by open inputs of a scene."""
+    if not may_be_open(scene):
+        return OpenNumbers()
+    from solidgear.variants.budget.budget import opened  # start-up: for open inputs alone
+
+    return opened(scene)
 
 
 def _run(scene: Scene, models, options, findings: Findings, progress: Progress) -> None:

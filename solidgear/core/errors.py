@@ -33,6 +33,14 @@ class SolidgearError(Exception):
     """
 
 
+class NoBounds(SolidgearError):
+    """A 3D body whose error cannot be bounded, on a finer mesh perhaps."""
+
+    def __init__(self, reason: str, finer_helps: bool = False):
+        super().__init__(reason)
+        self.finer_helps = finer_helps
+
+
 class SceneError(SolidgearError, ValueError):
     """A scene that cannot be used as written: the first problem, and all others with it.
 

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import combinations
+from typing import TYPE_CHECKING
 
 from solidgear.bearings.catalogue import Catalogue, catalogue_of
 from solidgear.core import TOUCH, Bearing, Scene
 from solidgear.guards.notice import Notice, Notices
-from solidgear.guards.probe import Probe
+
+if TYPE_CHECKING:
+    from solidgear.guards.probe import Probe
 
 #: bore against seat, relative; an interference fit is some 1e-3 of the bore, and drawings round a seat to a whole mm
 BORE = 0.01

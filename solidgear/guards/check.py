@@ -25,8 +25,9 @@ from solidgear.core.ladder.model import LUMPED, SOLID
 from solidgear.core.plain import plain
 from solidgear.core.scene.closed_form import mass_properties, whole_mass
 from solidgear.core.scene.shaft import feature_labels, resolved
-from solidgear.guards import GUARDS, LEVELS, Notice, Probe
-from solidgear.guards.notice import Notices, beams, everything
+from solidgear.guards.notice import LEVELS, Notice, Notices, beams, everything
+from solidgear.guards.probe import Probe
+from solidgear.guards.registry import GUARDS
 from solidgear.guards.round_part import against_the_part, described, of_files
 from solidgear.guards.smearing import smearing
 

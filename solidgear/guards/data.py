@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from solidgear.core import DOF_NAMES, Scene, listed
 from solidgear.guards.notice import Notice, Notices, slip_in_units
-from solidgear.guards.probe import Probe
+
+if TYPE_CHECKING:
+    from solidgear.guards.probe import Probe
 
 # wrong_units.py lists the slips that leave one of these ranges; stiffness begins below that of any
 # machine: 1 MN/m, as of soft rolling, film and magnetic bearings, under a shaft of 240 mm

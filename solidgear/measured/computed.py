@@ -23,7 +23,7 @@ from solidgear.core import (
     pinned,
     settle,
 )
-from solidgear.core.bounds.solid import NoBounds
+from solidgear.core.errors import NoBounds
 from solidgear.core.judge.bounded import mode_bars
 from solidgear.core.machine.memory import NoRoom
 from solidgear.variants.sensitivity.adjoint import mode_form

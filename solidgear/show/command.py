@@ -67,6 +67,7 @@ class Progress:
 
     #: of the whole run
     silent = False
+    first = ""  #: a line before all others
 
     def __init__(self, quiet: bool = False):
         self.console = console(stderr=True)
@@ -75,6 +76,8 @@ class Progress:
         self.status: Status | None = None
 
     def __enter__(self):
+        if self.first and not self.quiet:
+            print(self.first, file=sys.stderr)
         if not self.quiet and self.console.is_terminal:
             self.status = self.console.status("starting")
             self.status.start()

@@ -28,10 +28,15 @@ def cautions(scene: Scene, body: Body) -> list[str]:
 
 def open_ranges(scene: Scene, body: Body | None = None) -> OpenNumbers:
     """Return the ranges of numbers that inputs with an open value cause."""
-    if not scene.uncertain and all(bearing.catalogue is None for bearing in scene.bearings):
+    if not may_be_open(scene):
         return OpenNumbers()
     remark = addition("remark", "open ranges")
     return remark(scene, body) if remark else OpenNumbers()
+
+
+def may_be_open(scene: Scene) -> bool:
+    """Return True where inputs of a scene may have an open value."""
+    return bool(scene.uncertain) or any(b.catalogue is not None for b in scene.bearings)
 
 
 def bearing_cautions(scene: Scene) -> Iterator[str]:

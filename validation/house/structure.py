@@ -12,7 +12,7 @@ from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import connected_components
 
 from validation.house.floors import room_of
-from validation.house.source import Source
+from validation.house.source import Source, statements
 
 Graph = dict[str, set[str]]
 
@@ -26,7 +26,7 @@ def imports(source: Source, known: set[str], *, types: bool, late: bool) -> set[
     pending: list[ast.AST] = [source.tree]
     while pending:
         node = pending.pop()
-        if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test) and not types:
+        if not types and isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test):
             pending.extend(node.orelse)
             continue
         if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) and not late:
@@ -37,7 +37,8 @@ def imports(source: Source, known: set[str], *, types: bool, late: bool) -> set[
                 modules.add(full if full in known else node.module)
         elif isinstance(node, ast.Import):
             modules |= {alias.name for alias in node.names}
-        pending.extend(ast.iter_child_nodes(node))
+        if isinstance(node, ast.mod | ast.stmt | ast.ExceptHandler | ast.match_case):
+            pending.extend(ast.iter_child_nodes(node))
     return modules & known
 
 
@@ -69,7 +70,7 @@ def _handed_out(package: Source) -> dict[str, str]:
     """Return the names that a package imports, each with its module."""
     return {
         alias.asname or alias.name: node.module
-        for node in ast.walk(package.tree)
+        for node in statements(package.tree)
         if isinstance(node, ast.ImportFrom) and node.module and not node.level
         for alias in node.names
     }

@@ -41,7 +41,7 @@ from solidgear.core.bounds.pieces import Part, Piece, independent, pieces_of
 from solidgear.core.bounds.safety import ACROSS, LEAST, LOCKING, MISSING, SLOWER
 from solidgear.core.bounds.sharpest import sharpest_exponent
 from solidgear.core.elements import ELEMENTS
-from solidgear.core.errors import SolidgearError
+from solidgear.core.errors import NoBounds
 from solidgear.core.kernel.room import MB
 from solidgear.core.machine.memory import NoRoom, require
 from solidgear.core.meshing.corners import SHOULDER, is_notched
@@ -69,14 +69,6 @@ ROUNDING = 1e-12
 COPIES = 8
 #: way out of an estimate that finds no room
 COARSER = "use a coarser mesh"
-
-
-class NoBounds(SolidgearError):
-    """A 3D body whose error cannot be bounded, on a finer mesh perhaps."""
-
-    def __init__(self, reason: str, finer_helps: bool = False):
-        super().__init__(reason)
-        self.finer_helps = finer_helps
 
 
 @dataclass

@@ -18,7 +18,6 @@ import numpy as np
 from solidgear.core.body import Body, Supports
 from solidgear.core.bounds.harmonic import harmonic_bounds, is_bounded, with_tail
 from solidgear.core.bounds.safety import LOCAL
-from solidgear.core.bounds.solid import solid_bounds
 from solidgear.core.judge.bars import LEAST, ErrorBar
 from solidgear.core.judge.quantities import Values, in_order, size
 from solidgear.core.judge.solving import MOST_SHAPES, Statics, extended_modes, numbers
@@ -121,6 +120,8 @@ def bounds_of(
             scene, body, supports, statics=statics, modes=modes, wanted=wanted, safety=LOCAL
         )
     if not LADDER[body.fidelity].follows:
+        from solidgear.core.bounds.solid import solid_bounds  # start-up: for 3D solids alone
+
         return solid_bounds(scene, body, statics=statics, modes=modes, wanted=wanted, safety=LOCAL)
     return harmonic_bounds(
         coned(scene), body, statics=statics, modes=modes, wanted=wanted, safety=LOCAL, later=later

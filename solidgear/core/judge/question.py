@@ -12,7 +12,7 @@ import numpy as np
 
 from solidgear.core.body import Body, as_supports
 from solidgear.core.body.mode_names import ModeName
-from solidgear.core.bounds.solid import NoBounds
+from solidgear.core.errors import NoBounds
 from solidgear.core.judge.bounded import bounded
 from solidgear.core.judge.refinement import Refinement, Solved
 from solidgear.core.judge.solving import ENOUGH, Numbers, Statics, numbers, search_modes

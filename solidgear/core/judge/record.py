@@ -45,7 +45,7 @@ class Part(BaseModel):
     default; unknown ones are kept. It may be made from an object with attributes of the same names.
     """
 
-    model_config = ConfigDict(extra="allow", from_attributes=True)
+    model_config = ConfigDict(extra="allow", from_attributes=True, defer_build=True)
 
     @field_validator("*", mode="wrap")
     @classmethod

@@ -24,7 +24,6 @@ from solidgear.core.body import Body
 from solidgear.core.bounds.refining import MOST_MESHES, Meshed, refined
 from solidgear.core.judge.bars import ErrorBar
 from solidgear.core.judge.bounded import Bounded
-from solidgear.core.judge.cell_places import place_of_most
 from solidgear.core.judge.effort import HEAVY, cost_text
 from solidgear.core.judge.quantities import in_order, size
 from solidgear.core.judge.solving import Numbers
@@ -230,6 +229,9 @@ class Refinement:
 
     def worst_place(self) -> str:
         """Return the place that holds most of the error bars that exceed the tolerance, in words."""
+        # start-up: where the tolerance is not reached
+        from solidgear.core.judge.cell_places import place_of_most
+
         assert self.last is not None and self.last.score is not None
         return place_of_most(self.scene, self.last.body, self.last.score)
 

@@ -22,8 +22,7 @@ from typing import TYPE_CHECKING, Any
 
 from solidgear.core.body import Body, as_supports
 from solidgear.core.bounds.refining import Meshed
-from solidgear.core.bounds.solid import NoBounds
-from solidgear.core.errors import SolidgearError
+from solidgear.core.errors import NoBounds, SolidgearError
 from solidgear.core.judge.answer import read_tolerance, solve_cheapest
 from solidgear.core.judge.bounded import mode_bars, static_bars
 from solidgear.core.judge.quantities import at_points, between

@@ -15,8 +15,7 @@ import numpy as np
 
 from solidgear.core.body import Body, Supports, as_supports
 from solidgear.core.bounds.clusters import ROOM
-from solidgear.core.bounds.solid import NoBounds
-from solidgear.core.errors import SolidgearError
+from solidgear.core.errors import NoBounds, SolidgearError
 from solidgear.core.judge.bounded import Bounded, bounded
 from solidgear.core.judge.hidden import complete_list
 from solidgear.core.judge.quantities import judged, usual

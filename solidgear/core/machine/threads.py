@@ -6,8 +6,8 @@ pool              gets               why
 OpenBLAS of       one                every dense matrix here is small, and its pool, spinning
 numpy, scipy                         between calls, fights the one that factors
 MKL (PARDISO)     all granted        nearly all the arithmetic of a 3D solid is its factorisation
-BLAS under        one if it is       the same variable steers it; set ``OPENBLAS_NUM_THREADS``
-CHOLMOD, MUMPS    OpenBLAS           yourself where they factor because PARDISO is absent
+BLAS under        one if it is       the same variable steers it, and is kept where it is set and
+CHOLMOD, MUMPS    OpenBLAS           they factor because PARDISO is absent
 ================= ================== ==============================================================
 
 Granted are the processors this process may run on (the affinity), less if a control group grants
@@ -16,9 +16,9 @@ MKL takes ``OMP_NUM_THREADS`` at its word, also above the processors granted; th
 for each other in turns, so the number is held down around every call.
 
 OpenBLAS reads ``OPENBLAS_NUM_THREADS`` once, when numpy is first imported, and ``OMP_NUM_THREADS``
-in its absence.  The command line sets it before that (:func:`pin`).  A program that imports numpy
-first, or a site that sets ``OPENBLAS_NUM_THREADS``, has the limit for as long as it is inside this
-package (:func:`pinned`), and its previous number back afterwards.
+in its absence.  The command line sets it before that (:func:`pin`), over what a site has set where
+PARDISO factors, and says so.  A program that imports numpy first has the limit for as long as it is
+inside this package (:func:`pinned`), and its previous number back afterwards.
 
 Measured on the shipped overhung pinion (two cores, busy with other work, runs in turn): with numpy
 imported first and two threads, body, compliance and ten modes took 3.4 and 5.1 times as long as
@@ -35,6 +35,7 @@ import sys
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from importlib.util import find_spec
 from pathlib import Path
 from typing import ParamSpec, TypeVar
 
@@ -45,17 +46,27 @@ R = TypeVar("R")
 VARIABLE = "OPENBLAS_NUM_THREADS"
 
 
-def pin() -> None:
-    """Give OpenBLAS one thread for the life of this process; where its variable is set, inside
-    :func:`single` alone.
+def pin() -> str:
+    """Give OpenBLAS one thread for the life of this process, and return the number that a site has set
+    and that is not kept; where another library than PARDISO factors, a number that is set is kept
+    but inside :func:`single`.
 
     Best before numpy is imported; an OpenBLAS that is running already is set as well.
     """
-    chosen = VARIABLE in os.environ
-    os.environ.setdefault(VARIABLE, "1")
-    if "numpy" in sys.modules and not chosen:
+    stated = os.environ.get(VARIABLE, "")
+    if stated == "1" or (stated and not _pardiso_factors()):
+        return ""
+    os.environ[VARIABLE] = "1"
+    if "numpy" in sys.modules:
         for library in _openblas():
             library.set_num_threads(1)
+    return stated
+
+
+def _pardiso_factors() -> bool:
+    """Return True where PARDISO is installed, and no other library is chosen."""
+    chosen = os.environ.get("SOLIDGEAR_BACKEND") or "pardiso"
+    return chosen == "pardiso" and find_spec("pypardiso") is not None
 
 
 def pinned(function: Callable[P, R]) -> Callable[P, R]:

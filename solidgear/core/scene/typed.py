@@ -91,7 +91,7 @@ class Model(BaseModel, metaclass=_Listing):
         By the constructor: unknown keys, missing ones, and values out of their range.
     """
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
     #: words of a file that may stand for fields of other names
     _aliases: ClassVar[Mapping[str, str]] = {}
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from solidgear.core import build
 from solidgear.core.loading import SHAFT
-from solidgear.guards import Probe, data
+from solidgear.guards import data
 from solidgear.guards.notice import slip_in_units
+from solidgear.guards.probe import Probe
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.file.planetary import PlanetMesh
 

@@ -12,9 +12,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from solidgear.core import HARMONIC, SolidgearError, build, pinned
-from solidgear.guards import Notice, Probe
 from solidgear.guards.check import BEST, Check, Verdict, check_scene, record
-from solidgear.guards.notice import Notices
+from solidgear.guards.notice import Notice, Notices
+from solidgear.guards.probe import Probe
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.housing import housing_facts
 from solidgear.trains.assembly.layout import senses, senses_sentence

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from math import degrees
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from solidgear.show.table import Cell, Column, Table, quantity, text, word
 from solidgear.show.units import ENGINEERING, Units, engineering
 from solidgear.show.words import DASH, hertz, percent, whole
-from solidgear.trains.assembly.orders import Crossing
-from solidgear.trains.file.layout import PerTurn
-from solidgear.trains.response.response import TrainResponse
+
+if TYPE_CHECKING:
+    from solidgear.trains.assembly.orders import Crossing
+    from solidgear.trains.response.response import TrainResponse
 
 
 def facts(train: Mapping[str, Any], units: Units = ENGINEERING, title: str = "Train") -> Table:
@@ -211,6 +212,8 @@ def peaks(
 
 def turned(teeth: float | None) -> str:
     """Return the shaft of speeds: the pinion unless the teeth name another."""
+    from solidgear.trains.file.layout import PerTurn  # start-up: pages of one shaft have none
+
     return teeth.of if isinstance(teeth, PerTurn) else "pinion"
 
 
