@@ -344,27 +344,38 @@ def _vibrating(body: Body, index: int, shapes: np.ndarray, value: np.ndarray) ->
     return Loading(shapes, force, shapes * value)
 
 
+@dataclass(frozen=True)
+class VibrationEnergies:
+    """Energies of the local solutions of k modes of a system that a body is a part of, rad^2/s^2."""
+
+    two_more: np.ndarray  #: (k, k) products by the richer space
+    one_more: np.ndarray  #: (k, k) products by the space of an order less
+    by_cell: np.ndarray  #: (ne, k) of every mode by cells, by the richer space
+
+
 def vibration_energies(
     scene: Scene, body: Body, fields: Mapping[int, np.ndarray], value: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Compute the products of energy (k, k) of the local solutions of modes of a system that a body
-    is a part of, by the richer space and by one of an order less, rad^2/s^2.
+) -> VibrationEnergies:
+    """Compute the energies of the local solutions of modes of a system that a body is a part of.
 
     `fields` are (n, k) unknowns of blocks by their index, of unit mass of the system; `value` (k,)
     are eigenvalues, rad^2/s^2.
     """
     count = len(value)
-    space, out = richer_space(scene, body), np.zeros((2, count, count))
+    space, products = richer_space(scene, body), np.zeros((2, count, count))
+    by_cell = np.zeros((space.flat.cells.shape[1], count))
     for index, block in _originals(body, ()):
         moving = [k for k in (index, *_twins(body, index)) if k in fields]
         if not moving:
             continue
         parts = [_vibrating(body, k, fields[k], value) for k in moving]
-        for total, energy in zip(out, local_energies(space, block, _stacked(parts))):
+        energies = local_energies(space, block, _stacked(parts))
+        for total, energy in zip(products, energies):
             by_part = energy.sum(axis=0).reshape(len(moving), count, len(moving), count)
             # the motions of both planes are orthogonal
             total += np.einsum("aiaj->ij", by_part)
-    return out[0], out[1]
+        by_cell += np.einsum("cii->ci", energies[0]).reshape(-1, len(moving), count).sum(axis=1)
+    return VibrationEnergies(products[0], products[1], by_cell)
 
 
 def _stacked(parts: Sequence[Loading]) -> Loading:

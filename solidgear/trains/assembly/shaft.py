@@ -29,6 +29,7 @@ from solidgear.core import (
     show,
     synthesise,
 )
+from solidgear.core.bounds.refining import Meshed
 from solidgear.core.frames import shift
 from solidgear.core.reduction.condensed import condensed_shaft
 from solidgear.core.reduction.superelement import Superelement
@@ -84,7 +85,8 @@ class ShaftModel:
     part: Part
     body: Body  #: from which the part is reduced
     unknowns: int  #: of the body's mesh
-    seconds: float  #: to build and reduce it
+    seconds: float  #: to build and reduce it, on all meshes that were tried
+    mesh: Meshed | None = None  #: that follows error bars
     #: the part with harmonics that teeth drive at a mesh point, by these
     local: dict[tuple, Part] = field(default_factory=dict, repr=False)
 
