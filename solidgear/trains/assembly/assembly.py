@@ -49,6 +49,7 @@ from solidgear.trains.assembly.local import local_teeth, mesh_port
 from solidgear.trains.assembly.mesh_errors import (
     MeshErrors,
     Need,
+    flexibility_errors,
     highest_resolved,
     mesh_errors,
     refine_meshes,
@@ -225,6 +226,26 @@ class Assembly:
             return False
         self._followed[key] = np.inf
         return True
+
+    @pinned
+    def follow_alone(self, side: str, model: str) -> ShaftModel:
+        """Return a shaft by a model, a harmonic solid on a mesh that follows the error bars of its
+        own flexibility at all ports, whatever holds it there.
+        """
+        limit = self.highest_hz or self.train.ask.max_frequency
+
+        def finer() -> tuple[dict[str, Meshed], float]:
+            solid = self.shaft_model(side, JUDGE)
+            scene = self.scenes[side]
+            if solid.mesh is not None and highest_resolved(scene, solid.body) < limit:
+                return {side: resolving(solid.mesh)}, np.inf
+            errors = flexibility_errors(side, scene, solid.body)
+            needs = errors.needs(len(errors.bars), self.tolerance)
+            return self.finer_meshes(needs), float(errors.bars.max())
+
+        if self.following({side: model}):
+            refine_meshes(finer, self.refine)
+        return self.shaft_model(side, model)
 
     def solved_models(self, models: Sequence[str]) -> dict[str, str]:
         """Return the models by which meshes are judged: in place of a lumped shaft the harmonic

@@ -16,10 +16,16 @@ import numpy as np
 from solidgear.core import ELEMENTS, Body, Scene, SolidgearError, System, coned
 from solidgear.core.body import FURTHER
 from solidgear.core.bounds.clusters import cluster_of, lower_ends
-from solidgear.core.bounds.harmonic import VibrationEnergies, vibration_energies, with_tail
+from solidgear.core.bounds.harmonic import (
+    VibrationEnergies,
+    harmonic_bounds,
+    vibration_energies,
+    with_tail,
+)
 from solidgear.core.bounds.refining import HIGHEST, MOST_MESHES, Meshed
 from solidgear.core.bounds.safety import LOCAL
 from solidgear.core.judge.refinement import FUTILE
+from solidgear.core.solve.statics import flexibility
 from solidgear.core.system.modes import SystemModes
 
 #: modes above those asked for that are looked at: the gap to the highest one counts, and near modes
@@ -27,6 +33,8 @@ from solidgear.core.system.modes import SystemModes
 ABOVE = 6
 #: and the error of the reduction up to which one of them is a mode of the shafts
 RESOLVED = 1e-3
+#: flexibility, in the largest of all ports, that is rounding
+ROUNDED = 1e-12
 #: share of a tolerance that shafts whose meshes stay as they are may take
 SMALL = 0.7
 #: meshes of which the last must be better than the first, or finer ones do not help
@@ -114,6 +122,19 @@ def mesh_errors(
         sizes=(products.diagonal() / value / 2)[:n],
         shares={side: (e.by_cell / total)[:, :n] for side, e in by_shaft.items()},
     )
+
+
+def flexibility_errors(side: str, scene: Scene, body: Body) -> MeshErrors:
+    """Compute the errors of the flexibility of a free harmonic shaft at its ports, under every unit
+    load, balanced by inertia.
+    """
+    bounds = harmonic_bounds(coned(scene), body, statics=True)
+    by_cell = np.einsum("cii->ic", bounds.of_ports)
+    size = flexibility(body).matrix.diagonal()
+    loaded = np.flatnonzero((size > ROUNDED * size.max()) & (by_cell.sum(axis=1) > 0))
+    bars = LOCAL * bounds.tailed.diagonal()[loaded] / size[loaded]
+    shares = by_cell[loaded].T / by_cell[loaded].sum(axis=1)
+    return MeshErrors(bars, bars, {side: shares})
 
 
 def _resolved(modes: SystemModes) -> int:
