@@ -11,7 +11,7 @@ import typer
 from solidgear.bearings.study import loaded_by
 from solidgear.core import SceneError, SolidgearError, as_written, is_train, show
 from solidgear.show.command import Group
-from solidgear.show.options import refuse, relative
+from solidgear.show.options import refuse
 from solidgear.strength.load import AT_REST
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.file.operation import OperatingPoint
@@ -57,31 +57,22 @@ class Acting(Group):
         ),
     ] = None
 
-    tol: Annotated[
-        float | None,
-        relative(
-            "--tol",
-            "Relative error that meshes of harmonic shafts may leave in the motions of gears; by "
-            "default a tenth of the file's tolerance.",
-        ),
-    ] = None
-
-    def read(self, file: Path) -> tuple[Assembly, OperatingPoint]:
-        """Return a train and its operating point, or a shaft under its load; refuse options of the
-        other.
+    def read(self, file: Path, tol: float | None = None) -> tuple[Assembly, OperatingPoint]:
+        """Return a train and its operating point, or a shaft under its load, with the error that
+        meshes may leave; refuse options of the other.
         """
         if is_train(file):
             kind = f"a shaft, and {file} is a train: give --torque"
             refuse({"--load": self.load is not None}, kind)
             train, point = self._at_point(file)
-            return Assembly(train, tol=self.tol), point
+            return Assembly(train, tol=tol), point
         of_train = {"--torque": self.torque, "--point": self.point, "--weight": self.weight}
         options = {option: value is not None for option, value in of_train.items()}
         refuse(options, f"a train, and {file} is a shaft: give --load, or [load] in the file")
         scene = as_written(file)
         if self.load is not None:
             scene = loaded_by(scene, self.load)
-        return Assembly.of(scene, kept=FEW, tol=self.tol), AT_REST
+        return Assembly.of(scene, kept=FEW, tol=tol), AT_REST
 
     def _at_point(self, file: Path) -> tuple[Train, OperatingPoint]:
         if self.torque is None:

@@ -91,13 +91,16 @@ def mesh_errors(
     the shafts, harmonic ones; None without any, and where teeth drive families of two waves and
     more.
     """
+    if not bodies:
+        return None
     modes = system.modes(n + ABOVE)
     if not _ends_below(modes, n):
         # near the last one asked for there are more of them than usual
         modes = system.modes(n + 4 * ABOVE)
     value = (2 * np.pi * modes.frequency_hz[modes.rigid :]) ** 2
-    highest = value[max(n, _resolved(modes) - 1)]
-    near = min(cluster_of(value, n - 1).stop + 1, len(value))
+    last = len(value) - 1
+    highest = value[min(max(n, _resolved(modes) - 1), last)]
+    near = min(cluster_of(value, min(n - 1, last)).stop, last) + 1
     value, shapes = value[:near], modes.shapes[:, modes.rigid :][:, :near]
     by_shaft: dict[str, VibrationEnergies] = {}
     for side, body in bodies.items():
@@ -105,8 +108,6 @@ def mesh_errors(
         if max(fields) >= FURTHER:
             return None
         by_shaft[side] = vibration_energies(coned(scenes[side]), body, fields, value)
-    if not by_shaft:
-        return None
     two_more = np.sum([energies.two_more for energies in by_shaft.values()], axis=0)
     one_more = np.sum([energies.one_more for energies in by_shaft.values()], axis=0)
     energy = two_more.diagonal()
