@@ -117,8 +117,10 @@ class Assembly:
         self._local_seconds = 0.0
         #: errors of the first frequencies by the shafts' meshes, by the models of all shafts
         self.errors: dict[tuple[str, ...], MeshErrors] = {}
-        #: frequencies up to which meshes were chosen, Hz, by the models of all shafts
-        self._followed: dict[tuple[str, ...], float] = {}
+        #: frequencies up to which the meshes of harmonic shafts were chosen, Hz
+        self._followed: dict[str, float] = {}
+        #: harmonic shafts whose meshes were chosen at rest
+        self._chosen_at_rest: set[str] = set()
         self._read_train(self.train)
 
     def _read_train(self, train: Train) -> None:
@@ -207,24 +209,23 @@ class Assembly:
         """
         solved = self.solved_models(models)
         limit = highest_hz or self.highest_hz or self.train.ask.max_frequency
-        key = tuple(solved.values())
-        before = self._followed.setdefault(key, 0.0)
-        if before >= limit:
+        sides = self.following(solved)
+        if all(self._followed.get(side, -np.inf) >= limit for side in sides):
             return
-        if most is None:
-            self._followed[key] = limit
-        if self.following(solved):
+        for side in sides:
+            reached = self._followed.get(side, 0.0)
+            self._followed[side] = reached if most is not None else max(reached, limit)
+        if sides:
             refine_meshes(lambda: self._finer(solved, limit, most), self.refine)
 
     def to_be_followed_at_rest(self, models: Sequence[str]) -> bool:
-        """Return True once for models with harmonic shafts whose meshes follow the error bars of the
-        first state at rest.
+        """Return True once for every harmonic shaft of some models whose mesh follows the error bars
+        of the first state at rest.
         """
-        solved = self.solved_models(models)
-        key = ("at rest", *solved.values())
-        if key in self._followed or not self.following(solved):
+        sides = {*self.following(self.solved_models(models))}
+        if sides <= self._chosen_at_rest:
             return False
-        self._followed[key] = np.inf
+        self._chosen_at_rest |= sides
         return True
 
     @pinned
@@ -402,6 +403,7 @@ class Assembly:
         bodies = {k: m for k, m in self._models.items() if k[1].partition("/")[0] not in LUMPED}
         assembly._models, assembly.scenes, assembly.errors, assembly._flanks = bodies, {}, {}, {}
         assembly._followed = dict(self._followed)
+        assembly._chosen_at_rest = set(self._chosen_at_rest)
         return assembly
 
     @property
@@ -474,7 +476,7 @@ class Assembly:
         input-middle``), the bearings, and mounts such as ``mount 1``.
         """
         by_shaft = self.models_by_shaft(models)
-        if bearings and tuple(self.solved_models(models).values()) not in self._followed:
+        if bearings and self.following(self.solved_models(models)).keys() - self._followed.keys():
             self.follow(*models)
         return self.coupled(by_shaft, bearings)
 
