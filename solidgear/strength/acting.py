@@ -19,7 +19,7 @@ from solidgear.trains.file.train import Train
 from solidgear.trains.load.operation import named_point
 from solidgear.trains.loading import load_train
 
-#: modes kept of a shaft alone, whose deflection needs none
+#: modes kept of a shaft, whose deflection needs none
 FEW = 6
 AtRestFile = Annotated[
     Path, typer.Argument(help="Train or scene file (TOML), such as geometry/axle_overhung.toml.")
@@ -65,7 +65,7 @@ class Acting(Group):
             kind = f"a shaft, and {file} is a train: give --torque"
             refuse({"--load": self.load is not None}, kind)
             train, point = self._at_point(file)
-            return Assembly(train, tol=tol), point
+            return Assembly(train, kept=FEW, tol=tol), point
         of_train = {"--torque": self.torque, "--point": self.point, "--weight": self.weight}
         options = {option: value is not None for option, value in of_train.items()}
         refuse(options, f"a train, and {file} is a shaft: give --load, or [load] in the file")
