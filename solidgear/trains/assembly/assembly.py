@@ -55,7 +55,15 @@ from solidgear.trains.assembly.mesh_errors import (
     refine_meshes,
     resolving,
 )
-from solidgear.trains.assembly.shaft import JUDGE, LUMPED, RIGID, ShaftModel, checked_model, lumped
+from solidgear.trains.assembly.shaft import (
+    JUDGE,
+    LUMPED,
+    RIGID,
+    ShaftModel,
+    checked_model,
+    lumped,
+    names_from,
+)
 from solidgear.trains.assembly.space import overlaps
 from solidgear.trains.assembly.stages import StageAtWork, stages_at_work
 from solidgear.trains.file.housing import HOUSING
@@ -190,8 +198,8 @@ class Assembly:
             before.body.cache.clear()  # its factor need not be held beside the next one
         options = self._options(side, model) if mesh is None else mesh.options()
         shaft = self._reduce(side, model, build(self.scenes[side], model, **options), start)
-        for key in [k for k in self._models if k[0] == side and checked_model(k[1])[1] == model]:
-            del self._models[key]
+        for name in names_from(model, (*LUMPED, RIGID)):
+            self._models.pop((side, name), None)
         self._models[side, model] = replace(shaft, mesh=mesh, seconds=shaft.seconds + earlier)
         self.errors.clear()
 
@@ -252,9 +260,9 @@ class Assembly:
         """Return the models by which meshes are judged: in place of a lumped shaft the harmonic
         solid that it is condensed from.
         """
-        lumped_solids = [(kind, JUDGE) for kind in LUMPED]
+        lumped_solids = names_from(JUDGE, LUMPED)
         return {
-            side: JUDGE if checked_model(model) in lumped_solids else model
+            side: JUDGE if model in lumped_solids else model
             for side, model in self.models_by_shaft(models).items()
         }
 

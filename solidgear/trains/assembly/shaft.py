@@ -63,6 +63,11 @@ def checked_model(name: str) -> tuple[str, str]:
     return kind, body or JUDGE
 
 
+def names_from(body: str, kinds: Sequence[str]) -> set[str]:
+    """Return the names of rigid or lumped models of some kinds that rest on a body."""
+    return {f"{kind}/{body}" for kind in kinds} | ({*kinds} if body == JUDGE else set())
+
+
 def ladder_place(name: str) -> tuple[int, int]:
     """Return the places of a model and of the body beneath it in the sequence of all models, to
     sort by.
