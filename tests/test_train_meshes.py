@@ -188,6 +188,18 @@ def test_gears_at_rest_are_within_the_tolerance(train, fine, tol):
     assert largest > 0.0
 
 
+def test_shafts_that_teeth_drive_where_they_touch_have_meshes_within_the_tolerance(train):
+    local = train.with_changes(meshes=(train.meshes[0].with_changes(local_harmonics=(2,)),))
+    usual, finer = (Assembly(local, kept=6, tol=tol) for tol in (1e-2, 2e-3))
+    point, models = OperatingPoint(torque=80.0), ("timoshenko", JUDGE)
+    found, exact = (deflection(assembly, point, *models) for assembly in (usual, finer))
+    assert all(m.bar is None for m in found.misalignment)
+    first = unknowns(Assembly(local, kept=6))["gear"]
+    assert unknowns(finer)["gear"] > unknowns(usual)["gear"] > first
+    for measure, reference in zip(found.misalignment, exact.misalignment):
+        assert measure.value == pytest.approx(reference.value, rel=1e-2)
+
+
 def test_the_bars_of_a_response_are_those_of_its_modes(train):
     """They stand beside its peaks, in a column that beams do not have."""
     response = respond(Assembly(train, tol="1%"), "timoshenko", JUDGE)

@@ -28,6 +28,7 @@ from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.housing import housing_port
 from solidgear.trains.assembly.layout import force_on, mesh_forces, rotor_torques
 from solidgear.trains.assembly.mesh_errors import refine_meshes
+from solidgear.trains.assembly.shaft import JUDGE
 from solidgear.trains.assembly.stages import mesh_row
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.train import Train
@@ -129,6 +130,12 @@ class Operating:
         state = self._settled(point, start)
         if not self.assembly.to_be_followed_at_rest(self.models):
             return state
+        if any(mesh.local_harmonics for mesh in self.assembly.train.meshes):
+            # forces where teeth touch are not those of ports: the shaft by itself decides
+            for side in self.assembly.following(state.models):
+                self.assembly.follow_alone(side, JUDGE)
+            self._flanks.clear()
+            return self._settled(point, None)
 
         def finer() -> tuple[Mapping[str, Meshed], float]:
             errors = StaticErrors(self.assembly, state).of_gears()
