@@ -8,7 +8,6 @@ from pathlib import Path
 
 import pytest
 
-from solidgear.trains.assembly import assembly as train_assembly
 from tests.command import command, page_of, table
 
 ROOT = Path(__file__).parent.parent
@@ -17,11 +16,9 @@ TRAIN, SHAFT = "geometry/axle_overhung.toml", "geometry/pinion_overhung.toml"
 
 @pytest.fixture(scope="module")
 def compared(tmp_path_factory):
-    """The shipped train on coarse solids; --json, so that what is printed is what is stored."""
+    """The shipped train; --json, so that what is printed is what is stored."""
     out = tmp_path_factory.mktemp("train") / "out"
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(train_assembly, "MESH", {"harmonic": {"order": 2, "layers": 1}})
-        done = command("compare", TRAIN, "--out", out, "--json", "--no-renders")
+    done = command("compare", TRAIN, "--out", out, "--json", "--no-renders")
     assert done.exit_code == 0, done.output
     return json.loads(done.stdout), out
 

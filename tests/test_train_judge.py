@@ -114,10 +114,7 @@ def test_a_mode_above_the_list_that_may_lie_in_it_is_told(verdict):
 
 
 @pytest.mark.slow
-def test_the_command_writes_the_verdict(tmp_path, monkeypatch):
-    from solidgear.trains.assembly import assembly as train_assembly
-
-    monkeypatch.setattr(train_assembly, "MESH", COARSE)
+def test_the_command_writes_the_verdict(tmp_path):
     args = ["judge-system", "geometry/axle_overhung.toml", "--kept", "12", "--max-frequency", "900"]
     done = CliRunner().invoke(app, [*args, "--json", "--out", str(tmp_path)])
     assert done.exit_code == 0, done.output

@@ -6,7 +6,8 @@ import pytest
 import solidgear as sg
 from solidgear.backlash.train import teeth_of, with_backlash
 from solidgear.trains.assembly.assembly import Assembly
-from solidgear.trains.load.operation import Operating, with_settled_bearings
+from solidgear.trains.load.operation import Operating
+from solidgear.trains.load.state import with_settled_bearings
 from solidgear.trains.modes.parting import largest_relief, parting_frequency, teeth_relief
 from solidgear.trains.response.drive import Drive
 from solidgear.trains.response.respond import respond

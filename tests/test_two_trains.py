@@ -15,7 +15,6 @@ from solidgear.comparison.two.differences import differences
 from solidgear.comparison.two.two_trains import others, reactions, two_trains
 from solidgear.core.body import as_supports
 from solidgear.core.errors import SolidgearError
-from solidgear.trains.assembly import assembly as train_assembly
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.load.strain import strain_shares
@@ -46,14 +45,12 @@ def copied(folder, name="b.toml", **replaced):
 
 @pytest.fixture(scope="module")
 def stiffer(tmp_path_factory):
-    """The shipped train beside one with twice the mesh stiffness, both on coarse solids of the gear."""
+    """The shipped train beside one with twice the mesh stiffness."""
     folder = tmp_path_factory.mktemp("two")
     other = copied(folder, stiffness=('"2.5e8 N/m"', '"5e8 N/m"'))
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(train_assembly, "MESH", COARSE)
-        words = ("--pinion", "timoshenko", "--out", folder / "out", "--json")
-        done = command("compare", OVERHUNG, other, *words)
-        alone = respond(Assembly(sg.load_train(other)), "timoshenko", "harmonic")
+    words = ("--pinion", "timoshenko", "--out", folder / "out", "--json")
+    done = command("compare", OVERHUNG, other, *words)
+    alone = respond(Assembly(sg.load_train(other)), "timoshenko", "harmonic")
     assert done.exit_code == 0, done.output
     return json.loads(done.stdout), folder / "out", alone
 
@@ -140,8 +137,7 @@ def test_modes_that_both_share_are_pairs_and_what_the_mesh_strains_rises(stiffer
     assert moved["gear bending 2"]["verdict"] == "not resolved"
 
 
-def test_a_train_beside_itself_differs_nowhere_and_nothing_is_resolved(monkeypatch):
-    monkeypatch.setattr(train_assembly, "MESH", COARSE)
+def test_a_train_beside_itself_differs_nowhere_and_nothing_is_resolved():
     assembly = Assembly(sg.load_train(OVERHUNG))
     found = two_trains(
         (assembly, assembly), ("one", "same"), (), "harmonic", "timoshenko", highest_hz=1000.0

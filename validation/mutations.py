@@ -235,11 +235,11 @@ MUTATIONS = (
     ),
     Mutation(
         "trains: the meshes of one shaft alone count",
-        "solidgear/trains/assembly/meshes.py",
-        "mesh_bars",
-        "double_energy + energies[0]",
-        "energies[0]",
-        "tests/test_train_judge.py::test_the_judge_tells_how_sure_its_own_meshes_are",
+        "solidgear/trains/assembly/mesh_errors.py",
+        "mesh_errors",
+        "np.sum([energies.two_more for energies in by_shaft.values()], axis=0)",
+        "next(iter(by_shaft.values())).two_more",
+        "tests/test_train_meshes.py::test_meshes_follow_until_every_mode_is_within_the_tolerance",
     ),
     Mutation(
         "bounds: what further orders would see is forgotten",

@@ -164,6 +164,7 @@ def backlash_model(
     pair, loss, damped = named_pair(assembly.train, teeth.mesh), assembly.loss_factors(), 0.0
     if teeth.contact_loss_hz:
         damped = [loss.pop(meshed.mesh) for meshed in teeth.meshes][0]
+    assembly.follow(*models, highest_hz=highest_hz)
     system, turning, name = assembly.system(*models), turning_line(assembly, pair), pair.name
     force = teeth.mean_force
     if turning is not None:

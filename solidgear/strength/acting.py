@@ -19,7 +19,7 @@ from solidgear.trains.file.train import Train
 from solidgear.trains.load.operation import named_point
 from solidgear.trains.loading import load_train
 
-#: modes kept of a shaft alone, whose deflection needs none
+#: modes kept of a shaft, whose deflection needs none
 FEW = 6
 AtRestFile = Annotated[
     Path, typer.Argument(help="Train or scene file (TOML), such as geometry/axle_overhung.toml.")
@@ -57,22 +57,22 @@ class Acting(Group):
         ),
     ] = None
 
-    def read(self, file: Path) -> tuple[Assembly, OperatingPoint]:
-        """Return a train and its operating point, or a shaft under its load; refuse options of the
-        other.
+    def read(self, file: Path, tol: float | None = None) -> tuple[Assembly, OperatingPoint]:
+        """Return a train and its operating point, or a shaft under its load, with the error that
+        meshes may leave; refuse options of the other.
         """
         if is_train(file):
             kind = f"a shaft, and {file} is a train: give --torque"
             refuse({"--load": self.load is not None}, kind)
             train, point = self._at_point(file)
-            return Assembly(train), point
+            return Assembly(train, kept=FEW, tol=tol), point
         of_train = {"--torque": self.torque, "--point": self.point, "--weight": self.weight}
         options = {option: value is not None for option, value in of_train.items()}
         refuse(options, f"a train, and {file} is a shaft: give --load, or [load] in the file")
         scene = as_written(file)
         if self.load is not None:
             scene = loaded_by(scene, self.load)
-        return Assembly.of(scene, kept=FEW), AT_REST
+        return Assembly.of(scene, kept=FEW, tol=tol), AT_REST
 
     def _at_point(self, file: Path) -> tuple[Train, OperatingPoint]:
         if self.torque is None:

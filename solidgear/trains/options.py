@@ -11,7 +11,7 @@ import typer
 
 from solidgear.core import LADDER, SceneError, SolidgearError, listed, parse, show
 from solidgear.show.command import Group
-from solidgear.show.options import MODEL, options_by_name
+from solidgear.show.options import MODEL, options_by_name, relative
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.shaft import checked_model
 from solidgear.trains.file.reading import as_written
@@ -31,8 +31,8 @@ MOST_KEPT = 200
 
 
 @dataclass(frozen=True)
-class Reduced(Group):
-    """Options of every command on a train: how its shafts are reduced, and up to which frequency."""
+class Reduction(Group):
+    """How the shafts of a train are reduced, and up to which frequency."""
 
     max_frequency: Annotated[
         float | None, typer.Option(help="Hz; by default max_frequency of the file.")
@@ -63,10 +63,10 @@ class Reduced(Group):
     @property
     def given(self) -> dict[str, bool]:
         """Options, and whether they are other than usual."""
-        usual = vars(Reduced())
+        usual = vars(type(self)())
         return {f"--{k.replace('_', '-')}": v != usual[k] for k, v in vars(self).items()}
 
-    def checked(self) -> Reduced:
+    def checked(self) -> Reduction:
         """Return these options once they are sound."""
         if not 1 <= self.kept <= MOST_KEPT:
             raise SolidgearError(f"--kept {show(self.kept)}: give 1 to {MOST_KEPT} modes")
@@ -80,6 +80,20 @@ class Reduced(Group):
     def harmonics(self) -> tuple[int, ...]:
         """Harmonics of ``--local-harmonics``; none where the file decides."""
         return () if self.local_harmonics is None else _harmonics(self.local_harmonics)
+
+
+@dataclass(frozen=True)
+class Reduced(Reduction):
+    """Options of every command on a train: how its shafts are reduced and meshed."""
+
+    tol: Annotated[
+        float | None,
+        relative(
+            "--tol",
+            "Relative error that meshes of harmonic shafts may leave; by default a tenth of the "
+            "file's tolerance.",
+        ),
+    ] = None
 
     def assembly(
         self, path: Path, settings: Mapping[str | tuple[str, str], Mapping] | None = None
@@ -97,7 +111,14 @@ class Reduced(Group):
                 meshes=tuple(m.with_changes(**extra) for m in loaded.meshes)
             )
         try:
-            return Assembly(loaded, self.reduction, self.kept, settings or {})
+            return Assembly(
+                loaded,
+                self.reduction,
+                self.kept,
+                settings or {},
+                tol=self.tol,
+                highest_hz=self.max_frequency,
+            )
         except SceneError as error:  # what the mesh of a sound file cannot be
             raw = parse(str(path))
             raise as_written(error, raw).located(raw, where=str(path)) from None

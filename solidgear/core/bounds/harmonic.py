@@ -38,6 +38,8 @@ if TYPE_CHECKING:
 Same = tuple[tuple[int, int], ...]
 #: an order leaves at most this share of the remaining error
 SLOWEST = 0.8
+#: energy of displacements, in that of a mode, that its error does not rest on
+NEGLIGIBLE = 1e-10
 
 
 @dataclass
@@ -333,42 +335,72 @@ def _modes_on(body: Body, index: int, modes: Sequence[Mode]) -> _Part:
     no_modes = np.zeros((body.block(index).size, 0))
     shapes = np.column_stack([no_modes, *(mode.vectors[0][index] for mode in on_block)])
     value = np.array([eigenvalue(mode) for mode in on_block])
-    return _Part(_vibrating(body, index, shapes, value), on_block)
+    original = body.block(index)
+    if original.mirror is not None:
+        original = body.block(original.mirror[0])
+    return _Part(_vibrating(original, shapes, shapes * value), on_block)
 
 
-def _vibrating(body: Body, index: int, shapes: np.ndarray, value: np.ndarray) -> Loading:
-    """Return modes of a body with the forces of its supports at the ports, in the sense of the
-    block's original.
+def _vibrating(block: Block, shapes: np.ndarray, carried: np.ndarray) -> Loading:
+    """Return displacements of a block, no mirror image, under the inertia forces of accelerations
+    and under the forces of supports at the ports.
     """
-    block = body.block(index)
-    residual = block.stiffness @ shapes - (block.mass @ shapes) * value
-    force = on_ports(block, residual)
-    if block.mirror is not None:
-        force = force * np.tile(block.mirror[1], len(body.ports))[:, None]
-    return Loading(shapes, force, shapes * value)
+    residual = block.stiffness @ shapes - block.mass @ carried
+    return Loading(shapes, on_ports(block, residual), carried)
+
+
+@dataclass(frozen=True)
+class VibrationEnergies:
+    """Energies of the local solutions of k modes of a system that a body is a part of, rad^2/s^2."""
+
+    two_more: np.ndarray  #: (k, k) products by the richer space
+    one_more: np.ndarray  #: (k, k) products by the space of an order less
+    by_cell: np.ndarray  #: (ne, k) of every mode by cells, by the richer space
 
 
 def vibration_energies(
     scene: Scene, body: Body, fields: Mapping[int, np.ndarray], value: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Compute the products of energy (k, k) of the local solutions of modes of a system that a body
-    is a part of, by the richer space and by one of an order less, rad^2/s^2.
+) -> VibrationEnergies:
+    """Compute the energies of the local solutions of modes of a system that a body is a part of.
 
     `fields` are (n, k) unknowns of blocks by their index, of unit mass of the system; `value` (k,)
     are eigenvalues, rad^2/s^2.
     """
     count = len(value)
-    space, out = richer_space(scene, body), np.zeros((2, count, count))
+    space, products = richer_space(scene, body), np.zeros((2, count, count))
+    by_cell = np.zeros((space.flat.cells.shape[1], count))
     for index, block in _originals(body, ()):
         moving = [k for k in (index, *_twins(body, index)) if k in fields]
         if not moving:
             continue
-        parts = [_vibrating(body, k, fields[k], value) for k in moving]
-        for total, energy in zip(out, local_energies(space, block, _stacked(parts))):
-            by_part = energy.sum(axis=0).reshape(len(moving), count, len(moving), count)
-            # the motions of both planes are orthogonal
-            total += np.einsum("aiaj->ij", by_part)
-    return out[0], out[1]
+        # in either plane the same block moves
+        basis, shares = _few(block, [fields[k] for k in moving], value, body.scale)
+        energies = local_energies(space, block, basis)
+        root = np.sqrt(value)
+        # the motions of both planes are orthogonal
+        for share in np.split(shares, len(moving)):
+            scaled = share * root[:, None]
+            for total, energy in zip(products, energies):
+                total += scaled @ energy.sum(axis=0) @ scaled.T
+            by_cell += np.einsum("ki,cij,kj->ck", scaled, energies[0], scaled, optimize=True)
+    return VibrationEnergies(products[0], products[1], by_cell)
+
+
+def _few(
+    block: Block, fields: Sequence[np.ndarray], value: np.ndarray, scale: float
+) -> tuple[Loading, np.ndarray]:
+    """Return few loadings of a block that k modes, in one plane or two, are made of, and the shares
+    (k planes, r) of each in the modes of unit energy; `scale` is about the first eigenvalue of the
+    body, rad^2/s^2.
+    """
+    root = np.tile(np.sqrt(value), len(fields))
+    unit = np.hstack(fields) / root
+    carried = unit * root**2
+    # energy of the displacements, and at most that of what inertia forces bring about
+    energy = unit.T @ (block.stiffness @ unit) + carried.T @ (block.mass @ carried) / scale
+    size, turn = np.linalg.eigh((energy + energy.T) / 2)
+    turn = turn[:, size > NEGLIGIBLE]
+    return _vibrating(block, unit @ turn, carried @ turn), turn
 
 
 def _stacked(parts: Sequence[Loading]) -> Loading:

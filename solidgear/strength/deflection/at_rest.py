@@ -1,16 +1,5 @@
-r"""Deflection of the shafts of a train at an operating point, or of a shaft under its load, by any
-model, with error bars.
-
-A quantity a'q of the state at rest has an error bar where a shaft is a harmonic solid: the flexibility at
-the ports lies between F and F + M (:mod:`solidgear.core.bounds.harmonic`), so that with the forces f on
-the ports at rest, and those, g, which a unit load on the quantity would bring about on the bearings'
-tangents,
-
-    |error| <= sqrt(f'M f) sqrt(g'M g),      summed over the shafts and their axial, torsional and
-                                             bending parts, which M does not couple
-
-(Cauchy and Schwarz in the energy of the local problems; second order in M is left out).  Beams are
-exact in their theory and have no error bar; the harmonic solid shows what their theory leaves out.
+"""Deflection of the shafts of a train at an operating point, or of a shaft under its load, by any
+model, with the error bars of :mod:`solidgear.trains.load.static_errors`.
 """
 
 from __future__ import annotations
@@ -23,12 +12,9 @@ from typing import Any
 import numpy as np
 
 from solidgear.bearings.bearing_life import left_open
-from solidgear.core import DOF_NAMES, SolidgearError, System, coned, listed, pinned
-from solidgear.core.bounds.harmonic import HarmonicBounds, harmonic_bounds, with_tail
-from solidgear.core.bounds.safety import LOCAL
+from solidgear.core import DOF_NAMES, SolidgearError, listed, pinned
 from solidgear.core.judge.deviations import WITHIN, gap_verdict
 from solidgear.core.plain import plain
-from solidgear.core.system.system import port_forces
 from solidgear.strength.deflection.misalignment import Measure, misalignment
 from solidgear.strength.deflection.shaft import ShaftDeflection, shaft_deflection
 from solidgear.strength.load import AT_REST, LoadAtPort, load_alone
@@ -41,7 +27,9 @@ from solidgear.trains.assembly.turn import StageTurn, over_a_turn
 from solidgear.trains.file.housing import HOUSING
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.train import ALONE, Train
-from solidgear.trains.load.operation import Operating, OperatingState, with_settled_bearings
+from solidgear.trains.load.operation import Operating
+from solidgear.trains.load.state import OperatingState
+from solidgear.trains.load.static_errors import StaticErrors
 
 #: models that a deflection is solved with, the cheapest first
 MODELS = (RIGID, "euler", "timoshenko", JUDGE)
@@ -310,7 +298,11 @@ def _solution(
 ) -> Deflection:
     """Return the deflection of a train at rest."""
     train, system, by_shaft = assembly.train, state.system, state.models
-    bars = StaticBars(assembly, state)
+    errors = StaticErrors(assembly, state)
+
+    def measured(measures: Sequence[Measure]) -> tuple[Measured, ...]:
+        return tuple(_measured(measure, state, errors) for measure in measures)
+
     housed = {
         side: housing_motion(system, assembly.places[side], state.coordinates)
         for side in train.housed
@@ -332,15 +324,15 @@ def _solution(
     if housed:
         notes.append(f"deflection lines of {listed(housed)} are relative to the housing")
     displacement = {
-        name: bars.measured(_six(f"of {end}", MOVED, system.motion(end)))
+        name: measured(_six(f"of {end}", MOVED, system.motion(end)))
         for name, end in _places(train).items()
     }
     if train.housing is not None:
-        displacement[HOUSING] = bars.measured(_six("of its centre", MOVED, system.motion(BOX)))
+        displacement[HOUSING] = measured(_six("of its centre", MOVED, system.motion(BOX)))
         if train.stages:
             notes.append("forces over a turn of a carrier are not computed with a housing")
     mounts = {
-        name: bars.measured(_six("on it", FORCE_UNITS, rows))
+        name: measured(_six("on it", FORCE_UNITS, rows))
         for name, rows in mount_rows(train, system).items()
     }
     return Deflection(
@@ -348,13 +340,26 @@ def _solution(
         load=load,
         models=by_shaft,
         mesh_forces=state.mesh_forces,
-        misalignment=bars.measured(misalignment(assembly.on_flank(state.point.coast), system)),
+        misalignment=measured(misalignment(assembly.on_flank(state.point.coast), system)),
         displacement=displacement,
         shafts=shafts,
         notes=tuple(notes),
         seconds=seconds,
         mounts=mounts,
         turns=over_a_turn(assembly, state, by_shaft),
+    )
+
+
+def _measured(measure: Measure, state: OperatingState, errors: StaticErrors) -> Measured:
+    """Return the value of a measure at rest with its error bar."""
+    return Measured(
+        measure.name,
+        measure.unit,
+        measure.meaning,
+        float(measure.row @ state.coordinates),
+        errors.error_bar(measure.row),
+        mesh=measure.mesh,
+        face=measure.face,
     )
 
 
@@ -413,89 +418,3 @@ def _against_judge(solution: Deflection, judge: Deflection, tolerance: float) ->
             if abs(error) >= abs(gap):
                 worst, gap, bar = measure.name, error, (reference.bar or 0.0) / (scale or 1.0)
     return Standing(solution.model, gap_verdict(gap, bar, tolerance), worst, gap)
-
-
-class StaticBars:
-    """Error bars that meshes of harmonic shafts leave in linear numbers of a state at rest."""
-
-    def __init__(self, assembly: Assembly, state: OperatingState):
-        self.assembly, self.state = assembly, state
-        sides = [side for side, model in state.models.items() if model == JUDGE]
-        self.bounds: dict[str, HarmonicBounds] = {}
-        if not sides or any(mesh.local_harmonics for mesh in assembly.train.meshes):
-            return
-        settled = assembly.with_train(with_settled_bearings(assembly.train, state))
-        self.tangent: System = settled.system(*state.models.values())
-        for side in sides:
-            body = assembly.shaft_model(side, JUDGE).body
-            self.bounds[side] = harmonic_bounds(coned(assembly.scenes[side]), body, statics=True)
-        self.rest = self._ports(state.forces())
-
-    def _ports(self, forces: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-        """Return (6 p,) forces on the ports of every harmonic shaft."""
-        out = {}
-        for side, bounds in self.bounds.items():
-            out[side] = np.zeros(6 * len(bounds.body.ports))
-            for end, force in forces.items():
-                part, _, port = end.partition(".")
-                if part == side:
-                    start = 6 * bounds.body.port_index(port)
-                    out[side][start : start + 6] += force
-        return out
-
-    def measured(self, measures: Sequence[Measure]) -> tuple[Measured, ...]:
-        """Return the values of measures at rest with their error bars."""
-        return tuple(
-            Measured(
-                m.name,
-                m.unit,
-                m.meaning,
-                float(m.row @ self.state.coordinates),
-                self.error_bar(m.row),
-                mesh=m.mesh,
-                face=m.face,
-            )
-            for m in measures
-        )
-
-    def error_bar(self, row: np.ndarray) -> float | None:
-        """Return the error bar of ``row @ coordinates``; None without a harmonic shaft, and where
-        the number grows as the train turns.
-        """
-        if not self.bounds:
-            return None
-        turns = np.abs(row @ self.tangent.free).max(initial=0.0)
-        if turns > 1e-9 * np.linalg.norm(row):
-            return None
-        adjoint = port_forces(self.tangent, self.tangent.static(row))
-        parts = [*self.assembly.scenes]
-        if self.assembly.train.housing is not None:
-            parts.append(HOUSING)
-        unit_forces = self._ports(_add_unit_load(adjoint, self.tangent, row, parts))
-        total = 0.0
-        for side, bounds in self.bounds.items():
-            f, g = self.rest[side], unit_forces[side]
-            for rows in (bounds.body.rows(block) for block in bounds.body.blocks):
-                double, single = (
-                    float(
-                        np.sqrt(max(f[rows] @ m @ f[rows], 0.0) * max(g[rows] @ m @ g[rows], 0.0))
-                    )
-                    for m in (bounds.more[np.ix_(rows, rows)], bounds.less[np.ix_(rows, rows)])
-                )
-                total += LOCAL * with_tail(double, single)
-        return total
-
-
-def _add_unit_load(
-    forces: dict[str, np.ndarray], system: System, row: np.ndarray, parts: list[str]
-) -> dict[str, np.ndarray]:
-    """Add to forces of links the unit load that a row of coordinates stands for, on the ports that
-    it is made of.
-    """
-    total = dict(forces)
-    ends = [f"{side}.{port}" for side in parts for port in system.parts[side].ports]
-    rows = np.vstack([system.motion(end) for end in ends])
-    loads, *_ = np.linalg.lstsq(rows.T, row, rcond=1e-12)
-    for end, force in zip(ends, loads.reshape(-1, 6)):
-        total[end] = total.get(end, np.zeros(6)) + force
-    return total

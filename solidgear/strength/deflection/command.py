@@ -9,7 +9,7 @@ import typer
 
 from solidgear.core import explained
 from solidgear.show.command import Progress, command
-from solidgear.show.options import BY_MODEL, Shown
+from solidgear.show.options import BY_MODEL, Shown, relative
 from solidgear.show.sheet import Sheet, present
 from solidgear.show.units import units_named
 from solidgear.strength.acting import Acting, AtRestFile
@@ -30,13 +30,21 @@ def deflect(
             "euler, timoshenko and harmonic.",
         ),
     ] = None,
+    tol: Annotated[
+        float | None,
+        relative(
+            "--tol",
+            "Relative error that meshes of harmonic shafts may leave in the motions of gears; by "
+            "default a tenth of the file's tolerance.",
+        ),
+    ] = None,
     out: Annotated[
         Path | None,
         typer.Option("--out", "-o", help="Folder for a page, deflection lines and their chart."),
     ] = None,
     run: Shown,
 ) -> None:
-    (assembly, point), units = acting.read(file), units_named(run.units)
+    (assembly, point), units = acting.read(file, tol), units_named(run.units)
     every_point = (
         acting.torque is None and acting.point is None and len(assembly.train.operation) > 1
     )

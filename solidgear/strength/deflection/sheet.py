@@ -212,15 +212,20 @@ def over_points(points: Sequence[Deflection], units: Units = ENGINEERING) -> lis
 
 
 def displacements(deflected: Deflection, units: Units = ENGINEERING) -> Table:
-    """Return the motion of every lumped point and bearing, of a shaft alone with error bars."""
+    """Return the motion of every lumped point and bearing, with error bars of the lumped points,
+    and of all places of a shaft alone.
+    """
     note = "Relative to the unloaded state, in the axes of each shaft's scene, y along it."
     rows: list[Sequence[object]] = []
     for shaft in deflected.shafts:
         for name, six in shaft.ports.items():
             rows.append([f"{shaft.name}.{name}", *_rounded(six)])
-            if deflected.load is not None:
-                rows += _bars(deflected, name, units)
-    if deflected.load is not None and deflected.barred:
+            # the only gear of a shaft stands first, and has the name of its shaft
+            only = shaft.name if name == next(iter(shaft.ports)) else ""
+            keys = (name,) if deflected.load is not None else (f"{shaft.name}.{name}", only)
+            for key in keys:
+                rows += _bars(deflected, key, units)
+    if deflected.barred:
         note += f" {OF_BARS}"
     return Table("Displacements", [word("place"), *_six(MOVED, units)], rows, note)
 
@@ -267,7 +272,7 @@ def _bars(deflected: Deflection, place: str, units: Units) -> list[list[str | No
     """Return a row of the error bars of a place, none less than a share of the largest translation
     or rotation; no row where it has none.
     """
-    if not deflected.barred:
+    if not deflected.barred or place not in deflected.displacement:
         return []
     six = deflected.displacement[place]
     largest = np.abs([m.value for m in six]).reshape(2, 3).max(axis=1)

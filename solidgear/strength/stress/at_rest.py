@@ -28,7 +28,8 @@ from solidgear.strength.stress.shaft import ShaftStress, check_tolerance, local_
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.train import ALONE, Train
-from solidgear.trains.load.operation import Operating, OperatingState
+from solidgear.trains.load.operation import Operating
+from solidgear.trains.load.state import OperatingState
 
 #: default model on which shafts and bearings settle
 MODEL = LADDER.judges[0]

@@ -1,5 +1,9 @@
 """Models of the shafts of a train, and the system that they make.
 
+The meshes of harmonic shafts follow the error bars of the train's modes, as those of one shaft do
+(:mod:`solidgear.core.bounds.refining`), unless an option sets them.  A mesh is chosen once, and kept
+for bearings, housings and operating points that vary.
+
 A further model of one shaft is added by ``add_part`` or ``add_model``; of all shafts, its name here.
 """
 
@@ -7,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from copy import copy
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from time import perf_counter
 
 import numpy as np
@@ -22,9 +26,12 @@ from solidgear.core import (
     build,
     listed,
     nearest,
+    pinned,
     rubin,
     show,
 )
+from solidgear.core.bounds.refining import Meshed, refined
+from solidgear.core.judge.answer import read_tolerance
 from solidgear.core.reduction.craig_bampton import craig_bampton
 from solidgear.core.system.gear_mesh import MeshVector
 from solidgear.core.system.links import Link, PortInertia, grounded, mesh_spring, torsion_spring
@@ -39,7 +46,24 @@ from solidgear.trains.assembly.housing import (
 )
 from solidgear.trains.assembly.layout import contacts, places
 from solidgear.trains.assembly.local import local_teeth, mesh_port
-from solidgear.trains.assembly.shaft import JUDGE, LUMPED, RIGID, ShaftModel, checked_model, lumped
+from solidgear.trains.assembly.mesh_errors import (
+    MeshErrors,
+    Need,
+    flexibility_errors,
+    highest_resolved,
+    mesh_errors,
+    refine_meshes,
+    resolving,
+)
+from solidgear.trains.assembly.shaft import (
+    JUDGE,
+    LUMPED,
+    RIGID,
+    ShaftModel,
+    checked_model,
+    lumped,
+    names_from,
+)
 from solidgear.trains.assembly.space import overlaps
 from solidgear.trains.assembly.stages import StageAtWork, stages_at_work
 from solidgear.trains.file.housing import HOUSING
@@ -50,8 +74,6 @@ from solidgear.trains.load.contact import Contact
 REDUCTIONS = {"rubin": rubin, "craig_bampton": craig_bampton}
 #: free modes of a shaft that are kept: with residuals, enough for 1e-5 to 4 kHz, as the bound shows
 KEPT = 24
-#: a mesh for systems: frequencies move by some 1e-5 against order 5
-MESH: dict[str, dict] = {JUDGE: {"order": 4}}
 
 
 @dataclass(eq=False)
@@ -73,11 +95,15 @@ class Assembly:
     kept: int = KEPT  #: modes of each shaft
     #: builder options of models, by their names; of one shaft by (side, model), before those
     settings: Mapping[str | tuple[str, str], Mapping] = field(default_factory=dict)
+    #: relative error that the meshes of harmonic shafts may leave; by default the tolerance of the
+    #: file over the share of it that a judge may take
+    tol: float | str | None = None
+    highest_hz: float | None = None  #: up to which modes are wanted; by default that of the file
 
     @classmethod
-    def of(cls, scene: Scene, kept: int = KEPT) -> Assembly:
-        """Return the assembly of one shaft, whose models have the meshes of the shaft alone; with
-        any number of modes that are `kept` it is exact at rest.
+    def of(cls, scene: Scene, kept: int = KEPT, tol: float | str | None = None) -> Assembly:
+        """Return the assembly of one shaft; with any number of modes that are `kept` it is exact
+        at rest.
 
         Examples
         --------
@@ -86,17 +112,23 @@ class Assembly:
         >>> list(assembly.system("timoshenko").parts), list(assembly.system("timoshenko").links)
         (['shaft'], ['shaft.1', 'shaft.2'])
         """
-        return cls(Train.of(scene), kept=kept, settings=dict.fromkeys(MESH, {}))
+        return cls(Train.of(scene), kept=kept, tol=tol)
 
     def __post_init__(self):
         if self.reduction not in REDUCTIONS:
             raise SolidgearError(
                 f"reduction {show(self.reduction, 30)} is unknown; use {' or '.join(REDUCTIONS)}"
             )
+        if self.tol is not None:
+            self.tol = read_tolerance(self.tol)
         self._models: dict[tuple[str, str], ShaftModel] = {}
         self._local_seconds = 0.0
-        #: error bars of the first frequencies by the shafts' meshes, by the models of all shafts
-        self.bars: dict[tuple[str, ...], np.ndarray] = {}
+        #: errors of the first frequencies by the shafts' meshes, by the models of all shafts
+        self.errors: dict[tuple[str, ...], MeshErrors] = {}
+        #: frequencies up to which the meshes of harmonic shafts were chosen, Hz
+        self._followed: dict[str, float] = {}
+        #: harmonic shafts whose meshes were chosen at rest
+        self._chosen_at_rest: set[str] = set()
         self._read_train(self.train)
 
     def _read_train(self, train: Train) -> None:
@@ -109,6 +141,13 @@ class Assembly:
         )
         point = train.point
         self._flanks: dict[bool, Assembly] = {point is not None and point.coast: self}
+
+    @property
+    def tolerance(self) -> float:
+        """Relative error that the meshes of harmonic shafts may leave."""
+        if self.tol is None:
+            return self.train.ask.tolerance / LADDER[JUDGE].share
+        return float(self.tol)
 
     @property
     def contact(self) -> Contact:
@@ -135,18 +174,163 @@ class Assembly:
             if base:
                 self._models[side, model] = self._derived_model(side, model, kind, base)
             else:
-                start = perf_counter()
-                options = self.settings.get(model, MESH.get(model, {}))
-                side_options = self.settings.get((side, model), {})
-                body = build(self.scenes[side], model, **{**options, **side_options})
-                self._models[side, model] = self._reduce(side, model, body, start)
+                self._set_mesh(side, model, self._first_mesh(side, model))
         return self._models[side, model]
+
+    def _first_mesh(self, side: str, model: str) -> Meshed | None:
+        """Return the mesh that refinement begins with; None where options set it, and for models
+        whose meshes do not follow error bars.
+        """
+        if not LADDER[model].follows:
+            return None
+        plan = LADDER[model].meshes_of(self.scenes[side], self._options(side, model))
+        return None if plan.fixed else Meshed(fixed=plan.levels[0])
+
+    def _options(self, side: str, model: str) -> dict:
+        return {**self.settings.get(model, {}), **self.settings.get((side, model), {})}
+
+    def _set_mesh(self, side: str, model: str, mesh: Meshed | None) -> None:
+        """Build and reduce a shaft on a mesh, in place of that before and all derived from it."""
+        start, earlier = perf_counter(), 0.0
+        before = self._models.get((side, model))
+        if before is not None:
+            earlier = before.seconds
+            before.body.cache.clear()  # its factor need not be held beside the next one
+        options = self._options(side, model) if mesh is None else mesh.options()
+        shaft = self._reduce(side, model, build(self.scenes[side], model, **options), start)
+        for name in names_from(model, (*LUMPED, RIGID)):
+            self._models.pop((side, name), None)
+        self._models[side, model] = replace(shaft, mesh=mesh, seconds=shaft.seconds + earlier)
+        self.errors.clear()
+
+    def refine(self, meshes: Mapping[str, Meshed]) -> None:
+        """Build and reduce harmonic shafts on other meshes."""
+        for side, mesh in meshes.items():
+            self._set_mesh(side, JUDGE, mesh)
+
+    @pinned
+    def follow(
+        self, *models: str, highest_hz: float | None = None, most: int | None = None
+    ) -> None:
+        """Refine the meshes of harmonic shafts until the error bars of the train's modes up to a
+        frequency, Hz, and so many at most, are within the tolerance, or finer ones do not help.
+        """
+        solved = self.solved_models(models)
+        limit = highest_hz or self.highest_hz or self.train.ask.max_frequency
+        sides = self.following(solved)
+        if all(self._followed.get(side, -np.inf) >= limit for side in sides):
+            return
+        for side in sides:
+            reached = self._followed.get(side, 0.0)
+            self._followed[side] = reached if most is not None else max(reached, limit)
+        if sides:
+            refine_meshes(lambda: self._finer(solved, limit, most), self.refine)
+
+    def to_be_followed_at_rest(self, models: Sequence[str]) -> bool:
+        """Return True once for every harmonic shaft of some models whose mesh follows the error bars
+        of the first state at rest.
+        """
+        sides = {*self.following(self.solved_models(models))}
+        if sides <= self._chosen_at_rest:
+            return False
+        self._chosen_at_rest |= sides
+        return True
+
+    @pinned
+    def follow_alone(self, side: str, model: str) -> ShaftModel:
+        """Return a shaft by a model, a harmonic solid on a mesh that follows the error bars of its
+        own flexibility at all ports, whatever holds it there.
+        """
+        limit = self.highest_hz or self.train.ask.max_frequency
+
+        def finer() -> tuple[dict[str, Meshed], float]:
+            solid = self.shaft_model(side, JUDGE)
+            scene = self.scenes[side]
+            if solid.mesh is not None and highest_resolved(scene, solid.body) < limit:
+                return {side: resolving(solid.mesh)}, np.inf
+            errors = flexibility_errors(side, scene, solid.body)
+            needs = errors.needs(len(errors.bars), self.tolerance)
+            return self.finer_meshes(needs), float(errors.bars.max())
+
+        if self.following({side: model}):
+            refine_meshes(finer, self.refine)
+        return self.shaft_model(side, model)
+
+    def solved_models(self, models: Sequence[str]) -> dict[str, str]:
+        """Return the models by which meshes are judged: in place of a lumped shaft the harmonic
+        solid that it is condensed from.
+        """
+        lumped_solids = names_from(JUDGE, LUMPED)
+        return {
+            side: JUDGE if model in lumped_solids else model
+            for side, model in self.models_by_shaft(models).items()
+        }
+
+    def following(self, models: Mapping[str, str]) -> dict[str, Meshed]:
+        """Return the meshes of harmonic shafts that follow error bars."""
+        solids = [self.shaft_model(s, JUDGE) for s, model in models.items() if model == JUDGE]
+        return {solid.side: solid.mesh for solid in solids if solid.mesh is not None}
+
+    def _finer(
+        self, models: Mapping[str, str], limit: float, most: int | None
+    ) -> tuple[dict[str, Meshed], float]:
+        """Return the next meshes for the modes up to a frequency, none where all are within the
+        tolerance, and the largest error bar.
+        """
+        system = self.coupled(models, teeth=False)
+        omega = system.elastic[0]
+        count = max(1, int((omega <= 2 * np.pi * limit).sum()))
+        if most is not None:
+            count = min(count, most)
+        meshes, bodies = self.following(models), self._solids(models)
+        highest = min(limit, float(omega[count - 1]) / (2 * np.pi))
+        coarse = [s for s in meshes if highest_resolved(self.scenes[s], bodies[s]) < highest]
+        if coarse:
+            return {side: resolving(meshes[side]) for side in coarse}, np.inf
+        # one more is looked at where a list of modes ends
+        errors = self._errors(system, models, count + 1)
+        if errors is None:
+            return {}, 0.0
+        needs = errors.needs(count, self.tolerance)
+        return self.finer_meshes(needs), float(errors.bars[:count].max())
+
+    def finer_meshes(self, needs: Mapping[str, Need]) -> dict[str, Meshed]:
+        """Return the next meshes of the shafts that need finer ones and follow."""
+        finer = {}
+        for side, need in needs.items():
+            solid = self.shaft_model(side, JUDGE)
+            if solid.mesh is not None:
+                finer[side] = refined(
+                    self.scenes[side], solid.body, solid.mesh, need.score, need.tolerance
+                )
+        return finer
+
+    def _solids(self, models: Mapping[str, str]) -> dict[str, Body]:
+        solid = [side for side, model in models.items() if model == JUDGE]
+        return {side: self.shaft_model(side, JUDGE).body for side in solid}
+
+    def mesh_errors(self, system: System, models: Mapping[str, str], n: int) -> MeshErrors | None:
+        """Return the errors of the first n elastic frequencies of the train by the meshes of
+        harmonic shafts; None without any, and where teeth drive families of two waves and more.
+        """
+        if JUDGE in models.values() and any(mesh.local_harmonics for mesh in self.train.meshes):
+            return None
+        return self._errors(system, models, n)
+
+    def _errors(self, system: System, models: Mapping[str, str], n: int) -> MeshErrors | None:
+        key = tuple(models.values())
+        if key not in self.errors or len(self.errors[key].bars) < n:
+            errors = mesh_errors(system, self.scenes, self._solids(models), n)
+            if errors is None:
+                return None
+            self.errors[key] = errors
+        return self.errors[key]
 
     def set_body(self, side: str, model: str, body: Body) -> None:
         """Set the body, on any mesh, that a model of a shaft is reduced from, in place of building
         it.
         """
-        self.bars.clear()
+        self.errors.clear()
         self._models[side, model] = self._reduce(side, model, body, perf_counter())
 
     def _reduce(self, side: str, model: str, body: Body, start: float) -> ShaftModel:
@@ -225,7 +409,9 @@ class Assembly:
         assembly = copy(self)
         # bodies hold no bearings; lumped models, condensed on them, do
         bodies = {k: m for k, m in self._models.items() if k[1].partition("/")[0] not in LUMPED}
-        assembly._models, assembly.scenes, assembly.bars, assembly._flanks = bodies, {}, {}, {}
+        assembly._models, assembly.scenes, assembly.errors, assembly._flanks = bodies, {}, {}, {}
+        assembly._followed = dict(self._followed)
+        assembly._chosen_at_rest = set(self._chosen_at_rest)
         return assembly
 
     @property
@@ -258,7 +444,7 @@ class Assembly:
         """
         if coast not in self._flanks:
             assembly = copy(self)
-            assembly.contacts, assembly.bars = contacts(self.train, coast), {}
+            assembly.contacts, assembly.errors = contacts(self.train, coast), {}
             assembly.stages = stages_at_work(
                 self.train, assembly.contacts, self.scenes, self.places, coast
             )
@@ -297,11 +483,23 @@ class Assembly:
         ``housing``; links are ``engine spring``, ``load spring``, ``mesh`` (with several ``mesh
         input-middle``), the bearings, and mounts such as ``mount 1``.
         """
+        by_shaft = self.models_by_shaft(models)
+        if bearings and self.following(self.solved_models(models)).keys() - self._followed.keys():
+            self.follow(*models)
+        return self.coupled(by_shaft, bearings)
+
+    def coupled(
+        self, models: Mapping[str, str], bearings: bool = True, teeth: bool = True
+    ) -> System:
+        """Couple the shafts on the meshes that they have, by choice without the harmonics that
+        teeth drive.
+        """
         train = self.train
         rotors = {name: Inertia(rotor.inertia) for name, rotor in train.rotors.items()}
         parts: dict[str, Part] = {name: rotors[name] for name in train.engines}
-        for side, model in self.models_by_shaft(models).items():
-            parts[side] = self.place_part(side, self.shaft_part(side, model))
+        for side, model in models.items():
+            part = self.shaft_part(side, model) if teeth else self.shaft_model(side, model).part
+            parts[side] = self.place_part(side, part)
         parts |= rotors
         links: dict[str, Link] = {}
         if train.housing is not None:

@@ -29,6 +29,7 @@ from solidgear.core import (
     show,
     synthesise,
 )
+from solidgear.core.bounds.refining import Meshed
 from solidgear.core.frames import shift
 from solidgear.core.reduction.condensed import condensed_shaft
 from solidgear.core.reduction.superelement import Superelement
@@ -62,6 +63,11 @@ def checked_model(name: str) -> tuple[str, str]:
     return kind, body or JUDGE
 
 
+def names_from(body: str, kinds: Sequence[str]) -> set[str]:
+    """Return the names of rigid or lumped models of some kinds that rest on a body."""
+    return {f"{kind}/{body}" for kind in kinds} | ({*kinds} if body == JUDGE else set())
+
+
 def ladder_place(name: str) -> tuple[int, int]:
     """Return the places of a model and of the body beneath it in the sequence of all models, to
     sort by.
@@ -84,7 +90,8 @@ class ShaftModel:
     part: Part
     body: Body  #: from which the part is reduced
     unknowns: int  #: of the body's mesh
-    seconds: float  #: to build and reduce it
+    seconds: float  #: to build and reduce it, on all meshes that were tried
+    mesh: Meshed | None = None  #: that follows error bars
     #: the part with harmonics that teeth drive at a mesh point, by these
     local: dict[tuple, Part] = field(default_factory=dict, repr=False)
 

@@ -21,8 +21,8 @@ from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.stages import StageAtWork
 from solidgear.trains.file.planetary import Stage
 from solidgear.trains.file.train import Train, with_carrier_turned
-from solidgear.trains.load.operation import OperatingState, with_settled_bearings
 from solidgear.trains.load.planet_loads import centrifugal, weights
+from solidgear.trains.load.state import OperatingState, with_settled_bearings
 from solidgear.trains.system.carrier_turn import FixedSupport, carrier_turn
 
 #: motions of a port that no free rotation of a shaft is a part of

@@ -310,6 +310,7 @@ class _Judge:
 
     def __init__(self, assembly: Assembly, highest: float):
         self.assembly, self.highest = assembly, highest
+        assembly.follow(JUDGE, highest_hz=highest)
         self.system = assembly.system(JUDGE)
         self.found, self.seen = modes_and_motions(assembly, self.system, highest)
         self.names = mode_names(assembly, self.system, self.found)

@@ -143,7 +143,7 @@ def _sections(comparison: TrainComparison, units: Units, viewer: str) -> list[Se
     chain = "Engine, shafts, teeth and load"
     if len(train.shafts) == 2:
         chain = "Engine, {}'s shaft, teeth, {}'s shaft and load".format(*train.shafts)
-    peaks = train_tables.peaks(judge.peaks, "mesh force", "N", teeth, units, solid)
+    peaks = train_tables.peaks(judge.peaks, "mesh force", "N", teeth, units, solid, judge.bars)
     met = train_tables.crossings(orders.crossings, units, comparison.modes.speeds)
     return [
         Section("train", "Train", f"{chain}, {AXES}", tables=[train_tables.facts(data, units)]),

@@ -8,7 +8,8 @@ from solidgear.bearings.solved import AS_STATED
 from solidgear.core import SolidgearError
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.file.train import Train
-from solidgear.trains.load.operation import Operating, OperatingState
+from solidgear.trains.load.operation import Operating
+from solidgear.trains.load.state import OperatingState
 
 
 def train_lives(train: Train) -> list[LivesOverPoints]:

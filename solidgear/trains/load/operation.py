@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from copy import copy
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -23,14 +23,18 @@ import numpy as np
 from solidgear.bearings.catalogued import Catalogued
 from solidgear.bearings.solved import AS_STATED, Choice, catalogued_bearings
 from solidgear.core import SceneError, SolidgearError, System, listed
-from solidgear.core.system.system import port_forces
+from solidgear.core.bounds.refining import Meshed
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.housing import housing_port
 from solidgear.trains.assembly.layout import force_on, mesh_forces, rotor_torques
+from solidgear.trains.assembly.mesh_errors import refine_meshes
+from solidgear.trains.assembly.shaft import JUDGE
 from solidgear.trains.assembly.stages import mesh_row
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.train import Train
 from solidgear.trains.load.planet_loads import carrier_torques, centrifugal_load
+from solidgear.trains.load.state import OperatingState, with_settled_bearings
+from solidgear.trains.load.static_errors import StaticErrors
 from solidgear.trains.system.equilibrium import (
     OnBearings,
     Seats,
@@ -47,52 +51,6 @@ LOOP = (
     "meshes of a loop divide the torque by their stiffness; errors of teeth and positions, which "
     "shift it, are left out"
 )
-
-
-@dataclass(frozen=True, eq=False)
-class OperatingState:
-    """A train at rest at one operating point."""
-
-    point: OperatingPoint
-    models: dict[str, str]  #: by shaft
-    #: along the line of action, N, by mesh; zero where no torque passes
-    mesh_forces: dict[str, float]
-    equilibrium: SystemEquilibrium  #: of all parts; the spring port of the engine does not turn
-    #: without the bearings; the equilibrium is in its coordinates
-    system: System = field(repr=False)
-    bearings: dict[str, Catalogued] = field(
-        repr=False
-    )  #: bearings of catalogue data, by ``side.name``
-    #: loads from outside on ports of parts: torques of both rotors and other forces
-    outside: dict[str, np.ndarray] = field(repr=False)
-    notes: tuple[str, ...] = ()  #: sentences
-
-    @property
-    def mesh_force(self) -> float:
-        """Force of the first mesh, N."""
-        return next(iter(self.mesh_forces.values()))
-
-    @property
-    def coordinates(self) -> np.ndarray:
-        """Coordinates (N,) of the system."""
-        return self.equilibrium.coordinates
-
-    def motion(self, end: str) -> np.ndarray:
-        """Return the motion (6,) of a port such as ``pinion.A``, m and rad, in the axes of its
-        scene.
-        """
-        return self.system.motion(end) @ self.coordinates
-
-    def forces(self) -> dict[str, np.ndarray]:
-        """Return the force (6,) of everything but weight on each port of a shaft: teeth, springs,
-        bearings, and loads from outside, N and N m, in the axes of the scene.
-        """
-        out = port_forces(self.system, self.coordinates)
-        for end, force in self.outside.items():
-            out[end] = out.get(end, np.zeros(6)) + force
-        for end, force in self.equilibrium.load.items():
-            out[end] = out.get(end, np.zeros(6)) - force
-        return out
 
 
 class Operating:
@@ -166,8 +124,35 @@ class Operating:
 
     def at(self, point: OperatingPoint, start: OperatingState | None = None) -> OperatingState:
         """Settle the train at an operating point, from the state `start` of the same train if it is
-        on the same flank; refused where nothing holds a shaft under the loads.
+        on the same flank; refused where nothing holds a shaft under the loads. The first one that
+        is settled decides the meshes of harmonic shafts.
         """
+        state = self._settled(point, start)
+        if not self.assembly.to_be_followed_at_rest(self.models):
+            return state
+        if any(mesh.local_harmonics for mesh in self.assembly.train.meshes):
+            # forces where teeth touch are not those of ports: the shaft by itself decides
+            for side in self.assembly.following(state.models):
+                self.assembly.follow_alone(side, JUDGE)
+            self._flanks.clear()
+            return self._settled(point, None)
+
+        def finer() -> tuple[Mapping[str, Meshed], float]:
+            errors = StaticErrors(self.assembly, state).of_gears()
+            needs = errors.needs(len(errors.bars), self.assembly.tolerance)
+            return self.assembly.finer_meshes(needs), float(errors.bars.max(initial=0.0))
+
+        def refine(meshes: Mapping[str, Meshed]) -> None:
+            nonlocal state
+            self.assembly.refine(meshes)
+            self._flanks.clear()
+            state = self._settled(point, None)
+
+        refine_meshes(finer, refine)
+        return state
+
+    def _settled(self, point: OperatingPoint, start: OperatingState | None) -> OperatingState:
+        """Settle the train on the meshes that its shafts have."""
         point = self.assembly.train.told(point)
         assembly, seated = self._on_flank(point.coast)
         forces = mesh_forces(assembly.train, assembly.contacts, point)
@@ -350,30 +335,6 @@ def _rotation(system: System, shafts: list[str]) -> np.ndarray:
     still = np.vstack([system.motion(end)[[0, 1, 2, 3, 5]] for end in ends]) @ free
     _, _, vectors = np.linalg.svd(still)
     return free @ vectors[-1]
-
-
-def with_settled_bearings(train: Train, state: OperatingState) -> Train:
-    """Return a train with one operating point, the bearings with the stiffness that they have
-    there.
-    """
-    shafts = {}
-    for side, shaft in train.shafts.items():
-        bearings = [
-            bearing
-            if bearing.catalogue is None
-            else bearing.with_changes(matrix=_symmetric(state, side, bearing.name))
-            for bearing in shaft.scene.bearings
-        ]
-        scene = shaft.scene.with_changes(bearings=tuple(bearings))
-        shafts[side] = shaft.with_changes(scene=scene)
-    point = state.point.with_changes(share=None, hours=None)
-    return train.with_changes(operation=(point,), shafts=shafts)
-
-
-def _symmetric(state: OperatingState, side: str, name: str) -> np.ndarray:
-    """Return the tangent (6, 6) of a bearing; friction at speed leaves a part that is no spring."""
-    tangent = state.equilibrium.tangent[f"{side}.{name}"]
-    return (tangent + tangent.T) / 2
 
 
 def at_point(train: Train, word: str | int | None = None) -> Train:

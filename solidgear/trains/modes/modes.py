@@ -191,11 +191,13 @@ def train_modes(
     """
     train, by_shaft = assembly.train, assembly.models_by_shaft(models)
     limit = max_frequency or train.ask.max_frequency
+    open_ended = at_most is not None and max_frequency is None
+    open_ended = open_ended and "max_frequency" not in train.ask.model_fields_set
+    assembly.follow(*models, highest_hz=np.inf if open_ended else limit, most=at_most)
     system = assembly.system(*models)
     omega, _ = system.elastic
     count = int((omega <= 2 * np.pi * limit).sum())
     if at_most is not None:
-        open_ended = max_frequency is None and "max_frequency" not in train.ask.model_fields_set
         count = min(at_most, len(omega) if open_ended else count)
         limit = float(omega[count - 1]) / (2 * np.pi) if open_ended else limit
     solved = system.modes(max(1, count))

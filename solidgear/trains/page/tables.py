@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from math import degrees
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from solidgear.show.table import Cell, Column, Table, quantity, text, word
@@ -13,6 +14,11 @@ from solidgear.show.words import DASH, hertz, percent, whole
 if TYPE_CHECKING:
     from solidgear.trains.assembly.orders import Crossing
     from solidgear.trains.response.response import TrainResponse
+
+MOVED_BY_MESHES = (
+    "Mesh: error bar of the mode's frequency by the meshes of harmonic shafts; a peak lies lower by "
+    "no more, and its height has none."
+)
 
 
 def facts(train: Mapping[str, Any], units: Units = ENGINEERING, title: str = "Train") -> Table:
@@ -196,8 +202,11 @@ def peaks(
     teeth: float,
     units: Units = ENGINEERING,
     model: str = "",
+    bars: Mapping[str, float] = MappingProxyType({}),
 ) -> Table:
-    """Return peaks (Hz, size, mode) of a quantity such as ``mesh force`` in its SI unit."""
+    """Return peaks (Hz, size, mode) of a quantity such as ``mesh force`` in its SI unit, with the
+    error bars of modes by meshes.
+    """
     units = units.fitting([size for _, size, _ in tops], si)
     columns = [
         text("its mode", lambda peak: peak[2]),
@@ -205,9 +214,12 @@ def peaks(
         Column(f"{turned(teeth)} rpm", lambda peak: 60 * peak[0] / teeth, whole),
         quantity(name, si, units, lambda peak: peak[1], 4),
     ]
-    return Table(
-        f"Peaks of the {name}{', ' + model if model else ''}", columns, tops, style="ruled"
-    )
+    note = ""
+    if bars:
+        columns.append(Column("mesh", lambda peak: bars.get(peak[2]), lambda bar: f"{bar:.0e}"))
+        note = MOVED_BY_MESHES
+    title = f"Peaks of the {name}{', ' + model if model else ''}"
+    return Table(title, columns, tops, note, style="ruled")
 
 
 def turned(teeth: float | None) -> str:

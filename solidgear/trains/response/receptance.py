@@ -69,6 +69,8 @@ def receptance(
     >>> found.unit, [mode for _, _, mode in found.peaks][:2]
     ('m/N', ['load torsion 1', 'gear torsion 1'])
     """
+    highest = highest_hz or assembly.highest_hz or assembly.train.ask.max_frequency
+    assembly.follow(*models, highest_hz=highest)
     force = np.eye(6)[_component(from_)]
     load = {from_[0]: force}
     drive = Drive(assembly, *models, damping=damping, matched_hz=matched_hz, forces=load)
@@ -82,7 +84,6 @@ def receptance(
         return drive.motion(hz, row[None])
 
     _refuse_unrelated(drive, row)
-    highest = highest_hz or assembly.train.ask.max_frequency
     is_given = frequency_hz is not None
     hz = np.asarray(frequency_hz, float) if is_given else drive.grid(highest, motions_of=response)
     value = drive.steady.solved(hz, drive.load, row[None])[:, 0]

@@ -9,6 +9,7 @@ import numpy as np
 from solidgear.core import pinned
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.local_give import local_lines
+from solidgear.trains.assembly.meshes import mesh_bars
 from solidgear.trains.assembly.spin import spin_cautions
 from solidgear.trains.modes.parting import parting_lines
 from solidgear.trains.response.drive import Drive
@@ -45,10 +46,11 @@ def respond(
     >>> found.peaks[0].mode, round(found.peaks[0].frequency_hz)
     ('load torsion 1', 16)
     """
+    highest = highest_hz or assembly.highest_hz or assembly.train.ask.max_frequency
+    assembly.follow(*models, highest_hz=highest)
     drive = Drive(
         assembly, *models, damping=damping, matched_hz=matched_hz, forces=forces, mesh=mesh
     )
-    highest = highest_hz or assembly.train.ask.max_frequency
     hz = drive.grid(highest) if frequency_hz is None else np.asarray(frequency_hz, float)
     by_name = drive.columns(hz)
     driven = list(by_name)[:2]  # columns of the mesh that drives stand before its orders
@@ -74,4 +76,15 @@ def respond(
         parting=parting,
         cautions=tuple(cautions),
         seconds=seconds,
+        bars=_bars_by_mode(drive, by_shaft, highest),
     )
+
+
+def _bars_by_mode(drive: Drive, models: dict[str, str], highest_hz: float) -> dict[str, float]:
+    """Return the error bars of the modes up to a frequency by the meshes of harmonic shafts."""
+    below = int((drive.system.elastic[0] <= 2 * np.pi * highest_hz).sum())
+    bars = mesh_bars(drive.assembly, drive.system, models, below) if below else None
+    if bars is None:
+        return {}
+    modes, names = drive.named_modes(drive.reach(highest_hz))
+    return dict(zip(names[modes.rigid :], bars.tolist()))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
@@ -43,6 +43,8 @@ class TrainResponse:
     parting: tuple[str, ...]
     cautions: tuple[str, ...]
     seconds: float  #: to build and reduce both shafts
+    #: relative error bars of frequencies by the meshes of harmonic shafts, by mode
+    bars: dict[str, float] = field(default_factory=dict)
     name: str = ""  #: of the train, where two are compared
 
     @property

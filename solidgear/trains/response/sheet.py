@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -77,8 +78,8 @@ def response_sheet(result: Responses, units: Units) -> Sheet:
         "response": partial(response_chart, result.responses, title, teeth, band, {}, units)
     }
     tops = [(p.frequency_hz, p.force, p.mode) for p in first.peaks]
-    tables = [train_tables.peaks(tops, "mesh force", "N", teeth, units, first.label)]
-    printed = _peaks_or_none(tops, "mesh force", "N", teeth, units)
+    tables = [train_tables.peaks(tops, "mesh force", "N", teeth, units, first.label, first.bars)]
+    printed = _peaks_or_none(tops, "mesh force", "N", teeth, units, first.bars)
     if housing := train_tables.housing_columns(first.columns):
         charts["housing"] = partial(columns_chart, result.responses, housing, teeth, units)
         tables.append(train_tables.housing(first, units))
@@ -88,7 +89,9 @@ def response_sheet(result: Responses, units: Units) -> Sheet:
         tables.append(train_tables.crossings(result.orders.crossings, units, shaft))
     data: dict[str, Any] = {
         "title": title,
-        "responses": [{**r.models, "peaks": plain(r.peaks)} for r in result.responses],
+        "responses": [
+            {**r.models, "peaks": plain(r.peaks), "bars": r.bars} for r in result.responses
+        ],
         "damping": first.damping,
         "unpublished": unpublished,
         "cautions": [*slips, *first.cautions],
@@ -191,10 +194,15 @@ def receptance_sheet(
 
 
 def _peaks_or_none(
-    tops: Sequence[tuple[float, float, str]], name: str, si: str, teeth: float, units: Units
+    tops: Sequence[tuple[float, float, str]],
+    name: str,
+    si: str,
+    teeth: float,
+    units: Units,
+    bars: Mapping[str, float] = MappingProxyType({}),
 ) -> list[Table | str]:
     """Return peaks (Hz, size in an SI unit, mode) for a terminal, or that there is none."""
-    table = train_tables.peaks(tops, name, si, teeth, units)
+    table = train_tables.peaks(tops, name, si, teeth, units, bars=bars)
     return [table or f"{table.title}: none in this range."]
 
 

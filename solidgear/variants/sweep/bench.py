@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from collections.abc import Hashable, Mapping
+from dataclasses import replace
 from typing import Any
 
 from solidgear.core import Scene
@@ -21,15 +22,22 @@ TRAINS = 2
 class Bench:
     """Models of shafts and trains at rest, kept from variant to variant; parameters as of an assembly."""
 
-    def __init__(self, reduction: str, kept: int, settings: Mapping[Any, Mapping]):
-        self._reduction = reduction, kept, settings
+    def __init__(
+        self,
+        reduction: str,
+        kept: int,
+        settings: Mapping[Any, Mapping],
+        tol: float | None = None,
+        highest_hz: float | None = None,
+    ):
+        self._parameters = reduction, kept, settings, tol, highest_hz
         self._models: OrderedDict[Hashable, ShaftModel] = OrderedDict()
         self._trains: OrderedDict[Hashable, Operating] = OrderedDict()
         self.made = 0  #: shafts that were meshed and reduced
 
     def assembly(self, train: Train, *models: str) -> Assembly:
         """Return an assembly of a train with the bodies of all shafts by these models."""
-        assembly = Assembly(train, *self._reduction)
+        assembly = Assembly(train, *self._parameters)
         for side, model in assembly.models_by_shaft(models).items():
             kind, base = checked_model(model)
             assembly.add_model(self._shaft(assembly, side, base or kind))
@@ -52,7 +60,8 @@ class Bench:
         if key not in self._models:
             self._make_room(side, model)
             self.made += 1
-            shaft = assembly.shaft_model(side, model)
+            # no variant decides the mesh of others, whatever comes first
+            shaft = replace(assembly.follow_alone(side, model), mesh=None)
             shaft.body.cache.clear()  # factors, which nothing asks for again
             self._models[key] = shaft
         self._models.move_to_end(key)

@@ -19,7 +19,7 @@ from solidgear.show.command import Group, Progress, command, console
 from solidgear.show.options import AUTO, MODEL, Chosen, Run, options, refuse, relative
 from solidgear.show.plot import FORMATS, check_ending
 from solidgear.show.sheet import Sheet, present, write_page
-from solidgear.trains.options import Pair, Reduced, of_shafts
+from solidgear.trains.options import Pair, Reduction, of_shafts
 from solidgear.variants.sweep.bearing_task import (
     SweptBearings,
     bars_of_rows,
@@ -224,7 +224,7 @@ def sweep(
     ] = TOLERANCE,
     pair: Pair,
     train_rows: OfTrain,
-    reduced: Reduced,
+    reduced: Reduction,
     run: Run,
 ) -> None:
     chart = train_rows.chart
@@ -234,7 +234,6 @@ def sweep(
     if is_train(scene):
         of_shaft = {
             "--model": model.name != AUTO,
-            "--tol": model.tol is not None,
             "--tolerance": tolerance != TOLERANCE,
         }
         models = "its models are those of --pinion and --gear"
@@ -254,6 +253,7 @@ def sweep(
             point=reduced.point,
             reduction=reduced.reduction,
             kept=reduced.kept,
+            tolerance=model.tol,
             local_harmonics=reduced.harmonics,
         )
         swept = rows.run(train, run.as_json, chart)

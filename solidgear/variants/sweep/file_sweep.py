@@ -70,7 +70,8 @@ def sweep(
         any name; `ask`, some of ``system-modes``, ``response`` and ``deflect``; `max_frequency` in
         Hz; `point`, an operating point by its name or number; `every_point`, a row for each of
         them; `mesh`, whose transmission error drives the train; `local_harmonics` of every mesh;
-        `reduction`, `kept` and `settings` as of an assembly.
+        `reduction`, `kept` and `settings` as of an assembly; `tolerance` that meshes of harmonic
+        shafts may leave.
 
     Returns
     -------

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from solidgear.core import Scene, SolidgearError, listed, nearest, parse, show
+from solidgear.core.judge.answer import read_tolerance
 from solidgear.core.loading import scene_of
 from solidgear.core.models.limits import number
 from solidgear.core.scene.file import KEYS
@@ -71,6 +72,9 @@ class TrainTask(FileTask):
     max_frequency: float | None  #: hz; that of the file by default
     reduction: str
     kept: int
+    tolerance: (
+        float | None
+    )  #: relative error that meshes may leave; by default a share of the file's
     settings: Mapping[Any, Mapping]  #: builder options by (side, model)
     mesh: str | None  #: the one whose transmission error drives the train; the first by default
     first: int  #: a variant that can be read
@@ -78,7 +82,7 @@ class TrainTask(FileTask):
     @cached_property
     def bench(self) -> Bench:
         """Shafts and trains kept from row to row."""
-        return Bench(self.reduction, self.kept, self.settings)
+        return Bench(self.reduction, self.kept, self.settings, self.tolerance, self.max_frequency)
 
     @cached_property
     def usual(self) -> Train:
@@ -138,6 +142,7 @@ class TrainTask(FileTask):
             "n": self.n,
             "max_frequency": self.max_frequency,
             "reduction": [self.reduction, self.kept],
+            "tolerance": self.tolerance,
             "set": tables_for_plan(
                 {" ".join(key): dict(options) for key, options in self.settings.items()}
             ),
@@ -240,6 +245,7 @@ def train_task(
     every_point: bool = False,
     reduction: str = "rubin",
     kept: int = KEPT,
+    tolerance: float | None = None,
     local_harmonics: Sequence[int] = (),
     settings: Mapping[Any, Mapping] | None = None,
 ) -> TrainTask:
@@ -268,6 +274,8 @@ def train_task(
         checked_model(model)
     if n is not None:
         number("sweep", "n", n, least=1, below=MOST_SHAPES + 1, whole=True)
+    if tolerance is not None:
+        tolerance = read_tolerance(tolerance)
     variants = train_variants(
         train, design, point=point, every_point=every_point, local_harmonics=local_harmonics
     )
@@ -283,6 +291,7 @@ def train_task(
         max_frequency=max_frequency,
         reduction=reduction,
         kept=kept,
+        tolerance=tolerance,
         settings=dict(settings or {}),
         mesh=mesh,
         first=first,

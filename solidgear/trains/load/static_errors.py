@@ -1,0 +1,151 @@
+r"""Errors that meshes of harmonic shafts leave in the numbers of a train at rest.
+
+A quantity a'q of the state at rest has an error bar where a shaft is a harmonic solid: the flexibility at
+the ports lies between F and F + M (:mod:`solidgear.core.bounds.harmonic`), so that with the forces f on
+the ports at rest, and those, g, which a unit load on the quantity would bring about on the bearings'
+tangents,
+
+    |error| <= sqrt(f'M f) sqrt(g'M g),      summed over the shafts and their axial, torsional and
+                                             bending parts, which M does not couple
+
+(Cauchy and Schwarz in the energy of the local problems; second order in M is left out).  Beams are
+exact in their theory and have no error bar; the harmonic solid shows what their theory leaves out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cached_property
+
+import numpy as np
+
+from solidgear.core import System, coned, pinned
+from solidgear.core.bounds.harmonic import HarmonicBounds, harmonic_bounds, with_tail
+from solidgear.core.bounds.safety import LOCAL
+from solidgear.core.system.system import port_forces
+from solidgear.trains.assembly.assembly import Assembly
+from solidgear.trains.assembly.mesh_errors import MeshErrors
+from solidgear.trains.assembly.shaft import JUDGE
+from solidgear.trains.file.housing import HOUSING
+from solidgear.trains.load.state import OperatingState, with_settled_bearings
+
+#: components of motion that the meshes of gears feel: of places, and of axes
+PLACES, TILTS = (0, 1, 2), (3, 5)
+#: growth of a number as the train turns, relative, below which it is rounding
+ROUNDING = 1e-9
+
+
+class StaticErrors:
+    """Errors that meshes of harmonic shafts leave in linear numbers of a state at rest."""
+
+    def __init__(self, assembly: Assembly, state: OperatingState):
+        self.assembly, self.state = assembly, state
+        sides = [side for side, model in state.models.items() if model == JUDGE]
+        if any(mesh.local_harmonics for mesh in assembly.train.meshes):
+            sides = []
+        self.bounds = {side: self._bounds_of(side) for side in sides}
+
+    def _bounds_of(self, side: str) -> HarmonicBounds:
+        body = self.assembly.shaft_model(side, JUDGE).body
+        return pinned(harmonic_bounds)(coned(self.assembly.scenes[side]), body, statics=True)
+
+    @cached_property
+    def tangent(self) -> System:
+        """The train on the stiffness that bearings have at rest."""
+        settled_train = with_settled_bearings(self.assembly.train, self.state)
+        return self.assembly.with_train(settled_train).coupled(self.state.models)
+
+    @cached_property
+    def rest(self) -> dict[str, np.ndarray]:
+        """Forces (6 p,) on the ports of every harmonic shaft at rest."""
+        return self._ports(self.state.forces())
+
+    def _ports(self, forces: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+        """Return (6 p,) forces on the ports of every harmonic shaft."""
+        out = {}
+        for side, bounds in self.bounds.items():
+            out[side] = np.zeros(6 * len(bounds.body.ports))
+            for end, force in forces.items():
+                part, _, port = end.partition(".")
+                if part == side:
+                    start = 6 * bounds.body.port_index(port)
+                    out[side][start : start + 6] += force
+        return out
+
+    def of_gears(self) -> MeshErrors:
+        """Return the errors of the motions of all gears, of places and of axes, relative to the
+        length of both.
+        """
+        bars, shares = [], []
+        for side, shaft in self.assembly.train.shafts.items():
+            for port in [*shaft.gears] or [self.assembly.scenes[side].port.name]:
+                rows = self.state.system.motion(f"{side}.{port}")
+                moved = rows @ self.state.coordinates
+                for components in (PLACES, TILTS):
+                    size = float(np.linalg.norm(moved[[*components]]))
+                    for row in rows[[*components]] if size else ():
+                        by_shaft = self._by_shaft(row)
+                        bars.append(sum(bar for bar, _ in by_shaft.values()) / size)
+                        shares.append(_shares(by_shaft))
+        return MeshErrors(
+            np.array(bars),
+            np.array(bars),
+            {side: np.array([share[side] for share in shares]).T for side in self.bounds if shares},
+        )
+
+    def error_bar(self, row: np.ndarray) -> float | None:
+        """Return the error bar of ``row @ coordinates``; None without a harmonic shaft, and where
+        the number grows as the train turns.
+        """
+        if not self.bounds:
+            return None
+        turns = np.abs(row @ self.tangent.free).max(initial=0.0)
+        if turns > ROUNDING * np.linalg.norm(row):
+            return None
+        return sum(bar for bar, _ in self._by_shaft(row).values())
+
+    def _by_shaft(self, row: np.ndarray) -> dict[str, tuple[float, np.ndarray]]:
+        """Return the part of every shaft in the error bar of a number, and that of the cells (ne,)
+        in this.
+        """
+        adjoint = port_forces(self.tangent, self.tangent.static(row))
+        parts = [*self.assembly.scenes]
+        if self.assembly.train.housing is not None:
+            parts.append(HOUSING)
+        unit_forces = self._ports(_add_unit_load(adjoint, self.tangent, row, parts))
+        out = {}
+        for side, bounds in self.bounds.items():
+            f, g = self.rest[side], unit_forces[side]
+            bar = 0.0
+            for rows in (bounds.body.rows(block) for block in bounds.body.blocks):
+                double, single = (
+                    float(
+                        np.sqrt(max(f[rows] @ m @ f[rows], 0.0) * max(g[rows] @ m @ g[rows], 0.0))
+                    )
+                    for m in (bounds.more[np.ix_(rows, rows)], bounds.less[np.ix_(rows, rows)])
+                )
+                bar += LOCAL * with_tail(double, single)
+            energies = [bounds.energy_by_cells(forces) for forces in (f, g)]
+            out[side] = bar, np.sum([e / (e.sum() or 1.0) for e in energies], axis=0) / 2
+        return out
+
+
+def _shares(by_shaft: Mapping[str, tuple[float, np.ndarray]]) -> dict[str, np.ndarray]:
+    """Return the shares of cells in an error bar by shaft, of all shafts in sum one."""
+    total = sum(bar for bar, _ in by_shaft.values()) or 1.0
+    return {side: bar / total * cells for side, (bar, cells) in by_shaft.items()}
+
+
+def _add_unit_load(
+    forces: dict[str, np.ndarray], system: System, row: np.ndarray, parts: list[str]
+) -> dict[str, np.ndarray]:
+    """Add to forces of links the unit load that a row of coordinates stands for, on the ports that
+    it is made of.
+    """
+    total = dict(forces)
+    ends = [f"{side}.{port}" for side in parts for port in system.parts[side].ports]
+    rows = np.vstack([system.motion(end) for end in ends])
+    loads, *_ = np.linalg.lstsq(rows.T, row, rcond=1e-12)
+    for end, force in zip(ends, loads.reshape(-1, 6)):
+        total[end] = total.get(end, np.zeros(6)) + force
+    return total
