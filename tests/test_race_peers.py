@@ -13,6 +13,7 @@ import solidgear as sg
 from validation.race import calculix, ross_peer, sfepy_peer
 from validation.race.answers import compliance_gap, frequency_gap, paired
 from validation.race.heat import Check, Heat, Sample
+from validation.race.installed import present
 from validation.race.ours import held, solve
 from validation.race.problem import problem_of
 from validation.race.process import PeerError, called, run
@@ -169,7 +170,7 @@ def test_nodal_forces_are_unit_wrenches_about_the_lumped_point(case):
         np.testing.assert_allclose(wrench, np.eye(6)[k], atol=1e-8)
 
 
-@pytest.mark.skipif(bool(calculix.present()), reason="CalculiX is not installed")
+@pytest.mark.skipif(not present("CalculiX"), reason="CalculiX is not installed")
 def test_calculix_gives_our_frequencies_and_compliance(case):
     _, done, problem, kind, _ = case
     answer = calculix.solve(problem, kind, modes=6, loads=True, limit=120, threads=1)
@@ -352,7 +353,7 @@ def test_straight_tetrahedra_are_stiffer_by_the_volume_they_miss():
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(bool(ross_peer.present()), reason="ROSS is not installed")
+@pytest.mark.skipif(not present("ROSS"), reason="ROSS is not installed")
 def test_ross_agrees():
     scene = ross_peer.on_nodes(held(SCENE, "average"))
     body = sg.build(scene, "timoshenko", kappa="cowper")
@@ -361,7 +362,7 @@ def test_ross_agrees():
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(bool(sfepy_peer.present()), reason="sfepy is not installed")
+@pytest.mark.skipif(not present("sfepy"), reason="sfepy is not installed")
 def test_sfepy_agrees():
     scene = held(SCENE, "average")
     body = solve(scene, "solid", TET, free=True).body

@@ -18,6 +18,7 @@ from validation.race.backlash import BACKLASH
 from validation.race.bearings import BEARINGS
 from validation.race.commands import COMMANDS, THREADS
 from validation.race.heat import Heat
+from validation.race.installed import missing
 from validation.race.peers import PEERS
 from validation.race.race import Race, missed, told
 from validation.race.real_parts import REAL_PARTS
@@ -73,6 +74,8 @@ def main() -> int:
     # a quick run replaces no result
     name = f"quick/{given.name}" if given.quick else given.name
     if not given.read:
+        if absent := missing(*race.needs):
+            print(absent)
         asked = Heat(given.quick, given.limit, settings)
         try:
             race.run(name, heats, rounds, asked, given.lane)

@@ -11,6 +11,9 @@ from typing import Any
 
 from validation.race.process import PeerError, spent
 
+#: fact of a lane: how far its answer is from a reference of high order, relative
+ERROR = "off the reference"
+
 
 @dataclass
 class Sample:

@@ -16,6 +16,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from validation.race.installed import interpreter
+
 ROOT = Path(__file__).resolve().parents[2]
 #: one thread for every pool there is
 ALONE = dict.fromkeys(("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "1")
@@ -45,18 +47,6 @@ class Done:
     def peak_mb(self) -> float:
         """Largest memory of what `WATCH` ran, MB."""
         return float(self.out.rsplit("PEAK", 1)[1]) / 1024
-
-
-def interpreter(package: str) -> str:
-    """Python that has a package: this one, or the first so of those that `PEERS` names, parted as
-    paths are; nothing where none has it.
-    """
-    look = f"import importlib.util, sys; sys.exit(not importlib.util.find_spec({package!r}))"
-    others = os.environ.get("PEERS", "").split(os.pathsep)
-    for python in (sys.executable, *filter(None, others)):
-        if subprocess.call([python, "-c", look]) == 0:
-            return python
-    return ""
 
 
 def cores() -> int:
@@ -155,15 +145,15 @@ def called(
         return Done(done.wall, done.cpu, done.out, json.loads(answer.read_text()))
 
 
-def peer(package: str, function: str, **more: Any) -> dict[str, Any]:
-    """What a function answers in a Python that has a package, with ``cpu`` seconds of the process;
+def peer(module: str, function: str, **more: Any) -> dict[str, Any]:
+    """What a function answers in a Python that can import a module, with ``cpu`` seconds of the process;
     `more` is as of :func:`called`.
 
     Raises
     ------
     PeerError
     """
-    done = called(function, python=interpreter(package), **more)
+    done = called(function, python=interpreter(module), **more)
     return done.answer | {"cpu": done.cpu}
 
 

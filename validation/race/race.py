@@ -31,6 +31,8 @@ class Race:
         Lanes that the result has already are not run again.
     read : callable, optional
         Shows more of the records of all heats, with the settings.
+    needs : tuple of str
+        Programs of :data:`validation.race.installed.PROGRAMS` that lanes are run by.
     """
 
     question: str
@@ -39,6 +41,7 @@ class Race:
     settings: dict[str, float] = field(default_factory=dict)
     resumes: bool = False
     read: Callable[[dict[str, Record], dict[str, float]], None] | None = None
+    needs: tuple[str, ...] = ()
 
     def run(
         self, name: str, heats: Collection[str], rounds: int, given: Heat, only: str = ""

@@ -7,15 +7,9 @@ from __future__ import annotations
 import time
 from typing import Any
 
-from validation.race.process import interpreter, peer
+from validation.race.process import peer
 
 RUNS = 3
-
-
-def present() -> str:
-    """Empty if ROSS can be run, else the reason why not."""
-    missing = "no package ross (pip install ross-rotordynamics, here or in a Python named in PEERS)"
-    return "" if interpreter("ross") else missing
 
 
 def on_nodes(scene):
