@@ -1,6 +1,7 @@
 """Races.
 
     python -m validation.race commands [--heat ...] [--runs 3] [--read] [--quick]
+    python -m validation.race commands --heat compare --against FOLDER [SCENE.toml ...]
 
 Results go to validation/results/NAME.json, a record a heat with date, commit and machine; `--read`
 shows what is there. The exit code is 1 where something that was asked for was missed. Ctrl-C keeps
@@ -11,6 +12,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+from pathlib import Path
 
 from validation.common import read_result
 from validation.race.assembly import ASSEMBLY
@@ -56,6 +58,8 @@ def main() -> int:
     parser.add_argument("--limit", type=float, default=900.0, help="seconds a process may take")
     parser.add_argument("--set", action="append", default=[], metavar="KEY=NUMBER")
     parser.add_argument("--read", action="store_true", help="run nothing, show the result on file")
+    parser.add_argument("--against", type=Path, metavar="FOLDER", help="another checkout")
+    parser.add_argument("scenes", nargs="*", type=Path, help="further scene files")
     given = parser.parse_args()
     race = RACES[given.name]
     heats = given.heat.split(",") if given.heat else list(race.heats)
@@ -76,7 +80,7 @@ def main() -> int:
     if not given.read:
         if absent := missing(*race.needs):
             print(absent)
-        asked = Heat(given.quick, given.limit, settings)
+        asked = Heat(given.quick, given.limit, settings, given.against, tuple(given.scenes))
         try:
             race.run(name, heats, rounds, asked, given.lane)
         except KeyboardInterrupt:

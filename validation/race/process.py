@@ -12,11 +12,13 @@ import subprocess
 import sys
 import tempfile
 import time
+from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from validation.race.installed import interpreter
+from validation.race.memory import TreePeak
 
 ROOT = Path(__file__).resolve().parents[2]
 #: one thread for every pool there is
@@ -42,6 +44,7 @@ class Done:
     cpu: float
     out: str
     answer: Any = None
+    tree_mb: float = 0.0  #: largest memory of the process and all that it started, where watched
 
     @property
     def peak_mb(self) -> float:
@@ -61,6 +64,7 @@ def run(
     limit: float = 900.0,
     threads: int | None = None,
     extra: dict[str, str | None] | None = None,
+    tree: bool = False,
 ) -> Done:
     """Run a command as one whole process.
 
@@ -74,6 +78,8 @@ def run(
         For OpenMP and the pools of CalculiX; all cores by default.
     extra : dict, optional
         More environment; None for a variable that is not to be set.
+    tree : bool
+        Whether to watch the memory of it and of all that it starts.
 
     Raises
     ------
@@ -95,8 +101,10 @@ def run(
         text=True,
         start_new_session=True,
     )
+    peak = TreePeak(child.pid)
     try:
-        out, _ = child.communicate(timeout=limit)
+        with peak if tree else nullcontext():
+            out, _ = child.communicate(timeout=limit)
     except BaseException as error:
         os.killpg(child.pid, signal.SIGKILL)
         child.communicate()
@@ -106,7 +114,7 @@ def run(
     seconds = time.perf_counter() - start
     if child.returncode:
         raise PeerError(f"{Path(command[0]).name} returned {child.returncode}: {last_words(out)}")
-    return Done(seconds, spent(own=False) - before, out)
+    return Done(seconds, spent(own=False) - before, out, tree_mb=peak.mb)
 
 
 def called(

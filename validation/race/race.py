@@ -57,7 +57,7 @@ class Race:
         """
         out = {}
         for key in heats:
-            heat = Heat(given.quick, given.limit, given.settings)
+            heat = Heat(given.quick, given.limit, given.settings, given.against, given.scenes)
             old = read_result(name).get(key, {}).get("lanes", []) if self.resumes else []
             try:
                 self.heats[key](heat)
