@@ -107,13 +107,16 @@ def stamp() -> dict[str, Any]:
         "system": _system(),
         "memory_gb": _memory_gb(),
     }
-    described = subprocess.run(
-        ["git", "describe", "--always", "--dirty=+", "--exclude=*"],
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-    )
-    return {"date": machine.pop("date"), "commit": described.stdout.strip(), "machine": machine}
+    commit = _git("describe", "--always", "--exclude=*")
+    # results that a run writes as it goes on are no change of the source
+    changed = _git("status", "--porcelain", "-uno", "--", ".", ":(exclude)validation/results")
+    return {"date": machine.pop("date"), "commit": commit + "+" * bool(changed), "machine": machine}
+
+
+def _git(*words: str) -> str:
+    """Return what git prints of this checkout; empty where there is none."""
+    done = subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True)
+    return done.stdout.strip()
 
 
 def _version(package: str) -> str | None:
