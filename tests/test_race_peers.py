@@ -293,11 +293,14 @@ def test_a_race_that_resumes_runs_what_is_missing(tmp_path, monkeypatch):
     ran = []
 
     def entered(heat, names="abc"):
-        for name in names:
-            heat.add(name, lambda name=name: ran.append(name))
+        lanes = [heat.add(name, lambda name=name: ran.append(name)) for name in names]
+        heat.ratio("a / b", lanes[0], lanes[1])
+        heat.ratio("a / c", lanes[0], lanes[2])
 
     race = Race("a question", {"heat": entered}, resumes=True)
-    race.run("race", ["heat"], 1, Heat(), only="b")
+    first = race.run("race", ["heat"], 1, Heat(), only="b")["heat"]
+    # of what was not to be run nothing is said
+    assert [row["ratio"] for row in first["ratios"]] == ["a / b"]
     found = race.run("race", ["heat"], 1, Heat())["heat"]
     assert ran == ["b", "a", "c"]
     assert [row["lane"] for row in found["lanes"]] == ["a", "b", "c"]

@@ -22,6 +22,7 @@ PRINTED = {
 RECORD = {
     "date": "2026-11-27 05:00 UTC",
     "commit": "abc1234",
+    "load before": 0.04,
     "machine": {
         "cpu": "A processor",
         "cores": 2,
@@ -110,9 +111,12 @@ def test_ratios_of_all_races_stand_with_what_they_were_run_with(kept):
     kept("peers", "mesh", ratios=[row, row | {"ratio": "missing", "measured": None}])
     text = page.ratios()
     assert "| peers, mesh | theirs / ours | 12.3 | 12 to 13 |" in text and "missing" not in text
+    # two checkouts have a table of their own
+    kept("commands", "answer", ratios=[row])
+    assert page.ratios() == text
     assert (
         "- peers, mesh: 2026-11-27 05:00 UTC, commit abc1234, A processor, 2 cores, 25.3 GB, "
-        "Debian, mkl 1, CalculiX 2.20" in text
+        "Debian, load 0.0 before, mkl 1, CalculiX 2.20" in text
     )
 
 

@@ -60,7 +60,7 @@ def main() -> int:
     parser.add_argument("--read", action="store_true", help="run nothing, show the result on file")
     parser.add_argument("--against", type=Path, metavar="FOLDER", help="another checkout")
     parser.add_argument("scenes", nargs="*", type=Path, help="further scene files")
-    given = parser.parse_args()
+    given = parser.parse_intermixed_args()
     race = RACES[given.name]
     heats = given.heat.split(",") if given.heat else list(race.heats)
     for heat in heats:

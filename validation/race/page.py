@@ -23,6 +23,8 @@ def ratios() -> str:
     rows, sources = [], []
     for race in RATIOS:
         for heat, record in heats(race).items():
+            if race == "commands" and heat not in OURS:
+                continue
             found = [row for row in record["ratios"] if row["measured"] is not None]
             rows += [[f"{race}, {heat}", row["ratio"], *_measured(row)] for row in found]
             if found:
@@ -94,6 +96,7 @@ def source(named: tuple[str, Record]) -> str:
     facts += [f"{machine['cores']} cores"]
     facts += [f"{machine['memory_gb']:g} GB"] if "memory_gb" in machine else []
     facts += [machine["system"]] if "system" in machine else []
+    facts += [f"load {record['load before']:.1f} before"] if "load before" in record else []
     packages = {k: machine.get(k) for k in ("numpy", "scipy", "mkl")} | record["versions"]
     facts += [f"{program} {found}" for program, found in packages.items() if found]
     return f"- {name}: {', '.join(facts)}"

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Collection
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 from validation.common import kept, read_result, show, stamp
@@ -57,6 +59,7 @@ class Race:
         """
         out = {}
         for key in heats:
+            load = os.getloadavg()[0]
             heat = Heat(given.quick, given.limit, given.settings, given.against, given.scenes)
             old = read_result(name).get(key, {}).get("lanes", []) if self.resumes else []
             try:
@@ -67,14 +70,21 @@ class Race:
             done = {row["lane"] for row in old if not row["error"]}
             heat.lanes = [x for x in heat.lanes if only in x.who and x.who not in done]
             before = [row for row in old if row["lane"] in done]
-            heat.run(rounds, lambda k=key, h=heat, b=before, e=entered: _keep(name, k, h, b, e))
-            out[key] = _keep(name, key, heat, before, entered)
+            running = set(map(id, heat.lanes))
+            heat.ratios = [x for x in heat.ratios if running & set(map(id, (x.fast, *x.slow)))]
+            keep = partial(_keep, name, key, heat, before, entered, load)
+            heat.run(rounds, keep)
+            out[key] = keep()
         return out
 
 
-def _keep(name: str, key: str, heat: Heat, before: list[Record], entered: list[str]) -> Record:
-    """Keep the record of a heat, rows of an earlier run among those of this one."""
-    record = {**stamp(), **heat.record()}
+def _keep(
+    name: str, key: str, heat: Heat, before: list[Record], entered: list[str], load: float
+) -> Record:
+    """Keep the record of a heat, rows of an earlier run among those of this one, with the load of the
+    machine before it began.
+    """
+    record = {**stamp(), "load before": load, **heat.record()}
     order = {who: k for k, who in enumerate(entered)}
     rows = [*before, *record["lanes"]]
     record["lanes"] = sorted(rows, key=lambda row: order.get(row["lane"], len(order)))
