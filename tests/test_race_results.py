@@ -76,6 +76,21 @@ def raced(monkeypatch, tmp_path, new):
     return told, heat.record()
 
 
+def test_a_command_without_numbers_is_a_lane_that_failed(monkeypatch, tmp_path):
+    monkeypatch.setattr(checkouts, "run", lambda *_, **__: Done(1.0, 1.0, "no such shaft"))
+    heat = Heat()
+    checkouts.enter(heat, "answer shaft", ["answer", "shaft.toml", "--json"])
+    heat.run(1)
+    assert heat.lanes[0].error == "answer printed no JSON: no such shaft"
+
+
+def test_further_files_go_to_the_heats_that_take_them():
+    shaft, train = checkouts.COMPARED[0], checkouts.GEOMETRY / "axle_straddle.toml"
+    heat = Heat(scenes=(shaft, train))
+    assert checkouts.further(heat, trains=False) == [shaft]
+    assert checkouts.further(heat, trains=True) == [train]
+
+
 def with_value(value):
     return PRINTED | {"values": [PRINTED["values"][0] | {"value": value}]}
 

@@ -19,9 +19,9 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.core.scene.toml_file import parse
+from solidgear.core.scene.toml_file import is_train, parse
 from validation.race.heat import Check, Heat, Lane, Sample
-from validation.race.process import ROOT, run
+from validation.race.process import ROOT, PeerError, last_words, run
 
 GEOMETRY, SCENES = ROOT / "geometry", ROOT / "tests" / "scenes"
 #: shafts that are compared, of which all but the last two are answered
@@ -61,13 +61,13 @@ class Number:
 
 def comparing(heat: Heat) -> None:
     """Enter `compare` of shafts."""
-    for scene in (*COMPARED[: 1 if heat.quick else None], *heat.scenes):
+    for scene in (*COMPARED[: 1 if heat.quick else None], *further(heat, trains=False)):
         enter(heat, f"compare {scene.stem}", ["compare", str(scene.resolve()), "--out", "out"])
 
 
 def answering(heat: Heat) -> None:
     """Enter `answer` of shafts, by tolerance."""
-    for scene in (*ANSWERED[: 1 if heat.quick else None], *heat.scenes):
+    for scene in (*ANSWERED[: 1 if heat.quick else None], *further(heat, trains=False)):
         for tol in TOLERANCES[: 1 if heat.quick else None]:
             words = ["answer", str(scene.resolve()), "--tol", tol, "--json"]
             enter(heat, f"answer {scene.stem} to {tol}", words)
@@ -77,11 +77,16 @@ def training(heat: Heat) -> None:
     """Enter modes, response and deflection of trains."""
     files = [GEOMETRY / f"{name}.toml" for name in TRAINS[: 1 if heat.quick else None]]
     for command in OF_TRAINS[: 1 if heat.quick else None]:
-        for file in (*files, *heat.scenes):
+        for file in (*files, *further(heat, trains=True)):
             words = [command, str(file.resolve()), "--json"]
             if command == "deflect" and "operation" not in parse(str(file)):
                 words += ["--torque", TORQUE]
             enter(heat, f"{command} {file.stem}", words)
+
+
+def further(heat: Heat, trains: bool) -> list[Path]:
+    """Return the further files that were given, trains or shafts."""
+    return [file for file in heat.scenes if is_train(file) is trains]
 
 
 def enter(heat: Heat, name: str, words: list[str]) -> None:
@@ -108,8 +113,11 @@ def once(tree: Path, words: list[str], limit: float) -> Sample:
         done = run(command, folder, limit=limit, extra={"PYTHONPATH": str(tree)}, tree=True)
         kept = folder / "out" / "results.json"
         text = kept.read_text() if kept.exists() else done.out
-    # notices of progress stand before
-    numbers = dict(numbers_in(json.loads(text[text.index("{") :])))
+    try:
+        # notices of progress stand before
+        numbers = dict(numbers_in(json.loads(text[text.index("{") :])))
+    except ValueError:
+        raise PeerError(f"{words[0]} printed no JSON: {last_words(text)}") from None
     return Sample({"all": done.wall}, done.cpu, numbers, {"peak_MB": done.tree_mb})
 
 
