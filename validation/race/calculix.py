@@ -278,7 +278,7 @@ def lane(
     who: str,
     problem: Problem,
     kind: str,
-    threads: int,
+    threads: Callable[[], int],
     checks: Sequence[Check],
     *,
     loads: bool = False,
@@ -286,18 +286,20 @@ def lane(
     **more: Any,
 ) -> Lane:
     """Enter CalculiX, a whole process with its deck given that solves ten modes; `error` measures
-    its answer against a reference.
+    its answer against a reference, and
+    `threads` is asked when it runs.
     """
 
     def call() -> Sample:
-        found = solve(problem, kind, modes=10, loads=loads, limit=heat.limit, threads=threads)
+        pool = threads()
+        found = solve(problem, kind, modes=10, loads=loads, limit=heat.limit, threads=pool)
         heat.versions["CalculiX"] = found.version
-        facts: dict[str, Any] = {"unknowns": 3 * len(problem.nodes)}
+        facts: dict[str, Any] = {"unknowns": 3 * len(problem.nodes), "threads": pool}
         if error is not None:
             facts[ERROR] = error(found)
         return Sample({"whole process": found.seconds}, found.cpu, found, facts)
 
-    return heat.add(who, call, checks=checks, note=f"threads: {threads}", **more)
+    return heat.add(who, call, checks=checks, **more)
 
 
 def fastest_threads(heat: Heat, problem: Problem, kind: str) -> int:

@@ -4,7 +4,6 @@ another.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from typing import Any
 
 from validation.common import markdown, read_result
@@ -81,11 +80,12 @@ def heats(race: str) -> dict[str, Record]:
     return read_result(race)
 
 
-def table(head: list[str], rows: list[list[str]], sources: Iterable[tuple[str, Record]]) -> str:
+def table(head: list[str], rows: list[list[str]], sources: list[tuple[str, Record]]) -> str:
     """Make a table, and below it what it was run with; a sentence where nothing is on file."""
     if not rows:
         return NOTHING
-    return "\n".join([*markdown(head, rows), "", *map(source, sources)]) + "\n"
+    left_out = [f"- not raced: {text}" for _, record in sources for text in record["skipped"]]
+    return "\n".join([*markdown(head, rows), "", *map(source, sources), *left_out]) + "\n"
 
 
 def source(named: tuple[str, Record]) -> str:
