@@ -123,9 +123,12 @@ def test_memory_is_that_of_a_process_and_of_what_it_starts(tmp_path):
 def test_ratios_of_all_races_stand_with_what_they_were_run_with(kept):
     assert page.ratios() == page.NOTHING
     row = {"ratio": "theirs / ours", "measured": 12.345, "over rounds": "12 to 13"}
+    row |= {"of processor seconds": 11.04}
     kept("peers", "mesh", ratios=[row, row | {"ratio": "missing", "measured": None}])
     text = page.ratios()
-    assert "| peers, mesh | theirs / ours | 12.3 | 12 to 13 |" in text and "missing" not in text
+    assert (
+        "| peers, mesh | theirs / ours | 12.3 | 12 to 13 | 11 |" in text and "missing" not in text
+    )
     # two checkouts have a table of their own
     kept("commands", "answer", ratios=[row])
     assert page.ratios() == text

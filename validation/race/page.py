@@ -28,7 +28,7 @@ def ratios() -> str:
             rows += [[f"{race}, {heat}", row["ratio"], *_measured(row)] for row in found]
             if found:
                 sources.append((f"{race}, {heat}", record))
-    head = ["race", "what takes how many times as long", "ratio", "over rounds"]
+    head = ["race", "what takes how many times as long", "ratio", "over rounds", "by processor s"]
     return table(head, rows, sources)
 
 
@@ -110,7 +110,11 @@ def number(value: float | None) -> str:
 
 
 def _measured(row: Record) -> list[str]:
-    return [number(row["measured"]), row.get("over rounds", "")]
+    return [
+        number(row["measured"]),
+        row.get("over rounds", ""),
+        number(row.get("of processor seconds")),
+    ]
 
 
 def _lane(row: Record) -> list[str]:
