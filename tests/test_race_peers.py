@@ -13,6 +13,7 @@ import solidgear as sg
 from validation.race import calculix, ross_peer, sfepy_peer
 from validation.race.answers import compliance_gap, frequency_gap, paired
 from validation.race.heat import Check, Heat, Sample
+from validation.race.installed import present
 from validation.race.ours import held, solve
 from validation.race.problem import problem_of
 from validation.race.process import PeerError, called, run
@@ -169,7 +170,7 @@ def test_nodal_forces_are_unit_wrenches_about_the_lumped_point(case):
         np.testing.assert_allclose(wrench, np.eye(6)[k], atol=1e-8)
 
 
-@pytest.mark.skipif(bool(calculix.present()), reason="CalculiX is not installed")
+@pytest.mark.skipif(not present("CalculiX"), reason="CalculiX is not installed")
 def test_calculix_gives_our_frequencies_and_compliance(case):
     _, done, problem, kind, _ = case
     answer = calculix.solve(problem, kind, modes=6, loads=True, limit=120, threads=1)
@@ -292,11 +293,14 @@ def test_a_race_that_resumes_runs_what_is_missing(tmp_path, monkeypatch):
     ran = []
 
     def entered(heat, names="abc"):
-        for name in names:
-            heat.add(name, lambda name=name: ran.append(name))
+        lanes = [heat.add(name, lambda name=name: ran.append(name)) for name in names]
+        heat.ratio("a / b", lanes[0], lanes[1])
+        heat.ratio("a / c", lanes[0], lanes[2])
 
     race = Race("a question", {"heat": entered}, resumes=True)
-    race.run("race", ["heat"], 1, Heat(), only="b")
+    first = race.run("race", ["heat"], 1, Heat(), only="b")["heat"]
+    # of what was not to be run nothing is said
+    assert [row["ratio"] for row in first["ratios"]] == ["a / b"]
     found = race.run("race", ["heat"], 1, Heat())["heat"]
     assert ran == ["b", "a", "c"]
     assert [row["lane"] for row in found["lanes"]] == ["a", "b", "c"]
@@ -352,7 +356,7 @@ def test_straight_tetrahedra_are_stiffer_by_the_volume_they_miss():
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(bool(ross_peer.present()), reason="ROSS is not installed")
+@pytest.mark.skipif(not present("ROSS"), reason="ROSS is not installed")
 def test_ross_agrees():
     scene = ross_peer.on_nodes(held(SCENE, "average"))
     body = sg.build(scene, "timoshenko", kappa="cowper")
@@ -361,7 +365,7 @@ def test_ross_agrees():
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(bool(sfepy_peer.present()), reason="sfepy is not installed")
+@pytest.mark.skipif(not present("sfepy"), reason="sfepy is not installed")
 def test_sfepy_agrees():
     scene = held(SCENE, "average")
     body = solve(scene, "solid", TET, free=True).body

@@ -12,8 +12,8 @@ from validation.common import read_result
 from validation.race import real_costs as ratios
 from validation.race import real_lines as lines
 from validation.race import real_parts as measure
-from validation.race.calculix import present
 from validation.race.heat import Heat
+from validation.race.installed import missing, present
 from validation.race.real_lines import CALCULIX, GRADED, PLAIN, REFERENCE, UNIFORM, Job
 
 # unknowns of made-up meshes, coarse to fine
@@ -150,7 +150,7 @@ def test_a_slice_of_the_step_part():
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(bool(present()), reason=present())
+@pytest.mark.skipif(not present("CalculiX"), reason=missing("CalculiX"))
 def test_calculix_answers_as_our_solid_on_its_mesh(monkeypatch):
     monkeypatch.setattr(lines, "jobs", lambda part: [Job(part, CALCULIX, {"refinement": 0.15})])
     heat = Heat()

@@ -148,8 +148,9 @@ def test_the_command_tells_jumps_and_what_is_enough(run, tmp_path):
     ("more", "says"),
     [
         (["--backlash", "-1 um", "--mean-force", "5 kN"], "must not be negative"),
-        (["--backlash", "100 um"], "no mean force is given"),
-        (["--mean-force", "5 kN"], "no backlash is given"),
+        (["--backlash", "100 um"], "no mean force: give [[operation]]"),
+        (["--mean-force", "5 kN"], "no backlash: give backlash"),
+        ([], "no backlash, no mean force: give backlash = "),
         (["--backlash", "100 um", "--mean-force", "5 kN", "--min-frequency", "-3"], "above 0"),
         (["--backlash", "1e-4 m", "--mean-force", "-5 kN"], "holds no teeth"),
         (["--backlash", "1e-4 m", "--mean-force", "5 kN", "--contact-loss", "0"], "above 0 Hz"),

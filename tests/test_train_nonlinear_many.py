@@ -159,5 +159,5 @@ def test_what_several_meshes_cannot_have_is_refused(assembly):
     with pytest.raises(SolidgearError, match="give --mesh middle-output, or leave its table out"):
         teeth_of(varied)
     assert teeth_of(varied, mesh="middle-output").half_gap == 0.0
-    with pytest.raises(SolidgearError, match="no backlash is given"):
+    with pytest.raises(SolidgearError, match="no backlash: give"):
         teeth_of(assembly)

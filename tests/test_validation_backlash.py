@@ -6,9 +6,9 @@ import pytest
 from solidgear.backlash.solver.continuation import follow
 from validation.backlash.gears import PARTING, ours, spur_pair, told
 from validation.backlash.spur_pair import SpurPair
-from validation.race import pyharm_peer, ross_peer
+from validation.race import installed, pyharm_peer, ross_peer
 from validation.race.backlash import branch_rms, pair, pair_for_pyharm, turning
-from validation.race.process import interpreter
+from validation.race.installed import interpreter, missing, present
 
 
 def gears(spread):
@@ -68,11 +68,30 @@ def test_a_branch_of_points_turns_at_the_vertex_of_their_parabola():
 
 def test_a_python_is_found_by_the_package_it_has(monkeypatch):
     monkeypatch.setenv("PEERS", "")
+    interpreter.cache_clear()
     assert interpreter("numpy") and not interpreter("no_such_package")
+    interpreter.cache_clear()
+
+
+def test_all_that_is_missing_is_named_at_once(monkeypatch):
+    monkeypatch.setattr(installed, "interpreter", lambda module: "")
+    monkeypatch.setattr(installed.shutil, "which", lambda command: None)
+    text = missing("CalculiX", "ROSS", "pyHarm")
+    assert text.startswith("CalculiX, ROSS and pyHarm are missing: apt-get install calculix-ccx; ")
+    assert "pip install 'ross-rotordynamics>=2.3' 'plotly<6' 'pyharm-os>=1.2' (" in text
+    assert missing("sfepy").startswith("sfepy is missing: pip install ")
+    monkeypatch.setattr(installed, "interpreter", lambda module: "python")
+    assert missing("ROSS", "sfepy") == ""
+
+
+def test_a_package_that_cannot_be_imported_is_not_there(monkeypatch, tmp_path):
+    (tmp_path / "broken_peer.py").write_text("raise AttributeError('plotly')")
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    assert not interpreter("broken_peer")
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(bool(pyharm_peer.present()), reason="pyHarm is not installed")
+@pytest.mark.skipif(not present("pyHarm"), reason="pyHarm is not installed")
 def test_pyharm_agrees():
     branch = follow(pair(0.05), 0.5, 1.3)
     given = pair_for_pyharm(0.05)
@@ -85,7 +104,7 @@ def test_pyharm_agrees():
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(bool(ross_peer.present()), reason="ROSS is not installed")
+@pytest.mark.skipif(not present("ROSS"), reason="ROSS is not installed")
 def test_ross_agrees_on_gears_whose_teeth_part():
     given = PARTING | {"hz": [3110.0], "cycles": 300}
     found = ross_peer.in_time(**given)

@@ -7,8 +7,11 @@ from __future__ import annotations
 import csv
 import json
 import math
+import os
+import platform
 import subprocess
 from collections.abc import Iterable, Sequence
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
@@ -99,14 +102,41 @@ def toml(value: Any) -> str:
 
 def stamp() -> dict[str, Any]:
     """Date, commit and machine of a result; a changed source is marked with a plus."""
-    machine = environment()
-    described = subprocess.run(
-        ["git", "describe", "--always", "--dirty=+", "--exclude=*"],
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-    )
-    return {"date": machine.pop("date"), "commit": described.stdout.strip(), "machine": machine}
+    machine = environment() | {
+        "mkl": _version("mkl"),
+        "system": _system(),
+        "memory_gb": _memory_gb(),
+    }
+    commit = _git("describe", "--always", "--exclude=*")
+    # results that a run writes as it goes on are no change of the source
+    changed = _git("status", "--porcelain", "-uno", "--", ".", ":(exclude)validation/results")
+    return {"date": machine.pop("date"), "commit": commit + "+" * bool(changed), "machine": machine}
+
+
+def _git(*words: str) -> str:
+    """Return what git prints of this checkout; empty where there is none."""
+    done = subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True)
+    return done.stdout.strip()
+
+
+def _version(package: str) -> str | None:
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return None
+
+
+def _system() -> str:
+    """Return the operating system by name and release."""
+    try:
+        return platform.freedesktop_os_release()["PRETTY_NAME"]
+    except (OSError, KeyError):
+        return f"{platform.system()} {platform.release()}"
+
+
+def _memory_gb() -> float:
+    """Return the memory of the machine, GB."""
+    return round(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") / 1e9, 1)
 
 
 def write_rows(path: Path, rows: list[dict]) -> None:

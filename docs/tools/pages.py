@@ -20,6 +20,7 @@ if __name__ == "__main__":
     sys.path.insert(0, str(ROOT))
 
 from validation.common import read_result  # noqa: E402
+from validation.race import page as races  # noqa: E402
 from validation.race.real_costs import markdown, rows_of  # noqa: E402
 
 DOCS = ROOT / "docs"
@@ -150,6 +151,10 @@ TABLES: dict[str, Callable[[], str]] = {
     "real_keyed": lambda: real("keyed"),
     "real_toothed": lambda: real("toothed"),
     "real_step": lambda: real("step"),
+    "race_error": lambda: races.lanes("peers", "error"),
+    "race_ratios": races.ratios,
+    "race_sizes": races.sizes,
+    "race_checkouts": races.checkouts,
 }
 
 

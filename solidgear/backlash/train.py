@@ -38,7 +38,7 @@ from solidgear.trains.assembly.layout import mesh_forces
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.planetary import error_of
-from solidgear.trains.file.train import named_pair
+from solidgear.trains.file.train import Train, named_pair
 from solidgear.trains.load.contact import LEVER_REFUSED, axes_of
 from solidgear.trains.load.operation import SHAFT, loop_forces, rotor_loads
 from solidgear.trains.modes.modes import refuse_unresolved
@@ -75,18 +75,11 @@ def teeth_of(
     """
     train = assembly.train
     pair, point = named_pair(train, mesh), train.point
-    if not any(driven.mesh.backlash is not None for driven in train.pairs):
-        raise SolidgearError(
-            'no backlash is given; write backlash = "100 um" under [mesh], or give --backlash'
-        )
+    _refuse_absent(train, pair, mean_force)
     _refuse_several(assembly, pair)
     source = "given"
     if mean_force is None:
-        if point is None:
-            raise SolidgearError(
-                'no mean force is given; write [[operation]] with torque = "115 N*m", or give '
-                '--mean-force, such as "5 kN"'
-            )
+        assert point is not None  # else it was refused
         forces, source = _by_torque(assembly, point), point.label
     else:
         unit = _by_torque(assembly, torque_of(assembly, pair.name, 1.0))
@@ -125,6 +118,22 @@ def teeth_of(
         mesh=pair.name,
         others=tuple(others),
     )
+
+
+def _refuse_absent(train: Train, driver: Pair, mean_force: float | None) -> None:
+    """Refuse a train without what teeth with backlash need, and name all that is missing at once."""
+    absent, ways = [], []
+    if not any(driven.mesh.backlash is not None for driven in train.pairs):
+        absent.append("backlash")
+        ways.append('backlash = "100 um" under [mesh] or --backlash')
+    if mean_force is None and train.point is None:
+        absent.append("mean force")
+        ways.append('[[operation]] with torque = "115 N*m" or --mean-force "5 kN"')
+    if driver.mesh.transmission_error is None:
+        absent.append("transmission error")
+        ways.append('transmission_error = "10 um" under [mesh] or --error')
+    if absent:
+        raise SolidgearError(f"no {', no '.join(absent)}: give {'; '.join(ways)}")
 
 
 def _refuse_several(assembly: Assembly, driver: Pair) -> None:

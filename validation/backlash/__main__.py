@@ -16,6 +16,7 @@ from solidgear.show.plot import Chart
 from solidgear.show.words import capital
 from validation.backlash import axle, gears, pairs
 from validation.common import ROOT, kept, markdown, read_result, stamp
+from validation.race.installed import missing
 
 PAGE = ROOT / "docs" / "validation" / "backlash.md"
 PICTURE = ROOT / "validation" / "figures" / "backlash.png"
@@ -26,6 +27,8 @@ TITLES = {
 }
 SAID, TRUE = "linear force above the mean", "teeth part"
 LOOKS = {SAID: Series(GREY), TRUE: Series("#0072b2")}
+#: program that a study needs
+NEEDED = {"gears": "ROSS", "pairs": "pyHarm"}
 #: pinion's teeth
 TEETH = 14
 #: axles and mean forces at which branches apart are told, N
@@ -110,7 +113,10 @@ def main() -> None:
     }
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("anew", nargs="*", choices=[*studies, []], help="run again")
-    for name in parser.parse_args().anew:
+    anew = parser.parse_args().anew
+    if absent := missing(*(NEEDED[name] for name in anew if name in NEEDED)):
+        parser.error(absent)
+    for name in anew:
         kept("backlash", {name: {**stamp(), "rows": studies[name]()}})
     found = read_result("backlash")
     chart(found["torque"]["rows"]["axle_overhung"]).write(PICTURE)

@@ -1,6 +1,7 @@
 """Races.
 
     python -m validation.race commands [--heat ...] [--runs 3] [--read] [--quick]
+    python -m validation.race commands --heat compare --against FOLDER [SCENE.toml ...]
 
 Results go to validation/results/NAME.json, a record a heat with date, commit and machine; `--read`
 shows what is there. The exit code is 1 where something that was asked for was missed. Ctrl-C keeps
@@ -11,6 +12,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+from pathlib import Path
 
 from validation.common import read_result
 from validation.race.assembly import ASSEMBLY
@@ -18,6 +20,7 @@ from validation.race.backlash import BACKLASH
 from validation.race.bearings import BEARINGS
 from validation.race.commands import COMMANDS, THREADS
 from validation.race.heat import Heat
+from validation.race.installed import missing
 from validation.race.peers import PEERS
 from validation.race.race import Race, missed, told
 from validation.race.real_parts import REAL_PARTS
@@ -55,7 +58,9 @@ def main() -> int:
     parser.add_argument("--limit", type=float, default=900.0, help="seconds a process may take")
     parser.add_argument("--set", action="append", default=[], metavar="KEY=NUMBER")
     parser.add_argument("--read", action="store_true", help="run nothing, show the result on file")
-    given = parser.parse_args()
+    parser.add_argument("--against", type=Path, metavar="FOLDER", help="another checkout")
+    parser.add_argument("scenes", nargs="*", type=Path, help="further scene files")
+    given = parser.parse_intermixed_args()
     race = RACES[given.name]
     heats = given.heat.split(",") if given.heat else list(race.heats)
     for heat in heats:
@@ -73,7 +78,9 @@ def main() -> int:
     # a quick run replaces no result
     name = f"quick/{given.name}" if given.quick else given.name
     if not given.read:
-        asked = Heat(given.quick, given.limit, settings)
+        if absent := missing(*race.needs):
+            print(absent)
+        asked = Heat(given.quick, given.limit, settings, given.against, tuple(given.scenes))
         try:
             race.run(name, heats, rounds, asked, given.lane)
         except KeyboardInterrupt:

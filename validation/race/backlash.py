@@ -24,6 +24,7 @@ from solidgear.trains.assembly.assembly import Assembly
 from validation.common import ROOT
 from validation.race import pyharm_peer
 from validation.race.heat import Check, Heat, Sample
+from validation.race.installed import missing
 from validation.race.race import Race
 
 ZETA, MEAN, AMPLITUDE = 0.05, 0.1, 0.05
@@ -156,8 +157,8 @@ def of_axle(heat: Heat, model: str, within: float) -> tuple[Remainder, Branch]:
 
 def by_pyharm(heat: Heat, scaled: dict, branch: Branch, scale: float, step: float, fast) -> None:
     """A lane of pyHarm on the same equations, and its ratio."""
-    if missing := pyharm_peer.present():
-        heat.skip(f"pyHarm: {missing}")
+    if absent := missing("pyHarm"):
+        heat.skip(absent)
         return
     more = {"harmonics": HARMONICS, "instants": INSTANTS, "step": step}
 
@@ -255,4 +256,5 @@ def scaled_axle(own: Remainder) -> dict:
 BACKLASH = Race(
     "branches of teeth with backlash, beside sweeps in time and pyHarm",
     {"pair": of_pair, "axle": of_lumped, "solid": of_solid},
+    needs=("pyHarm",),
 )

@@ -9,18 +9,19 @@ another, a dense block that CalculiX has to store and factor.
 from __future__ import annotations
 
 import re
-import shutil
 import sys
 import tempfile
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from solidgear.core.elements import ELEMENTS
 from solidgear.core.frames import cross_matrix
 from solidgear.show.outputs import node_order
-from validation.race.heat import Heat, Lane, Sample
+from validation.race.heat import ERROR, Check, Heat, Lane, Sample
 from validation.race.problem import Problem
 from validation.race.process import WATCH, Done, PeerError, cores, last_words, run
 
@@ -50,12 +51,6 @@ class Answer:
     frequency_hz: np.ndarray
     compliance: np.ndarray | None
     version: str
-
-
-def present() -> str:
-    """Empty if CalculiX can be run, else the reason why not."""
-    missing = "no program ccx on the path (Debian: apt-get install calculix-ccx)"
-    return "" if shutil.which("ccx") else missing
 
 
 def solve(
@@ -278,16 +273,33 @@ def _springs(stiffness: np.ndarray):
             yield k * size**2, direction / size
 
 
-def lane(heat: Heat, who: str, problem, kind, threads: int, checks, *, loads=False) -> Lane:
-    """A lane of CalculiX: a whole process, its deck given, and ten modes."""
+def lane(
+    heat: Heat,
+    who: str,
+    problem: Problem,
+    kind: str,
+    threads: Callable[[], int],
+    checks: Sequence[Check],
+    *,
+    loads: bool = False,
+    error: Callable[[Answer], float] | None = None,
+    **more: Any,
+) -> Lane:
+    """Enter CalculiX, a whole process with its deck given that solves ten modes; `error` measures
+    its answer against a reference, and
+    `threads` is asked when it runs.
+    """
 
     def call() -> Sample:
-        found = solve(problem, kind, modes=10, loads=loads, limit=heat.limit, threads=threads)
+        pool = threads()
+        found = solve(problem, kind, modes=10, loads=loads, limit=heat.limit, threads=pool)
         heat.versions["CalculiX"] = found.version
-        unknowns = 3 * len(problem.nodes)
-        return Sample({"whole process": found.seconds}, found.cpu, found, {"unknowns": unknowns})
+        facts: dict[str, Any] = {"unknowns": 3 * len(problem.nodes), "threads": pool}
+        if error is not None:
+            facts[ERROR] = error(found)
+        return Sample({"whole process": found.seconds}, found.cpu, found, facts)
 
-    return heat.add(who, call, checks=checks, note=f"threads: {threads}")
+    return heat.add(who, call, checks=checks, **more)
 
 
 def fastest_threads(heat: Heat, problem: Problem, kind: str) -> int:

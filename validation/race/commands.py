@@ -1,5 +1,5 @@
-"""Whole processes: the main job and the quickest useful answer, and one answer through the API
-whose caller imported numpy before.
+"""Whole processes: the main job and the quickest useful answer, commands beside another checkout, and
+one answer through the API whose caller imported numpy before.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
+from validation.race.checkouts import answering, comparing, training
 from validation.race.heat import Check, Heat, Sample
 from validation.race.process import ALONE, ROOT, called, run
 from validation.race.race import Race
@@ -95,7 +96,10 @@ def pools(heat: Heat, beside: Callable = nullcontext) -> None:
         heat.ratio(f"one thread / {name}: no more than 1.2 times", base, lane, 1 / 1.2)
 
 
-COMMANDS = Race("whole commands, start-up included", {"main": main_job}, rounds=5)
+COMMANDS = Race(
+    "whole commands, start-up included, beside another checkout",
+    {"main": main_job, "compare": comparing, "answer": answering, "trains": training},
+)
 THREADS = Race(
     "a harmonic answer through the API, by thread pools of numpy",
     {"as it is": pools, "one processor busy": partial(pools, beside=busy)},

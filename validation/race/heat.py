@@ -7,9 +7,13 @@ import statistics
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 from validation.race.process import PeerError, spent
+
+#: fact of a lane: how far its answer is from a reference of high order, relative
+ERROR = "off the reference"
 
 
 @dataclass
@@ -200,11 +204,17 @@ class Heat:
         Seconds that a process may take.
     settings : dict of str to float
         What can be set for the race.
+    against : Path, optional
+        Another checkout, which takes turns with this one.
+    scenes : tuple of Path
+        Further scene files.
     """
 
     quick: bool = False
     limit: float = 900.0
     settings: dict[str, float] = field(default_factory=dict)
+    against: Path | None = None
+    scenes: tuple[Path, ...] = ()
     lanes: list[Lane] = field(default_factory=list)
     ratios: list[Ratio] = field(default_factory=list)
     answers: list[dict[str, Any]] = field(default_factory=list)

@@ -12,9 +12,13 @@ import subprocess
 import sys
 import tempfile
 import time
+from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+
+from validation.race.installed import interpreter
+from validation.race.memory import TreePeak
 
 ROOT = Path(__file__).resolve().parents[2]
 #: one thread for every pool there is
@@ -40,23 +44,12 @@ class Done:
     cpu: float
     out: str
     answer: Any = None
+    tree_mb: float = 0.0  #: largest memory of the process and all that it started, where watched
 
     @property
     def peak_mb(self) -> float:
         """Largest memory of what `WATCH` ran, MB."""
         return float(self.out.rsplit("PEAK", 1)[1]) / 1024
-
-
-def interpreter(package: str) -> str:
-    """Python that has a package: this one, or the first so of those that `PEERS` names, parted as
-    paths are; nothing where none has it.
-    """
-    look = f"import importlib.util, sys; sys.exit(not importlib.util.find_spec({package!r}))"
-    others = os.environ.get("PEERS", "").split(os.pathsep)
-    for python in (sys.executable, *filter(None, others)):
-        if subprocess.call([python, "-c", look]) == 0:
-            return python
-    return ""
 
 
 def cores() -> int:
@@ -71,6 +64,7 @@ def run(
     limit: float = 900.0,
     threads: int | None = None,
     extra: dict[str, str | None] | None = None,
+    tree: bool = False,
 ) -> Done:
     """Run a command as one whole process.
 
@@ -84,6 +78,8 @@ def run(
         For OpenMP and the pools of CalculiX; all cores by default.
     extra : dict, optional
         More environment; None for a variable that is not to be set.
+    tree : bool
+        Whether to watch the memory of it and of all that it starts.
 
     Raises
     ------
@@ -105,8 +101,10 @@ def run(
         text=True,
         start_new_session=True,
     )
+    peak = TreePeak(child.pid)
     try:
-        out, _ = child.communicate(timeout=limit)
+        with peak if tree else nullcontext():
+            out, _ = child.communicate(timeout=limit)
     except BaseException as error:
         os.killpg(child.pid, signal.SIGKILL)
         child.communicate()
@@ -116,7 +114,7 @@ def run(
     seconds = time.perf_counter() - start
     if child.returncode:
         raise PeerError(f"{Path(command[0]).name} returned {child.returncode}: {last_words(out)}")
-    return Done(seconds, spent(own=False) - before, out)
+    return Done(seconds, spent(own=False) - before, out, tree_mb=peak.mb)
 
 
 def called(
@@ -155,15 +153,15 @@ def called(
         return Done(done.wall, done.cpu, done.out, json.loads(answer.read_text()))
 
 
-def peer(package: str, function: str, **more: Any) -> dict[str, Any]:
-    """What a function answers in a Python that has a package, with ``cpu`` seconds of the process;
+def peer(module: str, function: str, **more: Any) -> dict[str, Any]:
+    """What a function answers in a Python that can import a module, with ``cpu`` seconds of the process;
     `more` is as of :func:`called`.
 
     Raises
     ------
     PeerError
     """
-    done = called(function, python=interpreter(package), **more)
+    done = called(function, python=interpreter(module), **more)
     return done.answer | {"cpu": done.cpu}
 
 

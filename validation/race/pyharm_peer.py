@@ -5,15 +5,9 @@ from __future__ import annotations
 import time
 from typing import Any
 
-from validation.race.process import ALONE, interpreter, peer
+from validation.race.process import ALONE, peer
 
 RUNS = 3
-
-
-def present() -> str:
-    """Empty if pyHarm can be run, else the reason why not."""
-    missing = "no package pyHarm (pip install pyharm-os, here or in a Python named in PEERS)"
-    return "" if interpreter("pyHarm") else missing
 
 
 def solve(*, limit: float = 900.0, **given: Any) -> dict:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Collection
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 from validation.common import kept, read_result, show, stamp
@@ -31,6 +33,8 @@ class Race:
         Lanes that the result has already are not run again.
     read : callable, optional
         Shows more of the records of all heats, with the settings.
+    needs : tuple of str
+        Programs of :data:`validation.race.installed.PROGRAMS` that lanes are run by.
     """
 
     question: str
@@ -39,6 +43,7 @@ class Race:
     settings: dict[str, float] = field(default_factory=dict)
     resumes: bool = False
     read: Callable[[dict[str, Record], dict[str, float]], None] | None = None
+    needs: tuple[str, ...] = ()
 
     def run(
         self, name: str, heats: Collection[str], rounds: int, given: Heat, only: str = ""
@@ -54,7 +59,8 @@ class Race:
         """
         out = {}
         for key in heats:
-            heat = Heat(given.quick, given.limit, given.settings)
+            load = os.getloadavg()[0]
+            heat = Heat(given.quick, given.limit, given.settings, given.against, given.scenes)
             old = read_result(name).get(key, {}).get("lanes", []) if self.resumes else []
             try:
                 self.heats[key](heat)
@@ -64,14 +70,21 @@ class Race:
             done = {row["lane"] for row in old if not row["error"]}
             heat.lanes = [x for x in heat.lanes if only in x.who and x.who not in done]
             before = [row for row in old if row["lane"] in done]
-            heat.run(rounds, lambda k=key, h=heat, b=before, e=entered: _keep(name, k, h, b, e))
-            out[key] = _keep(name, key, heat, before, entered)
+            running = set(map(id, heat.lanes))
+            heat.ratios = [x for x in heat.ratios if running & set(map(id, (x.fast, *x.slow)))]
+            keep = partial(_keep, name, key, heat, before, entered, load)
+            heat.run(rounds, keep)
+            out[key] = keep()
         return out
 
 
-def _keep(name: str, key: str, heat: Heat, before: list[Record], entered: list[str]) -> Record:
-    """Keep the record of a heat, rows of an earlier run among those of this one."""
-    record = {**stamp(), **heat.record()}
+def _keep(
+    name: str, key: str, heat: Heat, before: list[Record], entered: list[str], load: float
+) -> Record:
+    """Keep the record of a heat, rows of an earlier run among those of this one, with the load of the
+    machine before it began.
+    """
+    record = {**stamp(), "load before": load, **heat.record()}
     order = {who: k for k, who in enumerate(entered)}
     rows = [*before, *record["lanes"]]
     record["lanes"] = sorted(rows, key=lambda row: order.get(row["lane"], len(order)))

@@ -23,6 +23,7 @@ from validation.common import ROOT
 from validation.race import calculix
 from validation.race import real_lines as lines
 from validation.race.heat import Check, Clock, Heat, Sample
+from validation.race.installed import missing, present
 from validation.race.problem import problem_of
 from validation.race.process import ALONE, called
 from validation.race.race import Race
@@ -203,8 +204,8 @@ def part(heat: Heat, name: str) -> None:
         jobs = list(coarsest.values())
     for job in jobs:
         peer = job.line == lines.CALCULIX
-        if peer and calculix.present():
-            heat.skip(f"{job.line}: {calculix.present()}")
+        if peer and not present("CalculiX"):
+            heat.skip(f"{job.line}: {missing('CalculiX')}")
             continue
         heat.add(
             job.name,
@@ -220,5 +221,6 @@ REAL_PARTS = Race(
     {name: partial(part, name=name) for name in lines.PARTS},
     settings={"target": 1e-3},
     resumes=True,
+    needs=("CalculiX",),
     read=read,
 )

@@ -6,18 +6,12 @@ assembled by scikit-fem's own forms, for the check of the frequencies only.
 
 from __future__ import annotations
 
-import importlib.util
 import tempfile
 from dataclasses import replace
 from pathlib import Path
 
 from validation.race.heat import Clock
-from validation.race.process import called
-
-
-def present() -> str:
-    """Empty if sfepy can be run, else the reason why not."""
-    return "" if importlib.util.find_spec("sfepy") else "no package sfepy (pip install sfepy)"
+from validation.race.process import peer
 
 
 def straightened(body, scene):
@@ -86,7 +80,8 @@ def solve(body, scene, modes: int, *, limit: float = 600.0) -> dict:
     with tempfile.TemporaryDirectory(prefix="sfepy-") as name:
         path = Path(name) / "mesh.npz"
         np.savez(path, points=mesh.p[:, : mesh.t.max() + 1].T, cells=mesh.t.T)
-        done = called(
+        return peer(
+            "sfepy",
             "validation.race.sfepy_peer:solved",
             limit=limit,
             extra={"OPENBLAS_NUM_THREADS": "1"},
@@ -95,7 +90,6 @@ def solve(body, scene, modes: int, *, limit: float = 600.0) -> dict:
             shift=float(-1e-3 * body.scale),
             modes=modes,
         )
-    return done.answer | {"cpu": done.cpu}
 
 
 def solved(mesh: str, material: list[float], shift: float, modes: int) -> dict:

@@ -1,4 +1,5 @@
-"""A large 3D solid, and one by every way to factor it: memory, time and the digits shared.
+"""A large 3D solid, one by every way to factor it, and tetrahedra of ever more unknowns: memory, time
+and the digits shared.
 
 Every lane is a process of its own. Memory is the peak of the factor beyond what the process held
 before it (of all ranks together for PETSc, libraries included). Asked for: 300,000 unknowns within
@@ -31,6 +32,11 @@ WAYS = {
 #: m, tetrahedra away from shoulders and at them: of the ways, of the large one, of a quick run
 SIZES, LARGE, QUICK = (0.018, 0.0032), (0.0135, 0.0022), (0.04, 0.012)
 
+#: refinements of tetrahedra of some 44, 100, 200, 400 and 800 thousand unknowns
+REFINEMENTS = (0.9, 1.3, 1.75, 2.25, 2.9)
+#: stages that count
+SOLVED = ("factor", "statics", "modes")
+
 
 def solved(way: str, size: float, graded: float, modes: int) -> dict:
     """Solve the overhung pinion one way: stages, memory and numbers, as plain data."""
@@ -59,6 +65,51 @@ def solved(way: str, size: float, graded: float, modes: int) -> dict:
     return {"stages": clock.stages, "cpu": clock.sample().cpu, "answer": answer, "facts": facts}
 
 
+def scaled(refinement: float, modes: int) -> dict:
+    """Solve statics and modes of the overhung pinion on tetrahedra, and factor the same matrix again by
+    PARDISO alone: stages, seconds and bytes by the unknown, as plain data.
+    """
+    scene = sg.load(ROOT / "geometry" / "pinion_overhung.toml")
+    clock = Clock()
+    mesh = {"element": "tet10", "refinement": refinement}
+    body = clock.stage("mesh", lambda: sg.build(scene, "solid", **mesh))
+    # forget the peak of meshing
+    Path("/proc/self/clear_refs").write_text("5")
+    factor = clock.stage("factor", lambda: factors(body)[0])
+    port = clock.stage("statics", lambda: sg.condense(body, scene, scene.port.name))
+    found = clock.stage("modes", lambda: sg.modes(body, scene, n=modes))
+    answer = {
+        "C_zz": float(port.compliance[2, 2]),
+        "bending 1": found.named("bending 1").frequency_hz,
+    }
+    sample, peak = clock.sample(), _memory("VmHWM")
+    seconds = sample.seconds(SOLVED)
+    facts = {"unknowns": body.size, "backend": factor.label, "peak MB": peak}
+    facts |= {"us an unknown": 1e6 * seconds / body.size}
+    facts |= {"bytes an unknown": 2**20 * peak / body.size}
+    if factor.backend == "pardiso" and factor.refining is None:
+        pardiso = factor._solve.__self__
+        # its own report, kB: permanent memory of the analysis, and of factor and solution
+        reported = sum(map(int, pardiso.iparm[15:17])) / 1024
+        again = Clock()
+        again.stage("factor", pardiso.factor)
+        own = again.stages["factor"]
+        facts |= {"PARDISO's factor s": own, "PARDISO's MB": reported}
+        facts |= {"times its factor": seconds / own, "times its memory": peak / reported}
+    return {"stages": sample.stages, "cpu": sample.cpu, "answer": answer, "facts": facts}
+
+
+def by_sizes(heat: Heat) -> None:
+    """One lane a mesh, once."""
+    for refinement in REFINEMENTS[: 1 if heat.quick else None]:
+
+        def once(refinement: float = refinement) -> Sample:
+            call = partial(called, "validation.race.solids:scaled", limit=heat.limit)
+            return Sample(**call(refinement=refinement, modes=10).answer)
+
+        heat.add(f"TET10, refinement {refinement:g}", once, counted=SOLVED)
+
+
 def _memory(name: str) -> float:
     """A line of the status of this process, MB."""
     text = Path("/proc/self/status").read_text()
@@ -84,10 +135,11 @@ def by_ways(heat: Heat, ways: tuple[str, ...], sizes: tuple[float, float], modes
 
 
 SOLIDS = Race(
-    "a large 3D solid by every way to factor it, and one of 300,000 unknowns",
+    "a large 3D solid by every way to factor it, one of 300,000 unknowns, and ever larger ones",
     {
         "ways": partial(by_ways, ways=tuple(WAYS), sizes=SIZES, modes=6),
         "large": partial(by_ways, ways=("double",), sizes=LARGE, modes=10),
+        "sizes": by_sizes,
     },
     rounds=1,
     settings={"size": 0.0, "graded": 0.0},
