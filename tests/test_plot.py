@@ -9,8 +9,9 @@ from test_train_models import COARSE, OVERHUNG
 
 import solidgear as sg
 from solidgear.comparison.page.charts import CHARTS
-from solidgear.show.panel import Axis, Panel, read_places, readout
+from solidgear.show.panel import Panel, read_places, readout
 from solidgear.show.plot import NARROW, WIDE, Chart, page_svg
+from solidgear.show.scales import Axis
 from solidgear.show.units import SYSTEMS
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.page.chart import receptance_chart, response_chart
