@@ -100,6 +100,9 @@ def _data(value: Any) -> dict[str, Any]:
             "image/png": base64.b64encode(picture.getvalue()).decode(),
             "text/plain": ["<Figure>"],
         }
+    if hasattr(value, "_repr_png_"):
+        pixels = base64.b64encode(value._repr_png_()).decode()
+        return {"image/png": pixels, "text/plain": _lines(repr(value))}
     data: dict[str, Any] = {"text/plain": _lines(repr(value))}
     if hasattr(value, "_repr_html_"):
         data["text/html"] = _lines(value._repr_html_())

@@ -29,8 +29,35 @@ FINENESS = 1.5
 FORMATS = (".png", ".svg")
 
 
-@dataclass
-class Chart:
+class Picture:
+    """A drawing for a page, a notebook or a file."""
+
+    def svg(
+        self, kind: str = "", name: str = "part-", margin: float = 0.0, ground: str = ""
+    ) -> str:
+        """Return an SVG of a class of a page's style, within a margin (px) and on a ground, if any;
+        identifiers in it begin with a name.
+        """
+        raise NotImplementedError
+
+    def write(self, file: str | Path, *beside: Path) -> Path:
+        """Write a picture, drawn once for all its files, ``.png`` or ``.svg`` by their endings."""
+        files = [Path(file), *beside]
+        write_picture(self._alone(), files)
+        return files[0]
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__}>"
+
+    def _repr_png_(self) -> bytes:
+        return pixels(self._alone())
+
+    def _alone(self) -> str:
+        return self.svg("alone", margin=MARGIN, ground="#ffffff")
+
+
+@dataclass(repr=False)
+class Chart(Picture):
     """Panels beside and below one another.
 
     Parameters
@@ -60,9 +87,7 @@ class Chart:
     def svg(
         self, kind: str = "chart", name: str = "part-", margin: float = 0.0, ground: str = ""
     ) -> str:
-        """Return the chart as an SVG of a class of a page's style, within a margin (px) and on a
-        ground, if any; identifiers in it begin with a name.
-        """
+        """Return the chart as an SVG; see :meth:`Picture.svg`."""
         pen = Pen(name, LETTER)
         low = PADDING + margin
         for line in wrapped(self.title, self.width) if self.title else ():
@@ -96,12 +121,6 @@ class Chart:
         for row in rows:
             width = (self.width - BETWEEN * (len(row) - 1)) / len(row)
             yield [Paper(panel, beside, width - beside - panel.right) for panel in row]
-
-    def write(self, file: Path, *beside: Path) -> Path:
-        """Write a picture, drawn once for all its files, ``.png`` or ``.svg`` by their endings."""
-        svg = self.svg(margin=MARGIN, ground="#ffffff")
-        write_picture(svg, [file, *beside])
-        return file
 
 
 def in_columns(panels: Sequence[Panel], columns: int) -> list[list[Panel]]:

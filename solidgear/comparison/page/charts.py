@@ -17,7 +17,7 @@ from solidgear.show.mode_charts import mac_panel
 from solidgear.show.panel import GREY, SHAPES, Panel, Series, readout, tolerance_line, wrapped
 from solidgear.show.plot import NARROW, WIDE, Chart, in_columns, page_svg
 from solidgear.show.scales import Axis, in_percent
-from solidgear.show.sketch_page import sketch_svg
+from solidgear.show.sketch import sketch_svg
 from solidgear.show.where_chart import where_chart
 from solidgear.show.words import grouped, hertz, percent, seconds, small
 from solidgear.variants.budget.chart import of_record as budget_chart

@@ -41,8 +41,7 @@ from solidgear.show.plot import BETWEEN, NARROW, WIDE, Chart, in_columns
 from solidgear.show.run_tables import pairs_of
 from solidgear.show.scales import Axis
 from solidgear.show.sheet import Section, Sheet
-from solidgear.show.sketch import extent
-from solidgear.show.sketch_page import sketch_svg
+from solidgear.show.sketch import extent, sketch_svg
 from solidgear.show.table import Cell, Column, Table, text, word
 from solidgear.show.units import ENGINEERING, Units
 from solidgear.show.words import hertz, is_number, percent
