@@ -172,7 +172,7 @@ class Paper:
         if panel.y.shown:
             lines = [(left, top + t.place, -TICKED, 0.0) for t in self.upright]
             pen.put(_strokes([(left, top, 0.0, panel.height), *lines], TICK))
-            how: dict[str, Any] = {"align": "right", "fill": WORDS}
+            how: dict[str, Any] = {"align": "right", "baseline": "middle", "fill": WORDS}
             texts = [pen.words(left - ASIDE, top + t.place, t.words, **how) for t in self.upright]
             pen.put(_group(texts))
             title = wrapped(panel.y.title, panel.height) if panel.y.title else []
@@ -185,7 +185,7 @@ class Paper:
 
     def _below(self, pen: Pen, x: float, low: float, words: str) -> str:
         if self.panel.turned:
-            look: dict[str, Any] = {"align": "right", "turn": SLANT}
+            look: dict[str, Any] = {"align": "right", "baseline": "middle", "turn": SLANT}
             return pen.words(x, low + ASIDE, words, **look, fill=WORDS)
         return pen.words(x, low + ASIDE, words, align="center", baseline="top", fill=WORDS)
 
