@@ -193,9 +193,13 @@ def family_mb() -> float | None:
 
 
 def _resident(process: str) -> float:
+    folder = Path("/proc") / process
     try:
-        pages = int(Path(f"/proc/{process}/statm").read_text().split()[1])
+        pages = int((folder / "statm").read_text().split()[1])
+        called = (folder / "cmdline").read_bytes()
     except OSError:  # it has ended
+        return 0.0
+    if called == Path("/proc/self/cmdline").read_bytes():  # it has just split off, and shares all
         return 0.0
     return pages * mmap.PAGESIZE / 2**20
 
