@@ -9,7 +9,7 @@ import time
 from collections.abc import Callable, Collection
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, overload
+from typing import TYPE_CHECKING, ClassVar, overload
 
 from solidgear.comparison.page.write import write_all
 from solidgear.comparison.recording import Findings, recorded
@@ -96,8 +96,14 @@ class Comparison(Displayed):
             If the folder cannot be written, or units are unknown.
         """
         self.record.shown_in = units_named(units).name
-        how: dict[str, Any] = {"renders": renders, "began": self.began, "progress": progress}
-        return write_all(self.record, self.solutions, out, **how)
+        return write_all(
+            self.record,
+            self.solutions,
+            out,
+            renders=renders,
+            began=self.began,
+            progress=progress,
+        )
 
 
 @overload

@@ -57,9 +57,16 @@ class Board:
         drawn = path([self.place(a, b) for a, b in zip(x, heights)])
         dashed = ",".join(short(width * dash) for dash in dashes) or None
         cap = None if flat or dashes else "square"
-        looks: dict[str, Any] = {"stroke": colour, "stroke_width": width, "stroke_linecap": cap}
-        looks["stroke_dasharray"] = dashed
-        self.pen.put(element("path", d=drawn, **looks, opacity=opacity), order)
+        line = element(
+            "path",
+            d=drawn,
+            stroke=colour,
+            stroke_width=width,
+            stroke_linecap=cap,
+            stroke_dasharray=dashed,
+            opacity=opacity,
+        )
+        self.pen.put(line, order)
 
     def surface(
         self,
@@ -72,8 +79,11 @@ class Board:
     ) -> None:
         """Draw a surface between places, with an edge in its colour."""
         drawn = path([self.place(a, b) for a, b in zip(x, heights)], closed=True)
-        around: dict[str, Any] = {"stroke": fill if edge else None, "stroke_width": edge}
-        self.pen.put(element("path", d=drawn, fill=fill, **around, opacity=opacity), order)
+        stroke = fill if edge else None
+        surface = element(
+            "path", d=drawn, fill=fill, stroke=stroke, stroke_width=edge, opacity=opacity
+        )
+        self.pen.put(surface, order)
 
     def hatch(self, x: Sequence[float], heights: Sequence[float], order: float) -> None:
         """Draw hatching between places."""
@@ -85,16 +95,19 @@ class Board:
         # along each of them the sum of both coordinates is the same
         ends = [(PITCH * k - max(down), PITCH * k - min(down)) for k in range(first, last + 1)]
         lines = "".join(path([(a, max(down)), (b, min(down))]) for a, b in ends)
-        looks: dict[str, Any] = {"stroke": HATCH, "stroke_width": FINE, "clip_path": inside}
-        self.pen.put(element("path", d=lines, **looks), order)
+        hatching = element("path", d=lines, stroke=HATCH, stroke_width=FINE, clip_path=inside)
+        self.pen.put(hatching, order)
 
     def dot(
         self, x: float, height: float, size: float, fill: str, order: float, edge: str | None = None
     ) -> None:
         """Draw a disc of a diameter in points."""
         across, down = self.place(x, height)
-        around: dict[str, Any] = {"stroke": edge, "stroke_width": 1.6 if edge else None}
-        self.pen.put(element("circle", cx=across, cy=down, r=size / 2, fill=fill, **around), order)
+        width = 1.6 if edge else None
+        disc = element(
+            "circle", cx=across, cy=down, r=size / 2, fill=fill, stroke=edge, stroke_width=width
+        )
+        self.pen.put(disc, order)
 
     def words(
         self,
