@@ -61,10 +61,7 @@ class Canvas:
     def _fill(self, corners: np.ndarray, values: np.ndarray, shade) -> None:
         # what is near comes first: of what is behind it, only the depth is found
         order = np.argsort(-corners[:, :, 2].sum(axis=1))
-        for part in np.split(order, range(CORNERS // 3, len(order), CORNERS // 3)):
-            self._fill_some(corners[part].astype(np.float64), values[part], shade)
-
-    def _fill_some(self, corners: np.ndarray, values: np.ndarray, shade) -> None:
+        corners, values = corners[order].astype(np.float64), values[order]
         spans = _spans(corners, self.width, self.height)
         slope, start = _planes(corners, np.concatenate([corners[:, :, 2:], values], axis=2), spans)
         ends = np.cumsum(spans.samples)
