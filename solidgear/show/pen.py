@@ -150,7 +150,7 @@ class Pen:
         width = right - left
         definitions = element("defs", "".join(self._definitions)) if self._definitions else ""
         box = f"{short(left)} 0 {short(width)} {short(height)}"
-        paper: dict[str, Any] = {"x": left, "y": 0.0, "width": width, "height": height}
+        paper = {"x": left, "y": 0.0, "width": width, "height": height}
         behind = element("rect", **paper, fill=ground) if ground else ""
         return element(
             "svg",

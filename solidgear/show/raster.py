@@ -14,8 +14,6 @@ import numpy as np
 FINE = 2
 #: samples that are looked at together
 BATCH = 250_000
-#: corners of triangles that are looked at together
-CORNERS = 50_000
 #: nearer than any surface, samples
 TOP = 1e9
 
@@ -217,19 +215,19 @@ class Facets(NamedTuple):
         """Return normals (m, 3, 3) at corners of triangles: the mean of the faces around that differ
         from the own face by less than an angle.
         """
-        corner, face = self.triangles.ravel(), np.repeat(self.owner, 3)
+        corner = self.triangles.ravel()
+        face = np.repeat(self.owner, 3)
         order = np.argsort(corner, kind="stable")
         first = np.searchsorted(corner[order], corner)
         count = np.searchsorted(corner[order], corner, side="right") - first
-        least, sums = np.cos(np.deg2rad(degrees)), np.empty((len(corner), 3))
-        for part in np.split(np.arange(len(corner)), range(CORNERS, len(corner), CORNERS)):
-            which = np.repeat(np.arange(len(part)), count[part])
-            place = np.repeat(first[part], count[part]) + _steps(count[part])
-            others, own = self.normal[face[order[place]]], self.normal[face[part]][which]
-            near = (others * own).sum(axis=1) > least
-            for k in range(3):
-                sums[part, k] = np.bincount(which[near], others[near, k], len(part))
-        return _unit(sums).reshape(-1, 3, 3)
+        which, place = (
+            np.repeat(np.arange(len(corner)), count),
+            np.repeat(first, count) + _steps(count),
+        )
+        others, own = self.normal[face[order[place]]], self.normal[face[which]]
+        near = (others * own).sum(axis=1) > np.cos(np.deg2rad(degrees))
+        sums = [np.bincount(which[near], others[near, k], len(corner)) for k in range(3)]
+        return _unit(np.column_stack(sums)).reshape(-1, 3, 3)
 
 
 def facets(points: np.ndarray, quads: np.ndarray, triangles: np.ndarray) -> Facets:
