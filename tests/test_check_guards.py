@@ -612,7 +612,7 @@ def test_no_renderer_is_told(monkeypatch):
     probe = Probe(OVERHUNG, sg.build(OVERHUNG, "timoshenko"))
     assert not list(elements.renderer(probe))
     monkeypatch.setattr(elements, "find_spec", lambda name: None)
-    assert "Pillow" in next(elements.renderer(probe)).sentence
+    assert "pyvista" in next(elements.renderer(probe)).sentence
 
 
 @pytest.fixture(scope="module")

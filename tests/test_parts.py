@@ -195,7 +195,7 @@ def written(body, path, digits=9):
     """The mesh of a body in a file, in mm."""
     volume = body.geometry.volume()
     element = ELEMENTS[body.geometry.name]
-    order = node_order(volume.local, element.cell)
+    order = node_order(volume.local, element.vtk)
     points = np.round(1e3 * volume.nodes.T, digits) + 0.0
     form = {".msh": {"file_format": "gmsh", "binary": False}}.get(path.suffix, {})
     meshio.write(path, meshio.Mesh(points, [(element.cell, volume.cells[order].T)]), **form)

@@ -12,7 +12,6 @@ import meshio
 import numpy as np
 import pytest
 import pyvista as pv
-from PIL import Image
 from scipy.spatial import cKDTree
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefHex, RefTet
@@ -26,7 +25,7 @@ from solidgear.core.solve.modes import Mode
 from solidgear.show import render
 from solidgear.show.folder import OWN, clear
 from solidgear.show.outputs import OUTPUTS, Output, write_vtu
-from solidgear.show.render import Drawing, RenderJob, render_modes
+from solidgear.show.render import PACKAGES, Drawing, RenderJob, render_modes
 
 ROOT = Path(__file__).parents[1]
 SOLID = {"refinement": 0.5}
@@ -142,6 +141,9 @@ def drawing(drawable, folder):
 
 @pytest.mark.long
 def test_pictures(drawable, tmp_path):
+    from matplotlib.image import imread
+    from PIL import Image
+
     jobs = drawing(drawable, tmp_path)
     still = jobs[0].surface
     dead = RenderJob(
@@ -150,14 +152,16 @@ def test_pictures(drawable, tmp_path):
         tmp_path / "still.png",
     )
     *results, refused = render_modes([*jobs, dead])
+    if any("OpenGL" in r.reason for r in results):
+        pytest.skip(results[0].reason)
     for result in results:
         assert result.ok, result.reason
+        picture = (imread(result.path)[:, :, :3] * 255).round().astype(int)
+        assert picture.shape == (700, 1200, 3)
+        colours = np.unique(picture.reshape(-1, 3) @ [65536, 256, 1])
         # a palette of its own: half the bytes of 24 bits, and as many colours as that holds
         with Image.open(result.path) as kept:
             assert kept.mode == "P"
-            picture = np.asarray(kept.convert("RGB")).astype(int)
-        assert picture.shape == (700, 1200, 3)
-        colours = np.unique(picture.reshape(-1, 3) @ [65536, 256, 1])
         assert 200 < len(colours) <= 256
         covered = (picture < 250).any(axis=2)
         assert 0.2 < covered.mean() < 0.7
@@ -174,7 +178,7 @@ def test_without_a_renderer_there_is_a_sentence_and_no_file(drawable, tmp_path, 
     assert len(results) == 2
     for r in results:
         assert not r.ok
-        assert "SOLIDGEAR_RENDERER=none" in r.reason and "\n" not in r.reason
+        assert PACKAGES in r.reason and "\n" not in r.reason
     assert not list(tmp_path.iterdir())
 
 
@@ -193,7 +197,7 @@ def test_a_child_that_dies_or_hangs_is_survived(drawable, tmp_path, monkeypatch,
     out = tmp_path / "out"
     results = render_modes(drawing(drawable, out), timeout=timeout)
     assert [r.ok for r in results] == [False, False]
-    assert all("the drawing process" in r.reason for r in results)
+    assert all(PACKAGES in r.reason for r in results)
     assert ("signal 11" in results[0].reason) == ("SIGSEGV" in death)
     assert not out.exists()
 
@@ -235,8 +239,6 @@ def test_the_child_starts_without_the_rest_of_the_package():
         "solidgear.rooms",
         "solidgear.show",
         "solidgear.show.drawing",
-        "solidgear.show.raster",
-        "solidgear.show.scales",
     }
 
 

@@ -4,7 +4,6 @@ import json
 
 import numpy as np
 import pytest
-from PIL import Image
 from test_train_models import COARSE, OVERHUNG
 
 import solidgear as sg
@@ -99,12 +98,15 @@ def test_a_model_without_a_shape_says_so(assembly, tmp_path):
 
 @pytest.mark.long
 def test_modes_are_drawn_with_four_phases(assembly, tmp_path):
+    from matplotlib.image import imread
+
     done = draw_modes(assembly, "timoshenko", "timoshenko", folder=tmp_path, numbers=[4])
     ((told, one),) = done.items()
+    if "OpenGL" in one.reason:
+        pytest.skip(one.reason)
     assert one.ok and told.startswith("gear bending 1, ")
     assert one.path.name == "system_mode_04.png"
-    with Image.open(one.path) as kept:
-        picture = np.asarray(kept.convert("RGB")) / 255
+    picture = imread(one.path)[:, :, :3]
     # four frames side by side, each with a shape in it, the first and the last moved apart
     frames = np.array_split(picture[150:600], 4, axis=1)
     assert all((frame < 0.98).any(axis=2).mean() > 0.1 for frame in frames)
@@ -116,7 +118,7 @@ def test_without_a_renderer_there_is_a_sentence(tmp_path, monkeypatch):
     monkeypatch.setenv("SOLIDGEAR_RENDERER", "none")
     args = ["system-modes", str(OVERHUNG), "--pinion", "euler", "--gear", "euler"]
     done = command(*args, "--pictures", str(tmp_path), "--mode", "3")
-    assert done.exit_code == 0 and "SOLIDGEAR_RENDERER=none" in done.output
+    assert done.exit_code == 0 and "install OpenGL by" in done.output
     assert not list(tmp_path.iterdir())
 
 

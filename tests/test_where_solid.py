@@ -285,6 +285,8 @@ def test_the_surface_is_drawn_in_the_colours_of_its_cells(tmp_path):
     assert len(job.shades) == len(surface.faces) and set(job.shades.tolist()) == {0.0, 1.0}
     assert y[job.shades > 0].min() > 0.11 and y[job.shades == 0].max() < 0.13
     (result,) = render_modes([job])
+    if "OpenGL" in result.reason:
+        pytest.skip(result.reason)
     assert result.ok and job.path.stat().st_size < 100_000
     with Image.open(job.path) as kept:
         red, green, _ = np.asarray(kept.convert("RGB")).astype(int).transpose(2, 0, 1)

@@ -22,15 +22,16 @@ class Element(NamedTuple):
     #: and mass of affine elements, and one order in reserve for curved ones
     degree: int
     basis: str  #: its class in ``skfem.element``
-    cell: str  #: its kind of cell in files, by the names of meshio
+    cell: str  #: its kind of cell in meshio
+    vtk: str  #: its class of cell in VTK, which knows the order of nodes
 
 
 ELEMENTS = {
-    "hex20": Element(2, 7, "ElementHexS2", "hexahedron20"),
-    "hex27": Element(2, 7, "ElementHex2", "hexahedron27"),
-    "hex8": Element(1, 5, "ElementHex1", "hexahedron"),
-    "tet10": Element(2, 7, "ElementTetP2", "tetra10"),
-    "tet4": Element(1, 2, "ElementTetP1", "tetra"),
+    "hex20": Element(2, 7, "ElementHexS2", "hexahedron20", "vtkQuadraticHexahedron"),
+    "hex27": Element(2, 7, "ElementHex2", "hexahedron27", "vtkTriQuadraticHexahedron"),
+    "hex8": Element(1, 5, "ElementHex1", "hexahedron", "vtkHexahedron"),
+    "tet10": Element(2, 7, "ElementTetP2", "tetra10", "vtkQuadraticTetra"),
+    "tet4": Element(1, 2, "ElementTetP1", "tetra", "vtkTetra"),
 }
 #: elements of first order that a mesh file may have, by those that they are solved with
 SOLVED_AS = {"tet4": "tet10", "hex8": "hex20"}

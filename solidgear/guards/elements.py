@@ -261,9 +261,9 @@ def memory(probe: Probe) -> Notices:
 
 def renderer(probe: Probe) -> Notices:
     """Yield a notice where no pictures can be drawn."""
-    if find_spec("PIL") is None:
+    if find_spec("pyvista") is None:
         yield Notice(
             "fact",
             everything(),
-            "Pillow is not installed: no pictures of modes will be drawn",
+            "pyvista is not installed: no pictures of modes will be drawn",
         )

@@ -11,15 +11,9 @@ from __future__ import annotations
 import json
 import os
 import sys
-from functools import cache
-from importlib.util import find_spec
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
-
-from solidgear.show.raster import FINE, Aim, Canvas, facets, rgb
-from solidgear.show.scales import HEAT, VIRIDIS
 
 SIZE = (1200, 700)
 #: height of a title over several frames
@@ -42,16 +36,25 @@ def _main(room: Path) -> int:
     if os.environ.get("SOLIDGEAR_RENDERER") == "none":
         print("SOLIDGEAR_RENDERER=none", file=sys.stderr)
         return 3
+    import pyvista as pv
+
+    pv.OFF_SCREEN = True
+    # Drawing nothing is what fails where there is no OpenGL.
+    probe = pv.Plotter(off_screen=True, window_size=[16, 16])
+    probe.show(auto_close=False)
+    probe.close()
     jobs = json.loads((room / "jobs.json").read_text(encoding="utf-8"))
     with np.load(room / "surfaces.npz") as store:
         for i, job in enumerate(jobs):
             target, partial = room / f"{i}.png", room / f"{i}.part.png"
+            if target.exists():
+                continue  # by an earlier child
             try:
                 arrays = [store[f"{i}.{name}"] for name in ARRAYS]
                 if f"{i}.shades" in store:
-                    _draw_shaded(job, partial, store[f"{i}.shades"], *arrays)
+                    _draw_shaded(pv, job, partial, store[f"{i}.shades"], *arrays)
                 else:
-                    _draw(job, partial, *arrays)
+                    _draw(pv, job, partial, *arrays)
                 os.replace(partial, target)
             except Exception as error:  # a bad picture must not cost the others
                 (room / f"{i}.txt").write_text(
@@ -60,7 +63,9 @@ def _main(room: Path) -> int:
     return 0
 
 
-def _draw(job, path, points, displacement, faces, triangles, lines):
+def _draw(pv, job, path, points, displacement, faces, triangles, lines):
+    from PIL import Image  # pyvista brings it along
+
     size = np.linalg.norm(displacement, axis=1)
     if not np.isfinite(size).all() or not size.max() > 0:
         raise ValueError("the displacement is zero or not finite")
@@ -68,96 +73,78 @@ def _draw(job, path, points, displacement, faces, triangles, lines):
     displacement = displacement * (SWING * length / size.max())
     view = _view(displacement) if job["along"] else FROM_ABOVE
     displacement = displacement * _sign(points, displacement, view[0])
+    cells = _cells(faces, triangles)
+    undeformed = pv.PolyData(points, cells)
     frames = job["frames"]
     extremes = np.vstack([points, *(points + factor * displacement for factor, _ in frames)])
     down, across = _layout(len(frames), extremes, view)
-    tile = SIZE[0] // across, SIZE[1] // down
+    tile = [SIZE[0] // across, SIZE[1] // down]
     # one title over several frames, which have no room for it
-    several = len(frames) > 1
-    head = HEADING if several else 0
-    picture = np.full((head + SIZE[1], SIZE[0], 3), 255, np.uint8)
-    still = facets(points, faces, triangles)
-    for k, (factor, _) in enumerate(frames):
-        canvas = Canvas(*tile, _aim(extremes, tile, *view[1:]))
-        shape = Shape(points, points + factor * displacement, abs(factor) * size / size.max())
-        _draw_frame(
-            canvas, shape, still, facets(shape.moved, faces, triangles), lines, length, view
-        )
+    head = _heading(pv, job["title"]) if len(frames) > 1 else np.empty((0, SIZE[0], 3), np.uint8)
+    picture = np.full((SIZE[1], SIZE[0], 3), 255, np.uint8)
+    # A window a frame: smoothing of edges leaves all but one part of a divided window black.
+    for k, (factor, caption) in enumerate(frames):
+        p = pv.Plotter(off_screen=True, window_size=tile, lighting="none")
+        p.set_background("white")
+        p.enable_anti_aliasing("ssaa")
+        deformed = pv.PolyData(points + factor * displacement, cells)
+        deformed["size"] = abs(factor) * size / size.max()
+        body = _frame(pv, p, undeformed, deformed, lines, length, view, job["along"])
+        _words(p, "" if len(head) else job["title"], caption)
         if k == 0:
-            _draw_axes(canvas, view)
-        top, left = head + k // across * tile[1], k % across * tile[0]
-        picture[top : top + tile[1], left : left + tile[0]] = canvas.pixels()
-    page = Page(picture)
-    if several:
-        page.words(job["title"], SIZE[0] / 2, 0.5 * HEADING, 26)
-    for k, (_, caption) in enumerate(frames):
-        left, top = k % across * tile[0], head + k // across * tile[1]
-        middle = left + tile[0] / 2
-        if not several:
-            page.words(job["title"], middle, top + 0.055 * tile[1], 30)
-        if caption:
-            page.words(caption, middle, top + 0.115 * tile[1], 20)
-        if k == 0:
-            page.name_axes(left, top, tile, view)
+            _axes(p)
         if k == len(frames) - 1:
-            page.scale((left, top, *tile), "displacement / max", viridis(), several)
-    page.save(path)
+            _bar(p, body, len(frames))
+        _aim(p, points, extremes, tile[1] / tile[0], *view[1:])
+        drawn = p.screenshot(return_img=True)
+        p.close()
+        top, x = k // across * tile[1], k % across * tile[0]
+        picture[top : top + tile[1], x : x + tile[0]] = drawn[..., :3]
+    _in_few_colours(Image.fromarray(np.concatenate([head, picture]))).save(path, optimize=True)
 
 
-class Shape(NamedTuple):
-    """Points at rest and as moved, and how much of the largest displacement each has."""
-
-    points: np.ndarray
-    moved: np.ndarray
-    size: np.ndarray
-
-
-def _draw_frame(canvas, shape, still, moved, lines, length, view) -> None:
-    """Draw one deformed shape over the shape at rest."""
-    back, colours = view[3], viridis()
-    normals = moved.smooth(35)
-    # both sides of a surface are lit
-    facing = np.where(moved.normal[moved.owner] @ back < 0, -1.0, 1.0)[:, None, None]
-    light = 0.7 * _light(facing * normals, view) + (0.5 if view is not FROM_ABOVE else 0.3)
-    values = np.stack([shape.size[moved.triangles], light], axis=2)
-
-    def shade(value):
-        index = (value[:, 0] * (len(colours) - 1)).clip(0, len(colours) - 1).astype(int)
-        return colours[index] * value[:, 1:]
-
-    canvas.fill(shape.moved, moved.triangles, values, shade)
-    # lines on a surface are brought a hair nearer, or they would sink into it here and there
-    nearer = 0.004 * length
-    canvas.lines(shape.moved, lines, "#000000", 0.6, 0.25, nearer)
-    canvas.lines(shape.moved, moved.creases(30), "#202020", 1.2, nearer=nearer)
-    canvas.lines(shape.points, still.creases(30), OUTLINE, 1.2, nearer=nearer)
-    canvas.lines(shape.points, still.horizon(back), OUTLINE, 1.3)
-
-
-def _draw_shaded(job, path, shades, points, _, faces, triangles, lines):
+def _draw_shaded(pv, job, path, shades, points, _, faces, triangles, lines):
     """Draw a surface at rest, its faces in the colours of shades, seen from the side of the largest."""
+    from PIL import Image
+
     if not np.isfinite(shades).all() or not shades.max() > 0:
         raise ValueError("the shades are zero or not finite")
+    surface = pv.PolyData(points, _cells(faces, triangles))
+    surface.cell_data["shade"] = np.clip(shades / shades.max(), FAINT, 1.0)
     view = _facing(points, faces if len(faces) else triangles, shades)
     length = np.ptp(points, axis=0).max()
-    surface = facets(points, faces, triangles)
-    canvas = Canvas(*SHADED, _aim(points, SHADED, *view[1:]))
-    facing = np.where(surface.normal @ view[3] < 0, -1.0, 1.0)[:, None]
-    light = 0.5 * _light(facing * surface.normal, view) + 0.6
-    share = np.log(np.clip(shades / shades.max(), FAINT, 1.0) / FAINT) / np.log(1 / FAINT)
-    colours = _between(HEAT)
-    colour = colours[(share * (len(colours) - 1)).astype(int)] * light[:, None]
-    values = np.repeat(colour[surface.owner, None], 3, axis=1)
-    canvas.fill(points, surface.triangles, values, lambda value: value)
-    canvas.lines(points, lines, "#000000", 0.6, 0.25, 0.004 * length)
-    canvas.lines(points, surface.horizon(view[3]), OUTLINE, 1.3)
-    _draw_axes(canvas, view)
-    page = Page(canvas.pixels())
-    page.words(job["title"], SHADED[0] / 2, 0.05 * SHADED[1], 26)
-    page.name_axes(0, 0, SHADED, view)
-    page.scale((0, 0, *SHADED), job["shade"], colours, False, ("0.001", "0.01", "0.1", "1"))
+    p = pv.Plotter(off_screen=True, window_size=list(SHADED), lighting="none")
+    p.set_background("white")
+    p.enable_anti_aliasing("ssaa")
+    _lamps(pv, p, length, view)
+    body = p.add_mesh(
+        surface,
+        scalars="shade",
+        cmap="YlOrRd",
+        log_scale=True,
+        clim=(FAINT, 1.0),
+        show_scalar_bar=False,
+        ambient=0.6,
+        diffuse=0.5,
+        specular=0.0,
+    )
+    nearer = 0.004 * length * view[3]
+    p.add_mesh(
+        _wires(pv, points + nearer, lines),
+        color="black",
+        line_width=1.0,
+        opacity=0.25,
+        lighting=False,
+    )
+    p.add_silhouette(surface, color=OUTLINE, line_width=3.5, feature_angle=None)
+    _words(p, job["title"], "")
+    _axes(p)
+    _bar(p, body, 1, job["shade"], 4, "%.3g")
+    _aim(p, points, points, SHADED[1] / SHADED[0], *view[1:])
+    drawn = p.screenshot(return_img=True)
+    p.close()
     # flat faces have few colours, and dots between them would take twice the bytes
-    page.save(path, dots=False)
+    _in_few_colours(Image.fromarray(drawn[..., :3]), dots=False).save(path, optimize=True)
 
 
 def _facing(points, faces, shades):
@@ -173,17 +160,17 @@ def _facing(points, faces, shades):
     return max(views, key=lambda view: shades @ np.maximum(areas @ view[3], 0.0))
 
 
-def _light(normals, view) -> np.ndarray:
-    """Return how bright normals (..., 3) are: by a lamp over the left shoulder of the viewer and a
-    weak one on the other side.
-    """
-    _, right, upward, back = view
-    lamps = (
-        (0.7 * upward - 0.5 * right + back, 0.75),
-        (-0.5 * upward + 0.6 * right + 0.8 * back, 0.35),
-    )
-    parts = (share * (normals @ (way / np.linalg.norm(way))).clip(0) for way, share in lamps)
-    return sum(parts)
+def _cells(faces, triangles) -> np.ndarray:
+    """Return faces as VTK lists them."""
+    return np.concatenate([np.insert(f, 0, f.shape[1], axis=1).ravel() for f in (faces, triangles)])
+
+
+def _in_few_colours(picture, dots=True):
+    """Return the picture with a palette, dithered with `dots`, in half the bytes."""
+    # every fourth pixel of every fourth row has all colours, and takes a tenth of the time
+    sample = picture.resize((picture.width // 4, picture.height // 4), resample=0)
+    palette = sample.quantize(kmeans=1) if dots else sample.quantize(method=1)
+    return picture.quantize(palette=palette, dither=3 if dots else 0)
 
 
 def _layout(count: int, points, view) -> tuple[int, int]:
@@ -199,98 +186,144 @@ def _layout(count: int, points, view) -> tuple[int, int]:
     return -(-count // across), across
 
 
-#: axes, with the colours of their arrows
-AXES = {"x": "#ff7f50", "y": "#3cb371", "z": "#0000ff"}
+def _frame(pv, p, undeformed, deformed, lines, length, view, along):
+    """Draw one deformed shape over the shape at rest; return the actor with the colours."""
+    _lamps(pv, p, length, view)
+    back = view[3]
+    look = {
+        "smooth_shading": True,
+        "split_sharp_edges": True,
+        "feature_angle": 35,
+        # from above more of a surface faces the lamps
+        "ambient": 0.5 if along else 0.3,
+        "diffuse": 0.7,
+        "specular": 0.05,
+    }
+    body = p.add_mesh(
+        deformed, scalars="size", cmap=colours(), clim=(0, 1), show_scalar_bar=False, **look
+    )
+    # Lines on a surface are brought a hair nearer, or they would sink into it here and there.
+    nearer = 0.004 * length * back
+    p.add_mesh(
+        _wires(pv, deformed.points + nearer, lines),
+        color="black",
+        line_width=2.0,
+        opacity=0.2,
+        lighting=False,
+    )
+    edges = {
+        "feature_angle": 30,
+        "boundary_edges": False,
+        "non_manifold_edges": False,
+        "manifold_edges": False,
+    }
+    p.add_mesh(
+        deformed.extract_feature_edges(**edges).translate(nearer),
+        color="#202020",
+        line_width=3.0,
+        lighting=False,
+    )
+    p.add_mesh(
+        undeformed.extract_feature_edges(**edges).translate(nearer),
+        color=OUTLINE,
+        line_width=3.0,
+        lighting=False,
+    )
+    p.add_silhouette(undeformed, color=OUTLINE, line_width=3.5, feature_angle=None)
+    return body
 
 
-def _arrows(size, view) -> tuple[tuple[float, float], dict[str, np.ndarray]]:
-    """Return where the arrows of the axes begin in a frame, and the ways (2,) they go, px."""
-    _, right, upward, _ = view
-    long = min(0.09 * size[1], 0.12 * size[0])
-    ways = {name: long * np.array([right[k], -upward[k]]) for k, name in enumerate(AXES)}
-    return (max(0.1 * size[0], long + 24), 0.83 * size[1]), ways
-
-
-def _draw_axes(canvas, view) -> None:
-    start, ways = _arrows((canvas.width // FINE, canvas.height // FINE), view)
-    for name, way in ways.items():
-        canvas.arrow(start, way, AXES[name], 3.0)
-
-
-class Page:
-    """A picture (height, width, 3) and the words on it."""
-
-    def __init__(self, pixels: np.ndarray):
-        from PIL import Image, ImageDraw
-
-        self.image = Image.fromarray(pixels)
-        self.draw = ImageDraw.Draw(self.image)
-
-    def words(self, text: str, x: float, y: float, size: float, anchor: str = "mm") -> None:
-        """Write words at a place, px, in letters of a size."""
-        self.draw.text((x, y), text, fill="#000000", font=_font(round(size)), anchor=anchor)
-
-    def name_axes(self, left: float, top: float, size, view) -> None:
-        """Write the names of the axes beyond their arrows."""
-        start, ways = _arrows(size, view)
-        for name, way in ways.items():
-            x, y = start + way * (1 + 13 / max(np.hypot(*way), 13.0))
-            self.words(name, left + x, top + y, 21)
-
-    def scale(self, frame, what: str, colours, several: bool, ticks=()) -> None:
-        """Draw the scale of colours at the foot of a frame (left, top, width, height)."""
-        from PIL import Image
-
-        left, top, width, height = frame
-        share = 0.7 if several else 0.36
-        ticks = ticks or (
-            ("0.0", "0.5", "1.0") if several else ("0.0", "0.2", "0.4", "0.6", "0.8", "1.0")
+def _lamps(pv, p, length, view) -> None:
+    """Put a lamp over the left shoulder of the viewer and a weak one on the other side."""
+    _, right, upward, back = view
+    for offset, strength in (
+        (0.7 * upward - 0.5 * right + back, 0.75),
+        (-0.5 * upward + 0.6 * right + 0.8 * back, 0.35),
+    ):
+        p.add_light(
+            pv.Light(
+                position=10 * length * offset,
+                focal_point=(0, 0, 0),
+                light_type="scene light",
+                intensity=strength,
+            )
         )
-        wide, high = round(share * width), max(round(0.026 * height), 8)
-        x, y = round(left + (width - share * width) / 2), round(top + 0.98 * height) - high
-        places = np.linspace(0, len(colours) - 1, wide).astype(int)
-        bar = np.rint(255 * colours[places]).astype(np.uint8)
-        self.image.paste(Image.fromarray(np.repeat(bar[None], high, axis=0)), (x, y))
-        letter = 18 if several else 21
-        for k, tick in enumerate(ticks):
-            self.words(tick, x + wide * k / (len(ticks) - 1), y - 0.65 * letter, letter)
-        self.words(what, left + width / 2, y - 1.85 * letter, letter)
-
-    def save(self, path, dots: bool = True) -> None:
-        """Write the picture with a palette, dithered with `dots`, in half the bytes."""
-        from PIL import Image
-
-        picture = self.image
-        # every fourth pixel of every fourth row has all colours, and takes a tenth of the time
-        sample = picture.resize((picture.width // 4, picture.height // 4), resample=0)
-        palette = sample.quantize(kmeans=1) if dots else sample.quantize(method=1)
-        dither = Image.Dither.FLOYDSTEINBERG if dots else Image.Dither.NONE
-        picture.quantize(palette=palette, dither=dither).save(path, optimize=True)
 
 
-@cache
-def _font(size: int):
-    """Return letters that matplotlib brings, the same on every machine; else those of Pillow."""
-    from PIL import ImageFont
-
-    spec = find_spec("matplotlib")
-    for folder in (spec and spec.submodule_search_locations) or ():
-        return ImageFont.truetype(f"{folder}/mpl-data/fonts/ttf/DejaVuSans.ttf", size)
-    return ImageFont.load_default(size)
-
-
-def _between(colours, count: int = 256, first: float = 0.0) -> np.ndarray:
-    """Return colours (count, 3) between given ones, 0 to 1, from a share of the way on."""
-    ends = np.array([rgb(colour) for colour in colours])
-    places = np.linspace(first, 1.0, count) * (len(ends) - 1)
-    return np.column_stack([np.interp(places, np.arange(len(ends)), part) for part in ends.T])
+def _heading(pv, title: str) -> np.ndarray:
+    """Return pixels (height, width, 3) of a title over several frames."""
+    p = pv.Plotter(off_screen=True, window_size=[SIZE[0], HEADING], lighting="none")
+    p.set_background("white")
+    _text(p, title, 0.3, 13)
+    drawn = p.screenshot(return_img=True)
+    p.close()
+    return drawn[..., :3]
 
 
-def viridis(count: int = 256) -> np.ndarray:
-    """Return colours (count, 3) of viridis without its darkest part, on which neither shading nor
-    lines can be seen.
-    """
-    return _between(VIRIDIS, count, first=0.14)
+def _words(p, title: str, caption: str) -> None:
+    """Draw title and caption of a frame, the caption smaller where it stands alone."""
+    for words, height, font in ((title, 0.92, 15), (caption, 0.86, 11 if title else 9)):
+        if words:
+            _text(p, words, height, font)
+
+
+def _text(p, words: str, height: float, font: int) -> None:
+    text = p.add_text(
+        words, position=(0.5, height), viewport=True, font_size=font, color="black", font="arial"
+    )
+    text.prop.justification_horizontal = "center"
+
+
+def _bar(
+    p, body, count: int, what: str = "displacement / max", labels: int = 6, form: str = "%.1f"
+) -> None:
+    """Draw the scale of colours: of a displacement or a shade as a share of the largest."""
+    alone = count == 1
+    _text(p, what, 0.105 if alone else 0.12, 10 if alone else 8)
+    # The bar's own title would sit on its labels.
+    bar = {
+        "title": "",
+        "label_font_size": 20 if alone else 16,
+        "color": "black",
+        "n_labels": labels if alone else 3,
+        "fmt": form,
+        "font_family": "arial",
+    }
+    wide = 0.36 if alone else 0.7
+    p.add_scalar_bar(
+        mapper=body.mapper,
+        width=wide,
+        height=0.075,
+        position_x=(1 - wide) / 2,
+        position_y=0.02,
+        **bar,
+    )
+
+
+def _axes(p) -> None:
+    p.add_axes(
+        xlabel="x",
+        ylabel="y",
+        zlabel="z",
+        color="black",
+        line_width=4,
+        label_size=(0.25, 0.13),
+        viewport=(0.0, 0.0, 0.2, 0.34),
+    )
+
+
+def colours():
+    """Return viridis without its darkest part, on which neither shading nor lines can be seen."""
+    from matplotlib import colormaps
+    from matplotlib.colors import ListedColormap
+
+    return ListedColormap(colormaps["viridis"](np.linspace(0.14, 1.0, 256)))
+
+
+def _wires(pv, points, lines):
+    out = pv.PolyData()
+    out.points, out.lines = points, np.insert(lines, 0, 2, axis=1).ravel()
+    return out
 
 
 def _view(displacement):
@@ -339,13 +372,17 @@ def _sign(points, displacement, plane) -> float:
     return -1.0 if choice < 0 else 1.0
 
 
-def _aim(drawn, size, right, upward, back) -> Aim:
-    """Return the view in which what is drawn fills a frame between title and scale of colours."""
+def _aim(p, undeformed, drawn, aspect, right, upward, back):
+    """Aim a parallel projection that fills the frame between title and colour bar."""
     a, b = drawn @ right, drawn @ upward
-    scale = min(USABLE[1] * size[1] / np.ptp(b), USABLE[0] * size[0] / np.ptp(a))
-    height = size[1] / scale
+    height = max(np.ptp(b) / USABLE[1], np.ptp(a) / USABLE[0] * aspect)
     middle = (a.max() + a.min()) / 2 * right + ((b.max() + b.min()) / 2 - 0.02 * height) * upward
-    return Aim(right, upward, back, middle, scale)
+    p.camera.parallel_projection = True
+    p.camera.focal_point = middle
+    p.camera.position = middle + 3 * np.ptp(undeformed, axis=0).max() * back
+    p.camera.up = upward
+    p.camera.parallel_scale = height / 2
+    p.renderer.reset_camera_clipping_range()
 
 
 if __name__ == "__main__":

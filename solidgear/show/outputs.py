@@ -17,7 +17,6 @@ import numpy as np
 
 from solidgear.core import ELEMENTS, whole
 from solidgear.core.body.surface import Volume
-from solidgear.show.unstructured import unstructured_grid, vtk_nodes
 
 if TYPE_CHECKING:
     from solidgear.core import Body, Mode, ModeSet, Solution
@@ -52,6 +51,8 @@ def write_vtu(
     OSError
         If the file cannot be written.
     """
+    import meshio
+
     path = Path(path)
     chosen = modes if isinstance(modes, Iterable) else modes.modes
     shapes = dict(_shapes(islice(chosen, most)))
@@ -69,7 +70,7 @@ def write_vtu(
         data = {name: body.surface(vectors).displacement for name, vectors in shapes.items()}
     path.parent.mkdir(parents=True, exist_ok=True)
     with whole(path) as partial:
-        partial.write_bytes(unstructured_grid(points, cells, data))
+        meshio.write(partial, meshio.Mesh(points, cells, point_data=data), file_format="vtu")
     return path
 
 
@@ -83,22 +84,28 @@ def _shapes(modes: Iterable):
 
 def _volume(body: Body, mesh: Volume, shapes):
     element = ELEMENTS[mesh.element]
-    order = node_order(mesh.local, element.cell)
+    order = node_order(mesh.local, element.vtk)
     data = {
         name: body.mesh_unknowns(vectors)["full"].reshape(-1, 3) for name, vectors in shapes.items()
     }
     return mesh.nodes.T, [(element.cell, mesh.cells[order].T)], data
 
 
-def node_order(doflocs: np.ndarray, cell: str) -> np.ndarray:
-    """Return the local nodes of a kind of cell in VTK's order, found by their reference
-    coordinates, (nb, 3), in the unit cube or the unit tetrahedron.
+def node_order(doflocs: np.ndarray, vtk_name: str) -> np.ndarray:
+    """Return the local nodes of an element in VTK's order, found by their reference coordinates,
+    (nb, 3).
+
+    Both sides use the unit cube or the unit tetrahedron; meshio keeps VTK's order for these types.
+    `vtk_name` is the class of the VTK cell, which knows its own.
     """
-    places = np.array(vtk_nodes(cell))
-    distance = np.abs(places[:, None] - np.asarray(doflocs)[None]).max(axis=2)
+    from vtkmodules import vtkCommonDataModel  # needs no OpenGL
+
+    cell = getattr(vtkCommonDataModel, vtk_name)()
+    coordinates = np.reshape(cell.GetParametricCoords(), (-1, 3))[: cell.GetNumberOfPoints()]
+    distance = np.abs(coordinates[:, None] - np.asarray(doflocs)[None]).max(axis=2)
     order = distance.argmin(axis=1)
     if distance.min(axis=1).max() > 1e-12 or len(set(order)) != len(doflocs):
-        raise ValueError(f"the nodes of {cell} are not those of the element")
+        raise ValueError(f"the nodes of {vtk_name} are not those of the element")
     return order
 
 

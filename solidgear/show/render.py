@@ -1,7 +1,8 @@
 """Pictures of mode shapes and of shares of an error bar, drawn in a child process.
 
-A child draws while the caller does something else; how it ended is read, and a failed picture never
-costs a number.
+Without the system's OpenGL libraries VTK does not raise, it takes the process down with a
+segmentation fault. So a child draws, the caller reads how it ended, and a failed picture never costs
+a number.
 """
 
 from __future__ import annotations
@@ -26,6 +27,11 @@ from solidgear.show.drawing import ARRAYS
 if TYPE_CHECKING:
     from solidgear.core import Body, ModeSet, Surface
 
+PACKAGES = (
+    "apt-get install libgl1 libegl1 libegl-mesa0 libglu1-mesa "
+    "libxft2 libxinerama1 libxcursor1 libgomp1"
+)
+WINDOW = "VTK_DEFAULT_OPENGL_WINDOW"
 #: what a child writes to its standard error
 SAID = "said.txt"
 #: a shape as it is, without a caption
@@ -78,7 +84,7 @@ class RenderResult:
     """Outcome of a :class:`RenderJob`."""
 
     path: Path  #: holds the new picture if ``ok``; otherwise whatever was there before is untouched
-    reason: str = ""  #: what went wrong, in words; empty if ``ok``
+    reason: str = ""  #: one sentence on what went wrong, and what mends it; empty if ``ok``
 
     @property
     def ok(self) -> bool:
@@ -106,6 +112,7 @@ class Drawing:
 
     def __enter__(self) -> Drawing:
         self._folder = tempfile.TemporaryDirectory(prefix="solidgear-render-")
+        self._windows = _windows()
         try:
             if self.jobs:
                 self._hand_over()
@@ -126,6 +133,9 @@ class Drawing:
         if not self.jobs:
             return []
         end = self._end or self._wait()
+        # A child that reached the end of its list has said all there is to say.
+        while end and self._windows and self._patience.remaining > 0:
+            end = self._start() or self._wait()
         return [
             RenderResult(job.path, _collect(self._room, i, job.path, end))
             for i, job in enumerate(self.jobs)
@@ -153,8 +163,11 @@ class Drawing:
         (self._room / "jobs.json").write_text(json.dumps(jobs), encoding="utf-8")
 
     def _start(self) -> str:
-        """Start a child on the pictures; return why it could not."""
+        """Start a child on the remaining pictures in the next window; return why it could not."""
         env = dict(os.environ)
+        window = self._windows.pop(0)
+        if window:
+            env[WINDOW] = window
         # The child must find the same solidgear, wherever the caller runs.
         root = str(Path(__file__).resolve().parents[2])
         env["PYTHONPATH"] = os.pathsep.join(filter(None, [root, env.get("PYTHONPATH")]))
@@ -189,8 +202,19 @@ class Drawing:
         return f"ended with status {code}" + (f" ({last[:200]})" if last else "")
 
 
+def _windows() -> list[str | None]:
+    """Return VTK windows to try in turn; None leaves the choice to VTK."""
+    if not sys.platform.startswith("linux") or WINDOW in os.environ:
+        return [None]
+    # A display that is set may still be dead, as over a lost ssh connection.
+    return ([None] if os.environ.get("DISPLAY") else []) + [
+        "vtkEGLRenderWindow",
+        "vtkOSOpenGLRenderWindow",
+    ]
+
+
 def _collect(room: Path, index: int, path: Path, end: str) -> str:
-    """Move a finished picture to its place, or return why there is none."""
+    """Move a finished picture to its place, or return why there is none and how to mend it."""
     drawn, errors = room / f"{index}.png", room / f"{index}.txt"
     if errors.exists():
         return f"the picture {path.name} could not be drawn: {errors.read_text(encoding='utf-8')}"
@@ -202,4 +226,5 @@ def _collect(room: Path, index: int, path: Path, end: str) -> str:
         except OSError as error:
             return f"the picture {path} could not be written: {error.strerror or error}"
         return ""
-    return f"the drawing process {end or 'left no picture'}"
+    fault = end or "left no picture"
+    return f"the drawing process {fault}; on Debian and Ubuntu install OpenGL by `{PACKAGES}`"

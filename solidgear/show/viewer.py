@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from solidgear.core.machine.whole_file import write_page
-from solidgear.show.drawing import SWING, viridis
+from solidgear.show.drawing import SWING, colours
 from solidgear.show.packing import packed
 from solidgear.show.page_parts import template
 from solidgear.show.turning import Turned, picks, turned
@@ -122,7 +122,7 @@ def viewer_fragment(models: Sequence[Turned], *, still: str = "", first: str = "
 
     drawn = list(_within_budget(models))
     models = models[: len(drawn)]
-    ramp = viridis(STOPS)
+    ramp = colours()(np.linspace(0, 1, STOPS))[:, :3]
     modes = picks(models)
     payload = {
         "first": max(models[0].index(first or "bending 1"), 0),

@@ -136,7 +136,7 @@ def deck(problem: Problem, kind: str, *, modes: int = 0, loads: bool = False) ->
     """
     if KINDS.get(kind) != problem.element:
         raise ValueError(f"{kind} does not fit {problem.element}")
-    cells = problem.cells[:, node_order(problem.doflocs, ELEMENTS[problem.element].cell)] + 1
+    cells = problem.cells[:, node_order(problem.doflocs, ELEMENTS[problem.element].vtk)] + 1
     out = ["*NODE, NSET=ALL", *_nodes(problem.nodes, 1)]
     element = 1
     for m, (young, poisson, density) in enumerate(problem.materials):

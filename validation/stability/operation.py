@@ -65,7 +65,7 @@ class Case:
 
 NO_PARDISO = (("pypardiso", "raise ImportError('hidden')"),)
 NO_MKL = ("PYPARDISO_MKL_RT", "/nowhere/libmkl_rt.so")
-DEATH = (("PIL", "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)"),)
+DEATH = (("pyvista", "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)"),)
 NO_RENDERER = (("SOLIDGEAR_RENDERER", "none"),)
 LITTLE = (("SOLIDGEAR_MEMORY_MB", "30"),)
 MB = 1 << 20
@@ -129,7 +129,7 @@ CASES = (
         env=(NO_MKL,),
         hide=NO_PARDISO,
     ),
-    Case("renderer: none, render", RENDER, (1,), "SOLIDGEAR_RENDERER", env=NO_RENDERER),
+    Case("renderer: none, render", RENDER, (1,), "OpenGL", env=NO_RENDERER),
     Case("renderer: none, compare", (*COMPARE, "{out}"), (0,), "Report", env=NO_RENDERER),
     Case(
         "renderer: dies of a segmentation fault, compare",

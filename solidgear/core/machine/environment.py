@@ -15,7 +15,7 @@ def environment() -> dict:
     may use, and date, for results.json.
     """
     out: dict = {"python": platform.python_version()}
-    for name in ("solidgear", "numpy", "scipy", "scikit-fem", "gmsh", "pillow", "pypardiso"):
+    for name in ("solidgear", "numpy", "scipy", "scikit-fem", "gmsh", "pyvista", "pypardiso"):
         try:
             out[name] = version(name)
         except PackageNotFoundError:

@@ -144,7 +144,7 @@ def _write(path: Path, body: Any) -> None:
     """Write the mesh of a 3D solid, mm."""
     mesh = body.geometry.volume()
     element = ELEMENTS[mesh.element]
-    cells = mesh.cells[node_order(mesh.local, element.cell)].T
+    cells = mesh.cells[node_order(mesh.local, element.vtk)].T
     write_mesh(path, 1e3 * mesh.nodes.T, element.cell, cells, {"all": range(len(cells))})
 
 
