@@ -6,7 +6,6 @@ import ctypes
 import functools
 import gc
 import hashlib
-import json
 import os
 import pickle
 import signal
@@ -192,34 +191,17 @@ def read_once():
         yield
 
 
-class Drawn:
-    """The drawing library, which draws a chart once; of its pictures in pixels, which no test looks
-    into, the first stands for all: a fifth of a second each.
-    """
-
-    def __init__(self, library):
-        self._library, self._known, self._pixels = library, {}, b""
-
-    def vegalite_to_svg(self, spec):
-        key = hashlib.sha256(json.dumps(spec).encode()).digest()
-        if key not in self._known:
-            self._known[key] = self._library.vegalite_to_svg(spec)
-        return self._known[key]
-
-    def svg_to_png(self, svg, **how):
-        self._pixels = self._pixels or self._library.svg_to_png(svg, **how)
-        return self._pixels
-
-
 @pytest.fixture(scope="session", autouse=True)
-def drawn_once():
-    """Charts that several tests write, drawn once."""
+def pixels_once():
+    """Of charts in pixels, which no test looks into, the first stands for all: a fifth of a second
+    each.
+    """
     from solidgear.show import plot
 
-    library = functools.cache(lambda: Drawn(make()))
-    make = plot._drawing_library
+    first = functools.cache(lambda: make('<svg xmlns="http://www.w3.org/2000/svg"/>'))
+    make = plot.pixels
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(plot, "_drawing_library", library)
+        patch.setattr(plot, "pixels", lambda svg: first())
         yield
 
 

@@ -1,12 +1,14 @@
 """Memory and processors granted: read from a made-up root, so that every kind of limit is seen."""
 
 import mmap
+import subprocess
+import sys
 
 import pytest
 
 from solidgear.core.errors import SolidgearError
 from solidgear.core.machine import threads
-from solidgear.core.machine.memory import available_mb, one_run
+from solidgear.core.machine.memory import available_mb, family_mb, one_run, resident_mb
 
 MB = 2**20
 
@@ -116,3 +118,17 @@ def test_processors_of_cgroup_v1(root, monkeypatch):
     assert threads.usable_cores(at) == 3
     root(sys__fs__cgroup__cpu__cpu_DOT_cfs_quota_us="-1")
     assert threads.usable_cores(at) == 8
+
+
+def test_memory_of_a_process_beside_this_one_counts():
+    own = family_mb()
+    if own is None:
+        pytest.skip("the system does not show it")
+    code = "held = b'x' * (60 << 20); print(len(held), flush=True); input()"
+    with subprocess.Popen(
+        [sys.executable, "-c", code], stdin=subprocess.PIPE, stdout=subprocess.PIPE
+    ) as child:
+        child.stdout.readline()
+        assert family_mb() > resident_mb() + 60
+        child.communicate(b"\n")
+    assert family_mb() < resident_mb() + 60

@@ -9,8 +9,9 @@ from test_train_models import COARSE, OVERHUNG
 
 import solidgear as sg
 from solidgear.comparison.page.charts import CHARTS
-from solidgear.show.panel import Axis, Panel, read_places, readout
+from solidgear.show.panel import Panel, read_places, readout
 from solidgear.show.plot import NARROW, WIDE, Chart, page_svg
+from solidgear.show.scales import Axis
 from solidgear.show.units import SYSTEMS
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.page.chart import receptance_chart, response_chart
@@ -193,3 +194,14 @@ def test_a_receptance_is_read_with_its_phase(assembly):
     assert number(told_as) == pytest.approx(4.4482216e6 * size, rel=6e-4)
     phases = {number(f["phase"]) for f in facts if "phase" in f}
     assert phases <= set(np.round(np.degrees(np.angle(one.value)), 1))
+
+
+def test_words_of_ticks_stand_with_their_middle_at_the_tick():
+    svg = Chart([[panel_of([{"x": 10.0, "y": 0.1}])]]).svg()
+    words = {
+        text: float(y) for y, text in re.findall(r'<text x="[^"]+" y="([^"]+)"[^>]*>([^<]+)<', svg)
+    }
+    ticks = [float(y) for y in re.findall(r"M[\d.]+,([\d.]+)h-5\.0", svg)]
+    # the foot of letters of 12 px lies 0.3 of their height below the middle
+    drawn = sorted(words[text] - 3.6 for text in ("1", "0.1", "0.01", "0.001"))
+    np.testing.assert_allclose(drawn, sorted(ticks), atol=0.06)

@@ -274,7 +274,7 @@ def test_charts_draw_what_is_left_of_a_broken_off_run():
     record = as_record(results)
     assert charts.CHARTS["sketch"](record)
     drawn = [make(record, WIDE) for make in charts.DESCRIBED.values()]
-    assert all(chart.spec() for chart in drawn if chart is not None)
+    assert all(chart.svg() for chart in drawn if chart is not None)
 
 
 def test_chart_that_fails_costs_only_itself(monkeypatch):

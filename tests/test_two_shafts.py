@@ -6,7 +6,6 @@ import json
 import re
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 import solidgear as sg
@@ -97,11 +96,13 @@ def test_both_sections_are_drawn_to_one_scale(thicker):
     assert "Both to one scale." in (folder / "report.html").read_text(encoding="utf-8")
     both = [sg.load(path).as_dict() for path in (SCENE, OTHER)]
     lengths, radii = zip(*map(extent, both))
-    # the line of the axis passes 0.3 in beyond either end
-    papers = [draw(one, room=(max(lengths), max(radii))).axes[0] for one in both]
-    axes = [next(one for one in paper.lines if not np.any(one.get_ydata())) for paper in papers]
-    drawn = [float(np.ptp(line.get_xdata())) - 0.6 for line in axes]
-    assert drawn[0] / drawn[1] == pytest.approx(lengths[0] / lengths[1], rel=1e-6)
+    drawings = [draw(one, room=(max(lengths), max(radii))).svg() for one in both]
+    # the line of the axis, the one of dashes and dots, passes 0.3 in beyond either end
+    axis = re.compile(r'd="M([\d.]+),[\d.]+L([\d.]+),[\d.]+"[^>]*stroke-dasharray="9.6,2.4,')
+    ends = [tuple(map(float, axis.search(drawing).groups())) for drawing in drawings]
+    drawn = [last - first - 0.6 * 72 for first, last in ends]
+    # places are written to a hundredth of a point
+    assert drawn[0] / drawn[1] == pytest.approx(lengths[0] / lengths[1], abs=1e-4)
     assert lengths[0] != lengths[1]
 
 

@@ -56,7 +56,7 @@ def responded(target: Path) -> None:
 
 def drawn(scene: str, target: Path) -> None:
     """The section of a shaft."""
-    sg.load(ROOT / "geometry" / f"{scene}.toml").plot().savefig(target, dpi=180)
+    sg.load(ROOT / "geometry" / f"{scene}.toml").plot().write(target)
 
 
 def rod(target: Path) -> None:

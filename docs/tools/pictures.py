@@ -89,7 +89,7 @@ def main() -> int:
     folder = Path(tempfile.mkdtemp())
     scene = folder / "my_shaft.toml"
     scene.write_text(tutorial_scene())
-    sg.load(scene).plot().savefig(folder / "section.png", dpi=200)
+    sg.load(scene).plot().write(folder / "section.png")
     small(folder / "section.png", "section")
     said = run("solidgear render my_shaft.toml --out mode.png", folder)
     said += run("solidgear render my_shaft.toml -f solid --beside timoshenko --turn m.html", folder)

@@ -7,6 +7,7 @@ import signal
 import sys
 import threading
 
+from solidgear.core.machine import start  # noqa: F401  before anything that takes time
 from solidgear.core.machine.later import load_later
 from solidgear.core.machine.threads import pin
 

@@ -12,6 +12,7 @@ from solidgear.comparison.models import compare as compared
 from solidgear.comparison.page.sheet import sheet
 from solidgear.core import ELEMENTS, LADDER, is_train, listed
 from solidgear.core import load as read
+from solidgear.core.machine.start import BEGUN
 from solidgear.show.command import Progress, command
 from solidgear.show.folder import held
 from solidgear.show.options import MODEL, SceneFile, Shown, options_by_name, refuse
@@ -122,6 +123,7 @@ def compare(
     def study(progress: Progress) -> Sheet:
         with held(out):
             comparison = compared(loaded, names, settings=chosen, progress=progress)
+            comparison.began = BEGUN  # imports and reading count as well
             complete = comparison.record.complete
             drawn = renders and complete
             comparison.write_report(out, renders=drawn, units=run.units, progress=progress)

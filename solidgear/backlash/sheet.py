@@ -13,17 +13,9 @@ from solidgear.backlash.periodic import Backlash, runs_of
 from solidgear.backlash.speed_run import SpeedRun
 from solidgear.backlash.study import BacklashStudy
 from solidgear.show.command import caution
-from solidgear.show.panel import (
-    GREY,
-    Axis,
-    Panel,
-    Series,
-    curve,
-    lines_legend,
-    read_places,
-    readout,
-)
+from solidgear.show.panel import GREY, Panel, Series, curve, lines_legend, read_places, readout
 from solidgear.show.plot import NARROW, WIDE, Chart, Make, in_columns
+from solidgear.show.scales import Axis
 from solidgear.show.sheet import Sheet, Terminal
 from solidgear.show.table import Column, Table, numbers, text
 from solidgear.show.units import ENGINEERING, Units, plain

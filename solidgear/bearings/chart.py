@@ -9,8 +9,9 @@ import numpy as np
 
 from solidgear.bearings.row import Contacts
 from solidgear.bearings.study import BearingFacts, OverLoad
-from solidgear.show.panel import GREY, Axis, Panel, Series, curve, log_ticks
+from solidgear.show.panel import GREY, Panel, Series, curve
 from solidgear.show.plot import WIDE, Chart
+from solidgear.show.scales import Axis, log_ticks
 from solidgear.show.words import engineering
 
 COLOURS = {"x": "#1f5fa8", "y": "#b2561a", "z": "#2b7a4b"}
@@ -90,10 +91,8 @@ def _shares(rows: Sequence[Contacts]) -> Panel:
     total = np.sum([row.load @ np.exp(1j * row.azimuth) for row in rows])
     side = -total / abs(total) if abs(total) > 0 else np.exp(0.4j)
     words = [{"x": r * side.real, "y": r * side.imag, "text": f"{r:g}"} for r in rings.tolist()]
-    drawn.draw({"type": "text", "baseline": "middle", "color": GREY}, words)
+    drawn.draw({"type": "text", "color": GREY}, words)
     far = 1.1 * rings[-1]
     ends = [("x", far, 0.0), ("z", 0.0, far), ("-x", -far, 0.0), ("-z", 0.0, -far)]
-    drawn.draw(
-        {"type": "text", "baseline": "middle"}, [dict(zip(("text", "x", "y"), e)) for e in ends]
-    )
+    drawn.draw({"type": "text"}, [dict(zip(("text", "x", "y"), e)) for e in ends])
     return drawn

@@ -5,8 +5,9 @@ from __future__ import annotations
 import functools
 import logging
 import os
+import time
 from collections.abc import Callable, Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, overload
 
@@ -54,6 +55,8 @@ class Comparison(Displayed):
     scene: Scene
     record: Record  #: contents of ``results.json``
     solutions: dict[str, Solution]  #: bodies and mode shapes behind the record, by model
+    #: when the run began, by ``time.perf_counter``, s
+    began: float = field(default_factory=time.perf_counter)
 
     @property
     def results(self) -> dict:
@@ -92,7 +95,14 @@ class Comparison(Displayed):
             If the folder cannot be written, or units are unknown.
         """
         self.record.shown_in = units_named(units).name
-        return write_all(self.record, self.solutions, out, renders=renders, progress=progress)
+        return write_all(
+            self.record,
+            self.solutions,
+            out,
+            renders=renders,
+            began=self.began,
+            progress=progress,
+        )
 
 
 @overload
@@ -183,7 +193,7 @@ def compare(
     check_models(models)
     options = {m: dict((settings or {}).get(m, {})) for m in LADDER.bodies}
     findings = Findings()
-    overall = Meter()
+    overall, began = Meter(), time.perf_counter()
     with overall.stage("all"), one_run() as run:
         try:
             _run(scene, models, options, findings, progress)
@@ -193,10 +203,10 @@ def compare(
             findings.complete = False
             progress("interrupted; keeping what is there")
     record = recorded(scene, findings)
-    record.seconds_total = overall.seconds["all"]
-    record.peak_mb = overall.peak_mb
+    record.seconds_total = record.seconds_solved = overall.seconds["all"]
+    record.peak_mb_total = record.peak_mb = overall.peak_mb
     record.expected_peak_mb = run.expected_mb
-    return Comparison(scene, record, findings.solutions)
+    return Comparison(scene, record, findings.solutions, began)
 
 
 def _opened(scene: Scene) -> OpenNumbers:

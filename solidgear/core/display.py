@@ -32,7 +32,7 @@ class Displayed:
         return _shown(self.shown)(self, *args, **kwargs)
 
     def plot(self, *args: Any, **kwargs: Any) -> Any:
-        """Return a picture, a matplotlib Figure.
+        """Return a picture, shown in a notebook; its ``write`` makes a PNG or SVG file.
 
         Raises
         ------

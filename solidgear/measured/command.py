@@ -26,9 +26,10 @@ from solidgear.show.command import Progress, command
 from solidgear.show.mode_charts import mac_panel
 from solidgear.show.options import Run, relative
 from solidgear.show.packing import Mesh
-from solidgear.show.panel import GREY, INK, PERCENT, Axis, Panel, Series, readout
+from solidgear.show.panel import GREY, INK, Panel, Series, readout
 from solidgear.show.plot import WIDE, Chart
 from solidgear.show.remarks import load
+from solidgear.show.scales import Axis, in_percent
 from solidgear.show.sheet import Section, Sheet, Terminal, present
 from solidgear.show.table import NUMBER, Column, Table, text
 from solidgear.show.turning import Member, Turned, together
@@ -278,7 +279,7 @@ def off_chart(correlation: Correlation, title: str, width: float = WIDE) -> Char
     most = 1.15 * max(1e-6, *(max(-band["y"], band["y2"]) for band in bands))
     panel = Panel(
         Axis("measured, kHz", (0.0, end)),
-        Axis("computed over measured, less one", (-most, most), label=PERCENT),
+        Axis("computed over measured, less one", (-most, most), label=in_percent),
         280.0,
         series=LOOKS,
         legend={"orient": "top"},

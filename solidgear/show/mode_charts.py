@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from solidgear.core.judge.record import MacTable
-from solidgear.show.panel import INK, Axis, Panel, readout
+from solidgear.show.panel import INK, Panel, readout
+from solidgear.show.scales import Axis
 
 #: px; of a row of a matrix, and of the longest name of a mode beside it
 ROW, LONGEST = 24.0, 76.0
@@ -34,7 +35,7 @@ def mac_panel(table: MacTable, name: str, reference: str) -> Panel:
             cells.append({**place, "readout": words, "fill": _blue(value)})
     panel.draw({"type": "rect", "stroke": "#ffffff", "strokeWidth": 0.5}, cells)
     for white in (False, True):
-        text = {"type": "text", "color": "#ffffff" if white else INK, "baseline": "middle"}
+        text = {"type": "text", "color": "#ffffff" if white else INK}
         panel.draw(text | {"fontSize": 10}, _figures(table, white))
     return panel
 

@@ -1,12 +1,12 @@
-"""Panels of charts: pairs of axes, and layers of marks over rows of data, described in Vega-Lite.
+"""Panels of charts: pairs of axes, and layers of marks over rows of data.
 
-Keys of a row are channels of Vega-Lite (``x``, ``y``, ``text``, ``fill`` ...), and two more: ``name``,
-a series of the legend, and ``readout``, the words that ``readout.js`` shows where a mark is pointed at.
+Marks and their looks have the names of Vega-Lite, and so have keys of a row (``x``, ``x2``, ``y``, ``y2``,
+``text``, ``fill``, ``strokeWidth``, ``detail`` of a line in parts). Two more are ``name``, a series of the
+legend, and ``readout``, the words that ``readout.js`` shows where a mark is pointed at.
 """
 
 from __future__ import annotations
 
-import json
 import math
 import textwrap
 from collections.abc import Iterable, Mapping
@@ -14,9 +14,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from solidgear.show.scales import Axis, Shade
+
 #: px; height of letters, and how much of it a letter takes across
 LETTER, ACROSS = 12, 0.58
-#: px; of what ticks say left of a panel
+#: px; of paper that ticks take left of a panel
 LEFT = 48.0
 #: colour of lines and words that belong to no series
 INK, GREY, TOLERANCE = "#222222", "#6b6b6b", "#aa2222"
@@ -33,64 +35,6 @@ SHAPES = {
     "h": "M1,0L.5,.87L-.5,.87L-1,0L-.5,-.87L.5,-.87Z",
     "*": "M0,-1.3L.3,-.4L1.24,-.4L.48,.15L.76,1.05L0,.5L-.76,1.05L-.48,.15L-1.24,-.4L-.3,-.4Z",
 }
-#: what ticks say, as expressions of Vega
-NUMBER, PERCENT = "format(datum.value, '~g')", "format(100 * datum.value, '~g') + ' %'"
-COUNT = "format(datum.value, '~s')"
-#: channels whose values in rows are looks themselves
-LOOKS = ("fill", "strokeWidth")
-#: of names below a panel that stand at a slant
-TURNED = {"labelAngle": -60, "labelAlign": "right", "labelOverlap": False}
-
-
-class Axis(NamedTuple):
-    """One axis of a panel."""
-
-    title: str
-    ends: tuple[float, float]  #: from left to right, or from the foot up
-    log: bool = False
-    label: str = NUMBER  #: what a tick says, as an expression of Vega
-    ticks: Mapping[float, str] | None = None  #: where they stand and what they say instead
-    grid: bool = True
-    shown: bool = True  #: of one that is not shown only the ends count
-
-    def channel(self, room: float, more: Mapping[str, Any]) -> dict[str, Any]:
-        """Return the axis in Vega-Lite, its title in lines that fit a room (px)."""
-        kind = {"type": "log"} if self.log else {"zero": False}
-        scale = {**kind, "domain": sorted(self.ends), "nice": False}
-        scale["reverse"] = bool(self.ends[0] > self.ends[1])
-        if not self.shown:
-            return {"type": "quantitative", "scale": scale, "axis": None}
-        axis: dict[str, Any] = {"title": wrapped(self.title, room), "grid": self.grid, **more}
-        if self.ticks is not None:
-            places, names = list(self.ticks), [text.split("\n") for text in self.ticks.values()]
-            axis["values"] = places
-            axis["labelExpr"] = f"{json.dumps(names)}[indexof({json.dumps(places)}, datum.value)]"
-        else:
-            axis["labelExpr"] = self.label
-            if self.log:
-                axis["values"] = log_ticks(*sorted(self.ends))
-            else:
-                axis["tickCount"] = max(3, int(room / 75))
-        return {"type": "quantitative", "scale": scale, "axis": axis}
-
-
-def log_ticks(low: float, high: float) -> list[float]:
-    """Return powers of ten between two ends, with their doubles and fives where these are few.
-
-    Examples
-    --------
-    >>> log_ticks(0.05, 300)
-    [0.1, 1.0, 10.0, 100.0]
-    >>> log_ticks(3, 60)
-    [5.0, 10.0, 20.0, 50.0]
-    >>> log_ticks(2, 5.5)
-    [2.0, 3.0, 4.0, 5.0]
-    """
-    decades = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
-    span = math.log10(high / low)
-    steps = (1, 1.5, 2, 3, 4, 5, 7) if span < 0.7 else (1, 2, 5) if span < 2.4 else (1,)
-    places = (float(f"{step}e{k}") for k in decades for step in steps)
-    return [place for place in places if low <= place <= high]
 
 
 class Series(NamedTuple):
@@ -98,6 +42,14 @@ class Series(NamedTuple):
 
     colour: str
     shape: str = "circle"
+
+
+class Layer(NamedTuple):
+    """Marks of one kind, and the rows that they stand for."""
+
+    mark: dict[str, Any]
+    rows: list[dict[str, Any]]
+    shade: Shade | None = None
 
 
 class Panel:
@@ -110,7 +62,7 @@ class Panel:
     series : mapping of str to Series
         By their names in rows.
     legend : dict, optional
-        Of the series, in Vega-Lite; none is drawn without it.
+        Of the series, with the names of Vega-Lite; none is drawn without it.
     left, right : float
         px of the paper that is taken by what ticks say, and beyond the right end.
     least : float
@@ -139,20 +91,22 @@ class Panel:
         self.x, self.y, self.height, self.title = x, y, height, title
         self.series, self.legend = series or {}, legend
         self.left, self.right, self.least, self.upper = left, right, least, upper
-        self.below = TURNED if turned else {"labelOverlap": True}
-        self.layers: list[tuple[Any, list[dict[str, Any]], dict[str, Any]]] = []
+        self.turned = turned
+        self.layers: list[Layer] = []
 
     def draw(
-        self, mark: str | Mapping[str, Any], rows: Iterable[Mapping[str, Any]], **encoding: Any
+        self,
+        mark: str | Mapping[str, Any],
+        rows: Iterable[Mapping[str, Any]],
+        shade: Shade | None = None,
     ) -> None:
-        """Add a layer: a mark of Vega-Lite with what all of its rows share, and channels besides
-        those of the rows. Rows with a place that is no number, or none on a logarithmic axis, are
-        left out.
+        """Add a layer: a mark with what all of its rows share, and the colours of numbers of its
+        rows. Rows with a place that is no number, or none on a logarithmic axis, are left out.
         """
         placed = [dict(row) for row in rows if self._placed(row)]
         if placed:
             mark = {"type": mark} if isinstance(mark, str) else dict(mark)
-            self.layers.append((mark, placed, encoding))
+            self.layers.append(Layer(mark, placed, shade))
 
     def read(self, rows: Iterable[Mapping[str, Any]], colour: str) -> None:
         """Add places to be read without a mark: along a curve, or in a cell."""
@@ -170,74 +124,6 @@ class Panel:
     def beside(self) -> float:
         """px of paper left of the panel: what ticks say and the name of the axis."""
         return self.left + 1.5 * LETTER * len(wrapped(self.y.title, self.height))
-
-    def spec(self, beside: float, width: float) -> dict[str, Any]:
-        """Return the panel in Vega-Lite, with axes `width` wide and `beside` from the left, px."""
-        extent = beside - 1.5 * LETTER * len(wrapped(self.y.title, self.height))
-        places = {
-            "x": self.x.channel(width, self.below),
-            "y": self.y.channel(self.height, {"minExtent": extent, "maxExtent": extent}),
-        }
-        layers = [self._layer(*layer, places) for layer in self.layers]
-        out: dict[str, Any] = {"width": width, "height": self.height, "layer": layers}
-        if self.title:
-            out["title"] = wrapped(self.title, width)
-        if self.upper:
-            self._add_upper(self.upper, layers, places["x"], width)
-            out["resolve"] = {"axis": {"x": "independent"}}
-        return out
-
-    def _add_upper(self, upper: Axis, layers: list, below: dict[str, Any], width: float) -> None:
-        """Add an axis above, and leave the one below to a single layer."""
-        places = [
-            layer["encoding"]["x"] for layer in layers if "field" in layer["encoding"].get("x", {})
-        ]
-        for place in places[1:]:
-            place["axis"] = None
-        above = upper.channel(width, {"orient": "top", "labelOverlap": True})["axis"]
-        mark = {"type": "point", "size": 0, "aria": False}
-        rows = {"values": [{"x": self.x.ends[0]}]}
-        encoding = {"x": {**below, "field": "x", "axis": above}}
-        layers.append({"data": rows, "mark": mark, "encoding": encoding})
-
-    def _layer(self, mark, rows, encoding, places) -> dict[str, Any]:
-        channels: dict[str, Any] = {}
-        for key in dict.fromkeys(key for row in rows for key in row):
-            if key in places:
-                channels[key] = {"field": key, **places[key]}
-            elif key == "readout":
-                channels["description"] = {"field": key, "type": "nominal"}
-            elif key == "name":
-                channels |= self._looks(mark["type"])
-            elif key in ("x2", "y2"):
-                channels[key] = {"field": key}
-            elif key in ("text", "detail"):
-                channels[key] = {"field": key, "type": "nominal"}
-            elif key in LOOKS:
-                channels[key] = {"field": key, "type": "nominal", "scale": None}
-        if mark["type"] == "line":
-            for k, row in enumerate(rows):
-                row["order"] = k
-            channels["order"] = {"field": "order", "type": "quantitative"}
-        mark = {"clip": mark["type"] not in ("text", "point"), **mark}
-        mark["aria"] = "description" in channels
-        return {"data": {"values": rows}, "mark": mark, "encoding": {**channels, **encoding}}
-
-    def _looks(self, mark: str) -> dict[str, Any]:
-        """Return the channels that distinguish series."""
-        looks = self.series.values()
-        ranges = {"color": [look.colour for look in looks]}
-        if mark == "point":
-            ranges["shape"] = [look.shape for look in looks]
-        return {
-            channel: {
-                "field": "name",
-                "type": "nominal",
-                "scale": {"domain": list(self.series), "range": values},
-                "legend": self.legend,
-            }
-            for channel, values in ranges.items()
-        }
 
 
 def curve(x: np.ndarray, y: np.ndarray, **same: Any) -> list[dict[str, Any]]:
@@ -307,4 +193,4 @@ def tolerance_line(panel: Panel, tolerance: float) -> None:
     panel.draw({"type": "rule", "color": TOLERANCE, "strokeDash": [5, 3]}, [{"y": tolerance}])
     name = {"type": "text", "color": TOLERANCE, "align": "right", "dy": -7}
     words = f"tolerance {100 * tolerance:.4g} %"
-    panel.draw(name, [{"y": tolerance, "text": words}], x={"value": "width"})
+    panel.draw(name, [{"x": panel.x.ends[1], "y": tolerance, "text": words}])

@@ -1,4 +1,4 @@
-"""Charts drawn by vl-convert from panels in Vega-Lite: for a page, and as files.
+"""Charts of panels: for a page, and as files.
 
 One description becomes the SVG of a page, in a wide and in a narrow layout, and the PNG or SVG of a
 file. ``style.html`` turns the colours of a page in the dark; ``readout.js`` reads its marks.
@@ -6,8 +6,7 @@ file. ``style.html`` turns the colours of a page in the dark; ``readout.js`` rea
 
 from __future__ import annotations
 
-import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib.util import find_spec
@@ -16,49 +15,49 @@ from typing import Any
 
 from solidgear.core import SolidgearError, whole
 from solidgear.show.panel import LETTER, Panel, wrapped
+from solidgear.show.paper import Paper
+from solidgear.show.pen import LEAD, Pen
 
 #: px; across a page, and across a phone that is 390 px wide
 WIDE, NARROW = 1000.0, 362.0
 #: px; between two panels
 BETWEEN = 26.0
+#: px; around a drawing in a page, and around one in a file of its own
+PADDING, MARGIN = 3.0, 10.0
 #: pixels of a PNG in one of a chart
 FINENESS = 1.5
-CONFIG: dict[str, Any] = {
-    "font": "DejaVu Sans, Arial, Helvetica, sans-serif",
-    "mark": {"opacity": 1.0},
-    "axis": {
-        "aria": False,
-        "labelFontSize": LETTER,
-        "titleFontSize": LETTER,
-        "titleFontWeight": "normal",
-        "gridColor": "#e3e3e3",
-        "domainColor": "#555555",
-        "tickColor": "#555555",
-        "labelFlush": False,
-        "labelLimit": 0,
-        "titleLimit": 0,
-    },
-    "legend": {
-        "aria": False,
-        "title": None,
-        "labelFontSize": LETTER,
-        "titleFontSize": LETTER,
-        "titleFontWeight": "normal",
-        "labelLimit": 0,
-        "symbolLimit": 0,
-    },
-    "title": {"aria": False, "fontSize": LETTER, "fontWeight": "bold", "anchor": "start"},
-    "text": {"fontSize": LETTER - 1, "lineBreak": "\n"},
-    "view": {"stroke": None},
-    "concat": {"spacing": BETWEEN},
-}
-#: looks of one panel are none of another's
-SEPARATE: dict[str, Any] = {"scale": dict.fromkeys(("color", "fill", "shape"), "independent")}
 FORMATS = (".png", ".svg")
 
 
-@dataclass
-class Chart:
+class Picture:
+    """A drawing for a page, a notebook or a file."""
+
+    def svg(
+        self, kind: str = "", name: str = "part-", margin: float = 0.0, ground: str = ""
+    ) -> str:
+        """Return an SVG of a class of a page's style, within a margin (px) and on a ground, if any;
+        identifiers in it begin with a name.
+        """
+        raise NotImplementedError
+
+    def write(self, file: str | Path, *beside: Path) -> Path:
+        """Write a picture, drawn once for all its files, ``.png`` or ``.svg`` by their endings."""
+        files = [Path(file), *beside]
+        write_picture(self._alone(), files)
+        return files[0]
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__}>"
+
+    def _repr_png_(self) -> bytes:
+        return pixels(self._alone())
+
+    def _alone(self) -> str:
+        return self.svg("alone", margin=MARGIN, ground="#ffffff")
+
+
+@dataclass(repr=False)
+class Chart(Picture):
     """Panels beside and below one another.
 
     Parameters
@@ -72,7 +71,8 @@ class Chart:
 
     Examples
     --------
-    >>> from solidgear.show.panel import Axis, readout
+    >>> from solidgear.show.panel import readout
+    >>> from solidgear.show.scales import Axis
     >>> panel = Panel(Axis("length, mm", (0, 2)), Axis("error", (1e-3, 1), log=True), 200)
     >>> panel.draw("point", [{"x": 1, "y": 0.1, "readout": readout("beam", ("error", "10", "%"))}])
     >>> 'aria-label="beam&#xA;error: 10 %"' in Chart([[panel]]).svg()
@@ -84,51 +84,43 @@ class Chart:
     title: str = ""
     foot: str = ""
 
-    def spec(self) -> dict[str, Any]:
-        """Return the chart in Vega-Lite."""
+    def svg(
+        self, kind: str = "chart", name: str = "part-", margin: float = 0.0, ground: str = ""
+    ) -> str:
+        """Return the chart as an SVG; see :meth:`Picture.svg`."""
+        pen = Pen(name, LETTER)
+        low = PADDING + margin
+        for line in wrapped(self.title, self.width) if self.title else ():
+            low += LETTER + 1 + LEAD
+            how: dict[str, Any] = {"size": LETTER + 1, "font_weight": "bold", "fill": "#000000"}
+            pen.put(pen.words(PADDING, low, line, **how))
+        low += 2 * LEAD * bool(self.title)
+        for row in self._papers():
+            over, under = max(p.over for p in row), max(p.panel.height + p.under for p in row)
+            left = 0.0
+            for paper in row:
+                paper.draw(pen, left + paper.beside, low + over)
+                left += paper.beside + paper.width + paper.panel.right + BETWEEN
+            low += over + under + BETWEEN
+        low -= BETWEEN
+        for line in wrapped(self.foot, self.width) if self.foot else ():
+            low += LETTER - 1 + LEAD
+            pen.put(pen.words(PADDING, low, line, size=LETTER - 1, fill="#000000"))
+        left = min(0.0, pen.left - PADDING) - margin
+        right = max(self.width, pen.right + PADDING) + margin
+        return pen.svg(kind, left, right, low + PADDING + margin, ground)
+
+    def _papers(self) -> Iterator[list[Paper]]:
+        """Yield rows of panels on paper, those of one place below one another equally wide."""
         rows = [
             part
             for row in self.rows
             for part in in_columns(row, max(1, int(self.width / row[0].least)))
         ]
         beside = max(panel.beside for row in rows for panel in row)
-        drawn = [self._row(row, beside) for row in rows]
-        out: dict[str, Any] = {"vconcat": drawn, "resolve": SEPARATE}
-        if self.title:
-            out["title"] = {"text": wrapped(self.title, self.width), "fontSize": LETTER + 1}
-        if self.foot:
-            foot: dict[str, Any] = {"text": wrapped(self.foot, self.width), "orient": "bottom"}
-            foot |= {"fontWeight": "normal", "fontSize": LETTER - 1}
-            out = {"vconcat": [out], "title": foot, "resolve": SEPARATE}
-        return {"background": None, "config": CONFIG, "padding": 3, **out}
-
-    def _row(self, row: list[Panel], beside: float) -> dict[str, Any]:
-        width = (self.width - BETWEEN * (len(row) - 1)) / len(row)
-        panels = [panel.spec(beside, width - beside - panel.right) for panel in row]
-        return {"hconcat": panels, "resolve": SEPARATE}
-
-    def svg(self, name: str = "part-") -> str:
-        """Return the chart as an SVG, without a ground; identifiers in it begin with a name."""
-        return _compact(_drawing_library().vegalite_to_svg(self.spec()), name)
-
-    def write(self, file: Path, *beside: Path) -> Path:
-        """Write a picture, drawn once for all its files, ``.png`` or ``.svg`` by their endings."""
-        library = _drawing_library()
-        endings = {path: check_ending(path) for path in (file, *beside)}
-        svg = library.vegalite_to_svg({**self.spec(), "background": "#ffffff", "padding": 12})
-        for path, ending in endings.items():
-            if ending == ".png":
-                data = library.svg_to_png(svg, scale=FINENESS)
-            else:
-                data = _compact(svg, "part-").encode()
-            try:
-                with whole(path) as half:
-                    half.write_bytes(data)
-            except OSError as error:
-                raise SolidgearError(
-                    f"{path}: cannot be written ({error.strerror or error})"
-                ) from error
-        return file
+        for row in rows:
+            width = (self.width - BETWEEN * (len(row) - 1)) / len(row)
+            yield [Paper(panel, beside, width - beside - panel.right) for panel in row]
 
 
 def in_columns(panels: Sequence[Panel], columns: int) -> list[list[Panel]]:
@@ -136,27 +128,18 @@ def in_columns(panels: Sequence[Panel], columns: int) -> list[list[Panel]]:
     return [list(panels[k : k + columns]) for k in range(0, len(panels), columns)]
 
 
-def _compact(svg: str, name: str) -> str:
-    """Return an SVG without invisible parts, coordinates to 0.01 px and identifiers under a name."""
-    names: dict[str, str] = {}
-
-    def tag(match: re.Match[str]) -> str:
-        text = match[0]
-        if text.startswith(('<path class="background"', '<path class="foreground"')):
-            return ""
-        text = re.sub(r' (?:aria-roledescription|role|opacity)="(?:[a-z -]*|1)"', "", text)
-        # a label of what has no role is read by nobody
-        text = re.sub(r' aria-label="[^"]*"', r'\g<0> role="img"', text)
-        text = re.sub(r'(?<= id=")[^"]+|(?<="url\(#)[^)]+', number, text)
-        return re.sub(r' (?:d|transform)="[^"]*"', short, text)
-
-    def number(match: re.Match[str]) -> str:
-        return names.setdefault(match[0], f"{name}{len(names)}")
-
-    def short(match: re.Match[str]) -> str:
-        return re.sub(r"(\.\d\d)\d+", r"\1", match[0])
-
-    return re.sub(r"<[a-z][^>]*>", tag, svg)
+def write_picture(svg: str, files: Sequence[Path]) -> None:
+    """Write a drawing as files, ``.png`` or ``.svg`` by their endings."""
+    endings = {file: check_ending(file) for file in files}
+    for file, ending in endings.items():
+        data = pixels(svg) if ending == ".png" else svg.encode()
+        try:
+            with whole(file) as half:
+                half.write_bytes(data)
+        except OSError as error:
+            raise SolidgearError(
+                f"{file}: cannot be written ({error.strerror or error})"
+            ) from error
 
 
 def check_ending(file: Path, formats: Sequence[str] = FORMATS) -> str:
@@ -178,8 +161,13 @@ def check_ending(file: Path, formats: Sequence[str] = FORMATS) -> str:
     return ending
 
 
+def pixels(svg: str) -> bytes:
+    """Return a drawing as a PNG."""
+    return _pixel_library().svg_to_png(svg, scale=FINENESS)
+
+
 @cache
-def _drawing_library() -> Any:
+def _pixel_library() -> Any:
     """Return vl-convert with matplotlib's fonts, which are the same on every machine."""
     import vl_convert
 
@@ -200,6 +188,5 @@ def page_svg(name: str, make: Make) -> bytes | None:
         chart = make(width)
         if chart is None:
             return None
-        svg = chart.svg(f"{name}-{kind}-")
-        drawings.append(svg.replace('class="marks"', f'class="{kind}"', 1))
+        drawings.append(chart.svg(kind, f"{name}-{kind}-"))
     return "".join(drawings).encode()

@@ -9,14 +9,15 @@ import numpy as np
 
 from solidgear.core import DOF_NAMES
 from solidgear.core.quantity import BLOCK_UNITS
-from solidgear.show.sketch import draw
+from solidgear.show.panel import GREY, Panel, Series, curve
+from solidgear.show.plot import Chart, in_columns
+from solidgear.show.scales import Axis
+from solidgear.show.sketch import Sketch, draw
 from solidgear.show.table import Table
 from solidgear.show.words import bar_of, percent
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from solidgear.core import Body, Condensed, ModeSet, Scene
+    from solidgear.core import Body, Condensed, Mode, ModeSet, Scene
     from solidgear.core.judge.answer import Answered
     from solidgear.core.solve.condensed import Coupled
 
@@ -24,6 +25,8 @@ if TYPE_CHECKING:
 MOST_SHAPES = 6
 #: a motion this small beside the largest of its mode is not drawn
 SMALL = 0.05
+#: of motions along and about x, y and z
+COLOURS = ("#0072b2", "#00805e", "#c4541c")
 
 
 def scene(shaft: Scene) -> Table:
@@ -71,7 +74,7 @@ def _diameters(first: float, last: float) -> str:
     return " to ".join(f"{2e3 * r:.6g}" for r in dict.fromkeys((first, last)))
 
 
-def scene_figure(shaft: Scene) -> Figure | None:
+def scene_figure(shaft: Scene) -> Sketch | None:
     """Return the dimensioned section of the report."""
     return draw(shaft.as_dict())
 
@@ -100,7 +103,7 @@ def mode_set(modes: ModeSet) -> Table:
     )
 
 
-def mode_set_figure(modes: ModeSet, names: Sequence[str] = ()) -> Figure:
+def mode_set_figure(modes: ModeSet, names: Sequence[str] = ()) -> Chart:
     """Draw section motions of elastic modes along the shaft: translations, for torsion rotations.
 
     Parameters
@@ -108,32 +111,39 @@ def mode_set_figure(modes: ModeSet, names: Sequence[str] = ()) -> Figure:
     names : sequence of str
         Modes to draw, by name; the first few elastic ones by default.
     """
-    from matplotlib.figure import Figure
-
     elastic = [m for m in modes.modes if m.frequency_hz > 0]
     chosen = [modes.named(name) for name in names] if names else elastic[:MOST_SHAPES]
     drawn = [mode for mode in chosen if mode is not None]
     if not drawn or len(drawn) < len(chosen):
         raise ValueError(f"no such mode; there are {', '.join(modes.names)}")
-    figure = Figure(figsize=(7.0, 0.6 + 1.15 * len(drawn)), layout="constrained")
-    axes = figure.subplots(len(drawn), 1, sharex=True, squeeze=False)[:, 0]
+    panels = [_shape(modes, mode, last=mode is drawn[-1]) for mode in drawn]
+    return Chart(in_columns(panels, 1), 640.0)
+
+
+def _shape(modes: ModeSet, mode: Mode, last: bool) -> Panel:
+    """Draw section motions of a mode; those that are small beside the largest are left out."""
     y = 1e3 * modes.stations
-    for ax, mode in zip(axes, drawn):
-        moves, turns = np.abs(mode.motions[0]).max(axis=0).reshape(2, 3)
-        # turns of a bent line say what the line says; where it stays, as in torsion, they are all
-        bent = moves.max() > SMALL * turns.max() * np.ptp(modes.stations)
-        components = range(3) if bent else range(3, 6)
-        largest = (moves if bent else turns).max() or 1.0
-        for k in components:
-            if np.abs(mode.motions[0, :, k]).max() > SMALL * largest:
-                drawn_line = mode.motions[0, :, k] / largest
-                ax.plot(y, drawn_line, ".-", label=DOF_NAMES[k], markersize=4)
-        ax.axhline(0, color="#999999", lw=0.6)
-        ax.set(ylim=(-1.15, 1.15), yticks=[])
-        ax.set_title(f"{mode.name}, {mode.frequency_hz:.1f} Hz", loc="left", fontsize=9)
-        ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8, frameon=False)
-    axes[-1].set_xlabel("y, mm")
-    return figure
+    moves, turns = np.abs(mode.motions[0]).max(axis=0).reshape(2, 3)
+    # turns of a bent line say what the line says; where it stays, as in torsion, they are all
+    bent = moves.max() > SMALL * turns.max() * np.ptp(modes.stations)
+    components = range(3) if bent else range(3, 6)
+    largest = (moves if bent else turns).max() or 1.0
+    moving = [k for k in components if np.abs(mode.motions[0, :, k]).max() > SMALL * largest]
+    panel = Panel(
+        Axis("y, mm" if last else "", (float(y.min()), float(y.max()))),
+        Axis("", (-1.15, 1.15), ticks={}),
+        80.0,
+        f"{mode.name}, {mode.frequency_hz:.1f} Hz",
+        series={DOF_NAMES[k]: Series(COLOURS[k % 3]) for k in moving},
+        legend={"orient": "right", "symbolType": "stroke"},
+        left=10.0,
+        right=60.0,
+    )
+    panel.draw({"type": "rule", "color": GREY}, [{"y": 0.0}])
+    for k in moving:
+        line = curve(y, mode.motions[0, :, k] / largest, name=DOF_NAMES[k])
+        panel.draw({"type": "line", "strokeWidth": 1.5, "point": {"size": 14}}, line)
+    return panel
 
 
 def condensed(statics: Condensed, kind: str = "stiffness") -> Table:

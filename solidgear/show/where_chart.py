@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from solidgear.show.panel import GREY, PERCENT, Axis, Panel, readout
+from solidgear.show.panel import GREY, Panel, readout
 from solidgear.show.plot import BETWEEN, WIDE, Chart
+from solidgear.show.scales import HEAT, Axis, Shade, in_percent
 from solidgear.show.words import percent
 
 if TYPE_CHECKING:
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
 
 #: shares below this are all of one colour
 LEAST = 1e-4
+#: colours of shares
+SHADES = Shade("share", (LEAST, 1.0), HEAT)
 #: a shaft that is more slender than this is drawn with its radius stretched
 SLENDEREST = 7.0
 #: px; the most that a half section gets, and of paper that the number of a place takes
@@ -59,9 +62,9 @@ def _chart(record: WhereRecord, title: str, width: float) -> Chart:
         scale * stretch * top,
         right=12 + room - 1.04 * scale * length,
     )
-    legend: dict[str, Any] = {"orient": "top", "title": "share of the cell", "labelExpr": PERCENT}
-    legend["values"] = np.geomspace(LEAST, 1.0, 5).tolist()
-    _draw(panel, corners, shares, legend | {"gradientLength": min(room, 300.0)})
+    ticks = {value: in_percent(value) for value in np.geomspace(LEAST, 1.0, 5).tolist()}
+    legend = SHADES._replace(title="share of the cell", ticks=ticks, length=min(room, 300.0))
+    _draw(panel, corners, shares, legend)
     numbers = [
         {"x": 1e3 * along, "y": 1e3 * across, "y2": height, "text": str(number)}
         for number, ((_, along, across), height) in enumerate(zip(spots, heights), 1)
@@ -69,7 +72,7 @@ def _chart(record: WhereRecord, title: str, width: float) -> Chart:
     panel.draw("rule", [{key: row[key] for key in ("x", "y", "y2")} for row in numbers])
     labels = [{"x": row["x"], "y": row["y2"], "text": row["text"]} for row in numbers]
     panel.draw({"type": "point", "size": 300, "fill": "#ffffff", "stroke": GREY}, labels)
-    panel.draw({"type": "text", "baseline": "middle", "fontWeight": "bold"}, labels)
+    panel.draw({"type": "text", "fontWeight": "bold"}, labels)
     names = [
         f"{number}: {place.what}, y = {1e3 * along:.4g} mm, {100 * (place.share or 0.0):.2g} %"
         for number, (place, along, _) in enumerate(spots, 1)
@@ -92,14 +95,12 @@ def _inset(corners, shares, place: PlaceRecord, number: int, half: float) -> Pan
     inside = np.all((corners.min(axis=1) < high) & (corners.max(axis=1) > low), axis=1)
     across, height = (Axis("", ends, grid=False) for ends in zip(low.tolist(), high.tolist()))
     panel = Panel(across, height, CLOSE, f"{number}, {2e3 * half:.2g} mm wide", least=CLOSE)
-    _draw(panel, corners[inside], shares[inside], None)
+    _draw(panel, corners[inside], shares[inside], SHADES)
     return panel
 
 
-def _draw(panel: Panel, corners, shares, legend: Any) -> None:
+def _draw(panel: Panel, corners, shares, shades: Shade) -> None:
     """Draw cells in the colours of their shares, which can be read off."""
-    scale = {"type": "log", "domain": [LEAST, 1.0], "scheme": "yelloworangered", "clamp": True}
-    shade = {"field": "share", "type": "quantitative", "scale": scale, "legend": legend}
     sizes = np.abs(shares).clip(LEAST, None).tolist()
     rows = [
         {"x": x, "y": y, "detail": k, "share": sizes[k]}
@@ -107,7 +108,7 @@ def _draw(panel: Panel, corners, shares, legend: Any) -> None:
         for x, y in cell
     ]
     mark = {"type": "line", "interpolate": "linear-closed", "stroke": "#808080"}
-    panel.draw(mark | {"strokeWidth": 0.5}, rows, fill=shade)
+    panel.draw(mark | {"strokeWidth": 0.5}, rows, shades)
     places = [
         {"x": x, "y": y, "readout": _words(x, y, share)}
         for (x, y), share in zip(corners.mean(axis=1).tolist(), shares)

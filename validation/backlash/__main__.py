@@ -11,8 +11,9 @@ import sys
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from solidgear.show.panel import GREY, Axis, Panel, Series
+from solidgear.show.panel import GREY, Panel, Series
 from solidgear.show.plot import Chart
+from solidgear.show.scales import Axis
 from solidgear.show.words import capital
 from validation.backlash import axle, gears, pairs
 from validation.common import ROOT, kept, markdown, read_result, stamp

@@ -28,8 +28,7 @@ class Limits:
     wall : float
         Seconds of wall time, for what waits without computing or computes in another process.
     room : int
-        Bytes that it may add to the process. Address space that is only reserved is not counted: what
-        draws charts reserves 33 GB, and ends the process where it cannot.
+        Bytes that it may add to the process. Address space that is only reserved is not counted.
     """
 
     cpu: float = 30.0

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from solidgear.show.panel import PERCENT, SHAPES, Axis, Panel, Series, tolerance_line
+from solidgear.show.panel import SHAPES, Panel, Series, tolerance_line
 from solidgear.show.plot import Chart
+from solidgear.show.scales import Axis, in_percent
 from validation.race import real_lines as lines
 from validation.race.real_costs import QUANTITIES, Row, errors, references
 
@@ -51,7 +52,7 @@ def draw(rows: Sequence[Row], part: str, path: Path, target: float = 1e-3) -> No
             costs = [r[cost] for r in own]
             panel = Panel(
                 Axis(words, (min(costs) / 1.5, max(costs) * 1.5), log=True),
-                Axis(WORDS[what], HEIGHTS, log=True, label=PERCENT),
+                Axis(WORDS[what], HEIGHTS, log=True, label=in_percent),
                 250.0,
                 series=series,
                 legend=None if len(panels) > 1 or panels[0] else {"orient": "top", "columns": 2},

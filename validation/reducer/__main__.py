@@ -10,8 +10,9 @@ from dataclasses import asdict
 
 import numpy as np
 
-from solidgear.show.panel import INK, Axis, Panel, Series
+from solidgear.show.panel import INK, Panel, Series
 from solidgear.show.plot import Chart
+from solidgear.show.scales import Axis
 from validation.common import ROOT, kept, markdown, read_result, stamp
 from validation.reducer import claims, spectra
 from validation.reducer.checks import checked

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from solidgear.backlash.sheet import waterfall
-from solidgear.show.panel import Axis, Panel, Series
+from solidgear.show.panel import Panel, Series
 from solidgear.show.plot import Chart
+from solidgear.show.scales import Axis
 from validation.reducer.design import Design
 from validation.reducer.dynamics import EVERY, RUNOUT, STEPS, amplitudes, moved
 from validation.reducer.multibody import Reducer

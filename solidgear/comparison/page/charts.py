@@ -14,19 +14,10 @@ from solidgear.comparison.race.race import CHARTED
 from solidgear.core import COMPLIANCE, Quantity, Record
 from solidgear.core.judge.record import LevelRecord, ModelRecord, ModeRecord, relative_change
 from solidgear.show.mode_charts import mac_panel
-from solidgear.show.panel import (
-    GREY,
-    PERCENT,
-    SHAPES,
-    Axis,
-    Panel,
-    Series,
-    readout,
-    tolerance_line,
-    wrapped,
-)
+from solidgear.show.panel import GREY, SHAPES, Panel, Series, readout, tolerance_line, wrapped
 from solidgear.show.plot import NARROW, WIDE, Chart, in_columns, page_svg
-from solidgear.show.sketch_page import sketch_svg
+from solidgear.show.scales import Axis, in_percent
+from solidgear.show.sketch import sketch_svg
 from solidgear.show.where_chart import where_chart
 from solidgear.show.words import grouped, hertz, percent, seconds, small
 from solidgear.variants.budget.chart import of_record as budget_chart
@@ -90,7 +81,7 @@ def _convergence(name: str, model: ModelRecord, quantity: Quantity) -> Panel | N
     ticks = {x: _tick(along, x) for x in xs}  # at the meshes: three seldom span a decade
     panel = Panel(
         Axis(AXIS[along], (min(xs) / 1.25, max(xs) * 1.25), log=True, ticks=ticks),
-        Axis("distance from extrapolated", (low, high), log=True, label=PERCENT),
+        Axis("distance from extrapolated", (low, high), log=True, label=in_percent),
         180,
         f"{name}, {quantity}",
     )
@@ -99,8 +90,12 @@ def _convergence(name: str, model: ModelRecord, quantity: Quantity) -> Panel | N
         panel.draw({"type": "rect", "color": colour, "opacity": 0.12}, [{"y": low, "y2": bar.gci}])
         panel.draw({"type": "rule", "color": colour, "strokeDash": [5, 3]}, [{"y": bar.gci}])
         factor = "" if bar.factor is None else f", factor {small(bar.factor)}"
-        label = {"y": bar.gci, "text": f"error bar {percent(bar.gci, signed=False)}{factor}"}
-        panel.draw({"type": "text", "align": "left", "dy": -7, "dx": 4}, [label], x={"value": 0})
+        label = {
+            "x": panel.x.ends[0],
+            "y": bar.gci,
+            "text": f"error bar {percent(bar.gci, signed=False)}{factor}",
+        }
+        panel.draw({"type": "text", "align": "left", "dy": -7, "dx": 4}, [label])
     line = {"type": "line", "color": colour, "strokeWidth": 1.5}
     panel.draw(line, [{"x": spot["x"], "y": spot["y"]} for spot in spots])
     point = {"type": "point", "filled": True, "color": colour, "size": 55}
@@ -180,7 +175,7 @@ def mode_chart(record: Record, width: float = WIDE) -> Chart | None:
         sizes = [0.0, *(row["y"] for row in differences)]
         reach = 0.08 * (max(sizes) - min(sizes)) or 1.0
         words, ends = f"against {record.name(record.reference)}", (min(sizes), max(sizes))
-        axis = Axis(words, (ends[0] - reach, ends[1] + reach), label=PERCENT)
+        axis = Axis(words, (ends[0] - reach, ends[1] + reach), label=in_percent)
         panels.append(_stems(axis, LOW, labels, families, differences, series, None, turned))
     return Chart(in_columns(panels, 1), width)
 
@@ -266,7 +261,7 @@ def _cost(record: Record, quantity: Quantity) -> Panel | None:
             f"{quantity}: distance from reference",
             (min(errors) / 2.5, max(errors) * 5),
             log=True,
-            label=PERCENT,
+            label=in_percent,
         ),
         230,
     )
@@ -293,7 +288,7 @@ def _cost(record: Record, quantity: Quantity) -> Panel | None:
             "size": 80,
         }
         panel.draw(mark, [{**place, "readout": words}])
-        text = {"type": "text", "align": "left", "baseline": "middle", "dx": 10}
+        text = {"type": "text", "align": "left", "dx": 10}
         panel.draw(text, [{**place, "text": name + (f"\n({remarks})" if remarks else "")}])
     return panel
 
@@ -322,7 +317,7 @@ def _bars(
     names = {float(i): "\n".join(wrapped(name, margin - 10)) for i, name in enumerate(labels)}
     lines = max(name.count("\n") + 1 for name in names.values())
     panel = Panel(
-        Axis(words, ends, label=PERCENT),
+        Axis(words, ends, label=in_percent),
         Axis("", (len(labels) - 0.5, -0.5), ticks=names, grid=False),
         max(BAR * len(columns) + 6, 15 * lines) * len(labels),
         series={name: Series(colour) for name, colour in SHOWN.items() if name in columns},
@@ -344,7 +339,7 @@ def _bars(
             figures.append({"x": value, "y": y, "text": change})
     panel.draw({"type": "rect", "strokeWidth": 0}, bars)
     panel.draw({"type": "rule", "color": GREY}, [{"x": 0}])
-    text = {"type": "text", "baseline": "middle"}
+    text = {"type": "text"}
     right = [figure for figure in figures if figure["x"] >= 0]
     left = [figure for figure in figures if figure["x"] < 0]
     panel.draw(text | {"align": "left", "dx": 3}, right)
@@ -378,7 +373,7 @@ def attachment_chart(record: Record, width: float = WIDE) -> Chart | None:
     return _bars(labels, columns, "relative to averaged ties of the same model", width)
 
 
-#: those that are described in Vega-Lite, for a page of a width
+#: those of panels, for a page of a width
 DESCRIBED: dict[str, Callable[[Record, float], Chart | None]] = {
     "budget": budget_chart,
     "modes": mode_chart,

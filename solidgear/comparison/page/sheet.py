@@ -150,10 +150,18 @@ def _closing(record: Record) -> list[str]:
     if trusted and counted:
         lines.append(f"{record.title(trusted)}: {counted[0].lower()}{counted[1:]}")
     if record.seconds_total is not None:
-        peak = ""
-        if record.peak_mb is not None:
-            peak = f", peak memory {record.peak_mb:.0f} MB"
-            if record.expected_peak_mb is not None:
-                peak += f" ({record.expected_peak_mb:.0f} MB estimated)"
-        lines.append(f"Solved in {seconds(record.seconds_total)} s{peak}.")
+        lines.append(_taken(record))
     return lines
+
+
+def _taken(record: Record) -> str:
+    """Return the sentence on seconds and peak memory of a run, and of its solution alone."""
+    time, memory = f"Took {seconds(record.seconds_total)} s", ""
+    if record.seconds_solved is not None:
+        time += f" (solving: {seconds(record.seconds_solved)} s)"
+    if record.peak_mb_total is not None and record.peak_mb is not None:
+        memory = f", peak memory {record.peak_mb_total:.0f} MB (solving: {record.peak_mb:.0f} MB"
+        if record.expected_peak_mb is not None:
+            memory += f", {record.expected_peak_mb:.0f} MB estimated"
+        memory += ")"
+    return f"{time}{memory}."

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import time
 from collections.abc import Callable, Iterable
 from functools import partial
 from pathlib import Path
@@ -10,6 +11,8 @@ from typing import TypeVar
 
 from solidgear.comparison.page.html import drawn_charts, write_report
 from solidgear.core import FIRST_BENDING, ModeSet, Quantity, Record, Solution
+from solidgear.core.machine.memory import family_mb
+from solidgear.core.machine.meter import Meter
 from solidgear.show.folder import begun
 from solidgear.show.outputs import OUTPUTS
 from solidgear.show.page_parts import data_uri
@@ -28,18 +31,21 @@ def write_all(
     out: str | os.PathLike,
     *,
     renders: bool,
+    began: float,
     progress: Callable[[str], None],
 ) -> Path:
     """Write results.json, renders, files for other programs and the report; see
     :meth:`solidgear.comparison.models.Comparison.write_report`.
 
+    The run has taken what has passed since it `began`, by ``time.perf_counter``.
     The record gains ``files``, what was written beside it, and ``left_out``, a sentence for what
     could not be drawn or written. After an interrupt there are numbers and a report, and no shapes:
     who has pressed Ctrl-C does not want to wait for them.
     """
     record.left_out = []
     shapes = solutions if record.complete else {}
-    with begun(out) as folder:
+    meter = Meter(family_mb)
+    with begun(out) as folder, meter.stage("report"):
         # Numbers first: whatever happens to pictures, they are there.  What is about to be
         # written is listed before it is.
         record.files = [
@@ -71,6 +77,9 @@ def write_all(
         record.files = [
             name for name in record.files if name == "report.html" or (folder / name).exists()
         ]
+        record.seconds_total = time.perf_counter() - began
+        peaks = [peak for peak in (record.peak_mb, meter.peak_mb) if peak is not None]
+        record.peak_mb_total = max(peaks, default=None)
         write_json(folder / "results.json", record.as_dict())
         write_report(record, folder, drawn=drawn)
     return folder

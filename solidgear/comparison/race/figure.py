@@ -8,19 +8,9 @@ from typing import Any, NamedTuple
 
 from solidgear.comparison.race.race import AUTOMATIC, COSTS, Race, Row
 from solidgear.core import Quantity
-from solidgear.show.panel import (
-    COUNT,
-    GREY,
-    INK,
-    NUMBER,
-    PERCENT,
-    SHAPES,
-    Axis,
-    Panel,
-    readout,
-    tolerance_line,
-)
+from solidgear.show.panel import GREY, INK, SHAPES, Panel, readout, tolerance_line
 from solidgear.show.plot import WIDE, Chart
+from solidgear.show.scales import Axis, in_percent, number, with_prefix
 from solidgear.show.words import grouped, is_number, percent, seconds
 
 QUANTITY = {"C_zz": "port compliance C_zz", "bending 1": "first bending frequency"}
@@ -77,13 +67,13 @@ class Look:
 
     @property
     def line(self) -> dict[str, Any]:
-        """Line through the levels in Vega-Lite."""
+        """Looks of the line through the levels."""
         dash, width = ([5, 3], 1.0) if self.series.endswith("uniform") else ([1, 0], 1.5)
         return {"color": self.colour, "strokeDash": dash, "strokeWidth": width}
 
     @property
     def marks(self) -> dict[str, Any]:
-        """Markers in Vega-Lite; empty ones mean like for like."""
+        """Looks of the markers; empty ones mean like for like."""
         kind, fill = self.series.removesuffix(" uniform").removesuffix(" graded"), self.colour
         if self.series.endswith("uniform"):
             parts = (int(self.colour[k : k + 2], 16) for k in (1, 3, 5))
@@ -130,11 +120,11 @@ class _Errors:
         costs = [row.costs[self.cost] for row in self.race.rows if row.status in ("ok", "failed")]
         positive = [value for value in costs if value] or [1.0]
         right = max(max(positive) * 2.2, 1.5 * self.race.reference.costs[self.cost])
-        label = COUNT if self.cost == "unknowns" else NUMBER
+        label = with_prefix if self.cost == "unknowns" else number
         error = f"error of {QUANTITY.get(self.quantity, self.quantity)}"
         self.panel = Panel(
             Axis(COSTS[self.cost], (min(positive) / 2.2, right), log=True, label=label),
-            Axis(error, (self.low, self.top), log=True, label=PERCENT),
+            Axis(error, (self.low, self.top), log=True, label=in_percent),
             290.0,
             left=72.0,
         )
@@ -170,9 +160,9 @@ class _Errors:
         setup = sum(race.setup.values())
         if self.cost == "seconds" and left < setup < right:
             panel.draw({"type": "rule", "color": GREY, "strokeDash": [1, 2]}, [{"x": setup}])
-            look = {"type": "text", "angle": -90, "align": "right", "dy": -6} | SMALL
-            words = {"x": setup, "text": "set-up, once a process"}
-            panel.draw(look | {"color": GREY}, [words], y={"value": 4})
+            look = {"type": "text", "angle": -90, "align": "right", "dx": -4, "dy": -6} | SMALL
+            words = {"x": setup, "y": panel.y.ends[1], "text": "set-up, once a process"}
+            panel.draw(look | {"color": GREY}, [words])
         return panel
 
     def _draw_bar(self) -> None:
@@ -184,7 +174,8 @@ class _Errors:
         below = "" if self.bar > self.low else ", below this axis"
         words = f"error bar of the reference {percent(self.bar, signed=False)}{below}"
         look = {"type": "text", "color": REFERENCE, "align": "left", "dx": 4, "dy": -7} | SMALL
-        self.panel.draw(look, [{"y": floor, "text": words}], x={"value": 0})
+        place = {"x": self.panel.x.ends[0], "y": floor}
+        self.panel.draw(look, [{**place, "text": words}])
 
     def _draw_front(self) -> None:
         """Draw the Pareto front as steps, from the top of the panel to its right end."""
@@ -295,7 +286,7 @@ LINE, COLUMN = 17.0, 215.0
 
 
 class Entry(NamedTuple):
-    """A line of the legend: words, line and marker, both in Vega-Lite."""
+    """A line of the legend: words, looks of a line and of a marker."""
 
     words: str
     line: dict[str, Any] | None = None
@@ -348,7 +339,7 @@ def legend(race: Race, width: float) -> Panel:
         LINE * (high + 1),
     )
     x, y = 0, 0
-    text = {"type": "text", "align": "left", "baseline": "middle", "color": INK}
+    text = {"type": "text", "align": "left", "color": INK}
     for entry, count in zip(entries, counts):
         if y + count > high:
             x, y = x + 1, 0

@@ -7,8 +7,9 @@ from functools import partial
 from itertools import cycle
 from typing import Any, NamedTuple
 
-from solidgear.show.panel import INK, PERCENT, Axis, Panel, Series, readout, wrapped
+from solidgear.show.panel import INK, Panel, Series, readout, wrapped
 from solidgear.show.plot import NARROW, WIDE, Chart
+from solidgear.show.scales import Axis, in_percent
 from solidgear.show.table import Column, Table, text
 from solidgear.show.words import hertz
 
@@ -53,7 +54,7 @@ def shares_chart(modes: Sequence[tuple[str, Sequence[Bar]]], width: float = WIDE
     names = {float(k): "\n".join(wrapped(name, margin - 10)) for k, (name, _) in enumerate(modes)}
     lines = max(name.count("\n") + 1 for name in names.values())
     panel = Panel(
-        Axis("share of the strain energy", (low, 1.0), label=PERCENT),
+        Axis("share of the strain energy", (low, 1.0), label=in_percent),
         Axis("", (len(modes) - 0.5, -0.5), ticks=names, grid=False),
         max(BAR * most + 8, 15 * lines + 2) * len(modes),
         series={place: Series(colour) for place, colour in _colours(places).items()},
@@ -69,7 +70,7 @@ def shares_chart(modes: Sequence[tuple[str, Sequence[Bar]]], width: float = WIDE
         pieces += [
             piece for y, bar in zip(heights, bars) for piece in _pieces(bar, y, 0.45 * thick)
         ]
-    panel.draw({"type": "text", "baseline": "middle", "fontSize": 10}, letters)
+    panel.draw({"type": "text", "fontSize": 10}, letters)
     panel.draw({"type": "rect", "strokeWidth": 0}, pieces)
     for colour in (INK, "#ffffff"):
         labelled = [
@@ -80,7 +81,7 @@ def shares_chart(modes: Sequence[tuple[str, Sequence[Bar]]], width: float = WIDE
             for p in labelled
             if (size := p["x2"] - p["x"]) >= WORTH_A_FIGURE
         ]
-        look = {"type": "text", "baseline": "middle", "fontSize": 9, "color": colour}
+        look = {"type": "text", "fontSize": 9, "color": colour}
         panel.draw(look, figures)
     return Chart([[panel]], width)
 

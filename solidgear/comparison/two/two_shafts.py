@@ -36,12 +36,12 @@ from solidgear.core.judge.quantities import in_order, judged
 from solidgear.core.plain import plain
 from solidgear.guards.one_shaft import OneShaft, Progress, one_shaft
 from solidgear.show.open_words import interval
-from solidgear.show.panel import GREY, Axis, Panel, Series, curve, lines_legend, readout
+from solidgear.show.panel import GREY, Panel, Series, curve, lines_legend, readout
 from solidgear.show.plot import BETWEEN, NARROW, WIDE, Chart, in_columns
 from solidgear.show.run_tables import pairs_of
+from solidgear.show.scales import Axis
 from solidgear.show.sheet import Section, Sheet
-from solidgear.show.sketch import extent
-from solidgear.show.sketch_page import sketch_svg
+from solidgear.show.sketch import extent, sketch_svg
 from solidgear.show.table import Cell, Column, Table, text, word
 from solidgear.show.units import ENGINEERING, Units
 from solidgear.show.words import hertz, is_number, percent

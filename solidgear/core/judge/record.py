@@ -515,7 +515,10 @@ class Record(Part):
     environment: Facts = {}
     images: dict[str, str] = {}
     warnings: list[str] = []
+    #: of the whole run, with its report, and of all processes; and of the solution alone
     seconds_total: Number = None
+    peak_mb_total: Number = None
+    seconds_solved: Number = None
     peak_mb: Number = None
     expected_peak_mb: Number = None
     left_out: list[str] = []

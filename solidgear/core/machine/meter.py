@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from solidgear.core.machine.memory import resident_mb
@@ -21,7 +21,8 @@ def processor_seconds() -> float:
 class Meter:
     """``seconds`` per stage and the peak resident memory over all of them, ``peak_mb`` (MB of 2**20 bytes).
 
-    Memory is that of the whole process, sampled every 20 ms while a stage runs.
+    Memory is that of the whole process, or what `memory` says, sampled every 20 ms while a stage
+    runs.
 
     Examples
     --------
@@ -32,7 +33,8 @@ class Meter:
     ['solve', 'total']
     """
 
-    def __init__(self):
+    def __init__(self, memory: Callable[[], float | None] = resident_mb):
+        self.memory = memory
         self.seconds: dict[str, float] = {}
         self.peak_mb: float | None = None
 
@@ -43,7 +45,7 @@ class Meter:
 
         def watch():
             while True:
-                resident = resident_mb()
+                resident = self.memory()
                 if resident is None:
                     return
                 self.peak_mb = max(self.peak_mb or 0.0, resident)

@@ -10,8 +10,9 @@ import numpy as np
 
 from solidgear.core import DOF_NAMES, listed
 from solidgear.show.command import caution
-from solidgear.show.panel import GREY, Axis, Panel, Series, curve, lines_legend, readout
+from solidgear.show.panel import GREY, Panel, Series, curve, lines_legend, readout
 from solidgear.show.plot import NARROW, WIDE, Chart, Make, in_columns
+from solidgear.show.scales import Axis
 from solidgear.show.sheet import Sheet, Terminal
 from solidgear.show.table import Cell, Column, Table, numbers, quantity, text, word
 from solidgear.show.units import ENGINEERING, Units
@@ -442,8 +443,8 @@ def _panel(
     for bearing in reference.bearings:
         place = float(units.values(np.array([bearing.place]), "m")[0])
         panel.draw({"type": "rule", "color": GREY, "strokeDash": [2, 3]}, [{"x": place}])
-        name = {"type": "text", "color": GREY, "align": "left", "dx": 3, "dy": -85}
-        panel.draw(name, [{"x": place, "text": bearing.name}], y={"value": 95})
+        name = {"type": "text", "color": GREY, "align": "left", "dx": 3, "dy": 10}
+        panel.draw(name, [{"x": place, "y": panel.y.ends[1], "text": bearing.name}])
     for model in shafts:
         panel.draw("line", curve(along[model], moved[model], name=model))
         read = curve(along[model], moved[model])

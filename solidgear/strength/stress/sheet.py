@@ -11,8 +11,9 @@ from typing import Any
 import numpy as np
 
 from solidgear.core import listed
-from solidgear.show.panel import GREY, Axis, Panel, Series, curve, readout
+from solidgear.show.panel import GREY, Panel, Series, curve, readout
 from solidgear.show.plot import WIDE, Chart
+from solidgear.show.scales import Axis
 from solidgear.show.sheet import Sheet, Terminal
 from solidgear.show.table import Cell, Column, Table, quantity, text, word
 from solidgear.show.units import ENGINEERING, Units, plain

@@ -12,7 +12,7 @@ from solidgear.show.page_parts import figures
 from solidgear.show.plot import Make
 from solidgear.show.run_tables import pairs_of
 from solidgear.show.sheet import Section, Sheet, Terminal
-from solidgear.show.sketch_page import sketch_svg
+from solidgear.show.sketch import sketch_svg
 from solidgear.show.table import Column, Table, text
 from solidgear.show.units import GROUP, Units
 from solidgear.show.viewer import viewer_fragment

@@ -9,17 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solidgear.show.panel import (
-    Axis,
-    Panel,
-    Series,
-    curve,
-    lines_legend,
-    log_ticks,
-    read_places,
-    readout,
-)
+from solidgear.show.panel import Panel, Series, curve, lines_legend, read_places, readout
 from solidgear.show.plot import BETWEEN, NARROW, WIDE, Chart, in_columns
+from solidgear.show.scales import Axis, log_ticks
 from solidgear.show.units import ENGINEERING, Units, plain
 from solidgear.show.words import hertz
 from solidgear.trains.page.tables import turned
@@ -297,5 +289,5 @@ def _peaks(
         if hz >= first and np.log(hz) - before >= APART * pixel:
             before = np.log(hz)
             labelled.append({"x": hz, "y": units.value(size, si), "text": f"{mode}  {hz:.0f} Hz"})
-    look = {"type": "text", "angle": -90, "align": "left", "baseline": "middle", "dx": 7}
+    look = {"type": "text", "angle": -90, "align": "left", "dx": 7}
     panel.draw(look | {"fontSize": 10}, labelled)

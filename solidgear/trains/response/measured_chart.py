@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.show.panel import GREY, INK, Axis, Panel, Series, curve, read_places, readout
+from solidgear.show.panel import GREY, INK, Panel, Series, curve, read_places, readout
 from solidgear.show.plot import NARROW, WIDE, Chart
+from solidgear.show.scales import Axis
 from solidgear.show.units import ENGINEERING, Units, plain
 from solidgear.show.words import hertz
 from solidgear.trains.assembly.shaft import mix_label
@@ -130,7 +131,7 @@ def _names(
         free = all(abs(peak.frequency_hz - label["x"]) >= APART * pixel for label in labels)
         if free and peak.frequency_hz <= ends[1]:
             labels.append({"x": peak.frequency_hz, "y": peak.amplitude, "text": peak.name})
-    look = {"type": "text", "angle": -90, "align": "left", "baseline": "middle", "dx": 7}
+    look = {"type": "text", "angle": -90, "align": "left", "dx": 7}
     panel.draw(look | {"fontSize": 10}, labels)
 
 

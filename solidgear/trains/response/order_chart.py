@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from solidgear.show.panel import INK, Axis, Panel, read_places, readout
+from solidgear.show.panel import INK, Panel, read_places, readout
 from solidgear.show.plot import NARROW, WIDE, Chart
+from solidgear.show.scales import VIRIDIS, Axis, Shade, log_ticks, number
 from solidgear.show.units import ENGINEERING, Units, plain
 from solidgear.show.words import hertz
 from solidgear.trains.assembly.orders import OrderLine, OrderMap
@@ -73,7 +74,7 @@ def _mode_names(panel: Panel, orders: OrderMap, letter: int) -> None:
         {"x": row["x2"], "y": row["y2"], "text": f"{mode.name}  {mode.frequency_hz:.0f} Hz"}
         for mode, row in zip(order, rows)
     ]
-    look = {"type": "text", "align": "left", "baseline": "middle", "dx": 3, "fontSize": letter}
+    look = {"type": "text", "align": "left", "dx": 3, "fontSize": letter}
     panel.draw(look, names)
 
 
@@ -191,20 +192,15 @@ def _pieces(
         for k in range(len(middle))
     ]
     top = units.value(float(largest), "N") or largest
-    scale = {"type": "log", "scheme": "viridis", "reverse": True, "clamp": True}
-    legend = {
-        "orient": "bottom",
-        "title": f"mesh force along an order, {units.unit('N')}",
-        "gradientLength": 250,
-        "tickCount": 4,
-    }
+    low = top * 10**-DECADES
     panel.draw(
         {"type": "rule", "strokeCap": "round"},
         rows,
-        color={
-            "field": "force",
-            "type": "quantitative",
-            "scale": scale | {"domain": [top * 10**-DECADES, top]},
-            "legend": legend,
-        },
+        Shade(
+            "force",
+            (low, top),
+            VIRIDIS[::-1],
+            f"mesh force along an order, {units.unit('N')}",
+            {value: number(value) for value in log_ticks(low, top)},
+        ),
     )

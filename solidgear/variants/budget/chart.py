@@ -7,8 +7,9 @@ from typing import Any
 
 from solidgear.core import OpenNumbers, Record
 from solidgear.show.open_words import ALL, SHOWN, interval
-from solidgear.show.panel import GREY, PERCENT, Axis, Panel, Series, readout
+from solidgear.show.panel import GREY, Panel, Series, readout
 from solidgear.show.plot import NARROW, WIDE, Chart
+from solidgear.show.scales import Axis, in_percent
 
 #: in the order of the inputs, the colours in turn
 COLOURS = ("#0072b2", "#d55e00", "#00805e", "#8a6d3b", "#b3305c", "#5a3e8c", "#9cc9e6", "#e0a030")
@@ -40,7 +41,7 @@ def budget_chart(
     low, high = min(p["x"] for p in pieces), max(p["x2"] for p in pieces)
     room = 0.03 * (high - low) or 0.01
     panel = Panel(
-        Axis("change of the number", (low - room, high + room), label=PERCENT),
+        Axis("change of the number", (low - room, high + room), label=in_percent),
         Axis(
             "",
             (len(numbers) - 0.5, -0.5),

@@ -10,8 +10,9 @@ import typer
 
 from solidgear.show.command import command
 from solidgear.show.options import AUTO, BY_MODEL, AutoChoice, Run, relative
-from solidgear.show.panel import GREY, Axis, Panel, Series, readout
+from solidgear.show.panel import GREY, Panel, Series, readout
 from solidgear.show.plot import WIDE, Chart
+from solidgear.show.scales import Axis
 from solidgear.show.sheet import Sheet, Terminal, present
 from solidgear.show.table import NUMBER, Column, Table, text
 from solidgear.variants.optimise.optimise import Design, Optimum

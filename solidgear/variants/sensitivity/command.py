@@ -11,8 +11,9 @@ import typer
 
 from solidgear.show.command import Progress, command
 from solidgear.show.options import Fixed, SceneFile, Shown, options
-from solidgear.show.panel import PERCENT, Axis, Panel, Series, readout, wrapped
+from solidgear.show.panel import Panel, Series, readout, wrapped
 from solidgear.show.plot import NARROW, WIDE, Chart
+from solidgear.show.scales import Axis, in_percent
 from solidgear.show.sheet import Sheet, Terminal, present
 from solidgear.show.table import Column, Table, text
 from solidgear.show.units import Units, units_named
@@ -174,7 +175,7 @@ def chart(number: OfNumber, width: float = WIDE) -> Chart | None:
     thick = max(BAR, 15.0 * max(name.count("\n") + 1 for name in names.values()) + 2)
     top = 1.05 * abs(rows[0].elasticity) / 100
     panel = Panel(
-        Axis(f"change of {number.name} for 1 % more", (-top, top), label=PERCENT),
+        Axis(f"change of {number.name} for 1 % more", (-top, top), label=in_percent),
         Axis("", (len(rows) - 0.5, -0.5), ticks=names, grid=False),
         thick * len(rows),
         series={UP: Series("#0072b2"), DOWN: Series("#b3305c")},

@@ -12,8 +12,9 @@ import numpy as np
 from solidgear.core import Settled
 from solidgear.core.plain import plain
 from solidgear.show.command import caution
-from solidgear.show.panel import Axis, Panel, Series, readout
+from solidgear.show.panel import Panel, Series, readout
 from solidgear.show.plot import NARROW, WIDE, Chart, Make, in_columns
+from solidgear.show.scales import Axis
 from solidgear.show.settled import over_the_sweep
 from solidgear.show.sheet import Sheet, Terminal
 from solidgear.show.table import NUMBER, Column, Table, text
@@ -341,7 +342,7 @@ def _draw_names(
         if np.isfinite(y[-1]) and y[-1] >= last + step:
             last = float(y[-1])
             rows.append({"x": float(curves.x[-1]), "y": last, "text": curve.words[-1]})
-    look = {"type": "text", "align": "left", "baseline": "middle", "dx": 6, "fontSize": 10}
+    look = {"type": "text", "align": "left", "dx": 6, "fontSize": 10}
     panel.draw(look, rows)
 
 
