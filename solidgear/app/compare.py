@@ -7,15 +7,17 @@ from typing import Annotated
 
 import typer
 
-from solidgear.comparison.models import check_models
+from solidgear.comparison.models import check_models, nothing
 from solidgear.comparison.models import compare as compared
 from solidgear.comparison.page.sheet import sheet
+from solidgear.comparison.page.write import Pictures
 from solidgear.core import ELEMENTS, LADDER, is_train, listed
 from solidgear.core import load as read
 from solidgear.core.machine.start import BEGUN
 from solidgear.show.command import Progress, command
 from solidgear.show.folder import held
 from solidgear.show.options import MODEL, SceneFile, Shown, options_by_name, refuse
+from solidgear.show.render import Drawing
 from solidgear.show.sheet import Sheet, present
 
 
@@ -121,12 +123,18 @@ def compare(
         chosen.setdefault("solid", {})["element"] = solid_element
 
     def study(progress: Progress) -> Sheet:
-        with held(out):
-            comparison = compared(loaded, names, settings=chosen, progress=progress)
+        with held(out), Drawing() as drawing:
+            pictures = Pictures(drawing, out)
+            if renders:
+                drawing.begin()
+            solved = pictures.begin_early if renders else nothing
+            comparison = compared(loaded, names, settings=chosen, progress=progress, solved=solved)
             comparison.began = BEGUN  # imports and reading count as well
             complete = comparison.record.complete
             drawn = renders and complete
-            comparison.write_report(out, renders=drawn, units=run.units, progress=progress)
+            comparison.write_report(
+                out, renders=drawn, units=run.units, progress=progress, pictures=pictures
+            )
             if chart and complete:
                 from solidgear.comparison.race.command import run_chart  # start-up: for --chart
 

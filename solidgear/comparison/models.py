@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, overload
 
-from solidgear.comparison.page.write import write_all
+from solidgear.comparison.page.write import Pictures, write_all
 from solidgear.comparison.recording import Findings, recorded
 from solidgear.core import (
     HARMONIC,
@@ -44,6 +44,11 @@ if TYPE_CHECKING:
 
 log = logging.getLogger(__name__)
 Progress = Callable[[str], None]
+Solved = Callable[[str, Solution], None]
+
+
+def nothing(model: str, solution: Solution) -> None:
+    """Do nothing with a solution."""
 
 
 @dataclass(repr=False)
@@ -70,6 +75,7 @@ class Comparison(Displayed):
         renders: bool = True,
         units: str = "engineering",
         progress: Progress = lambda _: None,
+        pictures: Pictures | None = None,
     ) -> Path:
         """Write results.json, report.html, mode_*.png and files for other programs into a folder.
 
@@ -83,6 +89,8 @@ class Comparison(Displayed):
             Units of the page; results.json is SI always.
         progress : callable
             Called with a sentence at every step.
+        pictures : Pictures, optional
+            Those that were begun while models were being solved.
 
         Returns
         -------
@@ -102,6 +110,7 @@ class Comparison(Displayed):
             renders=renders,
             began=self.began,
             progress=progress,
+            pictures=pictures,
         )
 
 
@@ -116,6 +125,7 @@ def compare(
     *,
     settings: dict[str, dict] | None = None,
     progress: Progress = ...,
+    solved: Solved = ...,
 ) -> Comparison: ...
 
 
@@ -126,6 +136,7 @@ def compare(
     *,
     settings: dict[str, dict] | None = None,
     progress: Progress = lambda _: None,
+    solved: Solved = nothing,
 ) -> Comparison | TwoShafts:
     """Solve a scene with several models and compare them; or two scenes beside each other.
 
@@ -144,6 +155,8 @@ def compare(
         mesh fix it: that mesh and two coarser ones are solved.
     progress : callable
         Called with a sentence at every step.
+    solved : callable
+        Called with the name and the solution of every model as soon as it is there.
 
     Returns
     -------
@@ -196,7 +209,7 @@ def compare(
     overall, began = Meter(), time.perf_counter()
     with overall.stage("all"), one_run() as run:
         try:
-            _run(scene, models, options, findings, progress)
+            _run(scene, models, options, findings, progress, solved)
             progress("what the data leave open")
             findings.open_ = _opened(scene)
         except KeyboardInterrupt:
@@ -218,7 +231,9 @@ def _opened(scene: Scene) -> OpenNumbers:
     return opened(scene)
 
 
-def _run(scene: Scene, models, options, findings: Findings, progress: Progress) -> None:
+def _run(
+    scene: Scene, models, options, findings: Findings, progress: Progress, solved: Solved
+) -> None:
     lumped = bool(set(LADDER.of(LUMPED)) & set(models))
     # a model that was named is reported where it does not fit
     bodies = LADDER.fit(scene) if set(models) >= set(LADDER.names) else LADDER.bodies
@@ -241,6 +256,7 @@ def _run(scene: Scene, models, options, findings: Findings, progress: Progress) 
             log.warning("%s failed: %s", model, findings.failed[model])
             continue
         findings.solutions[model] = solution
+        solved(model, solution)
         # A dearer solid's lumped models are those of the cheaper one within error bars, at ten times
         # the price.
         if lumped and not _after_a_solid(model, findings.lumped):

@@ -43,24 +43,28 @@ def _main(room: Path) -> int:
     probe = pv.Plotter(off_screen=True, window_size=[16, 16])
     probe.show(auto_close=False)
     probe.close()
-    jobs = json.loads((room / "jobs.json").read_text(encoding="utf-8"))
-    with np.load(room / "surfaces.npz") as store:
-        for i, job in enumerate(jobs):
-            target, partial = room / f"{i}.png", room / f"{i}.part.png"
-            if target.exists():
-                continue  # by an earlier child
-            try:
-                arrays = [store[f"{i}.{name}"] for name in ARRAYS]
-                if f"{i}.shades" in store:
-                    _draw_shaded(pv, job, partial, store[f"{i}.shades"], *arrays)
-                else:
-                    _draw(pv, job, partial, *arrays)
-                os.replace(partial, target)
-            except Exception as error:  # a bad picture must not cost the others
-                (room / f"{i}.txt").write_text(
-                    " ".join(f"{type(error).__name__}: {error}".split()), encoding="utf-8"
-                )
+    for line in sys.stdin:  # until the caller has no more, or is gone
+        _drawn(pv, room, int(line))
     return 0
+
+
+def _drawn(pv, room: Path, index: int) -> None:
+    """Draw a picture, or write why it could not be drawn."""
+    target, partial = room / f"{index}.png", room / f"{index}.part.png"
+    if target.exists():
+        return  # by an earlier child
+    job = json.loads((room / f"{index}.json").read_text(encoding="utf-8"))
+    try:
+        with np.load(room / f"{index}.npz") as store:
+            arrays = [store[name] for name in ARRAYS]
+            if "shades" in store:
+                _draw_shaded(pv, job, partial, store["shades"], *arrays)
+            else:
+                _draw(pv, job, partial, *arrays)
+        os.replace(partial, target)
+    except Exception as error:  # a bad picture must not cost the others
+        reason = " ".join(f"{type(error).__name__}: {error}".split())
+        (room / f"{index}.txt").write_text(reason, encoding="utf-8")
 
 
 def _draw(pv, job, path, points, displacement, faces, triangles, lines):

@@ -7,6 +7,7 @@ a number.
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import shutil
@@ -16,7 +17,7 @@ import tempfile
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -103,29 +104,47 @@ def render_modes(jobs: Iterable[RenderJob], *, timeout: float = 120) -> list[Ren
 class Drawing:
     """Pictures being drawn by a child, while the caller does something else.
 
-    As a context manager: the child starts where it is entered and is gone where it is left.
+    As a context manager: the child is gone where it is left. It starts with the first picture, or
+    before by :meth:`begin`, and ends by itself should the caller die.
     """
 
-    def __init__(self, jobs: Iterable[RenderJob], *, timeout: float = 120):
-        self.jobs, self._patience = list(jobs), Patience(timeout)
+    def __init__(self, jobs: Iterable[RenderJob] = (), *, timeout: float = 120):
+        self.jobs: list[RenderJob] = []
+        self._first, self._patience = list(jobs), Patience(timeout)
         self._child: subprocess.Popen | None = None
+        self._end = ""
 
     def __enter__(self) -> Drawing:
         self._folder = tempfile.TemporaryDirectory(prefix="solidgear-render-")
         self._windows = _windows()
         try:
-            if self.jobs:
-                self._hand_over()
-                self._end = self._start()
+            for job in self._first:
+                self.add(job)
         except BaseException:
             self.__exit__()
             raise
         return self
 
+    def begin(self) -> None:
+        """Start the child, which needs a second before it can draw."""
+        if self._child is None and not self._end:
+            self._end = self._start()
+
+    def add(self, job: RenderJob) -> None:
+        """Begin a picture."""
+        self._hand_over(len(self.jobs), job)
+        self.jobs.append(job)
+        self.begin()
+        self._ask_for(len(self.jobs) - 1)
+
     def __exit__(self, *_) -> None:
-        if self._child is not None and self._child.poll() is None:
-            self._child.kill()
-            self._child.wait()
+        if self._child is not None:
+            if self._child.poll() is None:
+                self._child.kill()
+                self._child.wait()
+            if self._child.stdin is not None:
+                with contextlib.suppress(OSError):
+                    self._child.stdin.close()
         self._folder.cleanup()
 
     def results(self) -> list[RenderResult]:
@@ -135,7 +154,10 @@ class Drawing:
         end = self._end or self._wait()
         # A child that reached the end of its list has said all there is to say.
         while end and self._windows and self._patience.remaining > 0:
-            end = self._start() or self._wait()
+            end = self._start()
+            for i in range(len(self.jobs)):
+                self._ask_for(i)
+            end = end or self._wait()
         return [
             RenderResult(job.path, _collect(self._room, i, job.path, end))
             for i, job in enumerate(self.jobs)
@@ -145,22 +167,26 @@ class Drawing:
     def _room(self) -> Path:
         return Path(self._folder.name)
 
-    def _hand_over(self) -> None:
-        """Write the jobs as files for the child."""
-        arrays: dict[str, Any] = {
-            f"{i}.{name}": getattr(job.surface, name)
-            for i, job in enumerate(self.jobs)
-            for name in ARRAYS
+    def _hand_over(self, index: int, job: RenderJob) -> None:
+        """Write a job as files for the child."""
+        arrays = {name: getattr(job.surface, name) for name in ARRAYS}
+        if job.shades is not None:
+            arrays["shades"] = job.shades
+        np.savez(self._room / f"{index}.npz", **arrays)
+        words = {
+            "title": job.title,
+            "frames": list(job.frames),
+            "along": job.along,
+            "shade": job.shade,
         }
-        for i, job in enumerate(self.jobs):
-            if job.shades is not None:
-                arrays[f"{i}.shades"] = job.shades
-        np.savez(self._room / "surfaces.npz", **arrays)
-        jobs = [
-            {"title": j.title, "frames": list(j.frames), "along": j.along, "shade": j.shade}
-            for j in self.jobs
-        ]
-        (self._room / "jobs.json").write_text(json.dumps(jobs), encoding="utf-8")
+        (self._room / f"{index}.json").write_text(json.dumps(words), encoding="utf-8")
+
+    def _ask_for(self, index: int) -> None:
+        """Tell the child to draw a picture; one that has died is asked how when all are there."""
+        if self._child is not None and self._child.stdin is not None:
+            with contextlib.suppress(OSError):
+                self._child.stdin.write(f"{index}\n".encode())
+                self._child.stdin.flush()
 
     def _start(self) -> str:
         """Start a child on the remaining pictures in the next window; return why it could not."""
@@ -178,7 +204,7 @@ class Drawing:
                 self._child = subprocess.Popen(
                     command,
                     env=env,
-                    stdin=subprocess.DEVNULL,
+                    stdin=subprocess.PIPE,
                     stdout=subprocess.DEVNULL,
                     stderr=errors,
                 )
@@ -189,7 +215,9 @@ class Drawing:
     def _wait(self) -> str:
         """Wait for the child; return how it died, or an empty text."""
         child = self._child
-        assert child is not None
+        assert child is not None and child.stdin is not None
+        with contextlib.suppress(OSError):
+            child.stdin.close()
         code = self._patience.wait(child)
         if self._patience.reason:
             return self._patience.reason

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from pathlib import Path
 from typing import TypeVar
 
 from solidgear.comparison.page.html import drawn_charts, write_report
-from solidgear.core import FIRST_BENDING, ModeSet, Quantity, Record, Solution
+from solidgear.core import FIRST_BENDING, LADDER, ModeSet, Quantity, Record, Solution
 from solidgear.core.machine.memory import family_mb
 from solidgear.core.machine.meter import Meter
 from solidgear.show.folder import begun
@@ -25,6 +26,29 @@ from solidgear.show.where_surface import where_surface
 R = TypeVar("R")
 
 
+class Pictures:
+    """Pictures of mode shapes, each begun as soon as its model is solved."""
+
+    def __init__(self, drawing: Drawing, out: str | os.PathLike):
+        self.drawing, self.folder = drawing, Path(out)
+        self.jobs: dict[str, RenderJob] = {}  #: by model
+
+    def begin_early(self, model: str, solution: Solution) -> None:
+        """Begin the picture of a model while others are being solved; why it failed is told when the
+        report is written.
+        """
+        with contextlib.suppress(Exception):
+            self.begin(model, solution)
+
+    def begin(self, model: str, solution: Solution) -> None:
+        """Begin the picture of a model, unless it has none or is begun."""
+        name = _drawn_mode(solution.modes)
+        if name is not None and model not in self.jobs:
+            drawn = Drawn(solution.body, solution.modes, LADDER[model].title)
+            self.jobs[model] = drawn.job(name, self.folder / f"mode_{model}.png")
+            self.drawing.add(self.jobs[model])
+
+
 def write_all(
     record: Record,
     solutions: dict[str, Solution],
@@ -33,6 +57,7 @@ def write_all(
     renders: bool,
     began: float,
     progress: Callable[[str], None],
+    pictures: Pictures | None = None,
 ) -> Path:
     """Write results.json, renders, files for other programs and the report; see
     :meth:`solidgear.comparison.models.Comparison.write_report`.
@@ -58,19 +83,25 @@ def write_all(
         write_json(folder / "results.json", record.as_dict())
         if renders and shapes:
             progress("renders")
-        jobs = _jobs(record, shapes, folder) if renders else {}
         error_jobs = _error_jobs(record, shapes, folder) if renders else []
         # They are drawn in a process beside this one, which writes and draws the rest meanwhile.
-        with Drawing([*jobs.values(), *error_jobs]) as drawing:
+        with contextlib.ExitStack() as stack:
+            pictures = pictures or Pictures(stack.enter_context(Drawing()), folder)
+            for model, solution in shapes.items() if renders else ():
+                _try(record, f"render of {model}", partial(pictures.begin, model, solution))
+            for job in error_jobs:
+                pictures.drawing.add(job)
             for model, solution in shapes.items():
                 for output in OUTPUTS:
                     what, target = f"{output.what} of {model}", folder / output.name(model)
                     _try(record, what, partial(output.write, solution, target))
             progress("report")
             drawn = drawn_charts(record, folder)
-            results = drawing.results()
-            _note(record, jobs, results)
-            _note_error(record, results[len(jobs) :])
+            results = (
+                {result.path: result for result in pictures.drawing.results()} if renders else {}
+            )
+            _note(record, pictures.jobs, results)
+            _note_error(record, (results[job.path] for job in error_jobs))
         if renders and shapes:
             write = partial(_write_turned, record, shapes, folder)
             _try(record, "viewer of mode shapes", write)
@@ -103,22 +134,6 @@ def _leave_out(record: Record, sentence: str) -> None:
     record.warnings.append(sentence)
 
 
-def _jobs(record: Record, shapes: dict[str, Solution], folder: Path) -> dict[str, RenderJob]:
-    """Return the pictures to be drawn, by model."""
-    jobs: dict[str, RenderJob] = {}
-    for model, solution in shapes.items():
-        name = _drawn_mode(solution.modes)
-        if name is None:
-            continue
-        path = folder / f"mode_{model}.png"
-        path.unlink(missing_ok=True)  # whoever made it, it must not pass for this run's
-        drawn = Drawn(solution.body, solution.modes, record.name(model))
-        job = _try(record, f"render of {model}", partial(drawn.job, name, path))
-        if job is not None:
-            jobs[model] = job
-    return jobs
-
-
 def _shaded(record: Record) -> str:
     """Return the model on whose surface its error bar is shown; empty without one."""
     return record.where_solid.model if record.where_solid else ""
@@ -147,10 +162,15 @@ def _note_error(record: Record, results: Iterable[RenderResult]) -> None:
             _leave_out(record, f"picture of the error bar left out: {result.reason}")
 
 
-def _note(record: Record, jobs: Iterable[str], results: Iterable[RenderResult]) -> None:
+def _note(
+    record: Record, jobs: Mapping[str, RenderJob], results: Mapping[Path, RenderResult]
+) -> None:
     """Record the pictures that were drawn, and why others were left out."""
     reasons: dict[str, list[str]] = {}
-    for model, result in zip(jobs, results):
+    for model, job in jobs.items():
+        result = results.get(job.path)
+        if result is None:
+            continue
         if result.ok:
             record.images[model] = result.path.name
         else:
