@@ -89,6 +89,8 @@ def write_all(
             pictures = pictures or Pictures(stack.enter_context(Drawing()), folder)
             for model, solution in shapes.items() if renders else ():
                 _try(record, f"render of {model}", partial(pictures.begin, model, solution))
+            for drawn_job in pictures.jobs.values():
+                drawn_job.path.unlink(missing_ok=True)  # whoever made it, it must not pass for ours
             for job in error_jobs:
                 pictures.drawing.add(job)
             for model, solution in shapes.items():
