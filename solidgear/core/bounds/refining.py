@@ -113,7 +113,7 @@ class Corners:
             if self.cuts[v] < CUTS
         }
         worst = max(leaves, key=leaves.__getitem__, default=None)
-        return worst, 0.0 if worst is None else leaves[worst]
+        return worst, leaves.get(worst, 0.0)
 
     def cut(self, vertex: int) -> None:
         """Cut the cells beside a corner once more."""
@@ -136,12 +136,13 @@ def refined(scene: Scene, body: Body, mesh: Meshed, score: np.ndarray, tol: floa
     lines = Lines(mesh_of.uncut, mesh.across)  # type: ignore[union-attr]
     corners, orders = Corners(scene, body, score), 0
     rate, cure = _rate(mesh, corners.smooth())
-    while (smooth := corners.smooth() / rate**orders) + corners.left.sum() > AIM * tol:
+    aim, most_orders = AIM * tol, min(ORDERS, HIGHEST - mesh.order) if cure else 0
+    while (smooth := corners.smooth() / rate**orders) + corners.left.sum() > aim:
         vertex, leaves = corners.worst()
-        if vertex is not None and leaves >= smooth:
-            corners.cut(vertex)
-        elif cure and orders < min(ORDERS, HIGHEST - mesh.order):
+        if orders < most_orders and (vertex is None or smooth > aim / 3):
             orders += 1
+        elif vertex is not None and (smooth <= aim / 3 or leaves >= smooth):
+            corners.cut(vertex)
         else:
             lines.halve(np.bincount(mesh_of.parent, corners.away))  # type: ignore[union-attr]
             break
