@@ -130,7 +130,9 @@ class Chosen(Group):
     ] = AUTO
     tol: Annotated[
         float | None,
-        relative("--tol", "Relative error allowed, for -f auto; else the scene's own."),
+        relative(
+            "--tol", "Relative error allowed, for -f auto or a 3D model; else the scene's own."
+        ),
     ] = None
     settings: Settings = None
 
@@ -192,6 +194,13 @@ class Solved(Chosen):
         """``--set`` options with ``--engine`` among them."""
         return [*super().pairs, *([] if self.engine is None else [f"engine={self.engine}"])]
 
+    @property
+    def refined(self) -> bool:
+        """Whether the model is a 3D solid whose mesh is as coarse as the tolerance allows."""
+        if self.name == AUTO or self.pairs or not self.bars:
+            return False
+        return bool(LADDER[self.name].bars_by) and not LADDER[self.name].follows
+
     def without_bars(self, settled: Settled | None) -> str:
         """Return the reason why numbers have no error bar; empty where they have one."""
         if settled is not None:
@@ -210,13 +219,14 @@ class Solved(Chosen):
         points : sequence of str
             As for :func:`solidgear.core.judge.settle.settle`.
         """
-        if not self.automatic(scene):
+        if not self.refined and not self.automatic(scene):
             return build_body(scene, self.name, self.pairs), None
         from solidgear.core import settle  # start-up: for ``auto`` alone
 
         # a second or less for most scenes: lines are for those who watch
         watched = progress if sys.stderr.isatty() else Progress(quiet=True)
-        settled = settle(scene, self.tol, ask, points=points, progress=watched)
+        only = self.name if self.refined else ""
+        settled = settle(scene, self.tol, ask, points=points, only=only, progress=watched)
         return settled.body, settled
 
 

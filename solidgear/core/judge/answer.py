@@ -150,10 +150,11 @@ def solve_cheapest(
     solver_of: Callable[[Refinement], FamilySolver] = FamilySolver,
     *,
     whole: bool = False,
+    only: str = "",
 ) -> tuple[FamilySolver, list[Step]]:
-    """Refine the first solid of the ladder that can be solved at all, with `whole` for the body and
-    not for single numbers; return also the steps that were passed over and tried, in the order of
-    the ladder. SolidgearError if no model can be solved.
+    """Refine the first solid of the ladder that can be solved at all, or `only` one, with `whole` for
+    the body and not for single numbers; return also the steps that were passed over and tried, in
+    the order of the ladder. SolidgearError if no model can be solved.
     """
     steps = [
         Step(
@@ -163,9 +164,10 @@ def solve_cheapest(
             why="beams cannot show their own error",
         )
         for name in LADDER.of(BEAM)
+        if not only
     ]
     with one_run():
-        for name in LADDER.of(SOLID):
+        for name in (only,) if only else LADDER.of(SOLID):
             model = LADDER[name]
             refinement = Refinement(
                 scene,
@@ -181,6 +183,8 @@ def solve_cheapest(
                 refine(refinement, solver, progress, model.title)
             except (SolidgearError, MemoryError) as error:
                 reason = str(error) or "not enough memory"
+                if not refinement.levels and only:
+                    raise
                 if not refinement.levels:
                     steps.append(Step(name, setting="", valid=False, why=reason))
                     continue

@@ -103,6 +103,7 @@ def settle(
     *,
     points: Sequence[str] = (),
     before: Settled | None = None,
+    only: str = "",
     progress: Progress = lambda _: None,
 ) -> Settled:
     """Solve the cheapest body whose error bars of all numbers asked for are within a tolerance;
@@ -120,6 +121,8 @@ def settle(
     before : Settled, optional
         Result for the same shaft with other bearings in the same seats: a harmonic solid is judged
         on that body first, with the data that are kept with it.
+    only : str, optional
+        The solid to solve; by default the cheapest that holds the scene.
 
     Raises
     ------
@@ -154,7 +157,7 @@ def settle(
 
         return FamilySolver(refinement, build_body)
 
-    solver, steps = solve_cheapest(scene, tol, wanted, progress, solver_of, whole=True)
+    solver, steps = solve_cheapest(scene, tol, wanted, progress, solver_of, whole=True, only=only)
     refinement = solver.refinement
     assert refinement.body is not None  # a model without a single mesh is passed over
     bars = refinement.bars()
