@@ -4,7 +4,7 @@ two ends.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import ceil, log
 from typing import TYPE_CHECKING
@@ -103,15 +103,18 @@ class Grading:
         """Cells along either half of a fillet."""
         return max(1, round(self.corner_cells * self.refinement))
 
-    def cell(self, segment: Segment) -> tuple[float, float]:
-        """Return the cell sizes of a segment beside singular points and away from them, m."""
+    def cell(self, segment: Segment, thick: bool = False) -> tuple[float, float]:
+        """Return the cell sizes of a segment beside singular points and away from them, m; of a cone at
+        its thin end, or its `thick` one. Away from both ends cells grow with the distance.
+        """
         if self.size is not None:
             return self.size, self.size
-        far = self.relative_size * _radius(segment)
-        return min(self.relative_size, 1.0) * local_length(segment), far
+        end = max if thick else min
+        far = self.relative_size * max(segment.outer0, segment.outer1)
+        return min(self.relative_size, 1.0) * local_length(segment, end), far
 
 
-def local_length(segment: Segment) -> float:
+def local_length(segment: Segment, end: Callable[[float, float], float] = min) -> float:
     """Return the length over which the effect of a line on the surface dies away, m: the radius, or
     a shell's ``2 sqrt(r t)``.
 
@@ -123,8 +126,9 @@ def local_length(segment: Segment) -> float:
     >>> local_length(solid), round(local_length(tube), 6)
     (0.05, 0.02)
     """
-    radius = _radius(segment)
-    return min(radius, SHELL * float(np.sqrt(radius * _wall(segment))))
+    radius = end(segment.outer0, segment.outer1)
+    wall = end(segment.outer0 - segment.inner0, segment.outer1 - segment.inner1)
+    return min(radius, SHELL * float(np.sqrt(radius * wall)))
 
 
 def corner_length(segment: Segment) -> float:
