@@ -13,6 +13,7 @@ from solidgear.core.errors import SolidgearError
 from solidgear.core.scene import STEEL, Bearing, Port, Scene, Segment
 from solidgear.core.scene.closed_form import volume_of
 from solidgear.core.scene.outline import Outline
+from solidgear.core.solve import groups as groups_module
 from tests.dense import bearing_by_hand, every, whole
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
@@ -347,3 +348,30 @@ def test_springs_without_a_digit_left_are_named_as_the_cause():
         match="bearings resist it by a small difference of large coupled stiffnesses",
     ):
         sg.modes(sg.build(scene, "timoshenko"), scene, n=6)
+
+
+def test_modes_go_on_from_the_eigenpairs_at_hand(overhung, monkeypatch):
+    """A count of the same list solves no eigenproblem again, and other springs are other modes."""
+    body = sg.build(overhung, "timoshenko")
+    listed = sg.modes(body, overhung, 8)
+    solved = []
+    original = groups_module.lowest
+    monkeypatch.setattr(
+        groups_module, "lowest", lambda *words: solved.append(words) or original(*words)
+    )
+    counted = sg.modes(body, overhung, 8, count=True)
+    assert not solved and counted.frequency_hz == pytest.approx(listed.frequency_hz, rel=1e-12)
+    softer = sg.modes(body, overhung.with_bearing_scale(0.5), 8)
+    assert (
+        solved and softer.named("bending 1").frequency_hz < listed.named("bending 1").frequency_hz
+    )
+
+
+def test_room_is_solved_for_above_a_list(overhung):
+    body = sg.build(overhung, "timoshenko")
+    found = sg.modes(body, overhung, 4, room=0.5)
+    listed = {mode.name for mode in found.modes}
+    for family in ("bending", "axial", "torsion"):
+        above = [m for m in found.solved if m.family == family and m.name not in listed]
+        value = sorted(m.frequency_hz**2 for m in above)
+        assert len(value) > 1 and 1 - value[0] / value[-1] >= 0.5

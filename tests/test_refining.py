@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.core.bounds.refining import Meshed, refined
+from solidgear.core.bounds.refining import Corners, Meshed, refined
 from solidgear.core.judge.answer import answer
 from solidgear.core.kernel.cell_shapes import Shapes
 from solidgear.core.kernel.lobatto import gauss
@@ -197,3 +197,24 @@ def test_orders_are_asked_for_by_what_they_took_before_and_cells_are_halved_wher
         slow = replace(mesh, smooth=4 * score[0], raised=2)
         found = refined(scene, body, slow, score, tol)
         assert found.order == wanted and bool(found.across) == halved
+
+
+def test_cells_of_a_needle_grow_with_its_radius():
+    """A cone from 1 to 40 mm: a tip that sets all sizes would ask for 800 cells."""
+    scene = shaft((80, 1, 40), (40, 40), seat=(90, 110), port=(55, 65))
+    body = sg.build(scene, "harmonic", **Meshed().options())
+    assert body.mesh["cells"] < 80
+    found = answer(scene, 1e-2, ["C_zz"])
+    assert found.reached and found.seconds < 60
+
+
+def test_a_cell_at_two_corners_is_cut_towards_the_sharper_one_first():
+    scene = climbed("step")[0]
+    mesh = Meshed()
+    body = sg.build(scene, "harmonic", **mesh.options())
+    corners = Corners(scene, body, np.full(body.mesh["cells"], 1e-3))
+    sharp, _ = corners.worst()
+    assert corners.exponents[sharp] == min(corners.exponents.values())
+    before = corners.left.sum()
+    corners.cut(sharp)
+    assert corners.left.sum() < before and corners.smooth() > 0

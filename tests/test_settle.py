@@ -214,6 +214,10 @@ REFUSED = {
         ["stiffness", SCENE, "-f", "euler", "--tol", "0.1"],
         "--tol 0.1 needs -f auto",
     ),
+    "one for a mesh that is set": (
+        ["modes", SCENE, "-f", "solid", "--set", "refinement=0.4", "--tol", "0.1"],
+        "--tol 0.1 needs -f auto",
+    ),
     "the same of a sweep": (
         ["sweep", SCENE, "-f", "harmonic", "--vary", "bearing.1.scale=1,2", "--tol", "0.1"],
         "--tol 0.1 needs -f auto",
@@ -230,6 +234,13 @@ def test_refused_in_one_sentence(run, tmp_path, kind):
     assert code == 1 and out == "" and says in err
     assert err.startswith("solidgear: ") and err.count("\n") == 1
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_named_3d_solid_is_as_coarse_as_the_tolerance_allows(run, scene):
+    code, out, _ = run("modes", SCENE, "-f", "solid", "-n", "4", "--tol", "0.03", "--json")
+    coarse = json.loads(out)
+    assert code == 0 and coarse["reached"] and 0 < coarse["bars"]["bending 1"] <= 0.03
+    assert coarse["dofs"] < sg.build(scene, "solid").size / 5
 
 
 # --------------------------------------------------------------------------- sweep

@@ -5,12 +5,22 @@ from pytest import approx
 
 import solidgear as sg
 from solidgear.comparison.page.html import numbers
+from solidgear.core import as_supports
+from solidgear.core.judge.correlation import pair_modes
 from solidgear.core.judge.record import IntervalRecord, Record
+from solidgear.core.quantity import Quantity
 from solidgear.core.scene.uncertain import with_ranges
 from solidgear.show.open_words import acting, interval, parts
 from solidgear.show.open_words import budget as budget_table
 from solidgear.show.units import ENGINEERING
-from solidgear.variants.budget.budget import beside, budget, open_inputs
+from solidgear.variants.budget.budget import (
+    NamedShapes,
+    ReducedBeam,
+    beside,
+    budget,
+    open_inputs,
+    spread_points,
+)
 from tests.command import command
 
 STEPPED, GEARBOX = "geometry/shaft_stepped.toml", "geometry/gearbox_catalogue.toml"
@@ -91,6 +101,35 @@ def test_a_mode_is_followed_through_its_neighbours(gearbox):
     # axial 1 and bending 1 pass each other where the load is small: by name, one would end there
     axial = gearbox.of("axial 1").total
     assert -0.25 < axial.low < -0.1 and axial.high < 0.05
+
+
+def test_a_reduced_beam_has_the_modes_of_the_beam_on_any_springs():
+    """Springs a hundred times softer and stiffer, which reorder modes: names follow the shapes, and
+    what the beam's higher modes would add is less than the figures of a range.
+    """
+    gearbox, listed = sg.load(GEARBOX), 6
+    beam = sg.build(gearbox, "timoshenko")
+    reduced = ReducedBeam(beam, listed + 4)
+    first = NamedShapes.of(sg.modes(beam, gearbox, listed), reduced.shapes(as_supports(gearbox)))
+    for factor in (0.01, 1.0, 100.0):
+        scene = gearbox.with_bearing_scale(factor)
+        direct = sg.modes(beam, scene, listed + 4)
+        shapes = reduced.shapes(as_supports(scene))
+        elastic = [m for m in direct.modes for _ in range(m.multiplicity) if m.frequency_hz]
+        expected = [m.frequency_hz for m in elastic][: len(shapes.frequency_hz)]
+        assert shapes.frequency_hz[: len(expected)] == pytest.approx(expected, rel=1e-5)
+        named = first.frequencies(shapes, beam)
+        paired = {p.reference.name: p for p in pair_modes(direct, sg.modes(beam, gearbox, listed))}
+        certain = [name for name, p in paired.items() if p.certain and p.mode is not None]
+        assert len(certain) >= 3
+        for name in certain:
+            assert named[Quantity(name)] == pytest.approx(paired[name].frequency_hz, rel=1e-5)
+
+
+def test_points_inside_fill_every_direction():
+    points = spread_points(3, 16)
+    for k in range(3):
+        assert len(set((points[:, k] * 16).astype(int))) == 16
 
 
 def test_a_scene_that_states_all_of_its_data_prints_as_without_ranges():

@@ -143,6 +143,17 @@ def test_quantities_that_one_side_lacks_are_left_out():
 
 
 # --------------------------------------------------------------------------- judge
+def test_a_solid_is_judged_by_the_bar_of_the_reference_and_not_by_its_own():
+    """Its own bar says how far it may be from the truth, which the reference tells better."""
+    for c_zz, valid in ((0.97, True), (0.94, False)):
+        solutions = {
+            "harmonic": solution(1.0, model="harmonic", bar=0.001),
+            "solid": solution(c_zz, model="solid", bar=0.045),
+        }
+        judgement = judged(solutions, 0.05)[1]["solid"]
+        assert judgement.valid is valid and not judgement.open
+
+
 def test_a_gap_counts_with_its_bar():
     assert gap_verdict(0.04, 0.009, 0.05) == gap_verdict(-0.04, 0.009, 0.05) == WITHIN
     assert gap_verdict(0.045, 0.009, 0.05) == gap_verdict(-0.055, 0.009, 0.05) == OPEN

@@ -3,7 +3,7 @@
 **Range**: the lowest and the highest of a number over the points that are solved. Those are the ends
 of every input by itself; the corners of all of them (of more than :data:`MOST_OF_ALL_CORNERS`
 inputs those to which the single effects point, for every number); and, where rows of rolling elements may
-lift, points spread evenly inside. Springs and moduli move frequencies and compliances one way
+lift, a Latin hypercube inside. Springs and moduli move frequencies and compliances one way
 (Rayleigh), so that corners hold all of it; a row that comes into contact half way need not.
 
 **Deviation**: every input equally likely anywhere in its range, the deviation by each alone (Gauss,
@@ -307,26 +307,23 @@ def _recorded(inputs: Iterable[OpenInput]) -> list[InputRecord]:
 
 
 def spread_points(dimension: int, count: int) -> np.ndarray:
-    """Return (count, dimension) points that fill a unit cube evenly, by multiples of the inverse powers
-    of the root of ``x^(d + 1) = x + 1`` (Roberts 2018).
+    """Return (count, dimension) points in a unit cube, always the same, of which every direction has
+    one in each of as many equal parts (Latin hypercube).
 
     Examples
     --------
-    >>> spread_points(1, 3).round(3).ravel()
-    array([0.118, 0.736, 0.354])
+    >>> sorted(spread_points(2, 4)[:, 1].tolist())
+    [0.125, 0.375, 0.625, 0.875]
     """
-    root = 2.0
-    for _ in range(64):
-        root = (1 + root) ** (1 / (dimension + 1))
-    steps = root ** -np.arange(1.0, dimension + 1)
-    return (0.5 + np.outer(np.arange(1, count + 1), steps)) % 1
+    turns = np.random.default_rng(0)
+    return np.column_stack([turns.permutation(count) + 0.5 for _ in range(dimension)]) / count
 
 
 BEARINGS, LOAD, MATERIAL = "bearings", "load", "material"
 INSIDE, CLEARANCE, PRELOAD = ".inside", ".clearance", ".preload"
 #: modes beyond those asked for, among which a mode may be that has moved up
 FURTHER_MODES = 4
-#: free modes of a beam that are kept for each mode looked at: frequencies to some 1e-9
+#: free modes of a beam that are kept for each mode looked at: frequencies to some 1e-6, ranges have three figures
 KEPT_PER_MODE = 2
 #: ends of an estimated inside; the bearing is one of three and none between them
 ENDS = ("softer", "middle", "stiffer")
