@@ -150,8 +150,9 @@ class Pen:
         width = right - left
         definitions = element("defs", "".join(self._definitions)) if self._definitions else ""
         box = f"{short(left)} 0 {short(width)} {short(height)}"
-        paper = {"x": left, "y": 0.0, "width": width, "height": height}
-        behind = element("rect", **paper, fill=ground) if ground else ""
+        behind = ""
+        if ground:
+            behind = element("rect", x=left, y=0.0, width=width, height=height, fill=ground)
         return element(
             "svg",
             definitions + behind + "".join(self._elements[k][1] for k in order),

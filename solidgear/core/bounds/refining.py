@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from operator import itemgetter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -112,8 +113,7 @@ class Corners:
             for v in self.exponents
             if self.cuts[v] < CUTS
         }
-        worst = max(leaves, key=leaves.__getitem__, default=None)
-        return worst, leaves.get(worst, 0.0)
+        return max(leaves.items(), key=itemgetter(1), default=(None, 0.0))
 
     def cut(self, vertex: int) -> None:
         """Cut the cells beside a corner once more."""
