@@ -328,11 +328,12 @@ def _of_modes(
     lowest: dict[str, float] = {}
     widths: dict[str, np.ndarray] = {}
     ends = {id(shape): _plain_ends(shape, plain, bounds, gram) for shape in uncut}
-    for index in range(len(origin.with_.blocks)):
-        group = [s for s in uncut if set(s.vector) == {index} and ends[id(s)] is not None]
+    # bearings may couple both halves of a solid: the errors of all blocks of a mode add up
+    for blocks in {frozenset(shape.vector) for shape in partners if shape is not None}:
+        group = [s for s in uncut if set(s.vector) == blocks and ends[id(s)] is not None]
         pairs = []
         for mode, shape in zip(chosen, partners):
-            if shape is None or set(shape.vector) != {index}:
+            if shape is None or set(shape.vector) != blocks:
                 continue
             turn = _turned(group, shape, gram)
             if turn is not None:
@@ -341,16 +342,18 @@ def _of_modes(
             continue
         turns = np.column_stack([turn for *_, turn in pairs])
         values = np.array([shape.value for _, shape, _ in pairs])
-        fields = np.column_stack([shape.vector[index] for _, shape, _ in pairs])
-        plain_modes = _Plain(
-            np.column_stack([shape.vector[index] for shape in group]),
-            np.array([shape.value for shape in group]),
-            turns,
-        )
-        lower, upper, by_cell = difference.of_modes(index, fields, values, plain_modes)
+        plain_values = np.array([shape.value for shape in group])
+        lower, upper = np.zeros((2, len(pairs)))
+        by_cell = np.zeros((difference.cells, len(pairs)))
+        for index in blocks:
+            fields = np.column_stack([shape.vector[index] for _, shape, _ in pairs])
+            plain_fields = np.column_stack([shape.vector[index] for shape in group])
+            of_plain = _Plain(plain_fields, plain_values, turns)
+            of_block = difference.of_modes(index, fields, values, of_plain)
+            lower, upper, by_cell = (x + y for x, y in zip((lower, upper, by_cell), of_block))
         exact = np.array([ends[id(shape)] for shape in group])
         # what the 3D solid without features errs by, at least and at most
-        least, most = ((turns**2).T @ (plain_modes.values - end) for end in exact.T[::-1])
+        least, most = ((turns**2).T @ (plain_values - end) for end in exact.T[::-1])
         for k, (mode, *_) in enumerate(pairs):
             low, high = values[k] - most[k] - upper[k], values[k] - least[k] - lower[k]
             value = eigenvalue(mode)
