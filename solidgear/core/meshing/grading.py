@@ -25,6 +25,8 @@ SHELL = 2.0
 #: lines nearer to the far end of an interval than this share of it are left out
 ROOM_ONE, ROOM_TWO = 0.75, 0.45
 
+#: least size of cells of a cone, over that of a cylinder as thick as its thick end
+FLOOR = 0.5
 #: seats narrower than this many cells' depths indent the shaft unseen by the cells: after two meshes a
 #: plain bar with a seat as wide as its radius was 2.5e-3 off, one of two radii 1e-4
 DEEP = 2.5
@@ -103,15 +105,18 @@ class Grading:
         """Cells along either half of a fillet."""
         return max(1, round(self.corner_cells * self.refinement))
 
-    def cell(self, segment: Segment, thick: bool = False) -> tuple[float, float]:
-        """Return the cell sizes of a segment beside singular points and away from them, m; of a cone at
-        its thin end, or its `thick` one. Away from both ends cells grow with the distance.
+    def cell(self, segment: Segment, across: bool = False) -> tuple[float, float]:
+        """Return the cell sizes of a segment beside singular points and away from them, m, along the
+        shaft or across; of a slender cone by no less than half its thick end. Along, cells grow from
+        a thin end with the distance.
         """
         if self.size is not None:
             return self.size, self.size
-        end = max if thick else min
-        far = self.relative_size * max(segment.outer0, segment.outer1)
-        return min(self.relative_size, 1.0) * local_length(segment, end), far
+        thick = max(segment.outer0, segment.outer1)
+        near, far = local_length(segment), max(_radius(segment), FLOOR * thick)
+        if across:
+            near = max(near, FLOOR * local_length(segment, max))
+        return min(self.relative_size, 1.0) * near, self.relative_size * far
 
 
 def local_length(segment: Segment, end: Callable[[float, float], float] = min) -> float:

@@ -370,7 +370,7 @@ def ring_lines(
         for boundary in (run.band, run.band + 1)
     )
     # the lines of a cone run from its thin end to its thick one, where they lie furthest apart
-    cells = (grading.cell(segments[k], thick=True) for k in run.segments)
+    cells = (grading.cell(segments[k], across=True) for k in run.segments)
     near, far = (min(sizes) for sizes in zip(*cells))
     thick = sum(segments[k].length for k in run.segments)
     if thick < thickness and not grading.plain:
