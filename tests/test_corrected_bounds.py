@@ -184,6 +184,25 @@ def test_cells_and_modes(scene, body, answer, bars):
     assert of_modes[mode.name] == pytest.approx(bars.error_bars["bending 1"].width, rel=0.05)
 
 
+def test_modes_of_halves_that_a_bearing_couples_have_the_bars_of_halves_that_stand_alone(
+    scene, body, answer, bars
+):
+    """A coupling of a ten-thousandth of the stiffness joins both halves and moves nothing else."""
+    coupled = np.array(scene.bearings[0].stiffness)
+    coupled[0, 2] = coupled[2, 0] = 1e-4 * coupled[0, 0]
+    first = scene.bearings[0].with_changes(matrix=coupled)
+    joined = scene.with_changes(bearings=(first, *scene.bearings[1:]))
+    found = answer_of_body(body, as_supports(joined), ("gear",), n=6, wanted=["torsion 1"])
+    assert any(len(shape) == 2 for mode in found.modes.modes for shape in mode.vectors)
+    numbers = found.numbers
+    names = [name for name in numbers.quantities if name.is_frequency]
+    of_joined = bounded(
+        joined, body, found.supports, None, found.modes, names, numbers.solver
+    ).error_bars
+    name = Quantity("bending 1")
+    assert of_joined[name].width == pytest.approx(bars.error_bars[name].width, rel=0.05)
+
+
 def test_the_harmonic_part_is_in_both_ends(scene, body, answer):
     bounds = corrected_bounds(scene, body, answer.supports, statics=True)
     plain = harmonic_bounds(scene.plain, body.cache.find(Origin).plain, statics=True).more
