@@ -35,6 +35,7 @@ class Shapes:
 
     def __init__(self, flat: Meridian, element: Element):
         self.flat, self.element = flat, element
+        self._tabulations: dict[tuple, Tabulation] = {}  # of blocks that share cells, made once
         self.curved = np.flatnonzero(flat.arc >= 0)
         self._place = {int(cell): k for k, cell in enumerate(self.curved)}
         self._nodes = self._curved_nodes()
@@ -49,7 +50,13 @@ class Shapes:
         ]
 
     def tabulation(self, kind: Kind, points: np.ndarray) -> Tabulation:
-        """Tabulate the basis of some cells at reference points."""
+        """Return the basis of some cells, tabulated at reference points."""
+        key = kind.curved, tuple(kind.flip), points.shape, points.tobytes()
+        if key not in self._tabulations:
+            self._tabulations[key] = self._tabulated(kind, points)
+        return self._tabulations[key]
+
+    def _tabulated(self, kind: Kind, points: np.ndarray) -> Tabulation:
         basis = Tabulation(self.element if kind.curved else _CORNERS, self.element, points)
         odd = [f for edge in np.flatnonzero(kind.flip) for f in self._odd(int(edge))]
         if odd:

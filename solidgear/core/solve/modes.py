@@ -233,7 +233,10 @@ def modes(
         reach = reach_of(parts, n, highest)
         verdicts = [complete(part, reach, method) for part in parts]
     spent = time.perf_counter() - start
-    project = Projection(body, np.linspace(0.0, body.length, stations))
+    kept = body.cache.get(_Projections, _Projections)
+    if stations not in kept:
+        kept[stations] = Projection(body, np.linspace(0.0, body.length, stations))
+    project = kept[stations]
     names = Names(body, supports, project)
     rigid = [r for part in parts for r in part.with_twins(part.solved.free)]
     listed, further, above, split_pairs, family_frequencies = _named(
@@ -268,6 +271,10 @@ def modes(
         further,
         above,
     )
+
+
+class _Projections(dict[int, Projection]):
+    """Projections of shapes onto section motions by the number of stations; springs do not matter."""
 
 
 def _lowest(parts: list[Part], count: int) -> list[Raw]:
