@@ -178,10 +178,10 @@ def test_the_highest_mode_of_a_family_has_no_bar(scene):
 # --------------------------------------------------------------------------- not reached
 @pytest.mark.long
 def test_what_is_not_reached_is_given_with_its_bar_and_an_exit_code(run, two_meshes):
-    code, out, err = run("modes", STEPPED, "-n", "4", "--tol", "1e-5", "--json")
+    code, out, err = run("modes", STEPPED, "-n", "4", "--tol", "1e-6", "--json")
     found = json.loads(out)
     assert code == 3 and err == "" and found["reached"] is False
-    assert found["modes"] and max(found["bars"].values()) > 1e-5
+    assert found["modes"] and max(found["bars"].values()) > 1e-6
 
 
 def test_what_is_not_reached_is_said(run, two_meshes):

@@ -11,6 +11,7 @@ from __future__ import annotations
 import json
 import os
 import sys
+import time
 from pathlib import Path
 
 import numpy as np
@@ -23,6 +24,8 @@ SWING = 0.08
 #: share of a frame, across and up, that a shape may fill
 USABLE = (0.90, 0.68)
 OUTLINE = "#5c6b7a"
+#: file that says that all pictures are asked for, and s between two looks for it and them
+LAST, PAUSE = "last", 0.02
 ARRAYS = ("points", "displacement", "faces", "triangles", "lines")
 #: rad; by which a viewer stands from the middle of a shaft towards its start
 TURN = np.deg2rad(22)
@@ -43,8 +46,16 @@ def _main(room: Path) -> int:
     probe = pv.Plotter(off_screen=True, window_size=[16, 16])
     probe.show(auto_close=False)
     probe.close()
-    for line in sys.stdin:  # until the caller has no more, or is gone
-        _drawn(pv, room, int(line))
+    caller, index = os.getppid(), 0
+    while True:
+        no_more = (room / LAST).exists()
+        if (room / f"{index}.json").exists():
+            _drawn(pv, room, index)
+            index += 1
+        elif no_more or os.getppid() != caller:
+            break
+        else:
+            time.sleep(PAUSE)
     return 0
 
 

@@ -7,7 +7,6 @@ a number.
 
 from __future__ import annotations
 
-import contextlib
 import json
 import os
 import shutil
@@ -23,7 +22,7 @@ import numpy as np
 
 from solidgear.core import SolidgearError, whole
 from solidgear.core.machine.patience import Patience
-from solidgear.show.drawing import ARRAYS
+from solidgear.show.drawing import ARRAYS, LAST
 
 if TYPE_CHECKING:
     from solidgear.core import Body, ModeSet, Surface
@@ -135,29 +134,22 @@ class Drawing:
         self._hand_over(len(self.jobs), job)
         self.jobs.append(job)
         self.begin()
-        self._ask_for(len(self.jobs) - 1)
 
     def __exit__(self, *_) -> None:
-        if self._child is not None:
-            if self._child.poll() is None:
-                self._child.kill()
-                self._child.wait()
-            if self._child.stdin is not None:
-                with contextlib.suppress(OSError):
-                    self._child.stdin.close()
+        if self._child is not None and self._child.poll() is None:
+            self._child.kill()
+            self._child.wait()
         self._folder.cleanup()
 
     def results(self) -> list[RenderResult]:
         """Wait for the pictures and put them in their places; a result a job."""
         if not self.jobs:
             return []
+        (self._room / LAST).touch()
         end = self._end or self._wait()
         # A child that reached the end of its list has said all there is to say.
         while end and self._windows and self._patience.remaining > 0:
-            end = self._start()
-            for i in range(len(self.jobs)):
-                self._ask_for(i)
-            end = end or self._wait()
+            end = self._start() or self._wait()
         return [
             RenderResult(job.path, _collect(self._room, i, job.path, end))
             for i, job in enumerate(self.jobs)
@@ -179,14 +171,10 @@ class Drawing:
             "along": job.along,
             "shade": job.shade,
         }
-        (self._room / f"{index}.json").write_text(json.dumps(words), encoding="utf-8")
-
-    def _ask_for(self, index: int) -> None:
-        """Tell the child to draw a picture; one that has died is asked how when all are there."""
-        if self._child is not None and self._child.stdin is not None:
-            with contextlib.suppress(OSError):
-                self._child.stdin.write(f"{index}\n".encode())
-                self._child.stdin.flush()
+        # whole, since the child looks for it
+        partial = self._room / f"{index}.part.json"
+        partial.write_text(json.dumps(words), encoding="utf-8")
+        os.replace(partial, self._room / f"{index}.json")
 
     def _start(self) -> str:
         """Start a child on the remaining pictures in the next window; return why it could not."""
@@ -204,7 +192,7 @@ class Drawing:
                 self._child = subprocess.Popen(
                     command,
                     env=env,
-                    stdin=subprocess.PIPE,
+                    stdin=subprocess.DEVNULL,
                     stdout=subprocess.DEVNULL,
                     stderr=errors,
                 )
@@ -215,9 +203,7 @@ class Drawing:
     def _wait(self) -> str:
         """Wait for the child; return how it died, or an empty text."""
         child = self._child
-        assert child is not None and child.stdin is not None
-        with contextlib.suppress(OSError):
-            child.stdin.close()
+        assert child is not None
         code = self._patience.wait(child)
         if self._patience.reason:
             return self._patience.reason
