@@ -13,7 +13,8 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from solidgear.core import SolidgearError, whole
+from solidgear.core import SolidgearError
+from solidgear.core.machine.whole_file import whole_or_refused
 from solidgear.show.panel import LETTER, Panel, wrapped
 from solidgear.show.paper import Paper
 from solidgear.show.pen import LEAD, Pen
@@ -133,13 +134,8 @@ def write_picture(svg: str, files: Sequence[Path]) -> None:
     endings = {file: check_ending(file) for file in files}
     for file, ending in endings.items():
         data = pixels(svg) if ending == ".png" else svg.encode()
-        try:
-            with whole(file) as half:
-                half.write_bytes(data)
-        except OSError as error:
-            raise SolidgearError(
-                f"{file}: cannot be written ({error.strerror or error})"
-            ) from error
+        with whole_or_refused(file) as half:
+            half.write_bytes(data)
 
 
 def check_ending(file: Path, formats: Sequence[str] = FORMATS) -> str:

@@ -131,9 +131,8 @@ def harmonic_bounds(
     `scene` is the one that the body was meshed from, chamfers as cones
     (:func:`solidgear.core.scene.coned.coned`). `modes` are modes of the body, of every group
     up to one beyond the cluster of each of the `wanted` names; `safety` multiplies the bounds of
-    modes. `later` are modes
-    of the body in other supports, whose bounds will be computed next: local problems that they
-    share with these are not solved again.
+    modes. `later` are modes of the body in other supports, whose bounds will be computed next: local
+    problems that they share with these are not solved again.
     """
     space = richer_space(scene, body)
     size, cells = 6 * len(body.ports), space.flat.cells.shape[1]

@@ -35,6 +35,8 @@ AIM = 0.7
 #: cells beside a corner that was cut leave about this share of its cost before, and an order more a
 #: ninth of the remaining error: neither decides an error bar, both how many meshes are tried
 BY_CUT, BY_ORDER = 0.08, 9.0
+#: share of what is aimed at that the error away from corners may take before orders are raised
+SMOOTH = 1 / 3
 #: cuts that one step may add to a corner, orders to the mesh, and cuts of a corner in all
 CUTS, ORDERS, MOST_CUTS = 4, 2, 12
 #: largest cell of the first mesh, in local outer radii
@@ -139,9 +141,9 @@ def refined(scene: Scene, body: Body, mesh: Meshed, score: np.ndarray, tol: floa
     aim, most_orders = AIM * tol, min(ORDERS, HIGHEST - mesh.order) if cure else 0
     while (smooth := corners.smooth() / rate**orders) + corners.left.sum() > aim:
         vertex, leaves = corners.worst()
-        if orders < most_orders and (vertex is None or smooth > aim / 3):
+        if orders < most_orders and (vertex is None or smooth > SMOOTH * aim):
             orders += 1
-        elif vertex is not None and (smooth <= aim / 3 or leaves >= smooth):
+        elif vertex is not None and (smooth <= SMOOTH * aim or leaves >= smooth):
             corners.cut(vertex)
         else:
             lines.halve(np.bincount(mesh_of.parent, corners.away))  # type: ignore[union-attr]

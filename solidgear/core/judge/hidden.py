@@ -13,6 +13,7 @@ from dataclasses import replace
 from solidgear.core.body import Body, Supports
 from solidgear.core.bounds.harmonic import by_problem, is_bounded
 from solidgear.core.judge.bounded import bounds_of
+from solidgear.core.judge.solving import with_all_solved
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.scene import Scene
 from solidgear.core.solve.modes import Mode, ModeSet
@@ -36,8 +37,8 @@ def complete_list(scene: Scene, body: Body, supports: Supports, listed: ModeSet)
     needed = [mode.name for mode in first]
     if not LADDER[body.fidelity].follows:
         first = _first_of_families(listed)
-    all_modes = replace(listed, beyond=(*listed.beyond, *listed.above), above=())
-    bounds = bounds_of(scene, body, supports, False, all_modes, [mode.name for mode in first])
+    names = [mode.name for mode in first]
+    bounds = bounds_of(scene, body, supports, False, with_all_solved(listed), names)
     limit = listed.evidence[COUNTED]
     for mode in first:
         least = bounds.frequency(mode)

@@ -12,6 +12,7 @@ from solidgear.core.judge.quantities import measure
 from solidgear.core.ladder import build
 from solidgear.core.quantity import ACROSS, QUANTITIES, STIFFNESS, Quantity
 from solidgear.core.solve.condensed import Condensed, Coupled
+from solidgear.core.solve.groups import MOST_SHAPES
 from solidgear.core.solve.modes import ModeSet, modes
 from solidgear.core.solve.statics import condense
 
@@ -19,8 +20,6 @@ if TYPE_CHECKING:
     from solidgear.core.body.supports import Holding
     from solidgear.core.scene import Scene
 
-#: shapes that are searched at most for a mode that is asked for
-MOST_SHAPES = 160
 #: modes that hold the first bending pair and the first axial mode of anything that looks like a
 #: shaft
 ENOUGH = 10
@@ -170,7 +169,7 @@ def search_modes(
         wider = modes(body, supports, count, ovalising=False)
     if wider is not listed:
         listed = extended_modes(listed, wider)
-    found_modes = [m for name in wanted if (m := _with_all_solved(listed).named(name)) is not None]
+    found_modes = [m for name in wanted if (m := with_all_solved(listed).named(name)) is not None]
     names = [m.name for m in (*listed.modes, *listed.beyond)]
     more = tuple(m for m in found_modes if m.name not in names)
     above = tuple(m for m in listed.above if m not in more)
@@ -185,7 +184,7 @@ def extended_modes(listed: ModeSet, wider: ModeSet) -> ModeSet:
     return replace(listed, beyond=(*listed.beyond, *further_modes), above=above)
 
 
-def _with_all_solved(listed: ModeSet) -> ModeSet:
+def with_all_solved(listed: ModeSet) -> ModeSet:
     """Return a list of modes with every solved mode beyond the end of the list."""
     return replace(listed, beyond=(*listed.beyond, *listed.above), above=())
 
@@ -194,7 +193,7 @@ def _contains(listed: ModeSet, name: str, spare: bool) -> bool:
     """Return whether a mode was found, and with `spare` one above it of the same motion, and one
     beyond those near it.
     """
-    solved = _with_all_solved(listed)
+    solved = with_all_solved(listed)
     mode = solved.named(name)
     if mode is None or not spare:
         return mode is not None

@@ -34,17 +34,26 @@ def whole(path: Path) -> Iterator[Path]:
         partial.unlink(missing_ok=True)
 
 
+@contextmanager
+def whole_or_refused(path: Path) -> Iterator[Path]:
+    """Yield another name as :func:`whole` does, for a file that a user named; refuse one that cannot
+    be written.
+    """
+    try:
+        with whole(path) as partial:
+            yield partial
+    except OSError as error:
+        raise SolidgearError(
+            f"{path}: cannot be written ({error.strerror or error}); name a file you may write"
+        ) from error
+
+
 def write_page(path: str | os.PathLike, text: str) -> Path:
     """Write a file that a user named, and the folders above it, whole or not at all; refuse one
     that cannot be written.
     """
     path = Path(path)
-    try:
+    with whole_or_refused(path) as partial:
         path.parent.mkdir(parents=True, exist_ok=True)
-        with whole(path) as partial:
-            partial.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise SolidgearError(
-            f"{path}: cannot be written ({error.strerror or error}); name a file you may write"
-        ) from error
+        partial.write_text(text, encoding="utf-8")
     return path

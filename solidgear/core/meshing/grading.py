@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
     Station = Port | Bearing | PointMass
 
+#: thin or thick end of a segment: the lesser or the larger of two lengths
+End = Callable[[float, float], float]
 #: where grading starts, in local lengths; one layer of ratio 0.2 begins at a twentieth of a radius
 REACH = 0.25
 #: of the wall, a shell's decay length is about sqrt(radius wall); a solid shaft's is its radius
@@ -112,14 +114,14 @@ class Grading:
         """
         if self.size is not None:
             return self.size, self.size
-        thick = max(segment.outer0, segment.outer1)
-        near, far = local_length(segment), max(_radius(segment), FLOOR * thick)
+        near = local_length(segment)
+        far = max(_radius(segment), FLOOR * _radius(segment, max))
         if across:
             near = max(near, FLOOR * local_length(segment, max))
         return min(self.relative_size, 1.0) * near, self.relative_size * far
 
 
-def local_length(segment: Segment, end: Callable[[float, float], float] = min) -> float:
+def local_length(segment: Segment, end: End = min) -> float:
     """Return the length over which the effect of a line on the surface dies away, m: the radius, or
     a shell's ``2 sqrt(r t)``.
 
@@ -131,9 +133,8 @@ def local_length(segment: Segment, end: Callable[[float, float], float] = min) -
     >>> local_length(solid), round(local_length(tube), 6)
     (0.05, 0.02)
     """
-    radius = end(segment.outer0, segment.outer1)
-    wall = end(segment.outer0 - segment.inner0, segment.outer1 - segment.inner1)
-    return min(radius, SHELL * float(np.sqrt(radius * wall)))
+    radius = _radius(segment, end)
+    return min(radius, SHELL * float(np.sqrt(radius * _wall(segment, end))))
 
 
 def corner_length(segment: Segment) -> float:
@@ -221,12 +222,12 @@ def ungraded_depth(segments: Sequence[Segment], k: int) -> float:
     return depth
 
 
-def _radius(segment) -> float:
-    return min(segment.outer0, segment.outer1)
+def _radius(segment, end: End = min) -> float:
+    return end(segment.outer0, segment.outer1)
 
 
-def _wall(segment) -> float:
-    return min(segment.outer0 - segment.inner0, segment.outer1 - segment.inner1)
+def _wall(segment, end: End = min) -> float:
+    return end(segment.outer0 - segment.inner0, segment.outer1 - segment.inner1)
 
 
 def graded(length, size, ratio, reach, refinement, low: int, high: int) -> np.ndarray:

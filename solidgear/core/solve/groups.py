@@ -25,8 +25,8 @@ MARGIN = 1.5
 LIGHT = 1.5
 MOST_WAVES = 100
 #: eigenvalues above this many times a limit are clear of it
-BESIDE = 1.01
-#: shapes that a group searches on by, for room above a list, and at most
+CLEAR = 1.01
+#: shapes that a group searches on by, for room above a list, and that are searched at most
 FARTHER, MOST_SHAPES = 4, 160
 # Rounding in a factor moves eigenvalues by about eps times the highest one; nearer to the bound
 # than a hundred times that, signs may turn.
@@ -71,13 +71,13 @@ class Part:
     def reaches(self, limit: float) -> bool:
         """Return whether an eigenvalue was found above a limit, rad^2/s^2."""
         elastic = self.solved.elastic
-        return bool(elastic) and elastic[-1].value > BESIDE * limit
+        return bool(elastic) and elastic[-1].value > CLEAR * limit
 
     def has_room(self, limit: float, room: float) -> bool:
         """Return whether the first eigenvalue above a limit, rad^2/s^2, has another one so far above
         it, relative, or no more are worth a search.
         """
-        above = [r.value for r in self.solved.elastic if r.value > BESIDE * limit]
+        above = [r.value for r in self.solved.elastic if r.value > CLEAR * limit]
         if not room or self.ask + FARTHER > min(MOST_SHAPES, self.supported.size // 2):
             return True
         return bool(above) and 1 - above[0] / above[-1] >= room
@@ -120,13 +120,15 @@ def solved_parts(
             part.solved = lowest(part.supported, part.ask, method)
         values = sorted(v for part in parts for v in part.values())
         reach = values[n - 1] if len(values) >= n else np.inf
-        short = [p for p in parts if p.ask < n and p.solved.elastic and not p.reaches(reach)]
-        cramped = [p for p in parts if p not in short and not p.has_room(reach, room)]
-        for part in short:
-            part.ask = min(2 * part.ask, n)
-        for part in cramped:
-            part.ask += FARTHER
-        waiting = short + cramped
+        waiting = []
+        for part in parts:
+            if part.ask < n and part.solved.elastic and not part.reaches(reach):
+                part.ask = min(2 * part.ask, n)
+            elif not part.has_room(reach, room):
+                part.ask += FARTHER
+            else:
+                continue
+            waiting.append(part)
         if not waiting:
             return [replace(part) for part in parts]
 

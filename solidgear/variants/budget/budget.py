@@ -500,23 +500,21 @@ class NamedShapes:
         """Return the frequency of every name, Hz, by the shapes that move most alike; of a pair that
         has split, the root of the mean square; without those of which nothing is alike.
         """
-        product, own, others = (
-            sum(np.einsum("ni,nj->ij", a[k], body.blocks[k].mass @ b[k]) for k in self.fields)
-            for a, b in (
-                (self.fields, shapes.fields),
-                (self.fields, self.fields),
-                (shapes.fields, shapes.fields),
-            )
-        )
-        alike = np.square(product) / np.outer(own.diagonal(), others.diagonal())
+        product, squares, squares_of_shapes = np.zeros((3, 1, 1))
+        for k, field in self.fields.items():
+            moved, carried = shapes.fields[k], body.blocks[k].mass @ shapes.fields[k]
+            product = product + field.T @ carried
+            squares = squares + np.einsum("ni,ni->i", field, body.blocks[k].mass @ field)[:, None]
+            squares_of_shapes = squares_of_shapes + np.einsum("ni,ni->i", moved, carried)
+        alike = np.square(product) / (squares * squares_of_shapes)
         # twins turn into one another as they like
         of_names = {name: alike[[n == name for n in self.names]].sum(axis=0) for name in self.names}
         gain = np.array([of_names[name] for name in self.names])
-        squares: dict[Quantity, list[float]] = {name: [] for name in of_names}
+        hz2: dict[Quantity, list[float]] = {name: [] for name in of_names}
         for row, column in zip(*best_assignment(gain)):
             if gain[row, column] >= FOREIGN:
-                squares[self.names[row]].append(float(shapes.frequency_hz[column]) ** 2)
-        return {name: math.sqrt(np.mean(hz2)) for name, hz2 in squares.items() if hz2}
+                hz2[self.names[row]].append(float(shapes.frequency_hz[column]) ** 2)
+        return {name: math.sqrt(np.mean(found)) for name, found in hz2.items() if found}
 
 
 def _one_modulus(scene: Scene, inputs: Sequence[OpenInput]) -> bool:
