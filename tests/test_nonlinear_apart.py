@@ -1,5 +1,6 @@
 """Branches apart: found from starts, closed, and what motion in time says of them."""
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -60,7 +61,8 @@ def test_what_is_told_of_the_axle_names_both_and_what_was_looked_for(axle):
     told = " ".join(BacklashStudy(assembly.train, (found,), 0.044).sentences())
     assert "A separate branch of two mesh periods from 100" in told
     assert "searched from 1024 starts at 32 speeds" in told and "there may be others" in told
-    assert "on a separate branch, 7392 N" in told
+    below = re.search(r"on a separate branch, (\d+) N", told)
+    assert float(below.group(1)) == pytest.approx(7392, rel=2e-3)
     alone = " ".join(
         BacklashStudy(assembly.train, (replace(found, branches_apart=()),), 0.044).sentences()
     )
