@@ -27,6 +27,7 @@ CORE = {
 }
 #: further rooms of the core, from the ground up
 CORE_FLOORS = (
+    "core.gears",
     "core.scene",
     "core.body",
     "core.meshing",
@@ -49,6 +50,7 @@ FEATURES = (
     "bearings",
     "guards",
     "trains",
+    "teeth",
     "strength",
     "variants",
     "measured",

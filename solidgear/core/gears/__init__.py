@@ -1,0 +1,1 @@
+"""Teeth of cylindrical gears: basic rack, wheel and pair of wheels, geometry alone."""

@@ -1,0 +1,1 @@
+"""Teeth in contact: mesh stiffness, transmission error and load along the face from the flanks."""

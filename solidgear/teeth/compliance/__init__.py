@@ -1,0 +1,1 @@
+"""How far teeth give way: from finite elements, read below the flank."""
