@@ -197,23 +197,6 @@ def test_supports_that_do_not_give_change_nothing_and_those_that_do_make_softer(
     assert soft.supported_secant < 0.9 * soft.secant
 
 
-def test_a_mirrored_pair_is_the_same_pair():
-    """The other sense of the face: helix, tilt and supports mirrored give mirrored loads."""
-    pair = pair_of(radians(15), shapes=(Tilted(1e-3), None))
-    result = loads(pair, 100.0, 0.35)
-    cells = result.cells
-
-    class Mirrored(CylindricalPair):
-        def cells(self, phase):
-            return cells
-
-    order = np.argsort(-cells.z, kind="stable")
-    assert len(order) == len(cells.z)
-    flipped = Mirrored(pair.wheels, pair.compliances, LAW, shapes=pair.shapes, slices=12)
-    again = loads(flipped, 100.0, 0.35)
-    assert again.force == pytest.approx(result.force, rel=1e-11)
-
-
 def test_gap_of_corners_is_that_of_involutes_turned_back():
     """Figures by another route, points of both flanks and Newton: 1.2, 7.8, 30.9, 124 um."""
     wheels = WheelPair(Wheel(23, 4e-3), Wheel(57, 4e-3))
