@@ -16,8 +16,9 @@ from solidgear.core.gears.wheel import Rack, Wheel
 from solidgear.core.gears.wheel_pair import WheelPair
 from solidgear.teeth.contact.cycle import mesh_cycle
 from solidgear.teeth.contact.cylindrical import CylindricalPair, corner_gap
+from solidgear.teeth.contact.frame import RigidSupports
 from solidgear.teeth.contact.local import Elasticity, LineContact
-from solidgear.teeth.contact.solver import loads
+from solidgear.teeth.contact.solver import RIGID, loads
 from solidgear.teeth.norm import norm_face_load_factor, norm_stiffness
 
 STEEL = Elasticity(2.06e11, 0.3)
@@ -56,10 +57,10 @@ def pair_of(helix=0.0, face=20e-3, **kw):
     return CylindricalPair(wheels, (MadeUp(), MadeUp(1.5e-9)), LAW, **{"slices": 12, **kw})
 
 
-def supports_of(seed):
-    """A (6, 6) compliance of shafts, m/N and rad/(N m)."""
+def supports_of(seed, motion=(0, 0, 0, 0, 0, 0)):
+    """Shafts that give way at random, m/N and rad/(N m)."""
     rows = np.random.default_rng(seed).normal(size=(8, 6)) * [1, 1, 1, 20, 20, 20]
-    return 1e-10 * rows.T @ rows
+    return RigidSupports(1e-10 * rows.T @ rows, np.array(motion, float))
 
 
 def test_local_law_is_the_strain_under_a_hertz_pressure_summed_to_the_depth():
@@ -96,9 +97,10 @@ def test_tangent_of_the_local_law_is_its_slope(load):
 def test_forces_make_the_energy_least(helix, phase):
     """An optimiser with bounds, which knows neither Newton nor active cells, finds no less."""
     pair = pair_of(helix, slices=5, shapes=(Tilted(2e-3), None))
-    result = loads(pair, 80.0, phase, supports_of(1), np.array([0, 0, 0, 1e-4, 2e-4, 0]))
+    supports = supports_of(1, (0, 0, 0, 1e-4, 2e-4, 0))
+    result = loads(pair, 80.0, phase, supports)
     cells = result.cells
-    bulk = pair.bulk(cells) + cells.rows @ supports_of(1) @ cells.rows.T
+    bulk = pair.bulk(cells) + cells.rows @ supports.compliance @ cells.rows.T
     gap = cells.gap + cells.rows @ np.array([0, 0, 0, 1e-4, 2e-4, 0])
 
     def local(force):  # work of a law q G(t), t going as q^-1/2, by its own quadrature
@@ -140,7 +142,7 @@ def contact_holds(helix, torque, tilt, phase, seed):
     supports = supports_of(seed)
     result = loads(pair, torque, phase, supports)
     cells = result.cells
-    bulk = pair.bulk(cells) + cells.rows @ supports @ cells.rows.T
+    bulk = pair.bulk(cells) + cells.rows @ supports.compliance @ cells.rows.T
     secant = LAW.compliances(result.line_load, cells.radius)[0] / cells.length
     apart = bulk @ result.force + secant * result.force + cells.gap - cells.lever * result.rotation
     size = abs(result.rotation) * cells.lever.mean() + np.ptp(cells.gap)
@@ -190,7 +192,7 @@ def test_tangent_is_the_slope_of_rotation_by_torque():
 
 def test_supports_that_do_not_give_change_nothing_and_those_that_do_make_softer():
     pair = pair_of()
-    rigid, soft = loads(pair, 100.0, 0.2, np.zeros((6, 6))), loads(pair, 100.0, 0.2, supports_of(2))
+    rigid, soft = loads(pair, 100.0, 0.2, RIGID), loads(pair, 100.0, 0.2, supports_of(2))
     alone = loads(pair, 100.0, 0.2)
     assert rigid.force == pytest.approx(alone.force, rel=1e-12)
     assert rigid.supported_secant == pytest.approx(alone.secant, rel=1e-12)

@@ -45,3 +45,14 @@ class ToothedPair(Protocol):
     def bulk(self, cells: Cells) -> np.ndarray:
         """Return the (n, n) compliance of the teeth of both wheels between cells, m/N."""
         ...
+
+
+class Carrying(Protocol):
+    """What carries both wheels."""
+
+    compliance: np.ndarray  #: (N, N) of its motions
+    motion: np.ndarray  #: (N,) under all loads but those of these teeth
+
+    def rows(self, cells: Cells) -> np.ndarray:
+        """Return the (n, N) rows by which its motions open the cells."""
+        ...

@@ -17,7 +17,7 @@ from functools import cached_property
 
 import numpy as np
 
-from solidgear.teeth.contact.cells import ToothedPair
+from solidgear.teeth.contact.cells import Carrying, ToothedPair
 from solidgear.teeth.contact.solver import Loads, loads
 
 #: positions of a mesh cycle
@@ -162,8 +162,7 @@ def mesh_cycle(
     torque: float,
     base: float,
     slices: int,
-    supports: np.ndarray | None = None,
-    misalignment: np.ndarray | None = None,
+    supports: Carrying | None = None,
     positions: int = POSITIONS,
     progress: Callable[[int, int], None] | None = None,
 ) -> MeshCycle:
@@ -172,7 +171,7 @@ def mesh_cycle(
     """
     solved = []
     for k in range(positions):
-        solved.append(loads(pair, torque, k / positions, supports, misalignment))
+        solved.append(loads(pair, torque, k / positions, supports))
         if progress is not None:
             progress(k + 1, positions)
     return MeshCycle(tuple(solved), base, slices)

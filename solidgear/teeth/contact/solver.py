@@ -6,8 +6,8 @@ and the levers l about the first wheel's axis, forces f and the rotation theta o
     w = C f + d(f) + g - l theta >= 0,    f >= 0,    f w = 0,    l f = T,
 
 so that teeth touch where they push and nowhere pull.  What carries the wheels adds ``H S H'`` to C,
-with the (6, 6) compliance S of both supports at the origin and the rows H of rigid motions, and
-misalignments m before any load add ``H m`` to g.  Newton takes d by its tangent; each linear problem
+with its compliance S and the rows H by which its motions open the cells, and its motion m under all
+other loads adds ``H m`` to g.  Newton takes d by its tangent; each linear problem
 is solved by the cells that touch, of which those that would pull are dropped and those that would cut
 into each other are added, all at once, and in the order of their numbers if that goes round, which
 ends for every matrix of positive principal minors (Murty, Linear Complementarity, 1988, 3.2).
@@ -22,9 +22,12 @@ from functools import cached_property
 import numpy as np
 
 from solidgear.core import SolidgearError
-from solidgear.teeth.contact.cells import Cells, ToothedPair
+from solidgear.teeth.contact.cells import Carrying, Cells, ToothedPair
+from solidgear.teeth.contact.frame import RigidSupports
 from solidgear.teeth.contact.local import LineContact
 
+#: wheels that are held
+RIGID = RigidSupports(np.zeros((6, 6)), np.zeros(6))
 #: relative change of forces at which Newton ends, and overlap of the rotation that is none
 NEWTON, OVERLAP = 1e-11, 1e-11
 #: steps of Newton, and changes of the cells that touch before they change one at a time
@@ -118,8 +121,7 @@ def loads(
     pair: ToothedPair,
     torque: float,
     phase: float,
-    supports: np.ndarray | None = None,
-    misalignment: np.ndarray | None = None,
+    supports: Carrying | None = None,
 ) -> Loads:
     """Compute the loads on all cells at a position.
 
@@ -130,11 +132,8 @@ def loads(
         On the first wheel, above zero, N m.
     phase : float
         Position in pitches.
-    supports : (6, 6) ndarray, optional
-        Compliance of all that carries both wheels, as rigid motions at the origin of the pair's
-        frame; by default both are held.
-    misalignment : (6,) ndarray, optional
-        Motion of the first wheel less that of the second one before any load, at the origin, m, rad.
+    supports : Carrying, optional
+        What carries both wheels, and how it has moved them; by default both are held.
 
     Raises
     ------
@@ -148,15 +147,16 @@ def loads(
         )
     cells = pair.cells(phase)
     teeth = pair.bulk(cells)
-    gap = cells.gap if misalignment is None else cells.gap + cells.rows @ misalignment
-    give = np.zeros((6, 6)) if supports is None else supports
-    bulk = teeth + cells.rows @ give @ cells.rows.T
+    carrying = RIGID if supports is None else supports
+    rows = carrying.rows(cells)
+    gap = cells.gap + rows @ carrying.motion
+    bulk = teeth + rows @ carrying.compliance @ rows.T
     force, rotation, steps = _newton(cells, pair.law, bulk, gap, torque)
-    moved = gap + cells.rows @ (give @ (force @ cells.rows))
-    carrying = np.flatnonzero(force > 0)
+    moved = gap + rows @ (carrying.compliance @ (rows.T @ force))
+    loaded = np.flatnonzero(force > 0)
     local = np.diag(pair.law.compliances(force / cells.length, cells.radius)[1] / cells.length)
     slopes = [
-        _bordered(matrix + local, cells.lever, carrying)(np.zeros(len(carrying)), 1.0)[-1]
+        _bordered(matrix + local, cells.lever, loaded)(np.zeros(len(loaded)), 1.0)[-1]
         for matrix in (teeth, bulk)
     ]
     return Loads(
