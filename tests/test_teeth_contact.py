@@ -46,7 +46,7 @@ class Tilted:
 
     slope: float
 
-    def deviation(self, r, z):
+    def deviation(self, s, z):
         return self.slope * (z + 10e-3)
 
 
@@ -174,8 +174,8 @@ def test_first_touch_is_the_smallest_gap_and_comes_off_the_secant():
     """Flanks that stand back by 5 um everywhere are as stiff as before, and turn 5 um further."""
 
     class Back:
-        def deviation(self, r, z):
-            return np.full(len(r), 5e-6)
+        def deviation(self, s, z):
+            return np.full(len(s), 5e-6)
 
     plain, back = (loads(pair_of(shapes=s), 100.0, 0.3) for s in ((None, None), (Back(), None)))
     assert back.rotation - plain.rotation == pytest.approx(5e-6 / plain.cells.lever[0], rel=1e-9)

@@ -99,10 +99,10 @@ class CylindricalPair:
         wheels = self.wheels
         inside = np.clip(place, *wheels.ends)
         gap = corner_gap(wheels, place)
-        radii = wheels.first_radius(inside), wheels.second_radius(inside)
-        for shape, r, offset in zip(self.shapes, radii, self.offsets):
+        lengths = inside, wheels.second_length(inside)
+        for shape, length, offset in zip(self.shapes, lengths, self.offsets):
             if shape is not None:
-                gap = gap + shape.deviation(r, z - offset)
+                gap = gap + shape.deviation(length, z - offset)
         return gap
 
     def bulk(self, cells: Cells) -> np.ndarray:
