@@ -40,21 +40,13 @@ class CylindricalPair:
     #: of first and second wheel: what their flanks miss by place, None where nothing
     shapes: tuple = (None, None)
     slices: int = 24
-    #: middle of both faces from the middle of the common face, along w, m
-    offsets: tuple[float, float] = (0.0, 0.0)
-    width: float | None = None  #: common face, m; by default the narrower face
     beyond: float = BEYOND  #: pitches; 0 for the path alone
-
-    @property
-    def face(self) -> float:
-        """Width of the common face, m."""
-        return self.wheels.face_width if self.width is None else self.width
 
     def cells(self, phase: float) -> Cells:
         """Return the cells of all contact lines at a position in pitches."""
         wheels, n = self.wheels, self.slices
-        step = self.face / n
-        z = (np.arange(n) + 0.5) * step - self.face / 2
+        step = self.wheels.face_width / n
+        z = (np.arange(n) + 0.5) * step - self.wheels.face_width / 2
         lean = tan(wheels.base_helix)
         half = step * lean / 2
         start, stop = wheels.ends
@@ -89,7 +81,7 @@ class CylindricalPair:
     def _lines(self, phase: float, first: float, last: float) -> range:
         """Return the numbers of lines that may cross the face within two places of the path."""
         wheels = self.wheels
-        slope = tan(wheels.base_helix) * self.face / 2
+        slope = tan(wheels.base_helix) * self.wheels.face_width / 2
         low = (first - slope - wheels.pitch_point) / wheels.pitch - phase
         high = (last + slope - wheels.pitch_point) / wheels.pitch - phase
         return range(int(np.floor(low)), int(np.ceil(high)) + 1)
@@ -100,9 +92,9 @@ class CylindricalPair:
         inside = np.clip(place, *wheels.ends)
         gap = corner_gap(wheels, place)
         lengths = inside, wheels.second_length(inside)
-        for shape, length, offset in zip(self.shapes, lengths, self.offsets):
+        for shape, length, middle in zip(self.shapes, lengths, wheels.face_middles):
             if shape is not None:
-                gap = gap + shape.deviation(length, z - offset)
+                gap = gap + shape.deviation(length, z - middle)
         return gap
 
     def bulk(self, cells: Cells) -> np.ndarray:
@@ -110,8 +102,9 @@ class CylindricalPair:
         place = np.clip(cells.place, *self.wheels.ends)
         radii = self.wheels.first_radius(place), self.wheels.second_radius(place)
         out = np.zeros((len(place), len(place)))
-        for compliance, r, sense, offset in zip(self.compliances, radii, (1, -1), self.offsets):
-            out += compliance.matrix(sense * cells.line, r, cells.z - offset)
+        middles = self.wheels.face_middles
+        for compliance, r, sense, middle in zip(self.compliances, radii, (1, -1), middles):
+            out += compliance.matrix(sense * cells.line, r, cells.z - middle)
         return out
 
 
