@@ -19,6 +19,7 @@ from math import cos, sin, tan
 
 import numpy as np
 
+from solidgear.core.gears.flank_shape import FlankShape
 from solidgear.core.gears.wheel_pair import WheelPair
 from solidgear.teeth.compliance.flank import FlankCompliance
 from solidgear.teeth.contact.cells import Cells
@@ -37,8 +38,8 @@ class CylindricalPair:
     wheels: WheelPair
     compliances: tuple[FlankCompliance, FlankCompliance]
     law: LineContact
-    #: of first and second wheel: what their flanks miss by place, None where nothing
-    shapes: tuple = (None, None)
+    #: of both flanks; face places count from the middle of the shared face
+    shapes: tuple[FlankShape, FlankShape] = (FlankShape(), FlankShape())
     slices: int = 24
     beyond: float = BEYOND  #: pitches; 0 for the path alone
 
@@ -68,7 +69,7 @@ class CylindricalPair:
             line=line,
             length=length,
             radius=wheels.curvature_radius(inside),
-            gap=self._gap(place, along),
+            gap=corner_gap(wheels, place) + self.shape_gap(inside, along),
             lever=lever,
             point=point,
             normal=np.tile(normal, (n_cells, 1)),
@@ -86,15 +87,15 @@ class CylindricalPair:
         high = (last + slope - wheels.pitch_point) / wheels.pitch - phase
         return range(int(np.floor(low)), int(np.ceil(high)) + 1)
 
-    def _gap(self, place: np.ndarray, z: np.ndarray) -> np.ndarray:
-        """Return the gaps between both flanks without load along the normal, m."""
+    def shape_gap(self, place: np.ndarray, z: np.ndarray) -> np.ndarray:
+        """Return what the shapes of both flanks leave between them along the normal, m, at places of
+        the path and of the face.
+        """
         wheels = self.wheels
-        inside = np.clip(place, *wheels.ends)
-        gap = corner_gap(wheels, place)
-        lengths = inside, wheels.second_length(inside)
-        for shape, length, middle in zip(self.shapes, lengths, wheels.face_middles):
-            if shape is not None:
-                gap = gap + shape.deviation(length, z - middle)
+        lengths = place, wheels.second_length(place)
+        gap = np.zeros(len(place))
+        for shape, length in zip(self.shapes, lengths):
+            gap = gap + shape.deviation(length, z)
         return gap
 
     def bulk(self, cells: Cells) -> np.ndarray:
