@@ -92,8 +92,8 @@ def test_tangent_of_the_local_law_is_its_slope(load):
 @pytest.mark.parametrize("helix, phase", [(0.0, 0.1), (radians(15), 0.6)])
 def test_forces_make_the_energy_least(helix, phase):
     """An optimiser with bounds, which knows neither Newton nor active cells, finds no less."""
-    pair = pair_of(helix, slices=5, shapes=tilted(2e-3))
-    supports = supports_of(1, (0, 0, 0, 1e-4, 2e-4, 0))
+    pair = pair_of(helix, slices=5, shapes=tilted(3e-4))
+    supports = supports_of(1, (0, 0, 0, 1e-5, 2e-5, 0))
     result = loads(pair, 80.0, phase, supports)
     cells = result.cells
     bulk = pair.bulk(cells) + cells.rows @ supports.compliance @ cells.rows.T
@@ -120,7 +120,7 @@ def test_forces_make_the_energy_least(helix, phase):
         method="SLSQP",
         options={"ftol": 1e-14, "maxiter": 500},
     )
-    assert energy(result.force / scale) <= least.fun * (1 + 1e-7)
+    assert energy(result.force / scale) <= least.fun + 1e-7 * abs(least.fun)
     assert result.force / scale == pytest.approx(least.x, abs=2e-3)
 
 
@@ -221,12 +221,12 @@ def test_orders_rebuild_the_error():
 
 
 def test_face_load_factor_rises_with_tilt_and_is_the_same_from_either_end():
-    straight, tilted, other = (
+    straight, askew, other = (
         mesh_cycle(pair_of(shapes=tilted(s)), 100.0, 43e-3, 12, positions=4)
         for s in (0.0, 5e-4, -5e-4)
     )
-    assert straight.face_load_factor < tilted.face_load_factor
-    assert other.face_load_factor == pytest.approx(tilted.face_load_factor, rel=1e-9)
+    assert straight.face_load_factor < askew.face_load_factor
+    assert other.face_load_factor == pytest.approx(askew.face_load_factor, rel=1e-9)
 
 
 def test_a_torque_that_lifts_the_flanks_is_refused():
