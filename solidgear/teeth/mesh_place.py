@@ -87,15 +87,15 @@ def _of_planet(assembly: Assembly, system: System, mesh: PlanetMesh, teeth: Mesh
     ring = None if at_work.ring is None else f"{at_work.ring}.centre"
     ends = (planet, ring) if mesh.mate == "ring" else (sun, planet)
     start = pin if mesh.mate == "ring" else centre
-    # the force that the teeth have in the system, on the first wheel
+    # the row of the mesh in the system, with the sense in which teeth push the first wheel off
     port = system.port(ends[0])
     row, _ = mesh_row(system, link)
-    wrench = np.linalg.lstsq(port.rows.T, row, rcond=None)[0]
+    along = port.axes @ np.linalg.lstsq(port.rows.T, row, rcond=None)[0][:3]
     return MeshPlace(
         link=link,
         force=stage.name,
         ends=ends,
         pitch_point=start + rolling * outward,
-        normal=port.axes @ wrench[:3],
+        normal=-np.sign(along @ outward) * along,
         axis=axis,
     )
