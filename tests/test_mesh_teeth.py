@@ -179,7 +179,11 @@ def test_planets_mesh_with_the_sun_first_and_with_the_ring_second():
     table = stage.table.with_changes(
         ring_flanks={"crowning": 4e-6}, planet=stage.table.planet.with_changes(crowning=3e-6)
     )
-    changed = train.with_changes(planetary={stage.called: table}).stages[0]
+    side, port = stage.shafts[0], stage.ports[0]
+    shaft = train.shafts[side]
+    wide = shaft.with_changes(gears={**shaft.gears, port: stage.sun.with_changes(face_width=0.03)})
+    shafts = {**train.shafts, side: wide}
+    changed = train.with_changes(shafts=shafts, planetary={stage.called: table}).stages[0]
     sun, ring = (wheels_of(mesh) for mesh in changed.together)
     assert [s.crowning for s in (*sun.shapes, *ring.shapes)] == [0.0, 3e-6, 3e-6, 4e-6]
 

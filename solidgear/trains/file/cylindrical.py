@@ -16,6 +16,7 @@ from solidgear.core import SceneError
 from solidgear.core.gears.wheel import Rack, Wheel
 from solidgear.core.gears.wheel_pair import WheelPair
 from solidgear.core.scene.units import TYPED
+from solidgear.trains.file.flanks import Flanks
 
 if TYPE_CHECKING:
     from solidgear.trains.file.gears import Member
@@ -25,8 +26,8 @@ if TYPE_CHECKING:
 RADIUS = 5e-3
 #: keys of cylindrical gears, by table
 WORDS = {
-    "pinion": ("module", "helix_angle", "profile_shift"),
-    "gear": ("module", "helix_angle", "profile_shift"),
+    "pinion": ("module", "helix_angle", "profile_shift", *Flanks.model_fields),
+    "gear": ("module", "helix_angle", "profile_shift", *Flanks.model_fields),
     "mesh": ("centre_distance",),
 }
 

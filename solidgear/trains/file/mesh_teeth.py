@@ -8,7 +8,6 @@ end, so that z runs to the end where hand and loaded flank have one name, else t
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from math import ceil, cos, degrees, radians
 
@@ -233,17 +232,6 @@ def _single_contact(wheels: WheelPair, k: int) -> tuple[float, float]:
         float(wheels.second_length(start + overlap)),
         float(wheels.second_length(stop - overlap)),
     )
-
-
-def missing_size(pair: Pair) -> Iterator[str]:
-    """Yield the keys without which the teeth of a pair have no size or no face."""
-    if pair.mesh.shaft_angle:
-        return
-    teeth = wheels_of(pair)
-    if teeth is None:
-        yield "module"
-    if not (pair.pinion.face_width or pair.gear.face_width):
-        yield "face_width"
 
 
 def _both(names: list[str]) -> str:

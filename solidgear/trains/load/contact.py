@@ -21,6 +21,7 @@ from solidgear.core.system.gear_mesh import (
     to_gear_frame,
 )
 from solidgear.trains.file.pairs import Pair
+from solidgear.trains.file.tables import solved
 
 #: a typed line of action with six digits
 UNIT = 1e-6
@@ -64,10 +65,16 @@ class Contact:
     #: pinion, gear: points from each lumped point
     pinion: MeshVector
     gear: MeshVector
-    stiffness: float  #: N/m
+    #: N/m, ``teeth`` where their contact gives it
+    file_stiffness: float | str
     origin: np.ndarray  #: (3,) the gear's lumped point from the pinion's, in the pinion's frame, m
     wrench: ContactWrench | None  #: of contact cells
     cautions: tuple[str, ...]  #: on data that do not fit together but can be solved
+
+    @property
+    def stiffness(self) -> float:
+        """Stiffness of the mesh, N/m; refused where teeth give it and are not solved."""
+        return solved(self.file_stiffness)
 
 
 def contact(pair: Pair, coast: bool | None = None) -> Contact:
@@ -128,14 +135,14 @@ def _contact(pair: Pair, coast: bool | None) -> Contact:
         _refuse_point_off_head(pair, side, vector.point)
     cautions += _levers(pair, pinion, gear)
     cautions += [line for side in pair.members for line in _scene_load(pair, side, vectors[side])]
-    stiffness = mesh.stiffness
+    stiffness: float | str | None = mesh.stiffness
     if stiffness is None:
         assert wrench and mesh.loaded_error is not None and mesh.unloaded_error is not None
         stiffness = wrench.mesh_stiffness(mesh.loaded_error, mesh.unloaded_error)
     return Contact(
         pinion=_in_scene(pair, "pinion", pinion),
         gear=_in_scene(pair, "gear", gear),
-        stiffness=stiffness,
+        file_stiffness=stiffness,
         origin=origin,
         wrench=wrench,
         cautions=tuple(cautions),
