@@ -239,3 +239,33 @@ def test_tips_that_meet_fillets_are_told():
     assert not any(
         "fillets" in c for c in fit_cautions(WheelPair(fit.first, Wheel(57, 3e-3)), "ab")
     )
+
+
+def test_bevel_gears_have_cutters_and_cylindrical_gears_have_none():
+    axle = sg.load_train(GEOMETRY / "axle_overhung.toml")
+    cut = {"cutter_radius": "152.4 mm", "blade_curvature": 0.05}
+    mesh = axle.mesh.with_changes(gear_share=0.27, working_depth=1.9, ease_off="120 um")
+    train = axle.with_changes(pinion=axle.pinion.with_changes(**cut), mesh=mesh)
+    assert train.pinion.cutter_radius == pytest.approx(0.1524)
+    assert train.mesh.ease_off == pytest.approx(120e-6)
+    with pytest.raises(SceneError, match="leave one of the three out"):
+        train.with_changes(gear=axle.gear.with_changes(**cut))
+    gearbox = sg.load_train(GEOMETRY / "gearbox_train.toml")
+    with pytest.raises(SceneError, match="is for bevel gears") as error:
+        gearbox.with_changes(gear=gearbox.gear.with_changes(cutter_radius="100 mm"))
+    assert error.value.problems[0].path == ("gear", "cutter_radius")
+
+
+@pytest.mark.parametrize(
+    ("table", "key", "value"),
+    [
+        ("pinion", "blade_curvature", 11.0),
+        ("mesh", "gear_share", 1.0),
+        ("mesh", "working_depth", 3.5),
+        ("mesh", "ease_off", -1e-6),
+    ],
+)
+def test_settings_of_no_cutter_are_refused(table, key, value):
+    axle = sg.load_train(GEOMETRY / "axle_overhung.toml")
+    with pytest.raises(SceneError, match=key):
+        axle.with_changes(**{table: getattr(axle, table).with_changes(**{key: value})})

@@ -30,6 +30,12 @@ WORDS = {
     "gear": ("module", "helix_angle", "profile_shift", *Flanks.model_fields),
     "mesh": ("centre_distance",),
 }
+#: keys of bevel gears alone, by table
+BEVEL_WORDS = {
+    "pinion": ("cutter_radius", "blade_curvature"),
+    "gear": ("cutter_radius", "blade_curvature"),
+    "mesh": ("ease_off", "gear_share", "working_depth"),
+}
 
 
 @dataclass(frozen=True)
@@ -101,7 +107,17 @@ def cylindrical_problems(pinion: Member, gear: Member, mesh: Mesh) -> Iterator[S
                         "pitch_radius and spiral_angle of a bevel gear",
                         path=(table, key),
                     )
+        radii = pinion.cutter_radius, gear.cutter_radius
+        if mesh.ease_off is not None and None not in radii:
+            yield SceneError(
+                "follows from the cutter_radius of both gears; leave one of the three out",
+                path=("mesh", "ease_off"),
+            )
         return
+    for table, keys in BEVEL_WORDS.items():
+        for key in keys:
+            if getattr(tables[table], key) is not None:
+                yield SceneError("is for bevel gears; these shafts are parallel", path=(table, key))
     for side, member in (("pinion", pinion), ("gear", gear)):
         for key, bevel_key in (("helix_angle", "spiral_angle"), ("module", "pitch_radius")):
             if getattr(member, key) is not None and getattr(member, bevel_key) is not None:

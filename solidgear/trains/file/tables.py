@@ -176,6 +176,12 @@ class Mesh(Model):
     pressure_angle: PressureAngle | None = None
     #: of parallel shafts, m; by default that without backlash
     centre_distance: PositiveLength | None = None
+    #: of bevel gears: gap of both flanks at their corners, m, by the radii of the cutters, where
+    #: these are not both given
+    ease_off: Thickness | None = None
+    #: of bevel gears: addendum of the gear over the working depth, and this in mean normal modules
+    gear_share: Annotated[float, Field(gt=0, lt=1)] | None = None
+    working_depth: Annotated[float, Field(gt=0, le=3)] | None = None
     #: given instead, in the pinion's frame, from its lumped point
     line_of_action: tuple[float, float, float] | None = None
     line_of_action_status: Status = "assumed"
