@@ -71,9 +71,9 @@ def stage_flank_problems(stage: Stage) -> Iterator[SceneError]:
         teeth = meshes[mesh]
         if teeth is not None and wheel_flanks.is_described:
             yield from _wheel(teeth.wheels, k, wheel_flanks, path)
-    for teeth, path in zip(meshes, ("planet", "ring_flanks")):
+    for teeth, member in zip(meshes, ("planet", "ring_flanks")):
         if teeth is not None:
-            yield from _faces(teeth.wheels, [(path, "face_offset")])
+            yield from _faces(teeth.wheels, [(member, "face_offset")])
 
 
 def _needed(key: str) -> SceneError:

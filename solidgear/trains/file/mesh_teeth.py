@@ -160,7 +160,7 @@ def _wheels(
     faces = widths[0] or widths[1] or 0.0, widths[1] or widths[0] or 0.0
     wheels, assumed = [], []
     for wheel, width in zip(numbers, faces):
-        rack = (wheel.flanks.rack or RackTable()).at(pressure)
+        rack = (wheel.flanks.rack or RackTable()).with_angle(pressure)
         tip = wheel.flanks.tip_diameter
         tip_radius = None if tip is None else tip / 2
         wheels.append(Wheel(wheel.teeth, module, helix, wheel.shift, rack, tip_radius, width))

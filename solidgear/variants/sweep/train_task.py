@@ -21,6 +21,7 @@ from solidgear.trains.assembly.assembly import KEPT
 from solidgear.trains.assembly.layout import contacts
 from solidgear.trains.assembly.shaft import JUDGE, LUMPED, checked_model
 from solidgear.trains.assembly.turn import over_a_turn, stages_over_a_turn
+from solidgear.trains.file.flanks import Flanks
 from solidgear.trains.file.housing import HOUSING
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.reading import train_of
@@ -130,7 +131,9 @@ class TrainTask(FileTask):
         tables = variants.tables(self.first)
         # further files that these name
         cells = [cell.model_dump() for mesh in usual.meshes for cell in mesh.contact_cells]
-        gears = [gear for shaft in usual.shafts.values() for gear in shaft.gears.values()]
+        gears: list[Flanks | None] = []
+        for shaft in usual.shafts.values():
+            gears += shaft.gears.values()
         for table in usual.planetary.values():
             gears += [table.planet, table.ring_flanks]
         flanks = [gear.measured_flank for gear in gears if gear and gear.measured_flank]
