@@ -20,6 +20,7 @@ from solidgear.core.system.gear_mesh import (
     mesh_point,
     to_gear_frame,
 )
+from solidgear.trains.file.mesh_teeth import wheels_of
 from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.tables import solved
 
@@ -120,7 +121,8 @@ def _contact(pair: Pair, coast: bool | None) -> Contact:
     elif mesh.line_of_action is not None:
         normal, point = _given_line(pair), np.array(mesh.point)
     else:
-        normal, point = _of_teeth(pair, mesh.pressure_angle), mesh_point(_mean_radius(pair))
+        normal = _of_teeth(pair, mesh.pressure_angle)
+        point = mesh_point(_mean_radius(pair)) + np.array([0.0, _face_middle(pair), 0.0])
     if coast is None:
         coast = pair.point is not None and pair.point.coast
     if coast:
@@ -301,6 +303,19 @@ def _mean_radius(pair: Pair) -> float:
         return mean_radius(p.pitch_radius, p.pitch_angle, p.face_width)
     except SolidgearError as error:
         raise SceneError(str(error), path=("pinion", "face_width")) from None
+
+
+def _face_middle(pair: Pair) -> float:
+    """Return the middle of the face that cylindrical gears share, from the pinion's lumped point along
+    its frame, m.
+    """
+    pinion, gear = pair.pinion, pair.gear
+    if not (pinion.face_offset or gear.face_offset):
+        return 0.0
+    teeth = wheels_of(pair)
+    if teeth is None:
+        return 0.0
+    return teeth.middles[0] if pinion.apex == "start" else -teeth.middles[0]
 
 
 def _gear_position(pair: Pair, point: np.ndarray) -> np.ndarray:
