@@ -1,0 +1,177 @@
+r"""Contact over one mesh cycle: transmission error, stiffness, load along the face.
+
+Positions are spread evenly over one pitch.  The transmission error is the arc by which the first wheel
+runs ahead on its base cylinder, theta rb, as the second wheel is held: positive where flanks stand
+back or give way.  Its order n is the amplitude of the n-th harmonic of the tooth frequency.
+
+The face load factor is what the norm means by it: the largest load per face width over its mean, of
+all lines together and averaged over the cycle (ISO 6336-1:2019, 7.1); beside it stands the largest
+line load of any cell over the mean line load at its position.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from solidgear.teeth.contact.cells import Carrying, ToothedPair
+from solidgear.teeth.contact.solver import Loads, loads
+
+#: positions of a mesh cycle
+POSITIONS = 32
+
+
+@dataclass(frozen=True, eq=False)
+class MeshCycle:
+    """Loads at all positions of one mesh cycle under one torque."""
+
+    positions: tuple[Loads, ...]
+    base: float  #: radius on which the transmission error is an arc, m
+    slices: int
+
+    @property
+    def phases(self) -> np.ndarray:
+        """(p,) positions in pitches."""
+        return np.arange(len(self.positions)) / len(self.positions)
+
+    @property
+    def torque(self) -> float:
+        """Torque on the first wheel, N m."""
+        return self.positions[0].torque
+
+    @cached_property
+    def error(self) -> np.ndarray:
+        """(p,) loaded transmission error, m."""
+        return self.base * np.array([position.rotation for position in self.positions])
+
+    @cached_property
+    def free_error(self) -> np.ndarray:
+        """(p,) transmission error without load, m."""
+        return self.base * np.array([position.supported_touch for position in self.positions])
+
+    @cached_property
+    def secant(self) -> np.ndarray:
+        """(p,) stiffness of the teeth from first touch to load, N/m."""
+        return np.array([position.secant for position in self.positions])
+
+    @cached_property
+    def tangent(self) -> np.ndarray:
+        """(p,) stiffness of the teeth about the load, N/m."""
+        return np.array([position.tangent for position in self.positions])
+
+    @cached_property
+    def supported_secant(self) -> np.ndarray:
+        """(p,) stiffness of teeth and supports from first touch to load, N/m."""
+        return np.array([position.supported_secant for position in self.positions])
+
+    @cached_property
+    def supported_tangent(self) -> np.ndarray:
+        """(p,) stiffness of teeth and supports about the load, N/m."""
+        return np.array([position.supported_tangent for position in self.positions])
+
+    @property
+    def force(self) -> float:
+        """Mean force along the line of action, N."""
+        return float(np.mean([position.total for position in self.positions]))
+
+    @property
+    def points(self) -> np.ndarray:
+        """(p, 3) mesh points in the frame of the pair, m."""
+        return np.array([position.point for position in self.positions])
+
+    @property
+    def lines_of_action(self) -> np.ndarray:
+        """(p, 3) directions of the force on the first wheel."""
+        return np.array([position.line_of_action for position in self.positions])
+
+    @property
+    def peak_to_peak(self) -> float:
+        """Largest less least loaded transmission error, m."""
+        return float(np.ptp(self.error))
+
+    def orders(self, count: int) -> np.ndarray:
+        """Return the (count,) complex amplitudes of the loaded transmission error, m: order n at the
+        angle 2 pi phase of a cycle is ``Re(a exp(i n angle))``.
+        """
+        spectrum = np.fft.rfft(self.error) / len(self.error)
+        return 2 * spectrum[1 : count + 1]
+
+    @cached_property
+    def face_loads(self) -> np.ndarray:
+        """(slices,) load by slice of the face, of all lines, mean over the cycle, N."""
+        total = np.zeros(self.slices)
+        for position in self.positions:
+            np.add.at(total, position.cells.slice, position.force)
+        return total / len(self.positions)
+
+    @property
+    def face_load_factor(self) -> float:
+        """Largest load per face width over the mean, K_H beta."""
+        return float(self.face_loads.max() / self.face_loads.mean())
+
+    @cached_property
+    def largest_line_load(self) -> float:
+        """Largest force per length of contact line at any position, N/m."""
+        return float(max(position.line_load.max() for position in self.positions))
+
+    @cached_property
+    def line_load_factor(self) -> float:
+        """Largest line load over the mean line load of its position, largest of the cycle."""
+        return float(
+            max(
+                position.line_load.max() * position.cells.length.sum() / position.force.sum()
+                for position in self.positions
+            )
+        )
+
+    @cached_property
+    def pressure(self) -> float:
+        """Largest Hertz pressure on the path of contact, N/m^2; that of corners means nothing."""
+        return float(max(_on_path(position) for position in self.positions))
+
+    @cached_property
+    def load_share(self) -> float:
+        """Largest share of the force that a contact line carries."""
+        return max(max(position.shares.values()) for position in self.positions)
+
+    @cached_property
+    def mean_lines(self) -> float:
+        """Mean number of contact lines that carry."""
+        return float(np.mean([len(position.shares) for position in self.positions]))
+
+    @cached_property
+    def corner_share(self) -> float:
+        """Largest share of the force that corners of tips carry, beyond the path."""
+        return max(
+            float(position.force[position.cells.at_corner].sum() / position.force.sum())
+            for position in self.positions
+        )
+
+
+def _on_path(position: Loads) -> float:
+    """Return the largest pressure of the cells on the path, N/m^2."""
+    on_path = ~position.cells.at_corner
+    return float(position.pressure[on_path].max(initial=0.0))
+
+
+def mesh_cycle(
+    pair: ToothedPair,
+    torque: float,
+    base: float,
+    slices: int,
+    supports: Carrying | None = None,
+    positions: int = POSITIONS,
+    progress: Callable[[int, int], None] | None = None,
+) -> MeshCycle:
+    """Solve the contact at evenly spread positions of one pitch; arguments as of
+    :func:`solidgear.teeth.contact.solver.loads`.
+    """
+    solved = []
+    for k in range(positions):
+        solved.append(loads(pair, torque, k / positions, supports))
+        if progress is not None:
+            progress(k + 1, positions)
+    return MeshCycle(tuple(solved), base, slices)

@@ -1,0 +1,189 @@
+r"""A pair of cylindrical wheels in contact: cells on the lines, gaps of modified flanks, and corners.
+
+Frame of the pair: origin in the pitch point at the middle of the common face, u along the transverse
+line of action, towards where the path ends, w along the axes, so that contact lines lie at larger u
+for larger w, and v across both.  The first wheel is pushed along ``(-cos beta_b, 0, sin beta_b)``.
+
+Under load teeth bend, and contact begins before and ends after the path, where the corner of a tip
+touches the mate's flank.  How far they stand apart there follows from the geometry: turn both wheels
+back by the distance, each about its centre, and measure by how much the flank misses the corner.  The
+lines run on by `BEYOND` pitches with that gap; the corner is taken as round as the flank it ends,
+which it is not, so that its pressure means nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import cos, sin, tan
+
+import numpy as np
+
+from solidgear.core.gears.wheel_pair import WheelPair
+from solidgear.teeth.compliance.flank import FlankCompliance
+from solidgear.teeth.contact.cells import Cells
+from solidgear.teeth.contact.local import LineContact
+
+#: pitches beyond both ends of the path that corners may reach under load
+BEYOND = 0.15
+#: least share of a cell that a line crosses
+SLIVER = 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class CylindricalPair:
+    """Two cylindrical wheels with their compliance and the shapes of their flanks."""
+
+    wheels: WheelPair
+    compliances: tuple[FlankCompliance, FlankCompliance]
+    law: LineContact
+    #: of first and second wheel: what their flanks miss by place, None where nothing
+    shapes: tuple = (None, None)
+    slices: int = 24
+    #: middle of both faces from the middle of the common face, along w, m
+    offsets: tuple[float, float] = (0.0, 0.0)
+    width: float | None = None  #: common face, m; by default the narrower face
+    beyond: float = BEYOND  #: pitches; 0 for the path alone
+
+    @property
+    def face(self) -> float:
+        """Width of the common face, m."""
+        return self.wheels.face_width if self.width is None else self.width
+
+    def cells(self, phase: float) -> Cells:
+        """Return the cells of all contact lines at a position in pitches."""
+        wheels, n = self.wheels, self.slices
+        step = self.face / n
+        z = (np.arange(n) + 0.5) * step - self.face / 2
+        lean = tan(wheels.base_helix)
+        half = step * lean / 2
+        start, stop = wheels.ends
+        first, last = start - self.beyond * wheels.pitch, stop + self.beyond * wheels.pitch
+        parts = [
+            (k, j, place, z[j], share * step / cos(wheels.base_helix))
+            for k in self._lines(phase, first, last)
+            for j, place, share in _crossed(
+                wheels.pitch_point + (phase + k) * wheels.pitch + z * lean, half, first, last
+            )
+        ]
+        line, piece, place, along, length = (np.array(column) for column in zip(*parts))
+        inside = np.clip(place, start, stop)
+        n_cells = len(line)
+        normal = np.array([-cos(wheels.base_helix), 0.0, sin(wheels.base_helix)])
+        lever = np.full(n_cells, wheels.first.base * cos(wheels.base_helix))
+        point = np.column_stack([place - wheels.pitch_point, np.zeros(n_cells), along])
+        return Cells(
+            line=line,
+            length=length,
+            radius=wheels.curvature_radius(inside),
+            gap=self._gap(place, along),
+            lever=lever,
+            point=point,
+            normal=np.tile(normal, (n_cells, 1)),
+            slice=piece,
+            place=place,
+            z=along,
+            at_corner=(place < start) | (place > stop),
+        )
+
+    def _lines(self, phase: float, first: float, last: float) -> range:
+        """Return the numbers of lines that may cross the face within two places of the path."""
+        wheels = self.wheels
+        slope = tan(wheels.base_helix) * self.face / 2
+        low = (first - slope - wheels.pitch_point) / wheels.pitch - phase
+        high = (last + slope - wheels.pitch_point) / wheels.pitch - phase
+        return range(int(np.floor(low)), int(np.ceil(high)) + 1)
+
+    def _gap(self, place: np.ndarray, z: np.ndarray) -> np.ndarray:
+        """Return the gaps between both flanks without load along the normal, m."""
+        wheels = self.wheels
+        inside = np.clip(place, *wheels.ends)
+        gap = corner_gap(wheels, place)
+        radii = wheels.first_radius(inside), wheels.second_radius(inside)
+        for shape, r, offset in zip(self.shapes, radii, self.offsets):
+            if shape is not None:
+                gap = gap + shape.deviation(r, z - offset)
+        return gap
+
+    def bulk(self, cells: Cells) -> np.ndarray:
+        """Return the (n, n) compliance of the teeth of both wheels between cells, m/N."""
+        place = np.clip(cells.place, *self.wheels.ends)
+        radii = self.wheels.first_radius(place), self.wheels.second_radius(place)
+        out = np.zeros((len(place), len(place)))
+        for compliance, r, sense, offset in zip(self.compliances, radii, (1, -1), self.offsets):
+            out += compliance.matrix(sense * cells.line, r, cells.z - offset)
+        return out
+
+
+def _crossed(
+    places: np.ndarray, half: float, first: float, last: float
+) -> Iterator[tuple[int, float, float]]:
+    """Yield slice, middle on the path and share of every slice that a line crosses between two
+    places of the path; a line ends where the path does, inside a slice.
+    """
+    for j, place in enumerate(places):
+        if half < 1e-12 * abs(last - first):
+            if first <= place <= last:
+                yield j, float(place), 1.0
+            continue
+        low, high = max(place - half, first), min(place + half, last)
+        share = (high - low) / (2 * half)
+        if share > SLIVER:
+            yield j, (low + high) / 2, share
+
+
+def corner_gap(wheels: WheelPair, place: np.ndarray) -> np.ndarray:
+    """Return how far the tip of one wheel stands from the flank of the other along the normal at
+    places beyond the path, m; zero on it.
+
+    Examples
+    --------
+    >>> from solidgear.core.gears.wheel import Wheel
+    >>> pair = WheelPair(Wheel(23, 4e-3), Wheel(57, 4e-3))
+    >>> before = pair.ends[0] - 0.1 * pair.pitch
+    >>> round(1e6 * float(corner_gap(pair, np.array([before]))[0]), 1)
+    30.9
+    """
+    place = np.asarray(place, float)
+    angle, sign = wheels.working_angle, wheels.second.sign
+    first, second = wheels.first, wheels.second
+    along = np.array([cos(angle), sin(angle)])
+    touch = first.base * np.array([-sin(angle), cos(angle)])
+    centres = np.zeros(2), np.array([0.0, sign * wheels.distance])
+    out = np.zeros_like(place)
+    start, stop = wheels.ends
+    # before A: the second wheel's corner on the first wheel's flank; after E the other way
+    for end, beyond, corner, flank, which in (
+        (start, place < start, second, first, 0),
+        (stop, place > stop, first, second, 1),
+    ):
+        if not beyond.any():
+            continue
+        ahead = place[beyond] - end
+        at_end = touch + end * along
+        turn = ahead / corner.base * (sign if which == 0 else -1)
+        point = _turned(at_end - centres[1 - which], turn) + centres[1 - which]
+        view = point - centres[which]
+        reference = at_end - centres[which]
+        tooth_turn = ahead / flank.base * (1 if which == 0 else -1)
+        middle = _clockwise(reference, which, sign) - flank.half_angle(np.hypot(*reference))
+        radius = np.hypot(view[:, 0], view[:, 1])
+        missed = _clockwise(view, which, sign) - middle - tooth_turn - flank.half_angle(radius)
+        out[beyond] = np.maximum(missed, 0.0) * flank.base * cos(wheels.base_helix)
+    return out
+
+
+def _turned(vector: np.ndarray, angle: np.ndarray) -> np.ndarray:
+    """Return the (n, 2) places of a vector turned counter-clockwise by angles, rad."""
+    c, s = np.cos(angle), np.sin(angle)
+    return np.column_stack([c * vector[0] - s * vector[1], s * vector[0] + c * vector[1]])
+
+
+def _clockwise(vector: np.ndarray, which: int, sign: int) -> np.ndarray:
+    """Return angles from +y of each wheel's frame, clockwise, rad: the second wheel is seen upside
+    down, a ring in a mirror.
+    """
+    x, y = np.moveaxis(np.asarray(vector), -1, 0)
+    if which == 0:
+        return np.arctan2(x, y)
+    return np.arctan2(-x, -y) if sign > 0 else np.arctan2(-x, y)

@@ -1,0 +1,85 @@
+r"""What two flanks give way by between their surface and the depth at which finite elements are read.
+
+A line load q on both flanks, of relative radius R, presses over the half-width a (Hertz),
+
+    a^2 = 4 q R / (pi E*),      1 / E* = sum (1 - nu^2) / E,
+
+and the surface of each side approaches its point at the depth h by
+
+    d = 2 q (1 - nu^2) / (pi E) G(h / a),
+    G(t) = asinh t - nu / (1 - nu) t / (sqrt(1 + t^2) + t),
+
+on the axis of the pressure: the strain there (Johnson, Contact Mechanics, 1985, 4.44 to 4.49) along
+depth, integrated.  For a deep point it is ``ln(2 h / a) - nu / (2 (1 - nu))``, the usual form, which
+falls below zero where a comes near h; this one does not, so that slivers of contact lines do no harm.
+The tangent follows from ``d (q G) / dq = G - t G' / 2``, for t goes as ``q^-1/2``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+
+#: least line load of a cell, N/m: the Hertz law has no slope at zero
+LEAST_LOAD = 1e-3
+
+
+@dataclass(frozen=True)
+class Elasticity:
+    """Elastic constants of the teeth of one wheel."""
+
+    youngs: float = 2.06e11  #: N/m^2
+    poisson: float = 0.3
+
+    @property
+    def plane(self) -> float:
+        """Modulus in plane strain, ``E / (1 - nu^2)``, N/m^2."""
+        return self.youngs / (1 - self.poisson**2)
+
+
+@dataclass(frozen=True)
+class LineContact:
+    """Approach of two flanks under a line load, each from its surface to its depth.
+
+    Examples
+    --------
+    Steel flanks of a relative radius of 10 mm under 300 N/mm touch over twice 0.184 mm.
+
+    >>> law = LineContact((Elasticity(), Elasticity()), (1e-3, 1e-3))
+    >>> round(1e6 * float(law.half_width(3e5, 10e-3)))
+    184
+    """
+
+    materials: tuple[Elasticity, Elasticity]  #: of both wheels
+    depths: tuple[float, float]  #: below both flanks, m
+
+    def half_width(self, load, radius):
+        """Return half the width of contact, m, under line loads, N/m, with relative radii, m."""
+        softness = sum(1 / material.plane for material in self.materials)
+        return np.sqrt(4 * np.asarray(load) * radius * softness / pi)
+
+    def pressure(self, load, radius):
+        """Return the largest Hertz pressure, N/m^2, under line loads, N/m, with relative radii, m."""
+        load = np.maximum(load, 0.0)
+        width = np.maximum(self.half_width(load, radius), np.finfo(float).tiny)
+        return 2 * load / (pi * width)
+
+    def compliances(self, load, radius) -> tuple[np.ndarray, np.ndarray]:
+        """Return secant and tangent approach per line load, m per N/m, under line loads, N/m, with
+        relative radii, m.
+        """
+        load = np.maximum(load, LEAST_LOAD)
+        width = self.half_width(load, radius)
+        secant, tangent = np.zeros_like(width), np.zeros_like(width)
+        for material, depth in zip(self.materials, self.depths):
+            scale = 2 / (pi * material.plane)
+            side = material.poisson / (1 - material.poisson)
+            t = depth / width
+            root = np.sqrt(1 + t * t)
+            approach = np.arcsinh(t) - side * t / (root + t)
+            slope = 1 / root - side / (root * (root + t) ** 2)
+            secant += scale * approach
+            tangent += scale * (approach - t * slope / 2)
+        return secant, tangent

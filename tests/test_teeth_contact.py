@@ -1,0 +1,259 @@
+"""Contact of teeth beside energy that an optimiser makes least, and what must hold of any contact.
+
+The teeth here give way by a made-up law, smooth and positive definite: what is tested is the contact.
+"""
+
+from dataclasses import dataclass
+from math import radians
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from scipy.optimize import minimize
+
+from solidgear.core import SolidgearError
+from solidgear.core.gears.wheel import Rack, Wheel
+from solidgear.core.gears.wheel_pair import WheelPair
+from solidgear.teeth.contact.cycle import mesh_cycle
+from solidgear.teeth.contact.cylindrical import CylindricalPair, corner_gap
+from solidgear.teeth.contact.frame import RigidSupports
+from solidgear.teeth.contact.local import Elasticity, LineContact
+from solidgear.teeth.contact.solver import RIGID, loads
+from solidgear.teeth.norm import norm_face_load_factor, norm_stiffness
+
+STEEL = Elasticity(2.06e11, 0.3)
+LAW = LineContact((STEEL, STEEL), (1e-3, 1e-3))
+
+
+@dataclass(frozen=True)
+class MadeUp:
+    """Teeth that give way the more the nearer to the tip, and carry neighbours along."""
+
+    size: float = 2e-9  #: m/N at one place
+    spread: float = 5e-3  #: along the face, m
+    depth: float = 1e-3
+
+    def matrix(self, tooth, r, z):
+        lean = 1 + 20 * (r - r.min())
+        along = np.exp(-np.abs(z[:, None] - z[None, :]) / self.spread)
+        beside = 0.15 ** np.abs(tooth[:, None] - tooth[None, :])
+        return self.size * along * beside * np.outer(lean, lean)
+
+
+@dataclass(frozen=True)
+class Tilted:
+    """A flank that misses material in proportion to the place along the face."""
+
+    slope: float
+
+    def deviation(self, r, z):
+        return self.slope * (z + 10e-3)
+
+
+def pair_of(helix=0.0, face=20e-3, **kw):
+    wheels = WheelPair(
+        Wheel(23, 4e-3, helix, face_width=face), Wheel(57, 4e-3, helix, face_width=face)
+    )
+    return CylindricalPair(wheels, (MadeUp(), MadeUp(1.5e-9)), LAW, **{"slices": 12, **kw})
+
+
+def supports_of(seed, motion=(0, 0, 0, 0, 0, 0)):
+    """Shafts that give way at random, m/N and rad/(N m)."""
+    rows = np.random.default_rng(seed).normal(size=(8, 6)) * [1, 1, 1, 20, 20, 20]
+    return RigidSupports(1e-10 * rows.T @ rows, np.array(motion, float))
+
+
+def test_local_law_is_the_strain_under_a_hertz_pressure_summed_to_the_depth():
+    """Stress on the axis of a line pressure (Johnson 4.46), integrated: no closed form shared."""
+    material, load, radius, depth = Elasticity(2e11, 0.28), 2e5, 12e-3, 0.7e-3
+    law = LineContact((material, material), (depth, depth))
+    half = float(law.half_width(load, radius))
+    peak = float(law.pressure(load, radius))
+
+    def strain(y):
+        t = y / half
+        root = np.sqrt(1 + t * t)
+        across = -peak * ((1 + 2 * t * t) / root - 2 * t)
+        along = -peak / root
+        e, nu = material.youngs, material.poisson
+        return -((1 - nu**2) * along - nu * (1 + nu) * across) / e
+
+    approach = 2 * quad(strain, 0, depth, epsrel=1e-10)[0]
+    assert load * law.compliances(load, radius)[0] == pytest.approx(approach, rel=1e-8)
+
+
+@pytest.mark.parametrize("load", [1e2, 1e5, 1e8])
+def test_tangent_of_the_local_law_is_its_slope(load):
+    law = LineContact((Elasticity(2e11, 0.25), Elasticity(7e10, 0.33)), (1e-3, 0.4e-3))
+
+    def approach(q):
+        return q * law.compliances(q, 8e-3)[0]
+
+    slope = (approach(load * 1.0001) - approach(load * 0.9999)) / (2e-4 * load)
+    assert law.compliances(load, 8e-3)[1] == pytest.approx(slope, rel=1e-7)
+
+
+@pytest.mark.parametrize("helix, phase", [(0.0, 0.1), (radians(15), 0.6)])
+def test_forces_make_the_energy_least(helix, phase):
+    """An optimiser with bounds, which knows neither Newton nor active cells, finds no less."""
+    pair = pair_of(helix, slices=5, shapes=(Tilted(2e-3), None))
+    supports = supports_of(1, (0, 0, 0, 1e-4, 2e-4, 0))
+    result = loads(pair, 80.0, phase, supports)
+    cells = result.cells
+    bulk = pair.bulk(cells) + cells.rows @ supports.compliance @ cells.rows.T
+    gap = cells.gap + cells.rows @ np.array([0, 0, 0, 1e-4, 2e-4, 0])
+
+    def local(force):  # work of a law q G(t), t going as q^-1/2, by its own quadrature
+        points, weights = np.polynomial.legendre.leggauss(24)
+        s = (points + 1) / 2
+        at = np.outer(force, s**2)  # denser near nothing
+        secant = LAW.compliances(at / cells.length[:, None], cells.radius[:, None])[0]
+        return (at * secant / cells.length[:, None] * force[:, None] * 2 * s * weights / 2).sum()
+
+    scale = result.force.max()
+
+    def energy(x):
+        force = x * scale
+        return 1e3 * (force @ bulk @ force / 2 + gap @ force + local(force))
+
+    least = minimize(
+        energy,
+        np.full(len(gap), 80.0 / cells.lever.sum() / scale),
+        bounds=[(0, None)] * len(gap),
+        constraints={"type": "eq", "fun": lambda x: (cells.lever @ x * scale - 80.0) / 80.0},
+        method="SLSQP",
+        options={"ftol": 1e-14, "maxiter": 500},
+    )
+    assert energy(result.force / scale) <= least.fun * (1 + 1e-7)
+    assert result.force / scale == pytest.approx(least.x, abs=2e-3)
+
+
+def random_cases(count):
+    generator = np.random.default_rng(4)
+    for _ in range(count):
+        helix = radians(generator.choice([0.0, 12.0, 30.0]))
+        torque = 10 ** generator.uniform(-1, 4)
+        tilt = generator.uniform(-1, 1) * 10 ** generator.uniform(-6, -3.3) / 20e-3
+        yield helix, torque, tilt, generator.uniform(), generator.integers(0, 99)
+
+
+def contact_holds(helix, torque, tilt, phase, seed):
+    pair = pair_of(helix, shapes=(Tilted(tilt), None))
+    supports = supports_of(seed)
+    result = loads(pair, torque, phase, supports)
+    cells = result.cells
+    bulk = pair.bulk(cells) + cells.rows @ supports.compliance @ cells.rows.T
+    secant = LAW.compliances(result.line_load, cells.radius)[0] / cells.length
+    apart = bulk @ result.force + secant * result.force + cells.gap - cells.lever * result.rotation
+    size = abs(result.rotation) * cells.lever.mean() + np.ptp(cells.gap)
+    assert result.force.min() >= 0
+    assert cells.lever @ result.force == pytest.approx(torque, rel=1e-12)
+    touching = result.force > 1e-9 * result.force.max()
+    assert np.abs(apart[touching]).max() <= 1e-9 * size
+    assert apart.min() >= -1e-9 * size
+
+
+def test_contact_holds_in_random_cases():
+    for case in random_cases(60):
+        contact_holds(*case)
+
+
+@pytest.mark.long
+def test_contact_holds_in_a_thousand_random_cases():
+    for case in random_cases(1002):
+        contact_holds(*case)
+
+
+@pytest.mark.parametrize("helix", [0.0, radians(20)])
+def test_unloaded_conjugate_flanks_have_no_transmission_error(helix):
+    cycle = mesh_cycle(pair_of(helix), 1e-6, 43e-3, 12, positions=8)
+    assert np.abs(cycle.free_error).max() < 1e-15
+
+
+def test_first_touch_is_the_smallest_gap_and_comes_off_the_secant():
+    """Flanks that stand back by 5 um everywhere are as stiff as before, and turn 5 um further."""
+
+    class Back:
+        def deviation(self, r, z):
+            return np.full(len(r), 5e-6)
+
+    plain, back = (loads(pair_of(shapes=s), 100.0, 0.3) for s in ((None, None), (Back(), None)))
+    assert back.rotation - plain.rotation == pytest.approx(5e-6 / plain.cells.lever[0], rel=1e-9)
+    assert back.secant == pytest.approx(plain.secant, rel=1e-9)
+
+
+def test_tangent_is_the_slope_of_rotation_by_torque():
+    pair, supports = pair_of(radians(12), shapes=(Tilted(1e-3), None)), supports_of(3)
+    low, middle, high = (loads(pair, t, 0.4, supports) for t in (99.9, 100.0, 100.1))
+    slope = (high.rotation - low.rotation) / 0.2
+    assert middle.supported_slope == pytest.approx(slope, rel=1e-4)
+    assert middle.supported_tangent < middle.tangent
+
+
+def test_supports_that_do_not_give_change_nothing_and_those_that_do_make_softer():
+    pair = pair_of()
+    rigid, soft = loads(pair, 100.0, 0.2, RIGID), loads(pair, 100.0, 0.2, supports_of(2))
+    alone = loads(pair, 100.0, 0.2)
+    assert rigid.force == pytest.approx(alone.force, rel=1e-12)
+    assert rigid.supported_secant == pytest.approx(alone.secant, rel=1e-12)
+    assert soft.supported_secant < 0.9 * soft.secant
+
+
+def test_gap_of_corners_is_that_of_involutes_turned_back():
+    """Figures by another route, points of both flanks and Newton: 1.2, 7.8, 30.9, 124 um."""
+    wheels = WheelPair(Wheel(23, 4e-3), Wheel(57, 4e-3))
+    before = wheels.ends[0] - wheels.pitch * np.array([0.02, 0.05, 0.1, 0.2])
+    assert 1e6 * corner_gap(wheels, before) == pytest.approx([1.2, 7.8, 30.9, 124], rel=0.05)
+    inside = np.linspace(*wheels.ends, 5)
+    assert np.all(corner_gap(wheels, inside) == 0)
+
+
+def test_corners_carry_under_load_and_soften_the_steps_of_the_error():
+    with_corners, path_alone = (
+        mesh_cycle(pair_of(beyond=b), 270.0, 43e-3, 12) for b in (0.15, 0.0)
+    )
+    assert with_corners.corner_share > 0.05 and path_alone.corner_share == 0
+    assert with_corners.mean_lines > path_alone.mean_lines
+    assert abs(with_corners.orders(1)[0]) < abs(path_alone.orders(1)[0])
+
+
+def test_orders_rebuild_the_error():
+    cycle = mesh_cycle(pair_of(), 100.0, 43e-3, 12, positions=16)
+    angle = 2 * np.pi * cycle.phases
+    waves = [a * np.exp(1j * n * angle) for n, a in enumerate(cycle.orders(7), start=1)]
+    last = np.fft.rfft(cycle.error)[8].real / 16 * np.cos(8 * angle)
+    rebuilt = cycle.error.mean() + np.real(sum(waves)) + last
+    assert rebuilt == pytest.approx(cycle.error, rel=1e-12)
+
+
+def test_face_load_factor_rises_with_tilt_and_is_the_same_from_either_end():
+    straight, tilted, other = (
+        mesh_cycle(pair_of(shapes=(Tilted(s), None)), 100.0, 43e-3, 12, positions=4)
+        for s in (0.0, 5e-4, -5e-4)
+    )
+    assert straight.face_load_factor < tilted.face_load_factor
+    assert other.face_load_factor == pytest.approx(tilted.face_load_factor, rel=1e-9)
+
+
+def test_a_torque_that_lifts_the_flanks_is_refused():
+    with pytest.raises(SolidgearError, match="lifts these flanks"):
+        loads(pair_of(), -1.0, 0.0)
+
+
+def test_stiffness_by_the_norm():
+    """The printed value of ISO 6336-1 for a rack of 1.2 modules; another rack and a low load."""
+    usual = Rack(dedendum=1.2)
+    wheels = WheelPair(Wheel(23, 4e-3, rack=usual), Wheel(57, 4e-3, rack=usual))
+    norm = norm_stiffness(wheels)
+    assert norm.theoretical / 1e9 == pytest.approx(17.089, abs=5e-4)
+    assert norm.single / 1e9 == pytest.approx(13.671, abs=5e-4)
+    deeper = norm_stiffness(WheelPair(Wheel(23, 4e-3), Wheel(57, 4e-3)))
+    assert deeper.single == pytest.approx(0.975 * norm.single, rel=1e-12)
+    assert norm_stiffness(wheels, 50e3).single == pytest.approx(0.5**0.25 * norm.single)
+
+
+def test_face_load_factor_by_the_norm_meets_where_load_ends_within_the_face():
+    stiffness, load = 20e9, 300e3
+    meets = 2 * load / (0.85 * stiffness)
+    below, above = (norm_face_load_factor(meets * f, load, stiffness) for f in (0.9999, 1.0001))
+    assert below == pytest.approx(2, rel=1e-4) and above == pytest.approx(2, rel=1e-4)
