@@ -57,7 +57,7 @@ ALONG, POSITIONS = 61, 81
 #: largest roll of the crown that is looked at, in its pitches
 FARTHEST = 8.0
 #: steps of Newton to a distance from the apex
-STEPS = 8
+STEPS = 5
 #: relative difference of the cutter radius from which the ease-off is taken in proportion
 STEP = 1e-3
 
@@ -84,7 +84,7 @@ class Mismatch:
 
 @dataclass(frozen=True)
 class Misalignment:
-    """Small motions of the pinion and the gear from where their flanks were cut to run.
+    """Small motions of pinion and gear from where their flanks were cut to run.
 
     Attributes
     ----------
@@ -100,6 +100,22 @@ class Misalignment:
     pinion_axial: float = 0.0
     gear_axial: float = 0.0
     shaft_angle: float = 0.0
+
+    def motion(self, shaft_angle: float) -> np.ndarray:
+        """Return the (6,) motion of the pinion less that of the gear, at the apex in the pinion's frame,
+        m, rad, of axes that were to cross at an angle, rad.
+
+        Examples
+        --------
+        >>> motion = Misalignment(offset=1e-5, gear_axial=2e-5).motion(np.pi / 2)
+        >>> [round(1e5 * float(value), 12) + 0.0 for value in motion]
+        [2.0, 0.0, 1.0, 0.0, 0.0, 0.0]
+        """
+        # the gear lies at -x and its axis leaves the apex towards there
+        gear = self.gear_axial * np.array([-sin(shaft_angle), cos(shaft_angle), 0.0])
+        moved = np.array([0.0, self.pinion_axial, self.offset]) - gear
+        # away from the gear's axis: about -z, which takes y to +x
+        return np.concatenate([moved, [0.0, 0.0, -self.shaft_angle]])
 
 
 @dataclass(frozen=True)
@@ -284,9 +300,9 @@ class BevelFlanks:
 
     def _lift(self, point: np.ndarray, member: int) -> np.ndarray:
         """Return heights above the pitch cone of a member at the middle of the face, m."""
-        axis = self.axes[member]
-        across = np.linalg.norm(np.cross(point, axis), axis=-1)
-        angle = np.arctan2(across, point @ axis)
+        along = point @ self.axes[member]
+        across = np.sqrt(np.sum(point**2, axis=-1) - along**2)
+        angle = np.arctan2(across, along)
         return self.blank.mean_distance * np.tan(angle - self.blank.pitch_angles[member])
 
     def room(self, points: FlankPoints) -> np.ndarray:
@@ -297,17 +313,6 @@ class BevelFlanks:
     def gap(self, points: FlankPoints) -> np.ndarray:
         """Return what the mismatch leaves open at points, m."""
         return -self.blank.side * self.pinion_cutter.outside(points)
-
-    def opening(self, points: FlankPoints, misalignment: Misalignment) -> np.ndarray:
-        """Return what a misalignment opens at points, m: motion of the pinion against the gear along
-        the normal, to the first order.
-        """
-        pinion, gear = self.axes
-        moved = misalignment.pinion_axial * pinion - misalignment.gear_axial * gear
-        moved = moved + np.array([0.0, misalignment.offset, 0.0])
-        turned = np.array([0.0, -misalignment.shaft_angle, 0.0])
-        motion = moved + np.cross(turned, points.point)
-        return np.sum(points.normal * motion, axis=-1)
 
     # ---------------------------------------------------------------- whole flank
     def line(self, distance, roll) -> FlankPoints:
