@@ -50,9 +50,12 @@ def test_both_flanks_touch_along_the_path(pair):
         assert distance == pytest.approx(abs(s - pair.pitch_point), rel=1e-6, abs=1e-9)
 
 
-@pytest.mark.parametrize("teeth, shift", [(23, 0.0), (12, 0.5), (10, 0.0), (-85, 0.0), (-40, 0.3)])
-def test_a_fillet_runs_from_the_root_to_the_flank_without_a_corner(teeth, shift):
-    wheel = Wheel(teeth, 2e-3, shift=shift)
+@pytest.mark.parametrize(
+    "teeth, shift, helix",
+    [(23, 0.0, 0), (12, 0.5, 0), (17, 0.3, 30), (10, 0.0, 0), (-85, 0.0, 0), (-40, 0.3, 0)],
+)
+def test_a_fillet_runs_from_the_root_to_the_flank_without_a_corner(teeth, shift, helix):
+    wheel = Wheel(teeth, 2e-3, radians(helix), shift)
     points = wheel.fillet(200)
     radii = np.hypot(points[:, 0], points[:, 1])
     assert radii[0] == pytest.approx(wheel.root, rel=1e-9)
@@ -107,6 +110,27 @@ def test_backlash_is_what_the_thicknesses_leave_of_the_pitch():
     pitch = 2 * pi * working / 23
     thick = 2 * working * pair.first.half_angle(working) + 2 * other * pair.second.half_angle(other)
     assert pair.backlash == pytest.approx((pitch - thick) * cos(pair.working_angle), rel=1e-9)
+
+
+def test_a_planet_nearer_to_its_ring_has_less_backlash():
+    """By thicknesses on the circles that roll, with a ring whose teeth are thinned by a shift."""
+    for distance in (50.9e-3, 51e-3, 51.1e-3):
+        pair = WheelPair(Wheel(34, 2e-3), Wheel(-85, 2e-3, shift=-0.05), distance)
+        working, other = (w.base / cos(pair.working_angle) for w in (pair.first, pair.second))
+        thick = 2 * working * pair.first.half_angle(working)
+        thick += 2 * other * pair.second.half_angle(other)
+        due = (2 * pi * working / 34 - thick) * cos(pair.working_angle)
+        assert pair.backlash == pytest.approx(due, abs=1e-12)
+
+
+def test_faces_that_lie_off_each_other_share_what_both_cover():
+    first, second = Wheel(23, 4e-3, face_width=24e-3), Wheel(57, 4e-3, face_width=20e-3)
+    # from -12 to 12 and from -4 to 16: shared from -4 to 12, about 4
+    pair = WheelPair(first, second, offset=6e-3)
+    assert pair.face_width == pytest.approx(16e-3, rel=1e-12)
+    assert pair.face_middles == pytest.approx((-4e-3, 2e-3), rel=1e-12)
+    assert WheelPair(first, second, offset=1e-3).face_width == 20e-3
+    assert WheelPair(first, second, offset=-30e-3).face_width < 0
 
 
 def test_shifts_without_a_pressure_angle_and_axes_too_near_are_refused():

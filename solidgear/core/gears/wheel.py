@@ -6,7 +6,7 @@ With the normal module m, ``z`` teeth, the helix angle beta and the pressure ang
 
 a tooth at the radius rho is as thick as the angle 2 psi,
 
-    psi = (pi m / (2 cos beta) + 2 x m tan alpha) / (2 r) + inv alpha_t - inv acos(rb / rho),
+    psi = (pi m / (2 cos beta) + 2 x m tan alpha_t) / (2 r) + inv alpha_t - inv acos(rb / rho),
 
 inv being tan minus angle: the profile shift x counts in *normal* modules.  Its fillet is what the
 rounded corner of the rack leaves: while the wheel rolls by phi, the centre c of the corner moves along
@@ -28,7 +28,6 @@ from functools import cached_property
 from math import atan, atan2, cos, hypot, pi, radians, sin, sqrt, tan
 
 import numpy as np
-from scipy.optimize import brentq
 
 #: points from which the length along a fillet is found
 ALONG = 400
@@ -148,9 +147,8 @@ class Wheel:
     @property
     def thickness(self) -> float:
         """Transverse thickness of a tooth at the reference cylinder, m."""
-        return pi * self.transverse_module / 2 + 2 * self.shift * self.module * tan(
-            self.rack.pressure_angle
-        )
+        shifted = 2 * self.shift * self.module * tan(self.transverse_angle)
+        return pi * self.transverse_module / 2 + shifted
 
     def half_angle(self, r):
         """Return half the angle of a tooth at radii r, m, between its flanks, rad."""
@@ -208,6 +206,8 @@ class Wheel:
             x, y = self._trochoid(np.array([roll]))[0]
             return atan2(x, y) - float(self.half_angle(hypot(x, y)))
 
+        from scipy.optimize import brentq  # slow to import, and seldom needed
+
         # an undercut fillet crosses the flank before the rack's straight side would touch it
         rolls = np.linspace(-aside / self.radius, tangent, ALONG)
         points = self._trochoid(rolls)
@@ -237,6 +237,7 @@ class Wheel:
         """Radius of the fillet of a ring, the angle of its centre from the middle of the tooth, and
         the centre's length along the tangent of the base circle, m, rad, m.
         """
+        from scipy.optimize import brentq  # slow to import, and seldom needed
 
         def angle_of(rho: float) -> float:
             # flanks at the distance rho are the same involutes, turned by rho / rb

@@ -19,6 +19,7 @@ from math import cos, sin, tan
 
 import numpy as np
 
+from solidgear.core.gears.flank_shape import FlankShape
 from solidgear.core.gears.wheel_pair import WheelPair
 from solidgear.teeth.compliance.flank import FlankCompliance
 from solidgear.teeth.contact.cells import Cells
@@ -37,24 +38,16 @@ class CylindricalPair:
     wheels: WheelPair
     compliances: tuple[FlankCompliance, FlankCompliance]
     law: LineContact
-    #: of first and second wheel: what their flanks miss by place, None where nothing
-    shapes: tuple = (None, None)
+    #: of both flanks; face places count from the middle of the shared face
+    shapes: tuple[FlankShape, FlankShape] = (FlankShape(), FlankShape())
     slices: int = 24
-    #: middle of both faces from the middle of the common face, along w, m
-    offsets: tuple[float, float] = (0.0, 0.0)
-    width: float | None = None  #: common face, m; by default the narrower face
     beyond: float = BEYOND  #: pitches; 0 for the path alone
-
-    @property
-    def face(self) -> float:
-        """Width of the common face, m."""
-        return self.wheels.face_width if self.width is None else self.width
 
     def cells(self, phase: float) -> Cells:
         """Return the cells of all contact lines at a position in pitches."""
         wheels, n = self.wheels, self.slices
-        step = self.face / n
-        z = (np.arange(n) + 0.5) * step - self.face / 2
+        step = self.wheels.face_width / n
+        z = (np.arange(n) + 0.5) * step - self.wheels.face_width / 2
         lean = tan(wheels.base_helix)
         half = step * lean / 2
         start, stop = wheels.ends
@@ -76,7 +69,7 @@ class CylindricalPair:
             line=line,
             length=length,
             radius=wheels.curvature_radius(inside),
-            gap=self._gap(place, along),
+            gap=corner_gap(wheels, place) + self.shape_gap(inside, along),
             lever=lever,
             point=point,
             normal=np.tile(normal, (n_cells, 1)),
@@ -89,20 +82,20 @@ class CylindricalPair:
     def _lines(self, phase: float, first: float, last: float) -> range:
         """Return the numbers of lines that may cross the face within two places of the path."""
         wheels = self.wheels
-        slope = tan(wheels.base_helix) * self.face / 2
+        slope = tan(wheels.base_helix) * self.wheels.face_width / 2
         low = (first - slope - wheels.pitch_point) / wheels.pitch - phase
         high = (last + slope - wheels.pitch_point) / wheels.pitch - phase
         return range(int(np.floor(low)), int(np.ceil(high)) + 1)
 
-    def _gap(self, place: np.ndarray, z: np.ndarray) -> np.ndarray:
-        """Return the gaps between both flanks without load along the normal, m."""
+    def shape_gap(self, place: np.ndarray, z: np.ndarray) -> np.ndarray:
+        """Return what the shapes of both flanks leave between them along the normal, m, at places of
+        the path and of the face.
+        """
         wheels = self.wheels
-        inside = np.clip(place, *wheels.ends)
-        gap = corner_gap(wheels, place)
-        radii = wheels.first_radius(inside), wheels.second_radius(inside)
-        for shape, r, offset in zip(self.shapes, radii, self.offsets):
-            if shape is not None:
-                gap = gap + shape.deviation(r, z - offset)
+        lengths = place, wheels.second_length(place)
+        gap = np.zeros(len(place))
+        for shape, length in zip(self.shapes, lengths):
+            gap = gap + shape.deviation(length, z)
         return gap
 
     def bulk(self, cells: Cells) -> np.ndarray:
@@ -110,8 +103,9 @@ class CylindricalPair:
         place = np.clip(cells.place, *self.wheels.ends)
         radii = self.wheels.first_radius(place), self.wheels.second_radius(place)
         out = np.zeros((len(place), len(place)))
-        for compliance, r, sense, offset in zip(self.compliances, radii, (1, -1), self.offsets):
-            out += compliance.matrix(sense * cells.line, r, cells.z - offset)
+        middles = self.wheels.face_middles
+        for compliance, r, sense, middle in zip(self.compliances, radii, (1, -1), middles):
+            out += compliance.matrix(sense * cells.line, r, cells.z - middle)
         return out
 
 
