@@ -11,7 +11,8 @@ from solidgear.core.gears.wheel import Rack, Wheel
 from solidgear.core.gears.wheel_pair import WheelPair
 from solidgear.core.system.gear_mesh import line_of_action
 from solidgear.teeth.bevel.blank import BevelBlank, completed_blank
-from solidgear.teeth.bevel.flank import BevelFlanks, Misalignment, Mismatch, lengthwise
+from solidgear.teeth.bevel.flank import BevelFlanks, Mismatch, lengthwise
+from solidgear.teeth.bevel.misalignment import Misalignment
 from tests.bevel_flanks import RealFlank, cone_angle, distance
 
 #: Hua (2010), table 1, with assumed pressure angle, cutter and addendum

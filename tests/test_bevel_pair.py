@@ -6,12 +6,18 @@ from math import cos, radians
 import numpy as np
 import pytest
 
+import solidgear as sg
+from solidgear.core.errors import SceneError
+from solidgear.teeth.bevel.band import setting_band
 from solidgear.teeth.bevel.blank import BevelBlank
-from solidgear.teeth.bevel.flank import BevelFlanks, Misalignment, Mismatch
+from solidgear.teeth.bevel.flank import BevelFlanks, Mismatch
+from solidgear.teeth.bevel.misalignment import Misalignment
 from solidgear.teeth.bevel.pair import BevelPair
+from solidgear.teeth.bevel.reading import blank_of
 from solidgear.teeth.contact.frame import RigidSupports
 from solidgear.teeth.contact.local import Elasticity, LineContact
 from solidgear.teeth.contact.solver import loads
+from validation.common import ROOT
 
 BLANK = BevelBlank(
     (14, 45), 0.067, 0.063, 0.478, "left", "concave", radians(22.5), 0.1524, gear_share=0.27
@@ -166,3 +172,48 @@ def test_random_positions_settle():
         state = loads(pair(mismatch, slices=12, loaded_side=str(side)), torque, rng.uniform())
         assert state.force @ state.cells.lever == pytest.approx(torque, rel=1e-11)
         assert np.all(state.force >= 0)
+
+
+# ---------------------------------------------------------------- estimates
+def test_flanks_that_stand_apart_are_softer_and_the_cutter_hardly_counts():
+    estimated = pair(slices=12, estimated=("cutter_radius",))
+    band = setting_band(
+        estimated, 200.0, cutters=(0.8, 1.3), ease_offs=(50e-6, 300e-6), positions=4
+    )
+    tangents = [setting.cycle.tangent.mean() for setting in band.settings]
+    assert [round(1e6 * setting.ease_off, -1) for setting in band.settings] == [50, 300, 50, 300]
+    assert tangents[1] < 0.7 * tangents[0] and tangents[3] < 0.7 * tangents[2]
+    assert tangents[2] == pytest.approx(tangents[0], rel=0.05)
+    assert band.stiffness == (min(tangents), max(tangents))
+    assert f"a factor of {max(tangents) / min(tangents):.1f}" in band.sentence
+
+
+def test_a_known_cutter_is_not_varied_and_one_that_makes_no_flank_is_named():
+    known = setting_band(pair(slices=12), 200.0, ease_offs=(100e-6,), positions=1)
+    assert [setting.cutter_radius for setting in known.settings] == [BLANK.cutter_radius]
+    band = setting_band(
+        pair(slices=12), 200.0, cutters=(0.23, 1.0), ease_offs=(100e-6,), positions=1
+    )
+    assert len(band.settings) == 1
+    (reason,) = band.refused
+    assert "does not reach across the face" in reason
+
+
+def test_a_train_gives_the_blank():
+    (mesh,) = sg.load_train(ROOT / "geometry" / "axle_thesis.toml").pairs
+    blank = blank_of(mesh, cutter_radius=0.1524)
+    assert (blank.hand, blank.loaded_side) == ("left", "concave")
+    assert blank.pressure_angle == pytest.approx(radians(25))
+    assert blank.estimated == ("gear_share", "working_depth")
+    assert "0.391 rad of the pinion (0.3016)" in blank.notes[0]
+
+
+def test_a_train_without_what_flanks_need_is_refused():
+    (mesh,) = sg.load_train(ROOT / "geometry" / "axle_thesis.toml").pairs
+    bare = replace(mesh, pinion=mesh.pinion.with_changes(face_width=None, hand=None))
+    with pytest.raises(SceneError, match="face_width: is needed for the flanks"):
+        blank_of(bare)
+    assert blank_of(replace(mesh, pinion=mesh.pinion.with_changes(hand=None))).hand == "left"
+    (parallel,) = sg.load_train(ROOT / "geometry" / "gearbox_train.toml").pairs
+    with pytest.raises(SceneError, match="that of a cylindrical pair"):
+        blank_of(parallel)
