@@ -53,7 +53,7 @@ class MeshContact:
 
     name: str
     pair: CylindricalPair
-    supports: Supports | None
+    supports: Supports
     cycle: MeshCycle
     aligned: MeshCycle  #: under the same torque, with wheels that are held as they lie without load
     assumed: tuple[str, ...]  #: what the file leaves open, sentences
@@ -83,11 +83,8 @@ class MeshContact:
         """How the flanks lie askew under load."""
         face, wheels = self.wheels.face_width, self.wheels
         ends = np.array([-face / 2, face / 2])
-        shape = 0.0
         gaps = self.pair.shape_gap(np.full(2, wheels.pitch_point), ends)
         shape = float(gaps[1] - gaps[0])
-        if self.supports is None:
-            return Skew(0.0, 0.0, shape)
         point = np.column_stack([np.zeros(2), np.zeros(2), ends])
         normal = np.tile(self.cycle.positions[0].cells.normal[0], (2, 1))
         rows = self.supports.opening(point, normal)

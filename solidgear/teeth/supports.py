@@ -22,6 +22,7 @@ from solidgear.core import Scene, System
 from solidgear.core.scene.stations import Port
 from solidgear.teeth.contact.frame import Frame, Stations, Supports
 from solidgear.trains.assembly.assembly import Assembly
+from solidgear.trains.file.mesh_teeth import MeshTeeth
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.train import Train
@@ -43,25 +44,37 @@ class Carried:
     Examples
     --------
     >>> import solidgear as sg
+    >>> from solidgear.trains.file.mesh_teeth import wheels_of
     >>> train = sg.load_train("geometry/gearbox_train.toml")
-    >>> carried = Carried(with_sections(train), train.point)
-    >>> supports = carried.supports(carried.train.pairs[0])
+    >>> carried = Carried.at_rest(with_sections(train), train.point)
+    >>> pair = carried.train.pairs[0]
+    >>> supports = carried.supports(pair, carried.frame(pair, wheels_of(pair)))
     >>> [len(stations.place) for stations in supports.stations]   # the wheel is a rigid mass
     [5, 1]
     """
 
-    train: Train  #: as of :func:`with_sections`
-    point: OperatingPoint
+    operating: Operating  #: of a train as of :func:`with_sections`
+    state: OperatingState
 
-    @cached_property
-    def operating(self) -> Operating:
-        """The train with its bearings."""
-        return Operating(Assembly(self.train), SHAFT)
+    @classmethod
+    def at_rest(cls, train: Train, point: OperatingPoint) -> Carried:
+        """Settle a train of :func:`with_sections` at an operating point."""
+        operating = Operating(Assembly(train), SHAFT)
+        return cls(operating, operating.at(point))
 
-    @cached_property
-    def state(self) -> OperatingState:
-        """The train at rest at the point."""
-        return self.operating.at(self.point)
+    def at(self, point: OperatingPoint) -> Carried:
+        """Settle the same train at another point, from this state on."""
+        return Carried(self.operating, self.operating.at(point, self.state))
+
+    @property
+    def train(self) -> Train:
+        """The train with its sections."""
+        return self.operating.assembly.train
+
+    @property
+    def point(self) -> OperatingPoint:
+        """Where it is at rest."""
+        return self.state.point
 
     @cached_property
     def assembly(self) -> Assembly:
@@ -116,23 +129,21 @@ class Carried:
         motion[4] -= self.state.motion(held[end.partition(".")[0]])[4]
         return motion
 
-    def frame(self, pair: Pair) -> Frame:
-        """Return the frame of a pair: the mesh point, and axes along the transverse line of action
-        and the shafts, so that contact lines run on towards larger w.
+    def frame(self, pair: Pair, teeth: MeshTeeth) -> Frame:
+        """Return the frame of a pair: the pitch point at the middle of the shared face, and axes along
+        the transverse line of action and the shafts, so that contact lines run on towards larger w.
         """
         port = self.system.port(f"{pair.shafts[0]}.{pair.ports[0]}")
         vector = self.assembly.contacts[pair.name].pinion
         normal, axis = port.axes @ vector.normal, port.axes[:, 1]
-        along = float(normal @ axis)
-        transverse = normal - along * axis
+        transverse = normal - (normal @ axis) * axis
         u = -transverse / np.linalg.norm(transverse)
-        w = axis if along >= 0 else -axis
-        origin = port.point + port.axes @ vector.point
+        w = teeth.along[0] * axis
+        origin = port.point + port.axes @ vector.point + teeth.middles[0] * axis
         return Frame(origin, np.column_stack([u, np.cross(w, u), w]))
 
-    def supports(self, pair: Pair, frame: Frame | None = None) -> Supports:
-        """Return what carries both wheels of a pair, in its own frame or one shifted along w."""
-        frame = self.frame(pair) if frame is None else frame
+    def supports(self, pair: Pair, frame: Frame) -> Supports:
+        """Return what carries both wheels of a pair."""
         ends = [
             list(sections(self.train, side, port)) for side, port in zip(pair.shafts, pair.ports)
         ]

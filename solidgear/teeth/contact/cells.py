@@ -38,7 +38,7 @@ class ToothedPair(Protocol):
 
     @property
     def law(self) -> LineContact:
-        """What both flanks give way by where they touch."""
+        """What gives way where flanks touch."""
         ...
 
     def cells(self, phase: float) -> Cells:

@@ -52,11 +52,14 @@ class CylindricalPair:
         half = step * lean / 2
         start, stop = wheels.ends
         first, last = start - self.beyond * wheels.pitch, stop + self.beyond * wheels.pitch
+        # a cell lies on one side of an end of the path, beyond which flanks part
+        regions = [(first, start), (start, stop), (stop, last)] if self.beyond else [(start, stop)]
         parts = [
             (k, j, place, z[j], share * step / cos(wheels.base_helix))
             for k in self._lines(phase, first, last)
+            for low, high in regions
             for j, place, share in _crossed(
-                wheels.pitch_point + (phase + k) * wheels.pitch + z * lean, half, first, last
+                wheels.pitch_point + (phase + k) * wheels.pitch + z * lean, half, low, high
             )
         ]
         line, piece, place, along, length = (np.array(column) for column in zip(*parts))
