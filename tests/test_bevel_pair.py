@@ -8,12 +8,15 @@ import pytest
 
 import solidgear as sg
 from solidgear.core.errors import SceneError
+from solidgear.core.gears.wheel_pair import WheelPair
 from solidgear.teeth.bevel.band import setting_band
 from solidgear.teeth.bevel.blank import BevelBlank
 from solidgear.teeth.bevel.flank import BevelFlanks, Mismatch
 from solidgear.teeth.bevel.misalignment import Misalignment
 from solidgear.teeth.bevel.pair import BevelPair
 from solidgear.teeth.bevel.reading import blank_of
+from solidgear.teeth.contact.cycle import mesh_cycle
+from solidgear.teeth.contact.cylindrical import CylindricalPair
 from solidgear.teeth.contact.frame import RigidSupports
 from solidgear.teeth.contact.local import Elasticity, LineContact
 from solidgear.teeth.contact.solver import loads
@@ -43,6 +46,20 @@ class MadeUp:
         lean = 1 + 20 * apart * (r[:, None] - r[None])
         along = np.exp(-np.abs(z[:, None] - z[None]) / self.spread) / (2 * self.spread)
         return np.sqrt(soft[:, None] * soft) * near * along * np.where(apart == 0, 1.0, lean)
+
+
+@dataclass(frozen=True)
+class Plain:
+    """Teeth that give way by their height alone, in slices that do not know of each other."""
+
+    root: float
+    width: float
+    depth: float = 5e-3
+
+    def matrix(self, tooth, r, z):
+        soft = 2e-11 * (1 + 20 * (r - self.root)) / self.width
+        alike = np.abs(z[:, None] - z) < self.width / 2
+        return np.sqrt(soft[:, None] * soft) * alike * (tooth[:, None] == tooth)
 
 
 def pair(mismatch=CONJUGATE, slices=24, **changes):
@@ -159,6 +176,26 @@ def test_a_misalignment_moves_the_contact_as_supports_do():
     turned = (moved[50e-6].rotation - moved[-50e-6].rotation) / 100e-6
     assert turned == pytest.approx(float(still.force @ still.cells.normal[:, 1] / 200.0), rel=0.02)
     assert np.linalg.norm(moved[50e-6].point - still.point) > 1e-4
+
+
+def test_straight_narrow_teeth_carry_as_their_virtual_spur_wheels_do():
+    """Tredgold: the back cone unrolled; another path of contact, other radii and levers."""
+    teeth = (36, 48)  # virtual wheels of 45 and 80
+    blank = BevelBlank(teeth, 0.36, 20e-3, 0.0, "left", "concave", radians(20), 10.0, 0.5)
+    wheels = blank.virtual_wheels(blank.face)
+    assert [wheel.teeth for wheel in wheels] == [45, 80]
+    # without a spread along the face, for a spur pair's load has none and ends of a line have
+    made_up = tuple(Plain(wheel.root, blank.face / 8) for wheel in wheels)
+    law = LineContact((STEEL, STEEL), (made_up[0].depth,) * 2)
+    bevel = BevelPair(BevelFlanks(blank), made_up, law, 8)
+    spur = CylindricalPair(WheelPair(wheels[0], wheels[1]), made_up, law, slices=8, beyond=0.0)
+    assert bevel.flanks.contact_ratio == pytest.approx(spur.wheels.contact_ratio, rel=5e-3)
+    force = 5e3
+    secants = []
+    for toothed, base in ((bevel, bevel.base), (spur, spur.wheels.first.base)):
+        cycle = mesh_cycle(toothed, force * base, base, 8, positions=16)
+        secants.append([cycle.secant.mean(), cycle.secant.min(), cycle.secant.max()])
+    assert secants[0] == pytest.approx(secants[1], rel=5e-3)
 
 
 def test_random_positions_settle():
