@@ -11,11 +11,15 @@ from solidgear.show.command import caution
 from solidgear.show.plot import Make
 from solidgear.show.sheet import Sheet, Terminal
 from solidgear.show.table import NUMBER, Column, Table, numbers, word
-from solidgear.show.units import Units
+from solidgear.show.units import Units, in_ascii
 from solidgear.teeth.charts import cycle_chart, face_chart, pattern_chart, torque_chart
-from solidgear.teeth.mesh_contact import ORDERS, MeshContact
+from solidgear.teeth.mesh_contact import MeshContact
 from solidgear.teeth.study import AtTorque, TeethStudy
 
+#: motion that rounding leaves, m
+ROUNDING = 1e-13
+#: orders of the error in the table
+SHOWN_ORDERS = 3
 CYCLE_SHOWN = (
     "Transmission error and stiffness over a mesh cycle; the error without load is that of the "
     "flanks and of shafts under all other loads."
@@ -28,7 +32,7 @@ TORQUE_SHOWN = "Transmission error, its first orders and stiffness over the torq
 def contact_sheet(study: TeethStudy, units: Units) -> Sheet:
     """Return the sheet of the contact of all meshes."""
     meshes, several = study.meshes, len(study.meshes) > 1
-    tables = [of_meshes(study, units)]
+    tables = [of_mesh(mesh, units, NOTE if mesh is meshes[-1] else "") for mesh in meshes]
     charts: dict[str, Make] = {}
     words: dict[str, str] = {}
     for number, mesh in enumerate(meshes, start=1):
@@ -63,90 +67,94 @@ def contact_sheet(study: TeethStudy, units: Units) -> Sheet:
         terminal=Terminal(
             heading=[f"{study.title} at {study.point.label}: contact of teeth"],
             tables=tables,
-            closing=[*notes, *map(caution, study.cautions)],
+            closing=[*map(in_ascii, notes), *map(caution, study.cautions)],
         ),
     )
 
 
-Row = tuple[str, Callable[[MeshContact], str | None]]
+NOTE = (
+    "Tangent: about the load, what vibrates; secant: from first touch to the load. ISO 6336-1: with "
+    "CM = 0.8, along the line of action. Askew: how far flanks open from end to end of the face."
+)
 
 
-def of_meshes(study: TeethStudy, units: Units) -> Table:
-    """Return the numbers of all meshes, one below the other."""
-    rows = [[head, *map(write, study.meshes)] for head, write in _rows(units)]
-    columns = [word("")]
-    columns += [Column(mesh.name, kind=NUMBER) for mesh in study.meshes]
-    note = (
-        "Tangent: about the load, what vibrates; secant: from first touch to the load. ISO 6336-1: "
-        "its single and mesh stiffness with CM = 0.8, along the line of action. Askew: how far flanks "
-        "open from end to end of the face."
-    )
-    return Table("Contact of teeth", columns, rows, note)
+def of_mesh(mesh: MeshContact, units: Units, note: str) -> Table:
+    """Return the numbers of a mesh, with their range over the cycle."""
+    columns = [
+        word(""),
+        Column("mean or all", kind=NUMBER),
+        Column("least", kind=NUMBER),
+        Column("largest", kind=NUMBER),
+    ]
+    rows = [*_stiffnesses(mesh, units), *_errors(mesh, units), *_along_the_face(mesh, units)]
+    return Table(f"Contact of teeth: {mesh.name}", columns, rows, note)
 
 
-def _rows(units: Units) -> list[Row]:
-    """Return what is shown of every mesh, and how it is written."""
+Row = list[str | None]
 
-    def size(si: str, of: Callable[[MeshContact], float], digits: int = 4):
-        return lambda mesh: units.number(of(mesh), si, digits)
 
-    def spread(si: str, of: Callable[[MeshContact], np.ndarray]):
-        def write(mesh: MeshContact) -> str:
-            values = of(mesh)
-            mean, low, high = (
-                units.number(float(v), si, 4) for v in (values.mean(), values.min(), values.max())
-            )
-            return f"{mean} ({low} to {high})"
+def _alone(head: str, value: str) -> Row:
+    return [head, value, "", ""]
 
-        return write
 
-    stiff, moved = units.unit("N/m"), units.unit("m moved")
-    rows: list[Row] = [
-        (f"torque on the first wheel, {units.unit('N m')}", size("N m", lambda m: m.cycle.torque)),
-        (f"force along the line of action, {units.unit('N')}", size("N", lambda m: m.cycle.force)),
-        ("contact ratio, overlap", lambda m: _ratios(m)),
-        (f"stiffness of teeth, tangent, {stiff}", spread("N/m", lambda m: m.cycle.tangent)),
-        (f"stiffness of teeth, secant, {stiff}", spread("N/m", lambda m: m.cycle.secant)),
-        (f"tangent if aligned, {stiff}", spread("N/m", lambda m: m.aligned.tangent)),
-        (
-            f"with supports, tangent, {stiff}",
-            spread("N/m", lambda m: m.cycle.supported_tangent),
-        ),
-        (
-            f"ISO 6336-1: single, mesh, {stiff}",
-            lambda m: ", ".join(
-                units.number(m.along_line(c), "N/m", 4) for c in (m.norm.single, m.norm.mesh)
-            ),
-        ),
-        (
-            f"loaded transmission error, peak to peak, {moved}",
-            size("m moved", lambda m: m.cycle.peak_to_peak, 3),
-        ),
-        (
-            f"its orders 1 to {ORDERS}, {moved}",
-            lambda m: ", ".join(
-                units.number(float(abs(a)), "m moved", 3) for a in m.cycle.orders(ORDERS)
-            ),
-        ),
-        (
-            f"without load, peak to peak, {moved}",
-            size("m moved", lambda m: float(np.ptp(m.cycle.free_error)), 3),
-        ),
-        (
-            f"askew by bending, wind-up, {moved}",
-            lambda m: ", ".join(
-                units.number(v, "m moved", 3) for v in (m.skew.bending, m.skew.turning)
-            ),
-        ),
-        (
-            "face load factor; ISO 6336-1",
-            lambda m: f"{m.cycle.face_load_factor:.2f}; {m.norm_face_load_factor:.2f}",
-        ),
-        ("largest line load over its mean", lambda m: f"{m.cycle.line_load_factor:.2f}"),
-        (f"largest pressure, {units.unit('Pa stressed')}", size("Pa stressed", lambda m: m.cycle.pressure)),
-        ("lines that carry, mean", lambda m: f"{m.cycle.mean_lines:.2f}"),
-    ]  # fmt: skip
-    return rows
+def _stiffnesses(mesh: MeshContact, units: Units) -> list[Row]:
+    """Return rows of load and stiffness."""
+    cycle, unit = mesh.cycle, units.unit("N/m")
+
+    def spread(head: str, values: np.ndarray) -> Row:
+        shown = values.mean(), values.min(), values.max()
+        return [f"{head}, {unit}", *(units.number(float(v), "N/m", 4) for v in shown)]
+
+    def norm(head: str, specific: float) -> Row:
+        return _alone(f"{head}, {unit}", units.number(mesh.along_line(specific), "N/m", 4))
+
+    torque, force = units.unit("N m"), units.unit("N")
+    return [
+        _alone(f"torque on the first wheel, {torque}", units.number(cycle.torque, "N m", 4)),
+        _alone(f"force along the line of action, {force}", units.number(cycle.force, "N", 4)),
+        _alone("contact ratio, overlap", _ratios(mesh)),
+        spread("teeth, tangent", cycle.tangent),
+        spread("teeth, secant", cycle.secant),
+        spread("if aligned, tangent", mesh.aligned.tangent),
+        spread("teeth and supports, tangent", cycle.supported_tangent),
+        norm("ISO 6336-1, one pair of teeth", mesh.norm.single),
+        norm("ISO 6336-1, mesh", mesh.norm.mesh),
+    ]
+
+
+def _errors(mesh: MeshContact, units: Units) -> list[Row]:
+    """Return rows of the transmission error."""
+    cycle, unit = mesh.cycle, units.unit("m moved")
+
+    def size(head: str, value: float) -> Row:
+        return _alone(f"{head}, {unit}", _size(value, units))
+
+    orders = np.abs(cycle.orders(SHOWN_ORDERS))
+    return [
+        size("loaded error, peak to peak", cycle.peak_to_peak),
+        *(size(f"its order {n}", float(a)) for n, a in enumerate(orders, start=1)),
+        size("error without load, peak to peak", float(np.ptp(cycle.free_error))),
+    ]
+
+
+def _along_the_face(mesh: MeshContact, units: Units) -> list[Row]:
+    """Return rows of how load lies on the flank."""
+    cycle, unit = mesh.cycle, units.unit("m moved")
+    pressure = units.number(cycle.pressure, "Pa stressed", 4)
+    return [
+        _alone(f"askew by bending, {unit}", _size(mesh.skew.bending, units)),
+        _alone(f"askew by wind-up, {unit}", _size(mesh.skew.turning, units)),
+        _alone("face load factor", f"{cycle.face_load_factor:.2f}"),
+        _alone("face load factor, ISO 6336-1", f"{mesh.norm_face_load_factor:.2f}"),
+        _alone("largest line load over its mean", f"{cycle.line_load_factor:.2f}"),
+        _alone(f"largest pressure, {units.unit('Pa stressed')}", pressure),
+        _alone("lines that carry, mean", f"{cycle.mean_lines:.2f}"),
+    ]
+
+
+def _size(value: float, units: Units) -> str:
+    """Write a motion, nothing below what rounding leaves."""
+    return units.number(value if abs(value) > ROUNDING else 0.0, "m moved", 3)
 
 
 def _ratios(mesh: MeshContact) -> str:

@@ -15,6 +15,8 @@ from solidgear.teeth.mesh_contact import MeshContact
 from solidgear.teeth.supports import Carried, with_sections
 from solidgear.teeth.train_teeth import TeethModel, mesh_contact, provisional
 from solidgear.trains.file.operation import OperatingPoint
+from solidgear.trains.file.pairs import Pair
+from solidgear.trains.file.planetary import PlanetMesh
 from solidgear.trains.file.train import Train
 
 #: torques of a curve, of that of the operating point
@@ -118,33 +120,43 @@ def teeth_study(
             f"{train.name} has no torque: teeth touch under a load; give --torque, or [operation] "
             "in the file"
         )
-    numbers = {
-        pair.name: None if mesh.stiffness == "teeth" else mesh.stiffness
-        for pair, mesh in zip(train.pairs, train.meshes)
-    }
     sectioned = with_sections(provisional(train))
     carried = Carried.at_rest(sectioned, point)
-    pairs = [pair for pair in carried.train.pairs if not pair.mesh.shaft_angle]
-    if not pairs:
-        raise SolidgearError(f"{train.name} has no mesh of parallel shafts")
+    teeth = touching(carried.train)
     meshes = []
-    for pair in pairs:
-        progress(f"teeth of the {pair.name}")
-        meshes.append(mesh_contact(carried, pair, model))
-    curves: dict[str, list[AtTorque]] = {pair.name: [] for pair in pairs} if factors else {}
+    for mesh in teeth:
+        progress(f"teeth of the {mesh.name}")
+        meshes.append(mesh_contact(carried, mesh, model))
+    curves: dict[str, list[AtTorque]] = {mesh.name: [] for mesh in teeth} if factors else {}
     for factor in sorted(factors):
         torque = factor * point.torque
         progress(f"teeth at {torque:.4g} N m")
         at = carried if factor == 1 else carried.at(point.with_changes(torque=torque))
-        for k, pair in enumerate(pairs):
-            solved = meshes[k] if factor == 1 else mesh_contact(at, pair, model)
-            curves[pair.name].append(AtTorque(torque, solved))
+        for mesh, solved in zip(teeth, meshes):
+            contact = solved if factor == 1 else mesh_contact(at, mesh, model)
+            curves[mesh.name].append(AtTorque(torque, contact))
     return TeethStudy(
         title=train.title or train.name,
         point=point,
         meshes=tuple(meshes),
         curves={name: tuple(curve) for name, curve in curves.items()},
-        stiffness=numbers,
+        stiffness={mesh.name: stated_stiffness(train, mesh.name) for mesh in teeth},
         cautions=tuple(carried.state.notes),
         seconds=perf_counter() - start,
     )
+
+
+def touching(train: Train) -> list[Pair | PlanetMesh]:
+    """Return the meshes of parallel shafts, of planets those of the first; refused without any."""
+    pairs: list[Pair | PlanetMesh] = [pair for pair in train.pairs if not pair.mesh.shaft_angle]
+    planets = [mesh for stage in train.stages for mesh in stage.meshes if mesh.planets == (1,)]
+    if not (pairs or planets):
+        raise SolidgearError(f"{train.name} has no mesh of parallel shafts")
+    return [*pairs, *planets]
+
+
+def stated_stiffness(train: Train, name: str) -> float | None:
+    """Return the stiffness that the file gives a mesh, N/m; None where it is that of the teeth."""
+    mesh = next(mesh for mesh in train.teeth if mesh.name == name)
+    stiffness = mesh.stiffness if isinstance(mesh, PlanetMesh) else mesh.mesh.stiffness
+    return None if stiffness == "teeth" else stiffness

@@ -21,10 +21,12 @@ import scipy.linalg as sla
 from solidgear.core import Scene, System
 from solidgear.core.scene.stations import Port
 from solidgear.teeth.contact.frame import Frame, Stations, Supports
+from solidgear.teeth.mesh_place import MeshPlace, place_of
 from solidgear.trains.assembly.assembly import Assembly
-from solidgear.trains.file.mesh_teeth import MeshTeeth
+from solidgear.trains.file.mesh_teeth import MeshTeeth, wheels_of
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.pairs import Pair
+from solidgear.trains.file.planetary import PlanetMesh
 from solidgear.trains.file.train import Train
 from solidgear.trains.load.operation import Operating
 from solidgear.trains.load.state import OperatingState, with_settled_bearings
@@ -35,6 +37,8 @@ SHAFT, SECTIONS = "timoshenko", 5
 SEAT = 0.05
 #: of a section among the lumped points of a scene
 MARK = " face "
+#: of a gear: its middle from the lumped point, and its width, m
+Face = tuple[float, float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,8 +51,9 @@ class Carried:
     >>> from solidgear.trains.file.mesh_teeth import wheels_of
     >>> train = sg.load_train("geometry/gearbox_train.toml")
     >>> carried = Carried.at_rest(with_sections(train), train.point)
-    >>> pair = carried.train.pairs[0]
-    >>> supports = carried.supports(pair, carried.frame(pair, wheels_of(pair)))
+    >>> teeth = wheels_of(carried.train.pairs[0])
+    >>> place = carried.place(carried.train.pairs[0], teeth)
+    >>> supports = carried.supports(place, place.frame(teeth))
     >>> [len(stations.place) for stations in supports.stations]   # the wheel is a rigid mass
     [5, 1]
     """
@@ -87,17 +92,55 @@ class Carried:
         """The train with its bearings about the state."""
         return self.assembly.coupled(self.assembly.models_by_shaft([SHAFT]))
 
-    def _held(self, pair: Pair) -> dict[str, str]:
-        """Return the end at which every shaft is held against turning: where the torque of a pair
-        enters or leaves it.
+    def coast(self, mesh: Pair | PlanetMesh) -> bool:
+        """Return True where a mesh carries on the flank that the file does not name, and planets of a
+        sun that drives about -y.
+        """
+        if isinstance(mesh, PlanetMesh):
+            return self.assembly.stages[mesh.stage.name].way < 0
+        return self.point.coast
+
+    def place(self, mesh: Pair | PlanetMesh, teeth: MeshTeeth) -> MeshPlace:
+        """Return where a mesh lies in the system."""
+        return place_of(self.assembly, self.system, mesh, teeth)
+
+    def force(self, place: MeshPlace) -> float:
+        """Return the force of the teeth of a mesh in the state, N."""
+        return self.state.mesh_forces[place.force]
+
+    def supports(self, place: MeshPlace, frame: Frame) -> Supports:
+        """Return what carries both wheels of a mesh."""
+        held = self._held(place)
+        stations, rows, motions = [], [], []
+        for end in place.ends:
+            names = [] if end is None else self._sections(end, frame)
+            ports = [self.system.port(name) for name in names]
+            points = np.array([port.point for port in ports]).reshape(-1, 3)
+            stations.append(Stations((points - frame.origin) @ frame.axes[:, 2], points))
+            for name, port in zip(names, ports):
+                turn = np.kron(np.eye(2), port.axes)
+                rows.append(turn @ port.rows)
+                motions.append(turn @ self._motion(name, held))
+        by_end = place.load(self.system)
+        loaded = [self.system.motion(end) for end, _ in by_end]
+        total = self.force(place) * np.concatenate([load for _, load in by_end])
+        count = 6 * len(rows)
+        flexibility = _flexibility(self._without_teeth(held), np.vstack([*rows, *loaded]))
+        motion = np.concatenate(motions) - flexibility[:count, count:] @ total
+        return Supports(frame, (stations[0], stations[1]), flexibility[:count, :count], motion)
+
+    def _held(self, place: MeshPlace) -> dict[str, str]:
+        """Return the end at which every part is held against turning: of a shaft where the torque of
+        these teeth enters or leaves it.
         """
         train, ends = self.train, {}
         for side, shaft in train.shafts.items():
             rotors = [train.spring_port(name) for name in train.rotors_of(side)]
-            mates = zip(pair.shafts, pair.ports)
-            further = [name for name in shaft.gears if (side, name) not in mates]
+            further = [name for name in shaft.gears if f"{side}.{name}" not in place.ends]
             port = [*rotors, *further, *shaft.gears, shaft.scene.port.name][0]
             ends[side] = f"{side}.{port}"
+        for stage in self.assembly.stages.values():
+            ends |= {name: f"{name}.centre" for name in stage.planets.values()}
         return ends
 
     def _without_teeth(self, held: dict[str, str]) -> tuple[np.ndarray, np.ndarray]:
@@ -105,8 +148,8 @@ class Carried:
         system = self.system
         rows, places = system.strains
         bodies = np.ones(len(rows), bool)
-        for name in self._teeth_links:
-            bodies[places[name]] = False
+        for mesh in self.train.teeth:
+            bodies[places[mesh.name]] = False
         stiffness = rows[bodies].T @ rows[bodies]
         fixed = np.vstack([system.motion(end)[4] for end in held.values()])
         size = np.abs(np.diag(stiffness)).max()
@@ -115,65 +158,23 @@ class Carried:
         )
         return sla.lu_factor(bordered)
 
-    @property
-    def _teeth_links(self) -> Iterator[str]:
-        """Names of all meshes in the system."""
-        for pair in self.train.pairs:
-            yield pair.name
-
     def _motion(self, end: str, held: dict[str, str]) -> np.ndarray:
-        """Return the (6,) motion of a port in the state, without the turning of its shaft, in its own
+        """Return the (6,) motion of a port in the state, without the turning of its part, in its own
         axes.
         """
         motion = self.state.motion(end).copy()
         motion[4] -= self.state.motion(held[end.partition(".")[0]])[4]
         return motion
 
-    def frame(self, pair: Pair, teeth: MeshTeeth) -> Frame:
-        """Return the frame of a pair: the pitch point at the middle of the shared face, and axes along
-        the transverse line of action and the shafts, so that contact lines run on towards larger w.
-        """
-        port = self.system.port(f"{pair.shafts[0]}.{pair.ports[0]}")
-        vector = self.assembly.contacts[pair.name].pinion
-        normal, axis = port.axes @ vector.normal, port.axes[:, 1]
-        transverse = normal - (normal @ axis) * axis
-        u = -transverse / np.linalg.norm(transverse)
-        w = teeth.along[0] * axis
-        origin = port.point + port.axes @ vector.point + teeth.middles[0] * axis
-        return Frame(origin, np.column_stack([u, np.cross(w, u), w]))
-
-    def supports(self, pair: Pair, frame: Frame) -> Supports:
-        """Return what carries both wheels of a pair."""
-        ends = [
-            list(sections(self.train, side, port)) for side, port in zip(pair.shafts, pair.ports)
-        ]
-        stations = tuple(self._stations(names, frame) for names in ends)
-        held = self._held(pair)
-        rows, motions = [], []
-        for end in (end for names in ends for end in names):
-            port = self.system.port(end)
-            turn = np.kron(np.eye(2), port.axes)
-            rows.append(turn @ port.rows)
-            motions.append(turn @ self._motion(end, held))
-        loads, total = self._teeth_load(pair)
-        count = 6 * len(rows)
-        flexibility = _flexibility(self._without_teeth(held), np.vstack([*rows, *loads]))
-        motion = np.concatenate(motions) - flexibility[:count, count:] @ total
-        return Supports(frame, (stations[0], stations[1]), flexibility[:count, :count], motion)
-
-    def _stations(self, names: list[str], frame: Frame) -> Stations:
-        points = np.array([self.system.port(end).point for end in names])
-        place = (points - frame.origin) @ frame.axes[:, 2]
-        order = np.argsort(place)
-        names[:] = [names[k] for k in order]
-        return Stations(place[order], points[order])
-
-    def _teeth_load(self, pair: Pair) -> tuple[list[np.ndarray], np.ndarray]:
-        """Return the rows of both lumped points and the load of the teeth on them in the state."""
-        contact, force = self.assembly.contacts[pair.name], self.state.mesh_forces[pair.name]
-        vectors = contact.pinion.vector, -contact.gear.vector
-        rows = [self.system.motion(f"{side}.{port}") for side, port in zip(pair.shafts, pair.ports)]
-        return rows, force * np.concatenate(vectors)
+    def _sections(self, end: str, frame: Frame) -> list[str]:
+        """Return the ends of the sections of a wheel along w, or its own where it is rigid."""
+        side, _, port = end.partition(".")
+        if side not in self.train.shafts:
+            return [end]
+        names = [p.name for p in self.train.shafts[side].scene.ports]
+        ends = [f"{side}.{name}" for name in names if name.startswith(f"{port}{MARK}")]
+        way = frame.axes[:, 2]
+        return sorted(ends, key=lambda name: self.system.port(name).point @ way) or [end]
 
 
 def _flexibility(factor: tuple[np.ndarray, np.ndarray], rows: np.ndarray) -> np.ndarray:
@@ -184,33 +185,47 @@ def _flexibility(factor: tuple[np.ndarray, np.ndarray], rows: np.ndarray) -> np.
 
 
 def with_sections(train: Train) -> Train:
-    """Return the train with lumped points along the face of every gear that is part of its shaft."""
+    """Return the train with lumped points along the face of every cylindrical gear that is part of its
+    shaft.
+    """
+    faces: dict[tuple[str, str], Face] = {}
+    for mesh in train.teeth:
+        teeth = wheels_of(mesh)
+        if teeth is None or not teeth.wheels.face_width > 0:
+            continue
+        for (side, port), wheel in zip(_gears(mesh), (teeth.wheels.first, teeth.wheels.second)):
+            gear = train.shafts[side].gears[port]
+            if gear.head is None:
+                faces[side, port] = gear.face_offset, wheel.face_width
     shafts = {}
     for side, shaft in train.shafts.items():
         scene = shaft.scene
-        points: list[Port] = []
-        for name, gear in shaft.gears.items():
-            if gear.head is None and gear.face_width:
-                points += _points(scene, name, gear.face_width)
+        points = [
+            point
+            for (of, port), face in faces.items()
+            if of == side
+            for point in _points(scene, port, face)
+        ]
         further = (*scene.further_ports, *points)
         shafts[side] = shaft.with_changes(scene=scene.with_changes(further_ports=further))
     return train.with_changes(shafts=shafts)
 
 
-def _points(scene: Scene, name: str, face: float) -> Iterator[Port]:
+def _gears(mesh: Pair | PlanetMesh) -> list[tuple[str, str]]:
+    """Return shaft and lumped point of the wheels of a mesh that are gears of shafts, the first first."""
+    if isinstance(mesh, Pair):
+        return list(zip(mesh.shafts, mesh.ports))
+    return [(mesh.stage.shafts[0], mesh.stage.ports[0])] if mesh.mate == "sun" else []
+
+
+def _points(scene: Scene, name: str, face: Face) -> Iterator[Port]:
     """Yield the sections along a face, on the shaft."""
-    port = next(p for p in scene.ports if p.name == name)
-    half = SEAT * face / 2
-    low, high = max(port.y - face / 2, 0.0), min(port.y + face / 2, scene.length)
+    port, (offset, width) = next(p for p in scene.ports if p.name == name), face
+    half = SEAT * width / 2
+    low = max(port.y + offset - width / 2, 0.0)
+    high = min(port.y + offset + width / 2, scene.length)
     for k, y in enumerate(np.linspace(low + half, high - half, SECTIONS)):
         # a seat lies on one segment
         segment = next(s for s in scene.segments if s.y0 <= y <= s.y1)
         seat = max(y - half, segment.y0), min(y + half, segment.y1)
         yield port.with_changes(name=f"{name}{MARK}{k}", position=y, lo=seat[0], hi=seat[1])
-
-
-def sections(train: Train, side: str, port: str) -> Iterator[str]:
-    """Yield the ends of the sections of a gear, or its lumped point where it is rigid."""
-    names = [p.name for p in train.shafts[side].scene.ports if p.name.startswith(f"{port}{MARK}")]
-    for name in names or [port]:
-        yield f"{side}.{name}"

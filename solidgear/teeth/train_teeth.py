@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solidgear.core import Scene, SceneError, SolidgearError
+from solidgear.core import Scene, SceneError
 from solidgear.core.gears.wheel import Wheel
 from solidgear.teeth.compliance.plane import PlaneTeeth
 from solidgear.teeth.compliance.slices import Slices
@@ -25,6 +25,7 @@ from solidgear.teeth.supports import Carried, with_sections
 from solidgear.trains.file.mesh_teeth import MeshTeeth, wheels_of
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.pairs import Pair
+from solidgear.trains.file.planetary import PlanetMesh
 from solidgear.trains.file.tables import ErrorTable
 from solidgear.trains.file.train import Train
 from solidgear.trains.load.contact import axes_of
@@ -41,29 +42,33 @@ class TeethModel:
     positions: int = POSITIONS  #: of a mesh cycle
 
 
-def teeth_of(pair: Pair, coast: bool) -> MeshTeeth:
-    """Return the wheels of a pair; refused where the file does not give them."""
-    if pair.mesh.shaft_angle:
-        raise SolidgearError(f"{pair.name} is a bevel pair")
-    teeth = wheels_of(pair, coast)
+def teeth_of(mesh: Pair | PlanetMesh, coast: bool) -> MeshTeeth:
+    """Return the wheels of a mesh; refused where the file does not give them."""
+    teeth = wheels_of(mesh, coast)
+    path = mesh.paths["pinion"] if isinstance(mesh, Pair) else ("planetary", mesh.stage.called)
     if teeth is None:
         raise SceneError(
-            "is missing; contact of teeth needs it, or a pitch radius", path=pair.paths["pinion"]
+            "is missing; contact of teeth needs it, or a pitch radius", path=(*path, "module")
         )
     if not teeth.wheels.face_width > 0:
+        if isinstance(mesh, PlanetMesh):
+            raise SceneError("has no face_width; contact of teeth needs it", path=(*path, "sun"))
         raise SceneError(
-            "is missing; contact of teeth needs the width of one of both faces",
-            path=(*pair.paths["pinion"], "face_width"),
+            "is missing; contact of teeth needs it of one of both wheels",
+            path=(*path, "face_width"),
         )
+    if not teeth.wheels.contact_ratio > 0:
+        raise SceneError("has tips that do not reach each other", path=path)
     return teeth
 
 
-def toothed(pair: Pair, teeth: MeshTeeth, model: TeethModel) -> CylindricalPair:
+def toothed(mesh: Pair | PlanetMesh, teeth: MeshTeeth, model: TeethModel) -> CylindricalPair:
     """Return both wheels with their compliance."""
     compliances, materials = [], []
-    for wheel, member in zip((teeth.wheels.first, teeth.wheels.second), pair.members.values()):
-        material = _material(member.scene)
-        hold = _hold(member.scene, wheel, rigid=member.head is not None)
+    for wheel, gear in zip((teeth.wheels.first, teeth.wheels.second), _gears(mesh)):
+        scene, rigid = gear
+        material = Elasticity() if scene is None else _material(scene)
+        hold = None if scene is None else _hold(scene, wheel, rigid)
         plane = PlaneTeeth(wheel, hold=hold, elasticity=material)
         compliances.append(Slices(plane, wheel.face_width, model.slices))
         materials.append(material)
@@ -72,6 +77,14 @@ def toothed(pair: Pair, teeth: MeshTeeth, model: TeethModel) -> CylindricalPair:
     return CylindricalPair(
         teeth.wheels, (compliances[0], compliances[1]), law, teeth.shapes, model.slices
     )
+
+
+def _gears(mesh: Pair | PlanetMesh) -> list[tuple[Scene | None, bool]]:
+    """Return the scene that carries each wheel, if any, and whether the wheel is a rigid mass on it."""
+    if isinstance(mesh, Pair):
+        return [(member.scene, member.head is not None) for member in mesh.members.values()]
+    # planets and rings are rigid bodies of the train, of steel
+    return [(None, True), (None, True)]
 
 
 def _material(scene: Scene) -> Elasticity:
@@ -93,22 +106,23 @@ def _hold(scene: Scene, wheel: Wheel, rigid: bool) -> float | None:
     return radius if THINNEST * wheel.root < radius < deepest else None
 
 
-def mesh_contact(carried: Carried, pair: Pair, model: TeethModel | None = None) -> MeshContact:
-    """Solve the contact of a pair over its mesh cycle where its train is carried."""
+def mesh_contact(
+    carried: Carried, mesh: Pair | PlanetMesh, model: TeethModel | None = None
+) -> MeshContact:
+    """Solve the contact of a mesh over its cycle where its train is carried."""
     model = model or TeethModel()
-    teeth = teeth_of(pair, carried.point.coast)
-    contact = toothed(pair, teeth, model)
-    frame = carried.frame(pair, teeth)
-    supports = carried.supports(pair, frame)
-    force = carried.state.mesh_forces[pair.name]
-    torque = force * abs(carried.assembly.contacts[pair.name].pinion.lever)
+    teeth = teeth_of(mesh, carried.coast(mesh))
+    contact = toothed(mesh, teeth, model)
+    place = carried.place(mesh, teeth)
+    supports = carried.supports(place, place.frame(teeth))
+    torque = carried.force(place) * teeth.wheels.first.base * np.cos(teeth.wheels.base_helix)
     base = teeth.wheels.first.base
 
     def cycle(supports: Supports | None) -> MeshCycle:
         return mesh_cycle(contact, torque, base, model.slices, supports, model.positions)
 
     return MeshContact(
-        name=pair.name,
+        name=mesh.name,
         pair=contact,
         supports=supports,
         cycle=cycle(supports),

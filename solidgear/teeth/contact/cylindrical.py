@@ -7,8 +7,9 @@ for larger w, and v across both.  The first wheel is pushed along ``(-cos beta_b
 Under load teeth bend, and contact begins before and ends after the path, where the corner of a tip
 touches the mate's flank.  How far they stand apart there follows from the geometry: turn both wheels
 back by the distance, each about its centre, and measure by how much the flank misses the corner.  The
-lines run on by `BEYOND` pitches with that gap; the corner is taken as round as the flank it ends,
-which it is not, so that its pressure means nothing.
+lines run on by `BEYOND` pitches with that gap, and no further than to where the mate's flank ends in
+its fillet; the corner is taken as round as the flank it ends, which it is not, so that its pressure
+means nothing.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ from solidgear.teeth.contact.cells import Cells
 from solidgear.teeth.contact.local import LineContact
 
 #: pitches beyond both ends of the path that corners may reach under load
-BEYOND = 0.15
+BEYOND = 0.3
 #: least share of a cell that a line crosses
 SLIVER = 1e-3
 
@@ -63,6 +64,10 @@ class CylindricalPair:
             )
         ]
         line, piece, place, along, length = (np.array(column) for column in zip(*parts))
+        gap = corner_gap(wheels, place)
+        flank = np.isfinite(gap)
+        line, piece, place, along = line[flank], piece[flank], place[flank], along[flank]
+        length, gap = length[flank], gap[flank]
         inside = np.clip(place, start, stop)
         n_cells = len(line)
         normal = np.array([-cos(wheels.base_helix), 0.0, sin(wheels.base_helix)])
@@ -72,7 +77,7 @@ class CylindricalPair:
             line=line,
             length=length,
             radius=wheels.curvature_radius(inside),
-            gap=corner_gap(wheels, place) + self.shape_gap(inside, along),
+            gap=gap + self.shape_gap(inside, along),
             lever=lever,
             point=point,
             normal=np.tile(normal, (n_cells, 1)),
@@ -131,7 +136,7 @@ def _crossed(
 
 def corner_gap(wheels: WheelPair, place: np.ndarray) -> np.ndarray:
     """Return how far the tip of one wheel stands from the flank of the other along the normal at
-    places beyond the path, m; zero on it.
+    places beyond the path, m; zero on it, and infinite where the other has no flank any more.
 
     Examples
     --------
@@ -165,8 +170,10 @@ def corner_gap(wheels: WheelPair, place: np.ndarray) -> np.ndarray:
         tooth_turn = ahead / flank.base * (1 if which == 0 else -1)
         middle = _clockwise(reference, which, sign) - flank.half_angle(np.hypot(*reference))
         radius = np.hypot(view[:, 0], view[:, 1])
+        on_flank = flank.sign * (radius - flank.form) >= 0
         missed = _clockwise(view, which, sign) - middle - tooth_turn - flank.half_angle(radius)
-        out[beyond] = np.maximum(missed, 0.0) * flank.base * cos(wheels.base_helix)
+        gap = np.maximum(missed, 0.0) * flank.base * cos(wheels.base_helix)
+        out[beyond] = np.where(on_flank, gap, np.inf)
     return out
 
 

@@ -43,8 +43,10 @@ class Stations:
 
 def _between(place: np.ndarray, z: np.ndarray) -> np.ndarray:
     """Return the (n, m) weights of stations at places, linear between and constant beyond."""
-    hats = np.eye(len(place))
-    return np.column_stack([np.interp(z, place, hat) for hat in hats])
+    out = np.zeros((len(z), len(place)))
+    for k, hat in enumerate(np.eye(len(place))):
+        out[:, k] = np.interp(z, place, hat)
+    return out
 
 
 @dataclass(frozen=True, eq=False)
