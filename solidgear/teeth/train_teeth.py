@@ -20,8 +20,8 @@ from solidgear.teeth.contact.cylindrical import CylindricalPair
 from solidgear.teeth.contact.frame import Supports
 from solidgear.teeth.contact.local import Elasticity, LineContact
 from solidgear.teeth.mesh_contact import ORDERS, MeshContact
-from solidgear.teeth.norm import norm_stiffness
 from solidgear.teeth.supports import Carried, with_sections
+from solidgear.trains.assembly.mesh_stiffness import with_usual_meshes
 from solidgear.trains.file.mesh_teeth import MeshTeeth, wheels_of
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.pairs import Pair
@@ -70,7 +70,7 @@ def toothed(mesh: Pair | PlanetMesh, teeth: MeshTeeth, model: TeethModel) -> Cyl
         material = Elasticity() if scene is None else _material(scene)
         hold = None if scene is None else _hold(scene, wheel, rigid)
         plane = PlaneTeeth(wheel, hold=hold, elasticity=material)
-        compliances.append(Slices(plane, wheel.face_width, model.slices))
+        compliances.append(Slices(plane, teeth.wheels.face_width, model.slices))
         materials.append(material)
     depths = tuple(compliance.depth for compliance in compliances)
     law = LineContact((materials[0], materials[1]), (depths[0], depths[1]))
@@ -131,21 +131,6 @@ def mesh_contact(
     )
 
 
-def provisional(train: Train) -> Train:
-    """Return a train with stiffness by the norm where its file leaves it to the teeth: what shafts do
-    under a given torque hardly depends on it.
-    """
-    meshes = []
-    for pair, mesh in zip(train.pairs, train.meshes):
-        if mesh.stiffness == "teeth":
-            teeth = teeth_of(pair, False)
-            wheels = teeth.wheels
-            along = norm_stiffness(wheels).mesh * wheels.face_width / np.cos(wheels.base_helix) ** 2
-            mesh = mesh.with_changes(stiffness=float(along))
-        meshes.append(mesh)
-    return train.with_changes(meshes=tuple(meshes))
-
-
 def mesh_of_teeth(train: Train) -> Train:
     """Return a train whose meshes with ``stiffness = "teeth"`` have the numbers of their teeth at the
     first operating point: tangent stiffness, mesh point and line of action, and the orders of the
@@ -160,7 +145,7 @@ def mesh_of_teeth(train: Train) -> Train:
     if not any(wanted):
         return train
     point = _point(train)
-    carried = Carried.at_rest(with_sections(provisional(train)), point)
+    carried = Carried.at_rest(with_sections(with_usual_meshes(train)), point)
     meshes = []
     for pair, mesh, asked in zip(carried.train.pairs, train.meshes, wanted):
         meshes.append(_filled(carried, pair, mesh) if asked else mesh)

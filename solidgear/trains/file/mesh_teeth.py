@@ -8,7 +8,6 @@ end, so that z runs to the end where hand and loaded flank have one name, else t
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from math import ceil, cos, degrees, radians
 
@@ -161,7 +160,7 @@ def _wheels(
     faces = widths[0] or widths[1] or 0.0, widths[1] or widths[0] or 0.0
     wheels, assumed = [], []
     for wheel, width in zip(numbers, faces):
-        rack = (wheel.flanks.rack or RackTable()).at(pressure)
+        rack = (wheel.flanks.rack or RackTable()).with_angle(pressure)
         tip = wheel.flanks.tip_diameter
         tip_radius = None if tip is None else tip / 2
         wheels.append(Wheel(wheel.teeth, module, helix, wheel.shift, rack, tip_radius, width))
@@ -233,17 +232,6 @@ def _single_contact(wheels: WheelPair, k: int) -> tuple[float, float]:
         float(wheels.second_length(start + overlap)),
         float(wheels.second_length(stop - overlap)),
     )
-
-
-def missing_size(pair: Pair) -> Iterator[str]:
-    """Yield the keys without which the teeth of a pair have no size or no face."""
-    if pair.mesh.shaft_angle:
-        return
-    teeth = wheels_of(pair)
-    if teeth is None:
-        yield "module"
-    if not (pair.pinion.face_width or pair.gear.face_width):
-        yield "face_width"
 
 
 def _both(names: list[str]) -> str:
