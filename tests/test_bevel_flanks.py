@@ -207,6 +207,16 @@ def test_undercut_begins_where_it_does_on_the_virtual_spur_wheels(share, fails):
         flanks.refuse_undercut()
 
 
+def test_teeth_on_the_far_side_of_the_axis_do_not_touch():
+    """Few crown teeth: a contact line comes back after half a turn, where it would pull."""
+    blank = BevelBlank((14, 14), 0.096, 0.0187, 1.0, "right", "concave", 0.284, 1.0, 0.56)
+    flanks = BevelFlanks(blank)
+    first, last = flanks.rolls
+    assert -2 < first / flanks.pitch < 0 < last / flanks.pitch < 2
+    points, on_flank = flanks.surface
+    assert np.all(flanks.turn * points.lever[on_flank] > 0)
+
+
 @pytest.mark.parametrize("ease_off", [50e-6, 300e-6])
 def test_the_ease_off_wanted_is_that_of_the_flanks(ease_off):
     mismatch = lengthwise(BLANK, ease_off)

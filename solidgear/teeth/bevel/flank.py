@@ -310,10 +310,10 @@ class BevelFlanks:
         for _ in range(2):  # coarse, then where the flank lies
             _, room = self._all_lines(rolls)
             most = room.max(axis=1)
-            touched = np.flatnonzero(most >= 0)
-            if touched.size == 0:
-                raise SceneError("leaves no contact between toe and heel", path=("cutter_radius",))
-            first, last = max(touched[0], 1), min(touched[-1], rolls.size - 2)
+            middle = int(np.argmin(np.abs(rolls)))  # the mean point touches in position 0
+            apart = np.flatnonzero(most < 0)
+            first = int(np.max(apart[apart < middle], initial=0)) + 1
+            last = int(np.min(apart[apart > middle], initial=rolls.size - 1)) - 1
             ends = [
                 float(np.interp(0.0, most[[k, k + 1]][::step], rolls[[k, k + 1]][::step]))
                 for k, step in ((first - 1, 1), (last, -1))
