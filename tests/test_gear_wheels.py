@@ -50,9 +50,12 @@ def test_both_flanks_touch_along_the_path(pair):
         assert distance == pytest.approx(abs(s - pair.pitch_point), rel=1e-6, abs=1e-9)
 
 
-@pytest.mark.parametrize("teeth, shift", [(23, 0.0), (12, 0.5), (10, 0.0), (-85, 0.0), (-40, 0.3)])
-def test_a_fillet_runs_from_the_root_to_the_flank_without_a_corner(teeth, shift):
-    wheel = Wheel(teeth, 2e-3, shift=shift)
+@pytest.mark.parametrize(
+    "teeth, shift, helix",
+    [(23, 0.0, 0), (12, 0.5, 0), (17, 0.3, 30), (10, 0.0, 0), (-85, 0.0, 0), (-40, 0.3, 0)],
+)
+def test_a_fillet_runs_from_the_root_to_the_flank_without_a_corner(teeth, shift, helix):
+    wheel = Wheel(teeth, 2e-3, radians(helix), shift)
     points = wheel.fillet(200)
     radii = np.hypot(points[:, 0], points[:, 1])
     assert radii[0] == pytest.approx(wheel.root, rel=1e-9)

@@ -6,7 +6,7 @@ With the normal module m, ``z`` teeth, the helix angle beta and the pressure ang
 
 a tooth at the radius rho is as thick as the angle 2 psi,
 
-    psi = (pi m / (2 cos beta) + 2 x m tan alpha) / (2 r) + inv alpha_t - inv acos(rb / rho),
+    psi = (pi m / (2 cos beta) + 2 x m tan alpha_t) / (2 r) + inv alpha_t - inv acos(rb / rho),
 
 inv being tan minus angle: the profile shift x counts in *normal* modules.  Its fillet is what the
 rounded corner of the rack leaves: while the wheel rolls by phi, the centre c of the corner moves along
@@ -148,9 +148,8 @@ class Wheel:
     @property
     def thickness(self) -> float:
         """Transverse thickness of a tooth at the reference cylinder, m."""
-        return pi * self.transverse_module / 2 + 2 * self.shift * self.module * tan(
-            self.rack.pressure_angle
-        )
+        shifted = 2 * self.shift * self.module * tan(self.transverse_angle)
+        return pi * self.transverse_module / 2 + shifted
 
     def half_angle(self, r):
         """Return half the angle of a tooth at radii r, m, between its flanks, rad."""
