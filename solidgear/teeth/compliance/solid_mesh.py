@@ -124,37 +124,32 @@ class SweptPitch:
         index, level = np.nonzero(self.numbers[plane_nodes] >= 0)
         return self.numbers[plane_nodes[index], level], index, level
 
-    @property
-    def held(self) -> np.ndarray:
-        """(k,) nodes of the held cylinder."""
-        return self.nodes_of(self.plane.circle)[0]
-
-    @property
-    def inner(self) -> np.ndarray:
-        """(i,) unknowns neither on a side nor held."""
-        free = np.ones(self.solid.nodes.shape[1], bool)
-        free[self.held] = False
-        for side in self.plane.sides:
-            free[self.nodes_of(side)[0]] = False
-        return (3 * np.flatnonzero(free)[:, None] + np.arange(3)).ravel()
-
-    def side_motions(self, pitch: float, power: int) -> sp.csr_matrix:
-        """Return the (3 n, 2 q) motions of the unknowns of both sides, which are polynomials along z
-        at each node of the plane but for the held one, by those of the left side and of the left
-        side of the next pitch.
+    def inner(self, held: bool) -> np.ndarray:
+        """Return the (i,) unknowns neither on a side nor, where it is held, on the cylinder that ends
+        the rim.
         """
-        free = len(self.plane.sides[0]) - 1
+        inner = np.ones(self.solid.nodes.shape[1], bool)
+        for nodes in (*self.plane.sides, *([self.plane.circle] if held else [])):
+            inner[self.nodes_of(nodes)[0]] = False
+        return (3 * np.flatnonzero(inner)[:, None] + np.arange(3)).ravel()
+
+    def side_motions(self, pitch: float, power: int, held: bool) -> sp.csr_matrix:
+        """Return the (3 n, 2 q) motions of the unknowns of both sides, which are polynomials along z
+        above each node of the plane, by those of the left side and of the next left side at the
+        pitch angle; the end of the rim does not move where it is held.
+        """
+        sides = self.plane.sides[:, :-1] if held else self.plane.sides
         turn = np.eye(3)
         turn[:2, :2] = turned(np.eye(2), pitch).T
         parts = []
-        for side, frame in zip(self.plane.sides, (np.eye(3), turn)):
-            nodes, index, level = self.nodes_of(side[:free])
+        for side, frame in zip(sides, (np.eye(3), turn)):
+            nodes, index, level = self.nodes_of(side)
             z = self.levels[level] / np.abs(self.ends).max()
             powers = np.polynomial.legendre.legvander(z, power)
             columns = index[:, None] * (power + 1) + np.arange(power + 1)
             rows = np.broadcast_to(nodes[:, None], columns.shape)
-            shape = (self.solid.nodes.shape[1], free * (power + 1))
-            motion = sp.csr_matrix((powers.ravel(), (rows.ravel(), columns.ravel())), shape=shape)
+            size = (self.solid.nodes.shape[1], len(side) * (power + 1))
+            motion = sp.csr_matrix((powers.ravel(), (rows.ravel(), columns.ravel())), shape=size)
             parts.append(sp.kron(motion, frame))
         return sp.hstack(parts).tocsr()
 
