@@ -112,6 +112,27 @@ def test_backlash_is_what_the_thicknesses_leave_of_the_pitch():
     assert pair.backlash == pytest.approx((pitch - thick) * cos(pair.working_angle), rel=1e-9)
 
 
+def test_a_planet_nearer_to_its_ring_has_less_backlash():
+    """By thicknesses on the circles that roll, with a ring whose teeth are thinned by a shift."""
+    for distance in (50.9e-3, 51e-3, 51.1e-3):
+        pair = WheelPair(Wheel(34, 2e-3), Wheel(-85, 2e-3, shift=-0.05), distance)
+        working, other = (w.base / cos(pair.working_angle) for w in (pair.first, pair.second))
+        thick = 2 * working * pair.first.half_angle(working)
+        thick += 2 * other * pair.second.half_angle(other)
+        due = (2 * pi * working / 34 - thick) * cos(pair.working_angle)
+        assert pair.backlash == pytest.approx(due, abs=1e-12)
+
+
+def test_faces_that_lie_off_each_other_share_what_both_cover():
+    first, second = Wheel(23, 4e-3, face_width=24e-3), Wheel(57, 4e-3, face_width=20e-3)
+    # from -12 to 12 and from -4 to 16: shared from -4 to 12, about 4
+    pair = WheelPair(first, second, offset=6e-3)
+    assert pair.face_width == pytest.approx(16e-3, rel=1e-12)
+    assert pair.face_middles == pytest.approx((-4e-3, 2e-3), rel=1e-12)
+    assert WheelPair(first, second, offset=1e-3).face_width == 20e-3
+    assert WheelPair(first, second, offset=-30e-3).face_width < 0
+
+
 def test_shifts_without_a_pressure_angle_and_axes_too_near_are_refused():
     with pytest.raises(SceneError, match="leaves no pressure angle"):
         _ = WheelPair(Wheel(10, 1e-3, shift=-1.2), Wheel(10, 1e-3, shift=-1.2)).distance

@@ -1,16 +1,18 @@
 """Teeth of cylindrical gears fit where the centre distance puts them, or a train says that they do not."""
 
-from math import acos, atan, cos, pi, radians, tan
+from math import acos, atan, cos, pi, radians, sin, tan
 from pathlib import Path
 
 import pytest
 
 from solidgear.core.errors import SceneError
+from solidgear.core.gears.wheel import Rack, Wheel
+from solidgear.core.gears.wheel_pair import WheelPair
 from solidgear.trains.assembly.gear_bodies import gear_cautions
 from solidgear.trains.assembly.layout import contacts
 from solidgear.trains.file.cylindrical import working_cylinders
 from solidgear.trains.file.reading import load_train
-from solidgear.trains.file.tooth_fit import ToothFit, fit_cautions, fit_of, wheel_cautions
+from solidgear.trains.file.tooth_fit import fit_cautions, fit_of, wheel_cautions
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 PRESSURE = radians(20)
@@ -18,6 +20,11 @@ PRESSURE = radians(20)
 
 def inv(angle):
     return tan(angle) - angle
+
+
+def pair_of(teeth, module, helix=0.0, shift=(0.0, 0.0), centre=None):
+    first, second = (Wheel(z, module, helix, x, Rack(PRESSURE)) for z, x in zip(teeth, shift))
+    return WheelPair(first, second, centre)
 
 
 def gap_by_thickness(teeth, module, helix, shift, centre):
@@ -41,21 +48,25 @@ def test_backlash_is_the_pitch_without_both_teeth(helix, shift, more):
     """By two ways of ISO 21771 that share no step: base pitches, and thicknesses where wheels roll."""
     teeth, module = (23, 57), 2.5e-3
     centre = working_cylinders(teeth, module, helix, PRESSURE, shift).without_backlash + more
-    fit = ToothFit(teeth, module, helix, PRESSURE, shift, centre)
+    fit = pair_of(teeth, module, helix, shift, centre)
     due = gap_by_thickness(teeth, module, helix, shift, centre)
     assert fit.backlash == pytest.approx(due, abs=1e-12)
     assert (abs(fit.backlash) < 1e-12) if more == 0 else (fit.backlash * more > 0)
 
 
 def test_contact_ratio_of_standard_gears_outside_and_inside():
-    """1.6841 of 23 and 57 teeth at 20 degrees; of a ring by the length of its path of contact."""
-    outside = ToothFit((23, 57), 4e-3, 0.0, PRESSURE, (0.0, 0.0), 160e-3)
+    """1.6841 of 23 and 57 teeth at 20 degrees; of a ring by the length of its path of contact, which
+    begins where the rack's straight side, 1.25 - 0.38 (1 - sin 20 deg) modules long, ends.
+    """
+    outside = pair_of((23, 57), 4e-3, centre=160e-3)
     assert outside.contact_ratio == pytest.approx(1.6841, abs=5e-5)
-    inside = ToothFit((34, -85), 1.0, 0.0, PRESSURE, (0.0, 0.0), -25.5)
-    tips, bases = (18.0, 41.5), (17 * cos(PRESSURE), 42.5 * cos(PRESSURE))
-    along = [(tip**2 - base**2) ** 0.5 for tip, base in zip(tips, bases)]
-    path = along[0] - along[1] + 25.5 * (1 - cos(PRESSURE) ** 2) ** 0.5
-    assert inside.contact_ratio == pytest.approx(path / (pi * cos(PRESSURE)), rel=1e-12)
+    inside = pair_of((34, -85), 1.0, centre=25.5)
+    straight = 1.25 - 0.38 * (1 - sin(PRESSURE))
+    start = 17 * sin(PRESSURE) - straight / sin(PRESSURE)
+    stop = (18.0**2 - (17 * cos(PRESSURE)) ** 2) ** 0.5
+    assert inside.contact_ratio == pytest.approx((stop - start) / (pi * cos(PRESSURE)), rel=1e-12)
+    # its tips would meet the teeth of the planet before
+    assert inside.tip_ends[0] < start
     assert inside.backlash == pytest.approx(0.0, abs=1e-12)
     assert inside.clearances == pytest.approx((0.25, 0.25), rel=1e-12)
 
@@ -73,8 +84,8 @@ def test_contact_ratio_of_standard_gears_outside_and_inside():
 )
 def test_teeth_that_hardly_anyone_would_make_are_told(teeth, shift, more, words):
     centre = working_cylinders(teeth, 2.5e-3, 0.0, PRESSURE, shift).without_backlash + 2 * more
-    fit = ToothFit(teeth, 2.5e-3, 0.0, PRESSURE, shift, centre)
-    said = [*fit_cautions(fit, ("pinion", "gear")), *wheel_cautions(fit, 0, "pinion")]
+    fit = pair_of(teeth, 2.5e-3, shift=shift, centre=centre)
+    said = [*fit_cautions(fit, ("pinion", "gear")), *wheel_cautions(fit.first, "pinion")]
     assert all(any(word in text for text in said) for word in words)
     assert bool(said) == bool(words)
 
@@ -143,7 +154,7 @@ def test_the_sum_of_profile_shifts_that_fits_a_distance_has_no_backlash(gearbox)
     both = sum(teeth) * (inv(at_work) - inv(across)) / (2 * tan(PRESSURE))
     train = by_module(gearbox, {"centre_distance": 112e-3}, profile_shift=both)
     assert fit_of(train.pairs[0]).backlash == pytest.approx(0.0, abs=1e-12)
-    assert fit_of(train.pairs[0]).module == module
+    assert fit_of(train.pairs[0]).first.module == module
 
 
 def test_a_radius_that_contradicts_the_centre_distance_is_refused(gearbox):

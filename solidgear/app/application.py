@@ -143,6 +143,11 @@ GROUPS = {
             "Deflection of shafts under torque: displacements, misalignment of the gears, "
             "bearing loads.",
         ),
+        "contact": Entry(
+            "teeth.command",
+            "Teeth in contact: mesh stiffness, transmission error and load along the face, over "
+            "the torque.",
+        ),
         "judge-system": Entry(
             "trains.judge.command",
             "Compare a train with further mixes and reductions; a report only with --out.",

@@ -28,7 +28,6 @@ from functools import cached_property
 from math import atan, atan2, cos, hypot, pi, radians, sin, sqrt, tan
 
 import numpy as np
-from scipy.optimize import brentq
 
 #: points from which the length along a fillet is found
 ALONG = 400
@@ -207,6 +206,8 @@ class Wheel:
             x, y = self._trochoid(np.array([roll]))[0]
             return atan2(x, y) - float(self.half_angle(hypot(x, y)))
 
+        from scipy.optimize import brentq  # slow to import, and seldom needed
+
         # an undercut fillet crosses the flank before the rack's straight side would touch it
         rolls = np.linspace(-aside / self.radius, tangent, ALONG)
         points = self._trochoid(rolls)
@@ -236,6 +237,7 @@ class Wheel:
         """Radius of the fillet of a ring, the angle of its centre from the middle of the tooth, and
         the centre's length along the tangent of the base circle, m, rad, m.
         """
+        from scipy.optimize import brentq  # slow to import, and seldom needed
 
         def angle_of(rho: float) -> float:
             # flanks at the distance rho are the same involutes, turned by rho / rb

@@ -21,7 +21,6 @@ from functools import cached_property
 from math import acos, cos, pi, sin, sqrt, tan
 
 import numpy as np
-from scipy.optimize import brentq
 
 from solidgear.core.errors import SceneError
 from solidgear.core.gears.wheel import Wheel, involute
@@ -39,6 +38,8 @@ class WheelPair:
     first, second : Wheel
     centre_distance : float, optional
         m, above zero; by default that without backlash.
+    offset : float
+        Face place of the middle of the second face, from that of the first, m.
 
     Raises
     ------
@@ -55,10 +56,13 @@ class WheelPair:
     first: Wheel
     second: Wheel
     centre_distance: float | None = None
+    offset: float = 0.0
 
     @cached_property
     def tight(self) -> float:
         """Centre distance without backlash, m."""
+        from scipy.optimize import brentq  # slow to import
+
         first, second = self.first, self.second
         total = first.teeth + second.teeth
         shifts = first.shift + second.shift
@@ -82,9 +86,10 @@ class WheelPair:
         """Centre distance, m."""
         distance = self.tight if self.centre_distance is None else self.centre_distance
         if distance <= self._base_sum:
+            sums = "sum" if self.second.sign > 0 else "difference"
             raise SceneError(
-                f"is below {1e3 * self._base_sum:.6g} mm, at which the base circles leave no "
-                f"pressure angle; these gears have no backlash at {1e3 * self.tight:.6g} mm",
+                f"is below {1e3 * self._base_sum:.6g} mm, the {sums} of the base radii of these "
+                f"gears, which have no backlash at {1e3 * self.tight:.6g} mm",
                 path=("mesh", "centre_distance"),
             )
         return distance
@@ -106,8 +111,17 @@ class WheelPair:
 
     @property
     def face_width(self) -> float:
-        """Face width that both wheels share, m."""
-        return min(w.face_width for w in (self.first, self.second))
+        """Face width that both wheels share, m; below zero where their faces lie apart."""
+        first, second = self.first.face_width, self.second.face_width
+        return min(first, second, (first + second) / 2 - abs(self.offset))
+
+    @property
+    def face_middles(self) -> tuple[float, float]:
+        """Face places of the middles of both faces, from the middle of the face that they share, m."""
+        first, second = self.first.face_width / 2, self.second.face_width / 2
+        low = max(-first, self.offset - second)
+        middle = (low + min(first, self.offset + second)) / 2
+        return -middle, self.offset - middle
 
     @property
     def reach(self) -> float:
@@ -177,7 +191,7 @@ class WheelPair:
         total = first.teeth + second.teeth
         pitches = total * grown - 2 * shifts * tan(first.rack.pressure_angle)
         at_base = first.transverse_module * cos(first.transverse_angle) * pitches
-        return float(second.sign * at_base * cos(self.base_helix))
+        return float(at_base * cos(self.base_helix))
 
     @property
     def clearances(self) -> tuple[float, float]:

@@ -36,7 +36,10 @@ class Cells:
 class ToothedPair(Protocol):
     """Two wheels with all that their contact needs; positions count in pitches."""
 
-    law: LineContact
+    @property
+    def law(self) -> LineContact:
+        """What gives way where flanks touch."""
+        ...
 
     def cells(self, phase: float) -> Cells:
         """Return the cells at a position."""
@@ -50,8 +53,15 @@ class ToothedPair(Protocol):
 class Carrying(Protocol):
     """What carries both wheels."""
 
-    compliance: np.ndarray  #: (N, N) of its motions
-    motion: np.ndarray  #: (N,) under all loads but those of these teeth
+    @property
+    def compliance(self) -> np.ndarray:
+        """(N, N) of its motions."""
+        ...
+
+    @property
+    def motion(self) -> np.ndarray:
+        """(N,) under all loads but those of these teeth."""
+        ...
 
     def rows(self, cells: Cells) -> np.ndarray:
         """Return the (n, N) rows by which its motions open the cells."""

@@ -7,8 +7,9 @@ for larger w, and v across both.  The first wheel is pushed along ``(-cos beta_b
 Under load teeth bend, and contact begins before and ends after the path, where the corner of a tip
 touches the mate's flank.  How far they stand apart there follows from the geometry: turn both wheels
 back by the distance, each about its centre, and measure by how much the flank misses the corner.  The
-lines run on by `BEYOND` pitches with that gap; the corner is taken as round as the flank it ends,
-which it is not, so that its pressure means nothing.
+lines run on by `BEYOND` pitches with that gap, and no further than to where the mate's flank ends in
+its fillet; the corner is taken as round as the flank it ends, which it is not, so that its pressure
+means nothing.
 """
 
 from __future__ import annotations
@@ -19,13 +20,14 @@ from math import cos, sin, tan
 
 import numpy as np
 
+from solidgear.core.gears.flank_shape import FlankShape
 from solidgear.core.gears.wheel_pair import WheelPair
 from solidgear.teeth.compliance.flank import FlankCompliance
 from solidgear.teeth.contact.cells import Cells
 from solidgear.teeth.contact.local import LineContact
 
 #: pitches beyond both ends of the path that corners may reach under load
-BEYOND = 0.15
+BEYOND = 0.3
 #: least share of a cell that a line crosses
 SLIVER = 1e-3
 
@@ -37,36 +39,35 @@ class CylindricalPair:
     wheels: WheelPair
     compliances: tuple[FlankCompliance, FlankCompliance]
     law: LineContact
-    #: of first and second wheel: what their flanks miss by place, None where nothing
-    shapes: tuple = (None, None)
+    #: of both flanks; face places count from the middle of the shared face
+    shapes: tuple[FlankShape, FlankShape] = (FlankShape(), FlankShape())
     slices: int = 24
-    #: middle of both faces from the middle of the common face, along w, m
-    offsets: tuple[float, float] = (0.0, 0.0)
-    width: float | None = None  #: common face, m; by default the narrower face
     beyond: float = BEYOND  #: pitches; 0 for the path alone
-
-    @property
-    def face(self) -> float:
-        """Width of the common face, m."""
-        return self.wheels.face_width if self.width is None else self.width
 
     def cells(self, phase: float) -> Cells:
         """Return the cells of all contact lines at a position in pitches."""
         wheels, n = self.wheels, self.slices
-        step = self.face / n
-        z = (np.arange(n) + 0.5) * step - self.face / 2
+        step = self.wheels.face_width / n
+        z = (np.arange(n) + 0.5) * step - self.wheels.face_width / 2
         lean = tan(wheels.base_helix)
         half = step * lean / 2
         start, stop = wheels.ends
         first, last = start - self.beyond * wheels.pitch, stop + self.beyond * wheels.pitch
+        # a cell lies on one side of an end of the path, beyond which flanks part
+        regions = [(first, start), (start, stop), (stop, last)] if self.beyond else [(start, stop)]
         parts = [
             (k, j, place, z[j], share * step / cos(wheels.base_helix))
             for k in self._lines(phase, first, last)
+            for low, high in regions
             for j, place, share in _crossed(
-                wheels.pitch_point + (phase + k) * wheels.pitch + z * lean, half, first, last
+                wheels.pitch_point + (phase + k) * wheels.pitch + z * lean, half, low, high
             )
         ]
         line, piece, place, along, length = (np.array(column) for column in zip(*parts))
+        gap = corner_gap(wheels, place)
+        flank = np.isfinite(gap)
+        line, piece, place, along = line[flank], piece[flank], place[flank], along[flank]
+        length, gap = length[flank], gap[flank]
         inside = np.clip(place, start, stop)
         n_cells = len(line)
         normal = np.array([-cos(wheels.base_helix), 0.0, sin(wheels.base_helix)])
@@ -76,7 +77,7 @@ class CylindricalPair:
             line=line,
             length=length,
             radius=wheels.curvature_radius(inside),
-            gap=self._gap(place, along),
+            gap=gap + self.shape_gap(inside, along),
             lever=lever,
             point=point,
             normal=np.tile(normal, (n_cells, 1)),
@@ -89,20 +90,20 @@ class CylindricalPair:
     def _lines(self, phase: float, first: float, last: float) -> range:
         """Return the numbers of lines that may cross the face within two places of the path."""
         wheels = self.wheels
-        slope = tan(wheels.base_helix) * self.face / 2
+        slope = tan(wheels.base_helix) * self.wheels.face_width / 2
         low = (first - slope - wheels.pitch_point) / wheels.pitch - phase
         high = (last + slope - wheels.pitch_point) / wheels.pitch - phase
         return range(int(np.floor(low)), int(np.ceil(high)) + 1)
 
-    def _gap(self, place: np.ndarray, z: np.ndarray) -> np.ndarray:
-        """Return the gaps between both flanks without load along the normal, m."""
+    def shape_gap(self, place: np.ndarray, z: np.ndarray) -> np.ndarray:
+        """Return what the shapes of both flanks leave between them along the normal, m, at places of
+        the path and of the face.
+        """
         wheels = self.wheels
-        inside = np.clip(place, *wheels.ends)
-        gap = corner_gap(wheels, place)
-        radii = wheels.first_radius(inside), wheels.second_radius(inside)
-        for shape, r, offset in zip(self.shapes, radii, self.offsets):
-            if shape is not None:
-                gap = gap + shape.deviation(r, z - offset)
+        lengths = place, wheels.second_length(place)
+        gap = np.zeros(len(place))
+        for shape, length in zip(self.shapes, lengths):
+            gap = gap + shape.deviation(length, z)
         return gap
 
     def bulk(self, cells: Cells) -> np.ndarray:
@@ -110,8 +111,9 @@ class CylindricalPair:
         place = np.clip(cells.place, *self.wheels.ends)
         radii = self.wheels.first_radius(place), self.wheels.second_radius(place)
         out = np.zeros((len(place), len(place)))
-        for compliance, r, sense, offset in zip(self.compliances, radii, (1, -1), self.offsets):
-            out += compliance.matrix(sense * cells.line, r, cells.z - offset)
+        middles = self.wheels.face_middles
+        for compliance, r, sense, middle in zip(self.compliances, radii, (1, -1), middles):
+            out += compliance.matrix(sense * cells.line, r, cells.z - middle)
         return out
 
 
@@ -134,7 +136,7 @@ def _crossed(
 
 def corner_gap(wheels: WheelPair, place: np.ndarray) -> np.ndarray:
     """Return how far the tip of one wheel stands from the flank of the other along the normal at
-    places beyond the path, m; zero on it.
+    places beyond the path, m; zero on it, and infinite where the other has no flank any more.
 
     Examples
     --------
@@ -168,8 +170,10 @@ def corner_gap(wheels: WheelPair, place: np.ndarray) -> np.ndarray:
         tooth_turn = ahead / flank.base * (1 if which == 0 else -1)
         middle = _clockwise(reference, which, sign) - flank.half_angle(np.hypot(*reference))
         radius = np.hypot(view[:, 0], view[:, 1])
+        on_flank = flank.sign * (radius - flank.form) >= 0
         missed = _clockwise(view, which, sign) - middle - tooth_turn - flank.half_angle(radius)
-        out[beyond] = np.maximum(missed, 0.0) * flank.base * cos(wheels.base_helix)
+        gap = np.maximum(missed, 0.0) * flank.base * cos(wheels.base_helix)
+        out[beyond] = np.where(on_flank, gap, np.inf)
     return out
 
 

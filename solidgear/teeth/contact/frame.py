@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solidgear.core.frames import cross_matrix
 from solidgear.teeth.contact.cells import Cells
 
 
@@ -26,15 +25,15 @@ class Stations:
     place: np.ndarray
     points: np.ndarray  #: (m, 3) in the axes of the first shaft, m
 
-    def rows(self, cells: Cells, frame: Frame) -> np.ndarray:
-        """Return the (n, 6 m) motion of cells along the normal, by the six motions of every station
-        in the axes of the first shaft; linear between stations.
+    def rows(self, point: np.ndarray, normal: np.ndarray, frame: Frame) -> np.ndarray:
+        """Return the (n, 6 m) motion of points along normals, both (n, 3) in the frame of the pair, by
+        the six motions of every station in the axes of the first shaft; linear between stations.
         """
-        points = frame.origin + cells.point @ frame.axes.T
-        normals = cells.normal @ frame.axes.T
+        points = frame.origin + point @ frame.axes.T
+        normals = normal @ frame.axes.T
         n, m = len(points), len(self.place)
         out = np.zeros((n, m, 6))
-        weights = _between(self.place, cells.z)
+        weights = _between(self.place, point[:, 2])
         for k in range(m):
             lever = points - self.points[k]
             row = np.hstack([normals, np.cross(lever, normals)])
@@ -44,8 +43,10 @@ class Stations:
 
 def _between(place: np.ndarray, z: np.ndarray) -> np.ndarray:
     """Return the (n, m) weights of stations at places, linear between and constant beyond."""
-    hats = np.eye(len(place))
-    return np.column_stack([np.interp(z, place, hat) for hat in hats])
+    out = np.zeros((len(z), len(place)))
+    for k, hat in enumerate(np.eye(len(place))):
+        out[:, k] = np.interp(z, place, hat)
+    return out
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,8 +64,22 @@ class Supports:
 
     def rows(self, cells: Cells) -> np.ndarray:
         """Return the (n, N) rows by which cells open: the first wheel's motion less the second's."""
-        first, second = (stations.rows(cells, self.frame) for stations in self.stations)
+        return self.opening(cells.point, cells.normal)
+
+    def opening(self, point: np.ndarray, normal: np.ndarray) -> np.ndarray:
+        """Return the (n, N) rows by which flanks open at points along normals, both (n, 3) in the frame
+        of the pair.
+        """
+        first, second = (stations.rows(point, normal, self.frame) for stations in self.stations)
         return np.hstack([first, -second])
+
+    @property
+    def turning(self) -> np.ndarray:
+        """(N, N) what of the motions is turning about the axes."""
+        axis = self.frame.axes[:, 2]
+        turn = np.zeros((6, 6))
+        turn[3:, 3:] = np.outer(axis, axis)
+        return np.kron(np.eye(sum(len(stations.place) for stations in self.stations)), turn)
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,10 +92,3 @@ class RigidSupports:
     def rows(self, cells: Cells) -> np.ndarray:
         """Return the (n, 6) rows by which cells open."""
         return cells.rows
-
-
-def carried(point: np.ndarray, at: np.ndarray) -> np.ndarray:
-    """Return the (6, 6) motion at a point of a rigid body that moves by six components at another."""
-    out = np.eye(6)
-    out[:3, 3:] = -cross_matrix(np.asarray(point) - np.asarray(at))
-    return out

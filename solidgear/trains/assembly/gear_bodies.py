@@ -9,19 +9,20 @@ from dataclasses import dataclass
 from math import cos, pi, sin, sqrt
 
 from solidgear.core import Scene
+from solidgear.core.gears.wheel import Rack
+from solidgear.core.gears.wheel_pair import WheelPair
 from solidgear.trains.assembly.layout import mesh_forces
 from solidgear.trains.file.gears import HeadInertia
 from solidgear.trains.file.layout import ends_of, flanks_from_file
+from solidgear.trains.file.mesh_teeth import wheels_of
 from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.planetary import Stage
 from solidgear.trains.file.tooth_fit import (
-    ADDENDUM,
-    DEDENDUM,
-    ToothFit,
     backlash_cautions,
     fit_cautions,
     fit_of,
     wheel_cautions,
+    wheels_in,
 )
 from solidgear.trains.file.train import Train
 from solidgear.trains.load.contact import Contact
@@ -43,7 +44,7 @@ STRONG = 500e6
 
 
 @dataclass(frozen=True)
-class Wheel:
+class GearSize:
     """A gear by the numbers of its teeth, at the middle of the face."""
 
     #: radius, root, tip: of the pitch circle, the root circle and the tip circle, m
@@ -54,8 +55,13 @@ class Wheel:
     module: float
     face_width: float
 
+    @classmethod
+    def of(cls, wheel: GearSize) -> GearSize:
+        """Return the size of a wheel that rolls on its reference circle."""
+        return cls(wheel.radius, wheel.root, wheel.tip, wheel.module, wheel.face_width)
 
-def wheel_of(pair: Pair, k: int) -> Wheel | None:
+
+def size_of(pair: Pair, k: int) -> GearSize | None:
     """Return the first or the second wheel of a pair; None where the file does not give the size."""
     rolling = pair.rolling
     wheels = rolling.pinion, rolling.gear
@@ -71,9 +77,11 @@ def wheel_of(pair: Pair, k: int) -> Wheel | None:
     lean = wheel.spiral_angle or mate.spiral_angle or 0.0
     module = 2 * radius * cos(lean) / wheel.teeth
     if (fit := fit_of(pair)) is not None:
-        return Wheel(radius, fit.roots[k], fit.tips[k], fit.module, face)
-    root, tip = radius - DEDENDUM * module * cos(cone), radius + ADDENDUM * module * cos(cone)
-    return Wheel(radius, root, tip, module, face)
+        sized = wheels_in(fit)[k]
+        return GearSize(radius, sized.root, sized.tip, sized.module, face)
+    rack, height = Rack(), module * cos(cone)
+    root, tip = radius - rack.dedendum * height, radius + rack.addendum * height
+    return GearSize(radius, root, tip, module, face)
 
 
 def gear_cautions(train: Train, contacts: Mapping[str, Contact]) -> Iterator[str]:
@@ -91,12 +99,12 @@ def gear_cautions(train: Train, contacts: Mapping[str, Contact]) -> Iterator[str
             yield from (prefix + text for text in backlash_cautions(fit, pair.mesh.backlash))
             yield from (prefix + text for text in fit_cautions(fit, pair.shafts))
         for member, (side, port) in enumerate(zip(pair.shafts, pair.ports)):
-            wheel = wheel_of(pair, member)
+            wheel = size_of(pair, member)
             if wheel is None or (side, port) in checked:
                 continue
             checked.add((side, port))
             if fit is not None:
-                yield from wheel_cautions(fit, member, _gear_label(train, side, port))
+                yield from wheel_cautions(wheels_in(fit)[member], _gear_label(train, side, port))
             yield from _gear_on_shaft(train, side, port, wheel)
     for stage in train.stages:
         yield from _stage_cautions(train, stage, checked)
@@ -119,7 +127,7 @@ def _gear_label(train: Train, side: str, port: str) -> str:
     return side if len(train.shafts[side].gears) == 1 else f"{side}.{port}"
 
 
-def _gear_on_shaft(train: Train, side: str, port: str, wheel: Wheel) -> Iterator[str]:
+def _gear_on_shaft(train: Train, side: str, port: str, wheel: GearSize) -> Iterator[str]:
     """Yield sentences on the body and the head of a gear on a shaft."""
     shaft = train.shafts[side]
     head = shaft.gears[port].head
@@ -131,7 +139,7 @@ def _gear_on_shaft(train: Train, side: str, port: str, wheel: Wheel) -> Iterator
 
 
 def _body_below_teeth(
-    scene: Scene, port: str, label: str, wheel: Wheel, head: bool
+    scene: Scene, port: str, label: str, wheel: GearSize, head: bool
 ) -> Iterator[str]:
     """Yield a sentence on a body that ends below the roots of the teeth, or beyond their tips."""
     seat = next(s for s in scene.stations if s.name == port)
@@ -161,7 +169,7 @@ def _body_below_teeth(
 
 
 def _gyration(
-    name: str, inertia: HeadInertia, wheel: Wheel, sound: tuple[float, float]
+    name: str, inertia: HeadInertia, wheel: GearSize, sound: tuple[float, float]
 ) -> Iterator[str]:
     """Yield a sentence on a body whose inertia or mass does not fit the size."""
     about, across = sqrt(inertia.torsional / inertia.mass), sqrt(inertia.bending / inertia.mass)
@@ -186,40 +194,32 @@ def _gyration(
 
 def _stage_cautions(train: Train, stage: Stage, checked: set[tuple[str, str]]) -> Iterator[str]:
     """Yield sentences on sun, planets and ring of a planetary stage."""
-    teeth, table = stage.teeth, stage.table
-    outside = _stage_fit(stage, (teeth.sun, teeth.planet))
-    inside = _stage_fit(stage, (teeth.planet, -teeth.ring))
+    table = stage.table
+    outside, inside = _stage_fits(stage)
     sentences = [
         *fit_cautions(outside, ("sun", "planets")),
         *fit_cautions(inside, ("planets", "ring")),
     ]
-    for fit, k, name in ((outside, 0, "sun"), (outside, 1, "planets"), (inside, 1, "ring")):
-        sentences += wheel_cautions(fit, k, name)
+    wheels = {"sun": outside.first, "planets": outside.second, "ring": inside.second}
+    for name, wheel in wheels.items():
+        sentences += wheel_cautions(wheel, name)
     yield from (f"{stage.called}: {text}" for text in sentences)
     sun, port = stage.shafts[0], stage.ports[0]
     if (sun, port) not in checked:
-        yield from _gear_on_shaft(train, sun, port, _wheel(outside, 0))
-    planet = _wheel(outside, 1)
+        yield from _gear_on_shaft(train, sun, port, GearSize.of(outside.first))
+    planet = GearSize.of(outside.second)
     sound = LEAST_GYRATION, planet.tip / planet.radius
     yield from _gyration(f"planet of {stage.called}", table.planet, planet, sound)
     if table.ring is not None:
-        ring = _wheel(inside, 1)
+        ring = GearSize.of(inside.second)
         yield from _gyration(f"ring of {stage.called}", table.ring, ring, RING_GYRATION)
 
 
-def _stage_fit(stage: Stage, teeth: tuple[int, int]) -> ToothFit:
-    """Return the teeth of two members of a stage, which have no profile shift."""
-    sun = stage.sun
-    assert sun.module is not None  # a stage is refused without
-    helix, pressure = sun.helix_angle or 0.0, stage.table.mesh.pressure_angle
-    distance = sun.module * sum(teeth) / (2 * cos(helix))
-    return ToothFit(teeth, sun.module, helix, pressure, (0.0, 0.0), distance, sun.face_width or 0.0)
-
-
-def _wheel(fit: ToothFit, k: int) -> Wheel:
-    """Return the first or the second wheel, which rolls on its reference circle."""
-    radius, root, tip = (abs(pair[k]) for pair in (fit.radii, fit.roots, fit.tips))
-    return Wheel(radius, root, tip, fit.module, fit.face_width)
+def _stage_fits(stage: Stage) -> tuple[WheelPair, WheelPair]:
+    """Return the wheels of a planet with the sun, and with the ring."""
+    sun, ring = (wheels_of(mesh) for mesh in stage.together)
+    assert sun is not None and ring is not None  # a stage is refused without a module
+    return sun.wheels, ring.wheels
 
 
 def _load_cautions(train: Train, contacts: Mapping[str, Contact]) -> Iterator[str]:
@@ -228,9 +228,9 @@ def _load_cautions(train: Train, contacts: Mapping[str, Contact]) -> Iterator[st
     for point in train.operation:
         for name, force in mesh_forces(train, contacts, point).items():
             worst[name] = max(worst.get(name, (0.0, "")), (force, point.label))
-    wheels = {pair.name: wheel_of(pair, 0) for pair in train.pairs}
+    wheels = {pair.name: size_of(pair, 0) for pair in train.pairs}
     for stage in train.stages:
-        wheels[stage.name] = _wheel(_stage_fit(stage, (stage.teeth.sun, stage.teeth.planet)), 0)
+        wheels[stage.name] = GearSize.of(_stage_fits(stage)[0].first)
     for name, (force, label) in worst.items():
         wheel = wheels[name]
         if wheel is None:

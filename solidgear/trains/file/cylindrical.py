@@ -1,24 +1,20 @@
 r"""Cylindrical gears by module, helix, profile shift and centre distance (ISO 21771).
 
-With the normal module m, teeth z, helix angle beta and normal pressure angle alpha at the reference
-cylinder ``r = m z / (2 cos beta)``, the transverse pressure angle is ``tan alpha_t = tan alpha / cos
-beta``.  At the centre distance a both wheels roll on cylinders in the ratio of their teeth, ``r_w =
-a / (1 + u)``, where
-
-    cos alpha_wt = (r1 + r2) cos alpha_t / a,      tan beta_w = tan beta r_w / r
-
-(ISO 21771:2007, 5.3 and 5.4).  Without a centre distance it is that without backlash: inv alpha_wt =
-inv alpha_t + 2 tan alpha (x1 + x2) / (z1 + z2), inv being tan minus angle.
+At the centre distance both wheels roll on cylinders in the ratio of their teeth, where the working
+pressure angle alpha_wt of the pair is, ``r_w = rb / cos alpha_wt`` and ``tan beta_w = tan beta_b / cos
+alpha_wt`` (ISO 21771:2007, 5.3 and 5.4).
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from math import acos, atan, cos, isclose, pi, tan
+from math import atan, cos, isclose, tan
 from typing import TYPE_CHECKING, Any
 
 from solidgear.core import SceneError
+from solidgear.core.gears.wheel import Rack, Wheel
+from solidgear.core.gears.wheel_pair import WheelPair
 from solidgear.core.scene.units import TYPED
 
 if TYPE_CHECKING:
@@ -84,36 +80,12 @@ def working_cylinders(
     >>> round(degrees(wheels.pressure_angle), 4), round(1e3 * sum(wheels.radii), 4)
     (26.0886, 56.4999)
     """
-    ratio, tooth_sum = teeth[1] / teeth[0], sum(teeth)
-    reference = module * tooth_sum / (2 * cos(helix_angle))
-    transverse = atan(tan(pressure_angle) / cos(helix_angle))
-    wanted = tan(transverse) - transverse + 2 * tan(pressure_angle) * sum(shift) / tooth_sum
-    loose = reference * cos(transverse) / cos(_of_involute(wanted))
-    centre = loose if centre_distance is None else centre_distance
-    least = reference * cos(transverse)
-    if centre <= least:
-        raise SceneError(
-            f"is below {1e3 * least:.6g} mm, the sum of the base radii of these gears, which have "
-            f"no backlash at {1e3 * loose:.6g} mm",
-            path=("mesh", "centre_distance"),
-        )
-    at_work = acos(least / centre)
-    grown = centre / reference
-    helix = atan(tan(helix_angle) * grown)
-    radii = centre / (1 + ratio), centre * ratio / (1 + ratio)
-    return Working(radii, helix, atan(tan(at_work) * cos(helix)), loose)
-
-
-def _of_involute(value: float) -> float:
-    """Compute the angle, rad, of an involute function tan minus angle."""
-    from scipy.optimize import brentq  # slow to import, and seldom needed
-
-    if not 0 < value < tan(0.4 * pi) - 0.4 * pi:
-        raise SceneError(
-            "is too large, with that of the other wheel, for any pressure angle",
-            path=("pinion", "profile_shift"),
-        )
-    return float(brentq(lambda angle: tan(angle) - angle - value, 0.0, 0.4 * pi, xtol=1e-15))
+    rack = Rack(pressure_angle)
+    first, second = (Wheel(count, module, helix_angle, x, rack) for count, x in zip(teeth, shift))
+    pair = WheelPair(first, second, centre_distance)
+    radii = first.base / cos(pair.working_angle), second.base / cos(pair.working_angle)
+    helix = atan(tan(pair.base_helix) / cos(pair.working_angle))
+    return Working(radii, helix, atan(tan(pair.working_angle) * cos(helix)), pair.tight)
 
 
 def cylindrical_problems(pinion: Member, gear: Member, mesh: Mesh) -> Iterator[SceneError]:

@@ -9,6 +9,7 @@ from pydantic import Field, model_validator
 from solidgear.core import Model, PositiveLength, Scene, SceneError, listed, nearest
 from solidgear.core.scene.stations import Status
 from solidgear.core.scene.units import Inertia, Mass, PitchAngle, SpiralAngle
+from solidgear.trains.file.flanks import Flanks
 
 #: relative, of inertias: the last of three digits
 ROUNDED = 5e-3
@@ -39,7 +40,7 @@ class HeadInertia(Model):
         return self
 
 
-class Gear(Model):
+class Gear(Flanks):
     """The teeth of one gear of a shaft."""
 
     teeth: Teeth

@@ -17,6 +17,7 @@ from solidgear.core import Model, SceneError
 from solidgear.core.scene.planetary_teeth import PlanetaryTeeth
 from solidgear.core.scene.stations import Status
 from solidgear.core.scene.units import MeshSpring, PressureAngle, TorsionSpring
+from solidgear.trains.file.flanks import Flanks
 from solidgear.trains.file.gears import Gear, HeadInertia, Shaft, Teeth
 from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.tables import Azimuth, Error, ErrorTable
@@ -52,7 +53,7 @@ class HeldSeat(Seat):
         return stiffness
 
 
-class PlanetTable(HeadInertia):
+class PlanetTable(HeadInertia, Flanks):
     """A planet, rigid; all are alike."""
 
     teeth: Teeth
@@ -103,6 +104,7 @@ class Planetary(Model):
     planet: PlanetTable
     mesh: PlanetMeshes
     ring: RingTable | None = None  #: one that gives way; without it the ring is fixed
+    ring_flanks: Flanks | None = None  #: teeth of the ring, with offsets along the sun's shaft
 
     @model_validator(mode="after")
     def _so_many(self) -> Planetary:

@@ -1,0 +1,65 @@
+"""The command contact: teeth under load, over a mesh cycle and over the torque."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from solidgear.core import SolidgearError, explained
+from solidgear.show.command import Progress, command
+from solidgear.show.options import Shown
+from solidgear.show.sheet import Sheet, present
+from solidgear.show.units import units_named
+from solidgear.strength.acting import Acting
+from solidgear.teeth.sheet import contact_sheet
+from solidgear.teeth.study import FACTORS, teeth_study
+from solidgear.teeth.train_teeth import TeethModel
+from solidgear.trains.options import TrainFile
+
+#: most slices and positions that are of any use
+MOST_SLICES, MOST_POSITIONS = 200, 256
+
+
+@command
+def contact(
+    train: TrainFile,
+    *,
+    acting: Acting,
+    slices: Annotated[
+        int, typer.Option("--slices", help="Slices of the face.")
+    ] = TeethModel.slices,
+    positions: Annotated[
+        int, typer.Option("--positions", help="Positions of a mesh cycle.")
+    ] = TeethModel.positions,
+    curve: Annotated[
+        bool,
+        typer.Option("--curve/--no-curve", help="Solve further torques as well, for the curves."),
+    ] = True,
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", "-o", help="Folder for a page, charts and the mesh cycle."),
+    ] = None,
+    run: Shown,
+) -> None:
+    for option, value, least, most in (
+        ("--slices", slices, 4, MOST_SLICES),
+        ("--positions", positions, 8, MOST_POSITIONS),
+    ):
+        if not least <= value <= most:
+            raise SolidgearError(f"{option} {value}: give {least} to {most}")
+    (assembly, point), units = acting.read(train), units_named(run.units)
+
+    def study(progress: Progress) -> Sheet:
+        with explained(train):
+            solved = teeth_study(
+                assembly.train,
+                point,
+                model=TeethModel(slices, positions),
+                factors=FACTORS if curve else (),
+                progress=progress,
+            )
+        return contact_sheet(solved, units)
+
+    present(study, run, out)

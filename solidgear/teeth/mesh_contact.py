@@ -1,0 +1,172 @@
+r"""Contact of one mesh of a train over a mesh cycle, on its shafts, at an operating point.
+
+**Askew.**  How far flanks open along the face before they touch, by the supports under their load: at
+the pitch line, as ``n . (u1 - u2)`` at every section, mean over the cycle.  From end to end of the face
+it is the equivalent misalignment f_sh of ISO 6336-1, 7.5.2, here with bending, tilting and the wind-up
+of both shafts within the face, which that of one lumped point does not have.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import cos
+from typing import Any
+
+import numpy as np
+
+from solidgear.core.gears.wheel_pair import WheelPair
+from solidgear.core.plain import plain
+from solidgear.teeth.contact.cycle import MeshCycle
+from solidgear.teeth.contact.cylindrical import CylindricalPair
+from solidgear.teeth.contact.frame import Supports
+from solidgear.teeth.norm import NormStiffness, norm_face_load_factor, norm_stiffness
+
+#: orders of the transmission error that are listed
+ORDERS = 5
+#: share of the load on corners that is told; load of a slice that is none, of the mean; face load
+#: factor from which an end that carries most is told
+CORNER, IDLE, EDGE = 0.02, 1e-3, 1.2
+
+
+@dataclass(frozen=True)
+class Skew:
+    """How far flanks open from one end of the face to the other, m; positive towards larger w."""
+
+    bending: float  #: by bending and tilting of both shafts, with bearings and housing
+    turning: float  #: by the wind-up of both bodies within the face
+    shape: float  #: by the shapes of the flanks
+
+    @property
+    def total(self) -> float:
+        """All of it, m."""
+        return self.bending + self.turning + self.shape
+
+
+@dataclass(frozen=True, eq=False)
+class MeshContact:
+    """The teeth of one mesh under one load.
+
+    Stiffnesses are along the line of action; those of the norm, c, are converted by the face width and
+    ``cos^2 beta_b``, for they count the transverse error under the transverse force.
+    """
+
+    name: str
+    pair: CylindricalPair
+    supports: Supports
+    cycle: MeshCycle
+    aligned: MeshCycle  #: under the same torque, with wheels that are held as they lie without load
+    assumed: tuple[str, ...]  #: what the file leaves open, sentences
+
+    @property
+    def wheels(self) -> WheelPair:
+        """Geometry of both wheels."""
+        return self.pair.wheels
+
+    @property
+    def line_load(self) -> float:
+        """Transverse force per face width, N/m."""
+        transverse = self.cycle.force * cos(self.wheels.base_helix)
+        return transverse / self.wheels.face_width
+
+    @cached_property
+    def norm(self) -> NormStiffness:
+        """Stiffnesses by ISO 6336-1."""
+        return norm_stiffness(self.wheels, self.line_load)
+
+    def along_line(self, specific: float) -> float:
+        """Return the stiffness along the line of action, N/m, of a specific one, N/m per m."""
+        return specific * self.wheels.face_width / cos(self.wheels.base_helix) ** 2
+
+    @cached_property
+    def skew(self) -> Skew:
+        """How the flanks lie askew under load."""
+        face, wheels = self.wheels.face_width, self.wheels
+        ends = np.array([-face / 2, face / 2])
+        gaps = self.pair.shape_gap(np.full(2, wheels.pitch_point), ends)
+        shape = float(gaps[1] - gaps[0])
+        point = np.column_stack([np.zeros(2), np.zeros(2), ends])
+        normal = np.tile(self.cycle.positions[0].cells.normal[0], (2, 1))
+        rows = self.supports.opening(point, normal)
+        across = rows[1] - rows[0]
+        motion = np.mean(
+            [
+                self.supports.motion
+                + self.supports.compliance @ (position.force @ self.supports.rows(position.cells))
+                for position in self.cycle.positions
+            ],
+            axis=0,
+        )
+        turning = float(across @ self.supports.turning @ motion)
+        return Skew(float(across @ motion) - turning, turning, shape)
+
+    @property
+    def norm_face_load_factor(self) -> float:
+        """K_H beta by ISO 6336-1 from the same skew."""
+        return norm_face_load_factor(self.skew.total, self.line_load, self.norm.mesh)
+
+    @property
+    def edge(self) -> str:
+        """Where contact leaves the flank: a sentence, or nothing."""
+        cycle, parts = self.cycle, []
+        if cycle.corner_share > CORNER:
+            parts.append(
+                f"corners of tips carry up to {100 * cycle.corner_share:.0f} % of the load: tip "
+                "relief would take it off them"
+            )
+        loads = cycle.face_loads
+        if min(loads[0], loads[-1]) <= IDLE * loads.mean():
+            carrying = float(np.mean(loads > IDLE * loads.mean()))
+            parts.append(f"only {100 * carrying:.0f} % of the face carries load")
+        if max(loads[0], loads[-1]) == loads.max() and self.cycle.face_load_factor > EDGE:
+            parts.append("the load is largest at an end of the face")
+        return "; ".join(parts)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain data in SI for JSON."""
+        cycle = self.cycle
+        orders = cycle.orders(ORDERS)
+        skew = self.skew
+        return plain(
+            {
+                "mesh": self.name,
+                "torque": cycle.torque,
+                "force": cycle.force,
+                "contact_ratio": self.wheels.contact_ratio,
+                "overlap_ratio": self.wheels.overlap_ratio,
+                "transmission_error": {
+                    "phase": cycle.phases,
+                    "loaded": cycle.error,
+                    "unloaded": cycle.free_error,
+                    "peak_to_peak": cycle.peak_to_peak,
+                    "orders": np.abs(orders),
+                    "angles": np.angle(orders),
+                },
+                "stiffness": {
+                    "secant": cycle.secant,
+                    "tangent": cycle.tangent,
+                    "secant_with_supports": cycle.supported_secant,
+                    "tangent_with_supports": cycle.supported_tangent,
+                    "aligned_tangent": self.aligned.tangent,
+                    "norm_single": self.along_line(self.norm.single),
+                    "norm_mesh": self.along_line(self.norm.mesh),
+                },
+                "face_load_factor": cycle.face_load_factor,
+                "face_load_factor_norm": self.norm_face_load_factor,
+                "line_load_factor": cycle.line_load_factor,
+                "face_load": cycle.face_loads / (self.wheels.face_width / cycle.slices),
+                "skew": {
+                    "bending": skew.bending,
+                    "turning": skew.turning,
+                    "shape": skew.shape,
+                    "total": skew.total,
+                },
+                "pressure": cycle.pressure,
+                "load_share": cycle.load_share,
+                "mean_lines": cycle.mean_lines,
+                "corner_share": cycle.corner_share,
+                "mesh_point": cycle.points,
+                "line_of_action": cycle.lines_of_action,
+                "assumed": self.assumed,
+            }
+        )

@@ -1,0 +1,162 @@
+"""Contact of the teeth of a train at an operating point, mesh by mesh, and over its torque."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+
+from solidgear.core import SolidgearError, pinned
+from solidgear.core.plain import plain
+from solidgear.teeth.mesh_contact import MeshContact
+from solidgear.teeth.supports import Carried, with_sections
+from solidgear.teeth.train_teeth import TeethModel, mesh_contact, provisional
+from solidgear.trains.file.operation import OperatingPoint
+from solidgear.trains.file.pairs import Pair
+from solidgear.trains.file.planetary import PlanetMesh
+from solidgear.trains.file.train import Train
+
+#: torques of a curve, of that of the operating point
+FACTORS = (0.1, 0.2, 0.35, 0.5, 0.75, 1.0, 1.25, 1.5)
+
+
+@dataclass(frozen=True, eq=False)
+class AtTorque:
+    """A mesh at one torque of the operating point's shaft."""
+
+    torque: float  #: of the operating point's shaft, N m
+    contact: MeshContact
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain data in SI for JSON."""
+        cycle = self.contact.cycle
+        return plain(
+            {
+                "torque": self.torque,
+                "peak_to_peak": cycle.peak_to_peak,
+                "orders": np.abs(cycle.orders(3)),
+                "tangent": cycle.tangent.mean(),
+                "secant": cycle.secant.mean(),
+                "face_load_factor": cycle.face_load_factor,
+                "pressure": cycle.pressure,
+                "skew": self.contact.skew.total,
+            }
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class TeethStudy:
+    """Contact of all meshes of a train with parallel shafts."""
+
+    title: str
+    point: OperatingPoint
+    meshes: tuple[MeshContact, ...]
+    curves: dict[str, tuple[AtTorque, ...]]  #: by mesh, torque ascending; empty without
+    stiffness: dict[str, float | None]  #: of each mesh in the file, N/m; None where of teeth
+    cautions: tuple[str, ...]
+    seconds: float
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain data in SI for JSON."""
+        return plain(
+            {
+                "train": self.title,
+                "point": self.point,
+                "meshes": {mesh.name: mesh.as_dict() for mesh in self.meshes},
+                "curves": {
+                    name: [at.as_dict() for at in curve] for name, curve in self.curves.items()
+                },
+                "file_stiffness": self.stiffness,
+                "cautions": self.cautions,
+                "seconds": self.seconds,
+            }
+        )
+
+
+@pinned
+def teeth_study(
+    train: Train,
+    point: OperatingPoint | None = None,
+    *,
+    model: TeethModel | None = None,
+    factors: Sequence[float] = FACTORS,
+    progress: Callable[[str], None] = lambda text: None,
+) -> TeethStudy:
+    """Solve the contact of all meshes over a mesh cycle, and over the torque.
+
+    Parameters
+    ----------
+    train : Train
+        With parallel shafts.
+    point : OperatingPoint, optional
+        By default the first of the train.
+    model : TeethModel, optional
+    factors : sequence of float
+        Torques of the curves, of that of the point; none without curves.
+    progress : callable
+        Is told in words what is solved.
+
+    Raises
+    ------
+    SolidgearError
+        For a train without an operating point or parallel meshes, and teeth that the file does not
+        describe.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> study = teeth_study(sg.load_train("geometry/gearbox_train.toml"), factors=())
+    >>> mesh = study.meshes[0]
+    >>> bool(mesh.cycle.tangent.mean() > mesh.cycle.secant.mean() > 3e8)
+    True
+    """
+    start, model = perf_counter(), model or TeethModel()
+    point = train.point if point is None else point
+    if point is None:
+        raise SolidgearError(
+            f"{train.name} has no torque: teeth touch under a load; give --torque, or [operation] "
+            "in the file"
+        )
+    sectioned = with_sections(provisional(train))
+    carried = Carried.at_rest(sectioned, point)
+    teeth = touching(carried.train)
+    meshes = []
+    for mesh in teeth:
+        progress(f"teeth of the {mesh.name}")
+        meshes.append(mesh_contact(carried, mesh, model))
+    curves: dict[str, list[AtTorque]] = {mesh.name: [] for mesh in teeth} if factors else {}
+    for factor in sorted(factors):
+        torque = factor * point.torque
+        progress(f"teeth at {torque:.4g} N m")
+        at = carried if factor == 1 else carried.at(point.with_changes(torque=torque))
+        for mesh, solved in zip(teeth, meshes):
+            contact = solved if factor == 1 else mesh_contact(at, mesh, model)
+            curves[mesh.name].append(AtTorque(torque, contact))
+    return TeethStudy(
+        title=train.title or train.name,
+        point=point,
+        meshes=tuple(meshes),
+        curves={name: tuple(curve) for name, curve in curves.items()},
+        stiffness={mesh.name: stated_stiffness(train, mesh.name) for mesh in teeth},
+        cautions=tuple(carried.state.notes),
+        seconds=perf_counter() - start,
+    )
+
+
+def touching(train: Train) -> list[Pair | PlanetMesh]:
+    """Return the meshes of parallel shafts, of planets those of the first; refused without any."""
+    pairs: list[Pair | PlanetMesh] = [pair for pair in train.pairs if not pair.mesh.shaft_angle]
+    planets = [mesh for stage in train.stages for mesh in stage.meshes if mesh.planets == (1,)]
+    if not (pairs or planets):
+        raise SolidgearError(f"{train.name} has no mesh of parallel shafts")
+    return [*pairs, *planets]
+
+
+def stated_stiffness(train: Train, name: str) -> float | None:
+    """Return the stiffness that the file gives a mesh, N/m; None where it is that of the teeth."""
+    mesh = next(mesh for mesh in train.teeth if mesh.name == name)
+    stiffness = mesh.stiffness if isinstance(mesh, PlanetMesh) else mesh.mesh.stiffness
+    return None if stiffness == "teeth" else stiffness

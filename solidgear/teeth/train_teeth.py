@@ -1,0 +1,213 @@
+"""Teeth of a train as finite elements and contact see them: one pair of a file, and the train filled in.
+
+What a train needs of a mesh is its tangent stiffness about the mean load, teeth alone, for its shafts
+give way by themselves; and the loaded transmission error, which drives it.  The supports count for how
+the load lies along the face, and for nothing else there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from solidgear.core import Scene, SceneError
+from solidgear.core.gears.wheel import Wheel
+from solidgear.teeth.compliance.plane import PlaneTeeth
+from solidgear.teeth.compliance.slices import Slices
+from solidgear.teeth.contact.cycle import POSITIONS, MeshCycle, mesh_cycle
+from solidgear.teeth.contact.cylindrical import CylindricalPair
+from solidgear.teeth.contact.frame import Supports
+from solidgear.teeth.contact.local import Elasticity, LineContact
+from solidgear.teeth.mesh_contact import ORDERS, MeshContact
+from solidgear.teeth.norm import norm_stiffness
+from solidgear.teeth.supports import Carried, with_sections
+from solidgear.trains.file.mesh_teeth import MeshTeeth, wheels_of
+from solidgear.trains.file.operation import OperatingPoint
+from solidgear.trains.file.pairs import Pair
+from solidgear.trains.file.planetary import PlanetMesh
+from solidgear.trains.file.tables import ErrorTable
+from solidgear.trains.file.train import Train
+from solidgear.trains.load.contact import axes_of
+
+#: bore below which a wheel is solid, of its root radius
+THINNEST = 0.2
+
+
+@dataclass(frozen=True)
+class TeethModel:
+    """How teeth are modelled."""
+
+    slices: int = 24  #: of the face
+    positions: int = POSITIONS  #: of a mesh cycle
+
+
+def teeth_of(mesh: Pair | PlanetMesh, coast: bool) -> MeshTeeth:
+    """Return the wheels of a mesh; refused where the file does not give them."""
+    teeth = wheels_of(mesh, coast)
+    path = mesh.paths["pinion"] if isinstance(mesh, Pair) else ("planetary", mesh.stage.called)
+    if teeth is None:
+        raise SceneError(
+            "is missing; contact of teeth needs it, or a pitch radius", path=(*path, "module")
+        )
+    if not teeth.wheels.face_width > 0:
+        if isinstance(mesh, PlanetMesh):
+            raise SceneError("has no face_width; contact of teeth needs it", path=(*path, "sun"))
+        raise SceneError(
+            "is missing; contact of teeth needs it of one of both wheels",
+            path=(*path, "face_width"),
+        )
+    if not teeth.wheels.contact_ratio > 0:
+        raise SceneError("has tips that do not reach each other", path=path)
+    return teeth
+
+
+def toothed(mesh: Pair | PlanetMesh, teeth: MeshTeeth, model: TeethModel) -> CylindricalPair:
+    """Return both wheels with their compliance."""
+    compliances, materials = [], []
+    for wheel, gear in zip((teeth.wheels.first, teeth.wheels.second), _gears(mesh)):
+        scene, rigid = gear
+        material = Elasticity() if scene is None else _material(scene)
+        hold = None if scene is None else _hold(scene, wheel, rigid)
+        plane = PlaneTeeth(wheel, hold=hold, elasticity=material)
+        compliances.append(Slices(plane, wheel.face_width, model.slices))
+        materials.append(material)
+    depths = tuple(compliance.depth for compliance in compliances)
+    law = LineContact((materials[0], materials[1]), (depths[0], depths[1]))
+    return CylindricalPair(
+        teeth.wheels, (compliances[0], compliances[1]), law, teeth.shapes, model.slices
+    )
+
+
+def _gears(mesh: Pair | PlanetMesh) -> list[tuple[Scene | None, bool]]:
+    """Return the scene that carries each wheel, if any, and whether the wheel is a rigid mass on it."""
+    if isinstance(mesh, Pair):
+        return [(member.scene, member.head is not None) for member in mesh.members.values()]
+    # planets and rings are rigid bodies of the train, of steel
+    return [(None, True), (None, True)]
+
+
+def _material(scene: Scene) -> Elasticity:
+    y = scene.port.y
+    segment = next((s for s in scene.segments if s.y0 <= y <= s.y1), None)
+    material = scene.material if segment is None else segment.material
+    return Elasticity(material.E, material.nu)
+
+
+def _hold(scene: Scene, wheel: Wheel, rigid: bool) -> float | None:
+    """Return the radius at which the body of a wheel ends: its bore, the seat of a wheel that is no
+    part of its shaft, or none where it is solid.
+    """
+    y = scene.port.y
+    segments = [s for s in scene.segments if s.y0 <= y <= s.y1]
+    inner, outer = (max(values) for values in zip(*(s.radius_at(y) for s in segments)))
+    radius = outer if rigid else inner
+    deepest = wheel.root - 1.5 * wheel.module
+    return radius if THINNEST * wheel.root < radius < deepest else None
+
+
+def mesh_contact(
+    carried: Carried, mesh: Pair | PlanetMesh, model: TeethModel | None = None
+) -> MeshContact:
+    """Solve the contact of a mesh over its cycle where its train is carried."""
+    model = model or TeethModel()
+    teeth = teeth_of(mesh, carried.coast(mesh))
+    contact = toothed(mesh, teeth, model)
+    place = carried.place(mesh, teeth)
+    supports = carried.supports(place, place.frame(teeth))
+    torque = carried.force(place) * teeth.wheels.first.base * np.cos(teeth.wheels.base_helix)
+    base = teeth.wheels.first.base
+
+    def cycle(supports: Supports | None) -> MeshCycle:
+        return mesh_cycle(contact, torque, base, model.slices, supports, model.positions)
+
+    return MeshContact(
+        name=mesh.name,
+        pair=contact,
+        supports=supports,
+        cycle=cycle(supports),
+        aligned=cycle(None),
+        assumed=teeth.assumed,
+    )
+
+
+def provisional(train: Train) -> Train:
+    """Return a train with stiffness by the norm where its file leaves it to the teeth: what shafts do
+    under a given torque hardly depends on it.
+    """
+    meshes = []
+    for pair, mesh in zip(train.pairs, train.meshes):
+        if mesh.stiffness == "teeth":
+            teeth = teeth_of(pair, False)
+            wheels = teeth.wheels
+            along = norm_stiffness(wheels).mesh * wheels.face_width / np.cos(wheels.base_helix) ** 2
+            mesh = mesh.with_changes(stiffness=float(along))
+        meshes.append(mesh)
+    return train.with_changes(meshes=tuple(meshes))
+
+
+def mesh_of_teeth(train: Train) -> Train:
+    """Return a train whose meshes with ``stiffness = "teeth"`` have the numbers of their teeth at the
+    first operating point: tangent stiffness, mesh point and line of action, and the orders of the
+    loaded transmission error.
+
+    Raises
+    ------
+    SceneError
+        For teeth that the file does not describe, and a train without an operating point.
+    """
+    wanted = [mesh.stiffness == "teeth" for mesh in train.meshes]
+    if not any(wanted):
+        return train
+    point = _point(train)
+    carried = Carried.at_rest(with_sections(provisional(train)), point)
+    meshes = []
+    for pair, mesh, asked in zip(carried.train.pairs, train.meshes, wanted):
+        meshes.append(_filled(carried, pair, mesh) if asked else mesh)
+    return train.with_changes(meshes=tuple(meshes))
+
+
+def _point(train: Train) -> OperatingPoint:
+    if train.point is None:
+        raise SceneError(
+            'is missing; stiffness = "teeth" is that under a load: give [operation] a torque',
+            path=("operation",),
+        )
+    return train.point
+
+
+def _filled(carried: Carried, pair: Pair, mesh):
+    """Return the table of a mesh with the numbers of its teeth."""
+    solved = mesh_contact(carried, pair)
+    cycle = solved.cycle
+    orders = cycle.orders(ORDERS)
+    changes = {
+        "stiffness": float(cycle.tangent.mean()),
+        "status": "calculated",
+    }
+    if mesh.transmission_error is None or mesh.transmission_error_status == "assumed":
+        changes["transmission_error"] = ErrorTable(
+            orders=tuple(float(a) for a in np.abs(orders)),
+            phases=tuple(float(a) for a in np.angle(orders)),
+        )
+        changes["transmission_error_status"] = "calculated"
+    point, normal = in_pinion_frame(carried, pair, solved)
+    changes |= {
+        "line_of_action": tuple(normal.mean(axis=0) / np.linalg.norm(normal.mean(axis=0))),
+        "point": tuple(point.mean(axis=0)),
+        "line_of_action_status": "calculated",
+    }
+    return mesh.with_changes(**changes)
+
+
+def in_pinion_frame(
+    carried: Carried, pair: Pair, solved: MeshContact
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return mesh points from the pinion's lumped point and lines of action, (p, 3) each, in the frame
+    of the pinion.
+    """
+    port = carried.system.port(f"{pair.shafts[0]}.{pair.ports[0]}")
+    frame = solved.supports.frame
+    turn = axes_of(pair, "pinion").T @ port.axes.T
+    points = frame.origin - port.point + solved.cycle.points @ frame.axes.T
+    return points @ turn.T, solved.cycle.lines_of_action @ frame.axes.T @ turn.T

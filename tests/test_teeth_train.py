@@ -1,0 +1,202 @@
+"""Teeth of trains in contact: where they lie, what carries them, and what must not depend on frames."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import solidgear as sg
+from solidgear.core import SceneError, SolidgearError
+from solidgear.teeth.study import teeth_study
+from solidgear.teeth.supports import Carried, with_sections
+from solidgear.teeth.train_teeth import TeethModel, mesh_contact, mesh_of_teeth, teeth_of
+from solidgear.trains.assembly.assembly import Assembly
+from solidgear.trains.assembly.stages import mesh_row
+
+GEOMETRY = Path(__file__).parent.parent / "geometry"
+QUICK = TeethModel(slices=12, positions=8)
+OTHER = {"left": "right", "right": "left"}
+
+
+@pytest.fixture(scope="module")
+def train():
+    return sg.load_train(GEOMETRY / "gearbox_train.toml")
+
+
+@pytest.fixture(scope="module")
+def carried(train):
+    return Carried.at_rest(with_sections(train), train.point)
+
+
+@pytest.fixture(scope="module")
+def contact(carried):
+    return mesh_contact(carried, carried.train.pairs[0], QUICK)
+
+
+def mirrored(train):
+    """The train seen in a mirror through its axes: other hands, other flanks."""
+    shafts = {
+        side: shaft.with_changes(
+            gears={
+                name: gear.with_changes(
+                    hand=OTHER[gear.hand],
+                    loaded_side=OTHER.get(gear.loaded_side),
+                )
+                for name, gear in shaft.gears.items()
+            }
+        )
+        for side, shaft in train.shafts.items()
+    }
+    return train.with_changes(shafts=shafts)
+
+
+def solved(train, point=None):
+    carried = Carried.at_rest(with_sections(train), point or train.point)
+    return mesh_contact(carried, carried.train.pairs[0], QUICK)
+
+
+@pytest.mark.parametrize("name", ["gearbox_train", "gearbox_two_stage", "gearbox_housed"])
+def test_the_force_on_the_cells_is_along_the_line_of_action_of_the_train(name):
+    """Every flank of every mesh: the frame of the pair gives the normal that the train has."""
+    train = sg.load_train(GEOMETRY / f"{name}.toml")
+    for point in train.operation:
+        carried = Carried.at_rest(with_sections(train), point)
+        for pair in carried.train.pairs:
+            teeth = teeth_of(pair, point.coast)
+            place = carried.place(pair, teeth)
+            helix = teeth.wheels.base_helix
+            normal = place.frame(teeth).axes @ [-np.cos(helix), 0, np.sin(helix)]
+            assert normal == pytest.approx(place.normal, abs=1e-9)
+
+
+def test_planets_touch_where_their_meshes_push():
+    """The tangents of sun, planet and ring, by geometry, and the springs of the train, which it has
+    from another formula.
+    """
+    text = (GEOMETRY / "reducer.toml").read_text()
+    text = text.replace('module = "1.25 mm"', 'module = "1.25 mm"\nface_width = "12 mm"')
+    file = GEOMETRY / "reducer_of_a_test.toml"
+    file.write_text(text)
+    try:
+        train = sg.load_train(file)
+    finally:
+        file.unlink()
+    carried = Carried.at_rest(with_sections(train), train.point)
+    for stage in carried.train.stages:
+        for mesh in stage.meshes:
+            teeth = teeth_of(mesh, carried.coast(mesh))
+            place = carried.place(mesh, teeth)
+            frame = place.frame(teeth)
+            # the pitch point lies on the line of centres, the line of action leans by 20 degrees
+            first = carried.system.port(place.ends[0]).point
+            outward = place.pitch_point - first
+            outward /= np.linalg.norm(outward)
+            assert frame.axes[:, 0] @ outward == pytest.approx(np.sin(np.radians(20)), abs=1e-9)
+            by_end = dict(place.load(carried.system))
+            rows = sum(carried.system.motion(end).T @ load for end, load in by_end.items())
+            row, _ = mesh_row(carried.system, place.link)
+            assert rows == pytest.approx(-row, abs=1e-9 * np.abs(row).max())
+
+
+def test_loads_of_the_cells_are_those_of_the_train(contact, carried):
+    """Torque balance, and the wrench of all cells is the mesh force of the train but for where it lies
+    along the face.
+    """
+    pair = carried.train.pairs[0]
+    force = carried.state.mesh_forces[pair.name]
+    for position in contact.cycle.positions:
+        assert position.total == pytest.approx(force, rel=1e-9)
+        assert position.cells.lever @ position.force == pytest.approx(position.torque, rel=1e-12)
+
+
+def test_deflection_under_the_load_is_that_of_the_train(contact, carried):
+    """Supports are linearised about the state: under its own load, at the lumped points, they give the
+    state's motions back.
+    """
+    pair = carried.train.pairs[0]
+    teeth = teeth_of(pair, False)
+    place = carried.place(pair, teeth)
+    supports = carried.supports(place, place.frame(teeth))
+    wheel = supports.motion[-6:]  # a rigid wheel: its section is the lumped point
+    count = len(supports.motion)
+    force = carried.force(place)
+    (_, _), (end, load) = place.load(carried.system)
+    port = carried.system.port(end)
+    turn = np.kron(np.eye(2), port.axes)
+    own = np.zeros(count)
+    own[-6:] = turn @ load * force
+    # the pinion's load acts on its sections, which the state's does not: by its rigid part
+    state = turn @ carried.state.motion(end)
+    state[4] = 0.0
+    total = wheel + (supports.compliance @ own)[-6:]
+    total[4] = 0.0
+    assert total == pytest.approx(state, rel=1e-6, abs=1e-9)
+
+
+def test_a_mirrored_pair_has_the_same_contact(train, contact):
+    """A sign of the face, of neighbours or of the twist that is wrong shows here alone."""
+    other = solved(mirrored(train))
+    assert other.cycle.error == pytest.approx(contact.cycle.error, rel=1e-9)
+    assert other.cycle.tangent == pytest.approx(contact.cycle.tangent, rel=1e-9)
+    assert other.cycle.face_loads == pytest.approx(contact.cycle.face_loads, rel=1e-8)
+    assert other.skew.bending == pytest.approx(contact.skew.bending, rel=1e-7)
+    assert other.skew.turning == pytest.approx(contact.skew.turning, rel=1e-7)
+
+
+def test_wind_up_of_a_pinion_is_that_of_a_torque_that_leaves_evenly(contact, carried):
+    """T b / (2 G J) of a solid pinion, within the share that its own unevenness makes."""
+    pair = carried.train.pairs[0]
+    scene = pair.pinion.scene
+    segment = next(s for s in scene.segments if s.y0 <= scene.port.y <= s.y1)
+    shear = segment.material.E / (2 * (1 + segment.material.nu))
+    inertia = np.pi * segment.outer0**4 / 2
+    wheels = contact.wheels
+    twist = contact.cycle.torque * wheels.face_width / (2 * shear * inertia)
+    opening = twist * wheels.first.base * np.cos(wheels.base_helix)
+    # sections stand 2.5 % of the face within its ends
+    assert abs(contact.skew.turning) == pytest.approx(opening, rel=0.15)
+
+
+def test_skew_is_that_of_the_deflection(contact, train):
+    """The same slope of the axes as `deflect` has at the lumped points, but for bending within the
+    face.
+    """
+    from solidgear.strength.deflection.at_rest import deflection
+
+    found = deflection(Assembly(train), train.point, "timoshenko")
+    f_sh = next(m for m in found.misalignment if m.name.startswith("f_sh")).value
+    normal = abs(f_sh) * np.cos(contact.wheels.base_helix)
+    assert abs(contact.skew.bending) == pytest.approx(normal, rel=0.08)
+
+
+def test_soft_supports_do_not_change_the_teeth(contact):
+    """Teeth alone are as stiff about their load as the share of the face says, not as the shafts."""
+    assert contact.cycle.supported_tangent.max() < 0.1 * contact.cycle.tangent.min()
+    assert contact.cycle.tangent.mean() == pytest.approx(contact.aligned.tangent.mean(), rel=0.05)
+
+
+def test_a_train_takes_the_stiffness_of_its_teeth(train):
+    mesh = train.mesh.with_changes(stiffness="teeth")
+    filled = mesh_of_teeth(train.with_changes(mesh=mesh))
+    stiffness = filled.mesh.stiffness
+    expected = solved(train).cycle.tangent.mean()
+    assert stiffness == pytest.approx(expected, rel=0.05)
+    assert filled.mesh.status == "calculated"
+    assert filled.mesh.transmission_error.orders[0] > filled.mesh.transmission_error.orders[3]
+    usual = Assembly(train).system("timoshenko").modes(12).frequency_hz
+    stiff = Assembly(filled).system("timoshenko").modes(12).frequency_hz
+    assert np.all(stiff >= usual * (1 - 1e-4)) and stiff.max() > 1.005 * usual.max()
+
+
+def test_a_train_without_a_torque_is_refused(train):
+    bare = train.with_changes(operation=())
+    with pytest.raises(SolidgearError, match="no torque"):
+        teeth_study(bare)
+    mesh = bare.mesh.with_changes(stiffness="teeth")
+    with pytest.raises(SceneError, match="under a load"):
+        mesh_of_teeth(bare.with_changes(mesh=mesh))
+
+
+def test_bevel_trains_and_missing_faces_are_refused():
+    with pytest.raises(SceneError, match="face_width"):
+        teeth_study(sg.load_train(GEOMETRY / "reducer.toml"))
