@@ -200,9 +200,9 @@ class SweptPitch:
         count = len(slices) - 1
         rows, columns, values = [], [], []
         for s, (low, high) in enumerate(zip(slices, slices[1:])):
-            for z, weight in self._points_between(low, high):
-                shape, nodes = self.shapes(cells, at, z + ahead)
-                along = direction(z).T[:, None, :]
+            for z, weight in self._points_between(low + ahead, high + ahead):
+                shape, nodes = self.shapes(cells, at, z)
+                along = direction(z - ahead).T[:, None, :]
                 rows.append(np.broadcast_to(np.arange(len(at)) * count + s, (3, *nodes.shape)))
                 columns.append(3 * nodes + np.arange(3)[:, None, None])
                 values.append(weight * shape * along)
