@@ -4,7 +4,10 @@ from math import pi, radians
 
 import numpy as np
 import pytest
-from skfem import ElementQuad2
+from scipy.sparse.linalg import splu
+from scipy.spatial import cKDTree
+from skfem import Basis, ElementQuad2, ElementVector, MeshQuad1, MeshQuad2
+from skfem.models.elasticity import lame_parameters, linear_elasticity
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefQuad
 
@@ -12,6 +15,7 @@ from solidgear.core.errors import SolidgearError
 from solidgear.core.gears.wheel import Rack, Wheel
 from solidgear.core.kernel.assembly import tabulate
 from solidgear.teeth.compliance.mesh import Fineness, pitch_mesh
+from solidgear.teeth.compliance.plane import PlaneTeeth
 
 PINION, WHEEL, RING = Wheel(23, 4e-3), Wheel(57, 4e-3), Wheel(-60, 2e-3)
 
@@ -76,3 +80,109 @@ def test_shapes_without_a_mesh_are_refused():
         pitch_mesh(RING, RING.root - 1e-3)
     with pytest.raises(SolidgearError, match="pointed"):
         pitch_mesh(Wheel(6, 4e-3, shift=0.7), 5e-3)
+
+
+class Teeth:
+    """Some or all teeth of a wheel in one mesh, with the forms, maps and numbers of scikit-fem."""
+
+    def __init__(self, wheel, radius, fineness, teeth):
+        pitch = pitch_mesh(wheel, radius, fineness)
+        angles = wheel.pitch_angle * (np.arange(teeth) - teeth // 2)
+        copies = [pitch.points @ turn(angle) for angle in angles]
+        nodes, cells = merged(np.concatenate(copies), pitch.cells, len(pitch.points), teeth)
+        corners = np.unique(cells[:, :4])
+        number = np.full(len(nodes), -1)
+        number[corners] = np.arange(len(corners))
+        mesh = MeshQuad2.from_mesh(MeshQuad1(nodes[corners].T, number[cells[:, :4]].T))
+        mesh.doflocs[:, mesh.dofs.element_dofs] = nodes[cells].transpose(2, 1, 0)
+        self.mesh = mesh
+        self.basis = Basis(mesh, ElementVector(ElementQuad2()), intorder=7)
+        lame, shear = lame_parameters(2.06e11, 0.3)
+        stiffness = linear_elasticity(lame, shear).assemble(self.basis)
+        off_circle = np.abs(np.hypot(*self.basis.doflocs) - radius) > 1e-9 * radius
+        self.keep = np.flatnonzero(off_circle)
+        self.factor = splu(stiffness[self.keep][:, self.keep].tocsc())
+
+    def rows(self, points, directions):
+        """Rows that read the motion along directions at points."""
+        middles = self.mesh.doflocs[:, self.mesh.dofs.element_dofs[8]]
+        near = cKDTree(middles.T).query(points, 12)[1]
+        where = np.repeat(points.T, 12, axis=1)[:, :, None]
+        local, mapping = np.full(where.shape, 0.5), self.basis.mapping
+        for _ in range(12):  # Newton of scikit-fem's own stops at the sides of a cell
+            missing = where - mapping.F(local, near.ravel())
+            inverse = mapping.invDF(local, near.ravel())
+            local = np.clip(local + np.einsum("ijkl,jkl->ikl", inverse, missing), -1, 2)
+        local = local.reshape(2, len(points), 12)
+        best = np.argmin(np.abs(local - 0.5).max(axis=0), axis=1)
+        each = np.arange(len(points))
+        inside = local[:, each, best]
+        assert np.abs(inside - 0.5).max() < 0.5 + 1e-9
+        shapes = np.array([ElementQuad2().lbasis(inside, i)[0] for i in range(9)])
+        dofs = self.basis.element_dofs[:, near[each, best]].reshape(9, 2, -1)
+        out = np.zeros((len(points), self.basis.N))
+        out[each, dofs] = shapes[:, None] * np.transpose(directions)
+        return out
+
+    def solve(self, rows):
+        """Motions under unit forces along rows."""
+        out = np.zeros((self.basis.N, len(rows)))
+        out[self.keep] = self.factor.solve(rows[:, self.keep].T)
+        return out
+
+
+def turn(angle):
+    """What turns rows of points clockwise."""
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([[c, -s], [s, c]])
+
+
+def merged(points, cells, count, teeth):
+    """Points of several pitches with those of shared sides once, and the cells of all."""
+    keys = np.round(points / 1e-9).astype(np.int64)
+    _, first, back = np.unique(keys, axis=0, return_index=True, return_inverse=True)
+    return points[first], np.concatenate([back.ravel()[cells + k * count] for k in range(teeth)])
+
+
+COARSE = Fineness(4, 8, 4, 0.5)
+SMALL, SMALL_RING = Wheel(9, 4e-3, shift=0.5), Wheel(-24, 4e-3)
+
+
+@pytest.mark.parametrize("wheel", [SMALL, SMALL_RING], ids=["external", "ring"])
+def test_waves_give_what_the_whole_ring_gives(wheel):
+    """Assembled by scikit-fem with all pitches in one mesh; the port's motion in its own coordinates."""
+    teeth = PlaneTeeth(wheel, hold=hold(wheel, 1.5), fineness=COARSE)
+    ring = Teeth(wheel, hold(wheel, 1.5), COARSE, wheel.count)
+    radii = pitch_mesh(wheel, hold(wheel, 1.5), COARSE).radii[[2, 6, 12]]
+    points, normals = wheel.flank_points(radii)
+    numbers = (0, 1, 2, -1)
+    at = np.concatenate([points @ turn(k * wheel.pitch_angle) for k in numbers])
+    along = np.concatenate([normals @ turn(k * wheel.pitch_angle) for k in numbers])
+    moved = ring.solve(ring.rows(at, along))
+    step = 0.2 * wheel.module
+    read = [ring.rows(at + k * step * along, along) @ moved for k in (1, 2, 3)]
+
+    angles = np.linspace(0, 2 * pi, 40 * wheel.count, endpoint=False) + pi / (40 * wheel.count)
+    out = np.column_stack([np.sin(angles), np.cos(angles)])
+    around = np.column_stack([out[:, 1], -out[:, 0]])
+    circle = (wheel.root - wheel.sign * 0.1 * wheel.module) * out
+    sides = [np.broadcast_to(side, out.shape) for side in ([1.0, 0.0], [0.0, 1.0])]
+    port = np.array([ring.rows(circle, d).mean(axis=0) for d in (*sides, around)])
+    port[2] /= wheel.root - wheel.sign * 0.1 * wheel.module
+    body = np.column_stack([along, at[:, 1] * along[:, 0] - at[:, 0] * along[:, 1]])
+    rigid = body @ (port @ ring.solve(port)) @ body.T
+
+    distance = np.hypot(*(at[:, None] - at).transpose(2, 0, 1))
+    same = np.kron(np.eye(len(numbers)), np.ones((3, 3)))
+    plane = 2 * (1 - 0.09) / (pi * 2.06e11)
+
+    def near(depth):
+        x, h = distance / wheel.module, depth / wheel.module
+        return same * plane * (h**2 / (1.4 * (x**2 + h**2)) - np.log(np.hypot(x, h)))
+
+    smooth = [r - near(k * step) for k, r in zip((1, 2, 3), read)]
+    expected = 3 * smooth[0] - 3 * smooth[1] + smooth[2] - rigid + near(1e-3)
+    expected = (expected + expected.T) / 2
+    matrix = teeth.matrix(np.repeat(numbers, 3), np.tile(radii, len(numbers)), 1e-3)
+    assert matrix == pytest.approx(expected, abs=1e-9 * expected.max())
+    assert matrix == pytest.approx(matrix.T, abs=1e-25)
