@@ -26,9 +26,7 @@ from solidgear.teeth.compliance.mesh import PitchMesh
 #: element that teeth are made of
 NAME = "hex20"
 #: coordinates of the nodes of a quadrilateral: corners, then middles of sides
-FLAT = np.array(
-    [[0, 0], [1, 0], [1, 1], [0, 1], [0.5, 0.0], [1.0, 0.5], [0.5, 1.0], [0.0, 0.5]]
-)
+FLAT = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [0.5, 0.0], [1.0, 0.5], [0.5, 1.0], [0.0, 0.5]])
 #: points of quadrature along z within a cell and a slice
 ALONG = 3
 #: distance from a cell, in its size, at which a point counts as inside: between nodes a flank departs
@@ -96,7 +94,9 @@ class SweptPitch:
         element = basis_of(NAME)
         dofs = unknowns(mesh, element)
         flat, level = self._names(element.doflocs)
-        of_plane = np.broadcast_to(self.plane.cells[:, flat], (self.layers, len(corners), len(flat)))
+        of_plane = np.broadcast_to(
+            self.plane.cells[:, flat], (self.layers, len(corners), len(flat))
+        )
         of_level = np.broadcast_to(2 * layer + level, of_plane.shape)
         numbers = np.full((count, len(self.levels)), -1)
         numbers[of_plane, of_level] = dofs.T.reshape(of_plane.shape)
@@ -210,9 +210,7 @@ class SweptPitch:
         value, row, column = (np.concatenate(part, axis=None) for part in (values, rows, columns))
         return sp.csr_matrix((value, (row, column)), shape=size)
 
-    def shapes(
-        self, cells: np.ndarray, at: np.ndarray, z: float
-    ) -> tuple[np.ndarray, np.ndarray]:
+    def shapes(self, cells: np.ndarray, at: np.ndarray, z: float) -> tuple[np.ndarray, np.ndarray]:
         """Return the functions (nb, k) of the mesh above places in the plane, given as for
         :meth:`rows`, at the z of the face nearest to some z, and their nodes (nb, k).
         """
