@@ -42,6 +42,10 @@ def stand_in(train):
     return train.with_changes(meshes=meshes)
 
 
+def unchanged(train):
+    return train
+
+
 @pytest.fixture
 def solving():
     before = _PLACES.get("mesh stiffness", {}).copy()
@@ -189,6 +193,13 @@ def test_without_anyone_to_solve_teeth_a_number_is_asked_for(tmp_path, solving):
     addition.cache_clear()
     train = sg.load_train(written(tmp_path, with_teeth()))
     with pytest.raises(SolidgearError, match="room of teeth"):
+        Assembly(train)
+
+
+def test_a_mesh_that_stays_without_a_number_is_refused(tmp_path, solving):
+    register("mesh stiffness", "teeth", f"{__name__}:unchanged")
+    train = sg.load_train(written(tmp_path, with_teeth()))
+    with pytest.raises(SolidgearError, match="give a number there"):
         Assembly(train)
 
 
