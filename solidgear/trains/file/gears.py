@@ -64,7 +64,8 @@ class Gear(Flanks):
     #: of cylindrical gears, in modules
     profile_shift: Annotated[float, Field(gt=-1.5, lt=2.5)] = 0.0
     #: of bevel gears: radius of the cutter at the pitch plane, m, and curvature of its blade, 1/m;
-    #: what the pinion's has in excess of the gear's opens the flanks away from their middle
+    #: the radius that the concave flank has in excess, and the curvature that the pinion has, open the
+    #: flanks away from their middle
     cutter_radius: PositiveLength | None = None
     blade_curvature: Annotated[float, Field(ge=-MOST_CURVED, le=MOST_CURVED)] | None = None
     apex: Literal["start", "end"] = "start"  #: towards which end of the shaft the pitch apex lies
