@@ -16,6 +16,7 @@ from solidgear.core.gears.wheel import Rack, Wheel
 from solidgear.core.kernel.assembly import tabulate
 from solidgear.teeth.compliance.mesh import Fineness, pitch_mesh
 from solidgear.teeth.compliance.plane import PlaneTeeth
+from solidgear.teeth.compliance.slices import Slices
 
 PINION, WHEEL, RING = Wheel(23, 4e-3), Wheel(57, 4e-3), Wheel(-60, 2e-3)
 
@@ -186,3 +187,45 @@ def test_waves_give_what_the_whole_ring_gives(wheel):
     matrix = teeth.matrix(np.repeat(numbers, 3), np.tile(radii, len(numbers)), 1e-3)
     assert matrix == pytest.approx(expected, abs=1e-9 * expected.max())
     assert matrix == pytest.approx(matrix.T, abs=1e-25)
+
+
+@pytest.mark.parametrize(
+    "z, w, middle", [(-7, -5, -7), (0.4, 3, 0.4), (2, 2, 2), (1.3, 2, 1.3), (9.6, 7, 9)]
+)
+def test_the_spread_along_the_face_is_the_mean_over_both_slices(z, w, middle):
+    """By the eigenfunctions of an elastic layer, whose mean over a slice is theirs in its middle times
+    a cardinal sine; a slice that stands out over the end lies within it.
+    """
+    slices = Slices(PlaneTeeth(Wheel(23, 4e-3, face_width=20e-3)), 16e-3, 8)
+    k = pi / 20 * np.arange(1, 20001)
+    waves = np.cos(k * (middle + 10)) * np.cos(k * (w + 10)) * np.sinc(k / pi) ** 2
+    expected = (1 + 2 * np.sum(waves / (1 + (1.05 * 4 * k) ** 2))) / 20e-3
+    spread = slices.along(1e-3 * np.array([z, w]))
+    assert spread[0, 1] == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize("count, width", [(1, 20e-3), (7, 20e-3), (99, 20e-3), (40, 2.0)])
+def test_an_even_load_stays_even_for_any_number_of_slices(count, width):
+    slices = Slices(PlaneTeeth(Wheel(23, 4e-3, face_width=width)), width, count)
+    spread = slices.along(slices.middles)
+    assert spread.sum(axis=1) * slices.step == pytest.approx(np.ones(count), rel=1e-12)
+    assert np.linalg.eigvalsh(spread).min() > 0
+    assert spread == pytest.approx(spread.T, rel=1e-14)
+
+
+def test_slices_of_helical_teeth_move_along_the_normal():
+    wheel = Wheel(30, 2e-3, radians(20), face_width=15e-3)
+    slices = Slices(PlaneTeeth(wheel, fineness=COARSE), 15e-3, 5, reading_depth=1e-3)
+    tooth, r = np.array([0, 0, 1, -1, 1]), np.array([31.0, 32.0, 31.5, 33.0, 33.9]) * 1e-3
+    r = np.clip(r, wheel.form, wheel.tip)
+    matrix = slices.matrix(tooth, r, slices.middles)
+    plane = slices.plane.matrix(tooth, r, 1e-3) * slices.along(slices.middles)
+    assert matrix == pytest.approx(np.cos(wheel.base_helix) ** 2 * plane, rel=1e-12)
+    assert np.linalg.eigvalsh(matrix).min() > 0
+
+
+def test_faces_that_have_no_slices_are_refused():
+    with pytest.raises(SolidgearError, match="face width"):
+        Slices(PlaneTeeth(PINION), 20e-3, 8)
+    with pytest.raises(SolidgearError, match="at least one"):
+        Slices(PlaneTeeth(PINION.thinned(20e-3)), 20e-3, 0)

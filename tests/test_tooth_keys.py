@@ -1,22 +1,26 @@
 """Keys of teeth in a train file: what is read from it, what is refused, and who gives a mesh its stiffness."""
 
 import re
-from math import cos, hypot, radians, sin
+from math import cos, hypot, pi, radians, sin
 from pathlib import Path
 
 import pytest
+from command import numbers
 
 import solidgear as sg
 from solidgear.core import SolidgearError
 from solidgear.core.errors import SceneError
 from solidgear.core.gears.wheel import Rack, Wheel
 from solidgear.core.gears.wheel_pair import WheelPair
-from solidgear.core.registry import _PLACES, register
+from solidgear.core.registry import _PLACES, addition, register
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.mesh_stiffness import USUAL, asks_for_teeth
 from solidgear.trains.file.tooth_fit import fit_cautions, path_cuts
 from solidgear.trains.judge.check import _facts
 from solidgear.trains.load.operation import at_point
+from solidgear.variants.sweep.design import Design
+from solidgear.variants.sweep.file_task import run
+from solidgear.variants.sweep.train_task import train_task
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 TEXT = (GEOMETRY / "gearbox_train.toml").read_text()
@@ -45,8 +49,7 @@ def solving():
     solved_at.clear()
     yield solved_at
     _PLACES["mesh stiffness"] = before
-    register("mesh stiffness", "made-up", f"{__name__}:stand_in")  # clears what is remembered
-    del _PLACES["mesh stiffness"]["made-up"]
+    addition.cache_clear()
 
 
 def written(folder, text, **files):
@@ -181,7 +184,9 @@ def test_the_same_numbers_typed_make_the_same_train(tmp_path, solving):
     assert one == pytest.approx(two, rel=1e-9)
 
 
-def test_without_anyone_to_solve_teeth_a_number_is_asked_for(tmp_path):
+def test_without_anyone_to_solve_teeth_a_number_is_asked_for(tmp_path, solving):
+    _PLACES["mesh stiffness"].clear()
+    addition.cache_clear()
     train = sg.load_train(written(tmp_path, with_teeth()))
     with pytest.raises(SolidgearError, match="room of teeth"):
         Assembly(train)
@@ -222,6 +227,34 @@ def test_planets_ask_for_their_teeth_as_well():
     taken = Assembly(asking, solves_teeth=False).train.planetary[stage.called].mesh
     assert taken.sun_stiffness == pytest.approx(USUAL * 30e-3)
     assert taken.ring_stiffness == mesh.ring_stiffness
+
+
+def test_tips_of_planets_and_offsets_of_a_ring_are_held_against_their_neighbours():
+    train = sg.load_train(GEOMETRY / "reducer.toml")
+    (stage,) = train.stages
+    side, port = stage.shafts[0], stage.ports[0]
+    gears = train.shafts[side].gears
+    wide = {**gears, port: gears[port].with_changes(face_width=30e-3)}
+    shafts = {**train.shafts, side: train.shafts[side].with_changes(gears=wide)}
+
+    def with_table(**changes):
+        table = stage.table.with_changes(**changes)
+        return train.with_changes(shafts=shafts, planetary={stage.called: table})
+
+    # 26 and 34 of 102 teeth apart: axes of planets 51 sin(91.76 deg / 2) = 36.6 modules apart
+    angles = tuple(2 * pi * place / 102 for place in (0, 26, 60))
+    module, planet = stage.sun.module, stage.table.planet
+    long, longer = (planet.with_changes(tip_diameter=module * tip) for tip in (36.5, 36.7))
+    with_table(planet=long, planets=None, angles=angles)
+    with_table(planet=longer)
+    for changes, words, key in (
+        ({"planet": longer, "planets": None, "angles": angles}, "lets planets overlap", "planet"),
+        ({"ring_flanks": {"face_offset": 31e-3}}, "share nothing", "ring_flanks"),
+        ({"ring_flanks": {"tip_diameter": 0.2}}, "leaves no flank", "ring_flanks"),
+    ):
+        with pytest.raises(SceneError, match=words) as error:
+            with_table(**changes)
+        assert error.value.problems[0].path[:3] == ("planetary", stage.called, key)
 
 
 def test_tips_that_meet_fillets_are_told():
@@ -269,3 +302,38 @@ def test_settings_of_no_cutter_are_refused(table, key, value):
     axle = sg.load_train(GEOMETRY / "axle_overhung.toml")
     with pytest.raises(SceneError, match=key):
         axle.with_changes(**{table: getattr(axle, table).with_changes(**{key: value})})
+
+
+def by_relief_and_torque(train):
+    """Put a stiffness in the place of "teeth" that the relief and the torque of the train decide."""
+    tip, torque = train.pinion.relief.tip, train.point.torque
+    solved_at.append((tip, torque))
+    mesh = train.mesh.with_changes(stiffness=2e8 + 1e13 * tip + 1e6 * torque)
+    return train.with_changes(mesh=mesh)
+
+
+@pytest.fixture
+def solving_rows(solving):
+    register("mesh stiffness", "teeth", f"{__name__}:by_relief_and_torque")
+    return solving
+
+
+def test_a_sweep_solves_the_teeth_of_every_row(tmp_path, solving_rows):
+    """Over relief and torque: each row has the frequencies of its stiffness typed into the file."""
+    text = with_teeth(with_lines('relief = {tip = "5 um"}'))
+    vary = ("pinion.relief.tip=5 um:15 um:2", "operation.full.torque=60 N*m:115 N*m:2")
+    light = {"pinion": "euler", "gear": "euler", "max_frequency": 1500.0, "ask": ["system-modes"]}
+    task = train_task(written(tmp_path, text), Design(vary), **light)
+    out = tmp_path / "rows.csv"
+    run(task, out)
+    rows = numbers(out)
+    assert len(rows) == 4 and len(set(solving_rows)) == 4
+    for (tip, torque), row in zip(solving_rows, rows):
+        stiffness = 2e8 + 1e13 * tip + 1e6 * torque
+        typed = TEXT.replace("3.2e8 N/m", f"{stiffness} N/m", 1).replace(
+            "115 N*m", f"{torque} N*m", 1
+        )
+        train = sg.load_train(written(tmp_path, typed))
+        modes = Assembly(train).system("euler").modes(4).frequency_hz
+        for k in (1, 2, 3):
+            assert row[f"f{k}_hz"] == pytest.approx(modes[k], rel=1e-6)

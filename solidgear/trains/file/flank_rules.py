@@ -71,6 +71,13 @@ def stage_flank_problems(stage: Stage) -> Iterator[SceneError]:
         teeth = meshes[mesh]
         if teeth is not None and wheel_flanks.is_described:
             yield from _wheel(teeth.wheels, k, wheel_flanks, path)
+    planet = meshes[1] and meshes[1].wheels.first
+    if planet and table.planet.is_described and 2 * planet.tip >= stage.teeth.spacing:
+        yield SceneError(
+            f"lets planets overlap: their tips are {_mm(2 * planet.tip)} across, their axes "
+            f"{_mm(stage.teeth.spacing)} apart",
+            path=("planet", "tip_diameter" if table.planet.tip_diameter else "rack"),
+        )
     for teeth, member in zip(meshes, ("planet", "ring_flanks")):
         if teeth is not None:
             yield from _faces(teeth.wheels, [(member, "face_offset")])

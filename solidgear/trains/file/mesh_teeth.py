@@ -133,6 +133,9 @@ def _of_planets(mesh: PlanetMesh, coast: bool) -> MeshTeeth:
     # a sun that drives about +y pushes with its right flanks, and planets the ring with left ones
     way = _way(helix, sun.hand, FLANKS[1], coast)
     wheels, assumed = _wheels(numbers, sun.module, helix, table.mesh.pressure_angle)
+    if mesh.mate == "ring" and numbers[1].flanks.tip_diameter is None:
+        # no rack cuts a ring, and fillets of planets may end the path before such tips do
+        assumed = (*assumed, f"tip diameter of the ring {_mm(2 * wheels[1].tip)}")
     first, second = (wheel.flanks.face_offset for wheel in numbers)
     pair_wheels = WheelPair(*wheels, offset=way * (second - first))
     return _mesh_teeth(pair_wheels, numbers, (way, way), assumed)

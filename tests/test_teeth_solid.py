@@ -1,0 +1,207 @@
+"""Teeth of a wheel in 3D: the ring of one pitch, its port, what is near a load, and limits."""
+
+from dataclasses import replace
+from functools import lru_cache
+from math import pi, radians
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+from scipy.integrate import dblquad
+
+from solidgear.core import SolidgearError
+from solidgear.core.gears.wheel import Wheel
+from solidgear.core.machine.memory import NoRoom
+from solidgear.core.models.solid.block import rigid_motions
+from solidgear.core.solve.factor import factorise
+from solidgear.teeth.compliance import solid as solid_module
+from solidgear.teeth.compliance.half_space import between_pieces
+from solidgear.teeth.compliance.mesh import Fineness
+from solidgear.teeth.compliance.solid import SolidTeeth
+from solidgear.teeth.compliance.solid_mesh import turned
+from solidgear.teeth.contact.local import Elasticity
+
+WHEEL = Wheel(23, 4e-3, face_width=20e-3)
+HELICAL = replace(WHEEL, helix_angle=radians(20))
+COARSE = {"slices": 4, "fineness": Fineness(2, 4, 4), "layer": 1.25, "hold": 25e-3}
+
+
+@lru_cache
+def coarse(wheel=WHEEL, **options):
+    return SolidTeeth(wheel, **(COARSE | options))
+
+
+def places(teeth, r, tooth=0):
+    return np.full(teeth.slices, tooth), np.full(teeth.slices, r), teeth.middles
+
+
+def evenly_loaded(teeth, r):
+    """Motion of the mean of the face under an even load at a radius, m per N/m."""
+    return teeth.matrix(*places(teeth, r)).mean() * teeth.wheel.face_width
+
+
+def test_the_ring_of_all_pitches_solved_at_once_moves_as_the_waves_of_one():
+    teeth = coarse(replace(HELICAL, teeth=12, shift=0.4), hold=12e-3)
+    count, mesh, inner = teeth.wheel.count, teeth.mesh, teeth.mesh.inner(True)
+    sides = mesh.side_motions(teeth.wheel.pitch_angle, mesh.layers, True)
+    n, q, full = len(inner), sides.shape[1] // 2, sides.shape[0]
+    inside = sp.csr_matrix((np.ones(n), (inner, np.arange(n))), shape=(full, n))
+    stiffness = teeth._stiffness
+    total = sp.csr_matrix((count * (n + q),) * 2)
+    moved = []
+    for k in range(count):
+        after = (k + 1) % count
+        columns = np.concatenate(
+            [
+                k * (n + q) + np.arange(n + q),
+                after * (n + q) + n + np.arange(q),
+            ]
+        )
+        pick = sp.csr_matrix(
+            (np.ones(len(columns)), (np.arange(len(columns)), columns)),
+            shape=(len(columns), total.shape[0]),
+        )
+        moved.append(sp.hstack([inside, sides]) @ pick)
+        total += moved[-1].T @ stiffness @ moved[-1]
+    loads = (teeth._rows(0.0) @ moved[0]).T.toarray()
+    motion = factorise(total.tocsr()).solve(loads)
+    for tooth in (0, 1, 5, -1):
+        direct = teeth._rows(teeth.depth) @ (moved[tooth] @ motion)
+        assert np.allclose(teeth.whole(tooth), direct, rtol=0, atol=1e-9 * direct.max())
+
+
+def test_sides_of_a_pitch_move_smoothly_enough(monkeypatch):
+    usual = SolidTeeth(WHEEL, **(COARSE | {"layer": 0.5}))
+    few = usual.teeth(0), usual.teeth(1)
+    monkeypatch.setattr(solid_module, "LEAST_POWER", 9)
+    more = SolidTeeth(WHEEL, **(COARSE | {"layer": 0.5}))
+    for before, after in zip(few, (more.teeth(0), more.teeth(1))):
+        assert np.abs(before - after).max() < 1e-4 * few[0].max()
+
+
+def test_nodes_of_the_right_side_are_those_of_the_left_one_turned_by_a_pitch():
+    mesh = coarse(HELICAL).mesh
+    left, right = (mesh.solid.nodes[:, mesh.nodes_of(side)[0]].T for side in mesh.plane.sides)
+    left[:, :2] = turned(left[:, :2], HELICAL.pitch_angle)
+    assert np.abs(left - right).max() < 1e-12
+
+
+def test_flanks_are_curved_along_the_involute_and_the_helix():
+    mesh = coarse(HELICAL).mesh
+    x, y, z = mesh.solid.nodes[:, mesh.nodes_of(mesh.plane.flank)[0]]
+    angle = np.arctan2(x, y) - mesh.twist * z
+    assert np.abs(angle - HELICAL.half_angle(np.hypot(x, y))).max() < 1e-12
+
+
+def test_teeth_of_the_other_hand_are_mirrored():
+    right, left = coarse(HELICAL), coarse(HELICAL, hand=-1)
+    slices, radii = right.slices, len(right.radii)
+    for tooth in (0, 1, -2):
+        mirrored = left.table(tooth).reshape(radii, slices, radii, slices)[:, ::-1, :, ::-1]
+        table = right.table(tooth)
+        assert np.abs(mirrored.reshape(table.shape) - table).max() < 1e-10 * np.abs(table).max()
+    # and without the mirror they differ
+    assert np.abs(left.table(1) - right.table(1)).max() > 1e-3 * np.abs(right.table(1)).max()
+
+
+def test_half_as_many_slices_have_the_means_of_pairs():
+    few, many = coarse(HELICAL), coarse(HELICAL, slices=8)
+    means = many.whole(1).reshape(len(few.radii), 4, 2, len(few.radii), 4, 2).mean(axis=(2, 5))
+    assert np.allclose(means.reshape(few.whole(1).shape), few.whole(1), rtol=1e-7, atol=0)
+    r = np.full(8, 46e-3)
+    near = many._near(r, many.middles).reshape(4, 2, 4, 2).mean(axis=(1, 3))
+    assert np.allclose(near, few._near(r[:4], few.middles), rtol=1e-3)
+
+
+def test_between_pieces_is_the_mean_of_a_force_on_a_half_space():
+    steel, depth, length, along, across = Elasticity(), 1e-3, 0.8e-3, 1.1e-3, 0.3e-3
+
+    def point(x, y):
+        far = np.sqrt((along + x - y) ** 2 + across**2 + depth**2)
+        shape = depth**2 / far**3 + 2 * (1 - steel.poisson) / far
+        return (1 + steel.poisson) / (2 * pi * steel.youngs) * shape
+
+    half = length / 2
+    mean = dblquad(point, -half, half, -half, half, epsabs=0, epsrel=1e-10)[0] / length**2
+    pieces = between_pieces(np.array(along), np.array(across**2), depth, length, steel)
+    assert float(pieces) == pytest.approx(mean, rel=1e-9)
+
+
+def test_the_table_is_smooth_along_the_flank():
+    """A finer mesh has its table at other radii: there the coarse one is interpolated."""
+    usual, fine = coarse(layer=2.5), coarse(layer=2.5, fineness=Fineness(4, 10, 6))
+    between = fine.radii[2:-2:3]
+    for r in between:
+        assert evenly_loaded(usual, r) == pytest.approx(evenly_loaded(fine, r), rel=0.015)
+
+
+def test_the_port_turns_as_a_disc_in_shear_and_moves_with_rigid_bodies():
+    """A torque spread over a cylinder turns it by T / (4 pi G b) (1 / a^2 - 1 / r^2)."""
+    teeth = coarse()
+    loads, gram = teeth._port.loads, teeth._port.gram
+    motions = rigid_motions(teeth.mesh.solid.nodes)
+    assert np.allclose(loads.T @ motions, gram, rtol=1e-9, atol=1e-9 * np.abs(gram).max())
+    area = 2 * pi * teeth.port_radius * WHEEL.face_width / WHEEL.count
+    assert gram[0, 0] == pytest.approx(area, rel=1e-9)
+    assert gram[5, 5] == pytest.approx(area * teeth.port_radius**2, rel=1e-9)
+    shear = teeth.elasticity.youngs / (2 * (1 + teeth.elasticity.poisson))
+    reach = 1 / teeth.hold_radius**2 - 1 / teeth.port_radius**2
+    turn = reach / (4 * pi * shear * WHEEL.face_width)
+    compliance = teeth.port_compliance
+    assert compliance[5, 5] == pytest.approx(turn, rel=5e-3)
+    assert np.abs(compliance - compliance.T).max() < 1e-10 * compliance.max()
+    assert compliance[0, 0] == pytest.approx(compliance[1, 1], rel=1e-9)
+
+
+def test_teeth_alone_hardly_know_where_their_rim_is_held():
+    deep, shallow = coarse(), coarse(hold=33e-3)
+    whole = [evenly_loaded_whole(teeth) for teeth in (deep, shallow)]
+    alone = [evenly_loaded(teeth, 46e-3) for teeth in (deep, shallow)]
+    assert whole[0] / whole[1] > 1.19
+    assert alone[0] / alone[1] < 1.15
+
+
+def evenly_loaded_whole(teeth):
+    shape = (len(teeth.radii), teeth.slices) * 2
+    middle = len(teeth.radii) // 2
+    return teeth.whole(0).reshape(shape)[middle, :, middle].mean() * teeth.wheel.face_width
+
+
+def test_a_free_rim_is_softer_where_it_is_thin_and_not_where_it_is_thick():
+    held, free = coarse(), coarse(free=True)
+    assert np.array_equal(held.port_compliance, free.port_compliance)
+    assert evenly_loaded(free, 46e-3) > 1.08 * evenly_loaded(held, 46e-3)
+    thick = [evenly_loaded(coarse(hold=8e-3, free=value), 46e-3) for value in (False, True)]
+    assert thick[1] == pytest.approx(thick[0], rel=2e-3)
+
+
+def test_matrices_are_symmetric_and_positive_definite():
+    teeth = coarse(HELICAL)
+    tooth = np.repeat([-1, 0, 1], teeth.slices)
+    r, z = np.repeat([48.5e-3, 46e-3, 44.4e-3], teeth.slices), np.tile(teeth.middles, 3)
+    matrix = teeth.matrix(tooth, r, z)
+    assert np.allclose(matrix, matrix.T, rtol=1e-13)
+    assert np.linalg.eigvalsh(matrix).min() > 0.01 * np.diag(matrix).min()
+    # a turn of the wheel by a pitch changes nothing, and neither does the order of the places
+    order = np.arange(len(r))[::-1]
+    again = teeth.matrix(tooth[order] + 7, r[order], z[order])[np.ix_(order, order)]
+    assert np.allclose(again, matrix, rtol=1e-12)
+
+
+def test_an_offset_to_the_other_side_is_the_mirror_of_a_spur_wheel():
+    ahead, behind = (coarse(width=10e-3, offset=offset) for offset in (4e-3, -4e-3))
+    there = ahead.matrix(*places(ahead, 46e-3))
+    back = behind.matrix(*places(behind, 46e-3))
+    assert np.allclose(there, back[::-1, ::-1], rtol=1e-9)
+    # the end of the face is nearer on one side
+    assert there[3, 3] > 1.05 * there[0, 0]
+
+
+def test_wrong_teeth_and_no_memory_are_refused(monkeypatch):
+    with pytest.raises(SolidgearError, match="outside the mesh"):
+        coarse(port=20e-3).teeth(0)
+    with pytest.raises(SolidgearError, match="rim has no thickness"):
+        coarse(hold=60e-3).teeth(0)
+    monkeypatch.setenv("SOLIDGEAR_MEMORY_MB", "30")
+    with pytest.raises(NoRoom):
+        SolidTeeth(WHEEL, hold=25e-3).teeth(0)
