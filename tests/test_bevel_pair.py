@@ -14,7 +14,7 @@ from solidgear.teeth.bevel.blank import BevelBlank
 from solidgear.teeth.bevel.flank import BevelFlanks, Mismatch
 from solidgear.teeth.bevel.misalignment import Misalignment
 from solidgear.teeth.bevel.pair import BevelPair
-from solidgear.teeth.bevel.reading import blank_of
+from solidgear.teeth.bevel.reading import blank_of, mismatch_of
 from solidgear.teeth.contact.cycle import mesh_cycle
 from solidgear.teeth.contact.cylindrical import CylindricalPair
 from solidgear.teeth.contact.frame import RigidSupports
@@ -236,21 +236,49 @@ def test_a_known_cutter_is_not_varied_and_one_that_makes_no_flank_is_named():
     assert "does not reach across the face" in reason
 
 
-def test_a_train_gives_the_blank():
+def axle():
+    """The mesh of the thesis's axle."""
     (mesh,) = sg.load_train(ROOT / "geometry" / "axle_thesis.toml").pairs
-    blank = blank_of(mesh, cutter_radius=0.1524)
+    return mesh
+
+
+def with_keys(mesh, pinion=None, gear=None, **keys):
+    """A mesh with further keys of its tables."""
+    return replace(
+        mesh,
+        pinion=mesh.pinion.with_changes(**pinion or {}),
+        gear=mesh.gear.with_changes(**gear or {}),
+        mesh=mesh.mesh.with_changes(**keys),
+    )
+
+
+def test_a_train_gives_the_blank():
+    blank = blank_of(with_keys(axle(), gear={"cutter_radius": 0.1524}, gear_share=0.27))
     assert (blank.hand, blank.loaded_side) == ("left", "concave")
     assert blank.pressure_angle == pytest.approx(radians(25))
-    assert blank.estimated == ("gear_share", "working_depth")
+    assert (blank.cutter_radius, blank.gear_share) == (0.1524, 0.27)
+    assert blank.estimated == ("working_depth",)
     assert "0.391 rad of the pinion (0.3016)" in blank.notes[0]
 
 
+def test_a_train_gives_the_mismatch():
+    """By both cutters, or by what they leave open at the corners."""
+    mesh = with_keys(
+        axle(), {"cutter_radius": 0.156, "blade_curvature": 0.02}, {"cutter_radius": 0.15}
+    )
+    mismatch = mismatch_of(mesh, blank_of(mesh))
+    assert mismatch == Mismatch(pytest.approx(6e-3), 0.02)
+    turned = with_keys(mesh, {"loaded_side": "convex"}, {"loaded_side": "concave"})
+    assert mismatch_of(turned, blank_of(turned)).cutter_radius == pytest.approx(-6e-3)
+    eased = with_keys(axle(), ease_off=100e-6)
+    flanks = BevelFlanks(blank_of(eased), mismatch_of(eased, blank_of(eased)))
+    assert flanks.ease_off() == pytest.approx(100e-6, rel=0.01)
+
+
 def test_a_train_without_what_flanks_need_is_refused():
-    (mesh,) = sg.load_train(ROOT / "geometry" / "axle_thesis.toml").pairs
-    bare = replace(mesh, pinion=mesh.pinion.with_changes(face_width=None, hand=None))
     with pytest.raises(SceneError, match="face_width: is needed for the flanks"):
-        blank_of(bare)
-    assert blank_of(replace(mesh, pinion=mesh.pinion.with_changes(hand=None))).hand == "left"
+        blank_of(with_keys(axle(), {"face_width": None, "hand": None}))
+    assert blank_of(with_keys(axle(), {"hand": None})).hand == "left"
     (parallel,) = sg.load_train(ROOT / "geometry" / "gearbox_train.toml").pairs
     with pytest.raises(SceneError, match="that of a cylindrical pair"):
         blank_of(parallel)

@@ -14,6 +14,7 @@ import numpy as np
 
 from solidgear.core import Scene, SceneError
 from solidgear.core.gears.wheel import Wheel
+from solidgear.teeth.bevel.train import BevelContact, bevel_contact
 from solidgear.teeth.compliance.flank import FlankCompliance
 from solidgear.teeth.compliance.plane import DEPTH, PlaneTeeth
 from solidgear.teeth.compliance.slices import SPREAD, Slices
@@ -204,13 +205,20 @@ def _point(train: Train) -> OperatingPoint:
 
 def _filled(carried: Carried, pair: Pair, mesh):
     """Return the table of a mesh with the numbers of its teeth."""
-    solved = mesh_contact(carried, pair)
+    solved: MeshContact | BevelContact
+    if pair.mesh.shaft_angle:
+        materials = [_material(member.scene) for member in pair.members.values()]
+        solved = bevel_contact(carried, pair, (materials[0], materials[1]))
+    else:
+        solved = mesh_contact(carried, pair)
     cycle = solved.cycle
     orders = cycle.orders(ORDERS)
     changes = {
         "stiffness": float(cycle.tangent.mean()),
-        "status": "calculated",
+        "status": solved.status,
     }
+    if isinstance(solved, BevelContact) and mesh.gear_position is None:
+        changes["gear_position"] = solved.gear_position
     if mesh.transmission_error is None or mesh.transmission_error_status == "assumed":
         changes["transmission_error"] = ErrorTable(
             orders=tuple(float(a) for a in np.abs(orders)),
@@ -227,7 +235,7 @@ def _filled(carried: Carried, pair: Pair, mesh):
 
 
 def in_pinion_frame(
-    carried: Carried, pair: Pair, solved: MeshContact
+    carried: Carried, pair: Pair, solved: MeshContact | BevelContact
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return mesh points from the pinion's lumped point and lines of action, (p, 3) each, in the frame
     of the pinion.

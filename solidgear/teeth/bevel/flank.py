@@ -311,9 +311,9 @@ class BevelFlanks:
             _, room = self._all_lines(rolls)
             most = room.max(axis=1)
             middle = int(np.argmin(np.abs(rolls)))  # the mean point touches in position 0
-            apart = np.flatnonzero(most < 0)
-            first = int(np.max(apart[apart < middle], initial=0)) + 1
-            last = int(np.min(apart[apart > middle], initial=rolls.size - 1)) - 1
+            clear = np.flatnonzero(most < 0)
+            first = int(np.max(clear[clear < middle], initial=0)) + 1
+            last = int(np.min(clear[clear > middle], initial=rolls.size - 1)) - 1
             ends = [
                 float(np.interp(0.0, most[[k, k + 1]][::step], rolls[[k, k + 1]][::step]))
                 for k, step in ((first - 1, 1), (last, -1))

@@ -1,29 +1,20 @@
-"""Blanks of a bevel pair from a train file."""
+"""Blanks of a bevel pair, and how its cutters differ, from a train file."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from solidgear.core.errors import SceneError
 from solidgear.teeth.bevel.blank import BevelBlank, completed_blank
+from solidgear.teeth.bevel.flank import Mismatch, lengthwise
 from solidgear.trains.file.pairs import Pair
 
 #: words of a table of one member, and what the other has
 OTHER = {"left": "right", "right": "left", "concave": "convex", "convex": "concave"}
 
 
-def blank_of(
-    pair: Pair,
-    *,
-    cutter_radius: float | None = None,
-    gear_share: float | None = None,
-    working_depth: float | None = None,
-) -> BevelBlank:
+def blank_of(pair: Pair) -> BevelBlank:
     """Return the blanks of two bevel gears of a train, completed by estimates.
-
-    Parameters
-    ----------
-    pair : Pair
-    cutter_radius, gear_share, working_depth : float, optional
-        As of :class:`~solidgear.teeth.bevel.blank.BevelBlank`.
 
     Raises
     ------
@@ -68,9 +59,29 @@ def blank_of(
         hand,
         side,
         pressure_angle=mesh.pressure_angle,
-        cutter_radius=cutter_radius,
-        gear_share=gear_share,
-        working_depth=working_depth,
+        cutter_radius=gear.cutter_radius or pinion.cutter_radius,
+        gear_share=mesh.gear_share,
+        working_depth=mesh.working_depth,
         shaft_angle=mesh.shaft_angle,
         pitch_angles=(pinion.pitch_angle, gear.pitch_angle),
     )
+
+
+def mismatch_of(pair: Pair, blank: BevelBlank) -> Mismatch | None:
+    """Return how the cutters of a pair of a train differ; None where the file does not say.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> pair = sg.load_train("geometry/axle_thesis.toml").pairs[0]
+    >>> mismatch_of(pair, blank_of(pair)) is None
+    True
+    """
+    pinion, gear, ease_off = pair.pinion, pair.gear, pair.mesh.ease_off
+    blade = (pinion.blade_curvature or 0.0) - (gear.blade_curvature or 0.0)
+    if pinion.cutter_radius is not None and gear.cutter_radius is not None:
+        excess = blank.side * (pinion.cutter_radius - gear.cutter_radius)
+        return Mismatch(excess, blade)
+    if ease_off is not None:
+        return replace(lengthwise(blank, ease_off), blade_curvature=blade)
+    return None
