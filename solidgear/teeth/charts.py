@@ -10,7 +10,7 @@ from solidgear.show.panel import GREY, Panel, Series, curve, lines_legend, reado
 from solidgear.show.plot import NARROW, WIDE, Chart, in_columns
 from solidgear.show.scales import HEAT, Axis, Shade, log_ticks, number
 from solidgear.show.units import Units
-from solidgear.teeth.mesh_contact import MeshContact
+from solidgear.teeth.mesh_contact import SolvedMesh
 from solidgear.teeth.study import AtTorque
 from solidgear.trains.page.chart import COLOURS
 
@@ -20,7 +20,7 @@ HEIGHTS, DECADES = 22, 1.3
 DRAWN_ORDERS = 3
 
 
-def cycle_chart(mesh: MeshContact, units: Units, title: str = "", width: float = WIDE) -> Chart:
+def cycle_chart(mesh: SolvedMesh, units: Units, title: str = "", width: float = WIDE) -> Chart:
     """Chart transmission error and stiffness over two mesh cycles."""
     cycle = mesh.cycle
     error = _lines(
@@ -74,14 +74,14 @@ def _lines(
     return panel
 
 
-def pattern(mesh: MeshContact) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def pattern(mesh: SolvedMesh) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the largest line load over a mesh cycle on every cell of a flank, (heights, slices) N/m,
     and the edges of the cells along the path and along the face, m; nan where nothing touches.
     """
-    wheels, slices = mesh.wheels, mesh.cycle.slices
-    beyond = mesh.pair.beyond * wheels.pitch
-    heights = np.linspace(wheels.ends[0] - beyond, wheels.ends[1] + beyond, HEIGHTS + 1)
-    faces = np.linspace(-wheels.face_width / 2, wheels.face_width / 2, slices + 1)
+    slices = mesh.cycle.slices
+    places = np.concatenate([position.cells.place for position in mesh.cycle.positions])
+    heights = np.linspace(places.min(), places.max(), HEIGHTS + 1)
+    faces = np.linspace(-mesh.face_width / 2, mesh.face_width / 2, slices + 1)
     loads = np.full((HEIGHTS, slices), np.nan)
     for position in mesh.cycle.positions:
         cells = position.cells
@@ -91,14 +91,17 @@ def pattern(mesh: MeshContact) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return loads, heights, faces
 
 
-def pattern_chart(mesh: MeshContact, units: Units, title: str = "", width: float = WIDE) -> Chart:
+def pattern_chart(mesh: SolvedMesh, units: Units, title: str = "", width: float = WIDE) -> Chart:
     """Chart the contact pattern on the flank of the first wheel."""
     loads, heights, faces = pattern(mesh)
     length, unit = units.unit("m"), units.unit("N/m")
     place, along = units.values(heights, "m"), units.values(faces, "m")
     panel = Panel(
         Axis(f"along the face, {length}", (float(along[0]), float(along[-1]))),
-        Axis(f"along the path of contact, {length}", (float(place[0]), float(place[-1]))),
+        Axis(
+            f"along the path of contact or up the tooth, {length}",
+            (float(place[0]), float(place[-1])),
+        ),
         260.0,
     )
     top = float(np.nanmax(loads))
@@ -125,22 +128,22 @@ def pattern_chart(mesh: MeshContact, units: Units, title: str = "", width: float
         {value: number(value) for value in log_ticks(low, most)},
     )
     panel.draw({"type": "rect"}, rows, shade)
-    for end in mesh.wheels.ends:
+    for end in mesh.path_ends:
         place_of_end = float(units.values(np.array(end), "m"))
         panel.draw({"type": "rule", "color": GREY, "strokeDash": [4, 3]}, [{"y": place_of_end}])
     return Chart([[panel]], width, title)
 
 
-def face_chart(mesh: MeshContact, units: Units, title: str = "", width: float = WIDE) -> Chart:
+def face_chart(mesh: SolvedMesh, units: Units, title: str = "", width: float = WIDE) -> Chart:
     """Chart the load along the face, as it lies and aligned."""
     slices = mesh.cycle.slices
-    step = mesh.wheels.face_width / slices
-    z = units.values((np.arange(slices) + 0.5) * step - mesh.wheels.face_width / 2, "m")
+    step = mesh.face_width / slices
+    z = units.values((np.arange(slices) + 0.5) * step - mesh.face_width / 2, "m")
     loads = {"under load": mesh.cycle.face_loads / step, "aligned": mesh.aligned.face_loads / step}
     looks = {key: Series(COLOURS[k]) for k, key in enumerate(loads)}
     shown = {key: units.values(load, "N/m") for key, load in loads.items()}
     unit, top = units.unit("N/m"), max(float(load.max()) for load in shown.values())
-    half = float(units.values(np.array(mesh.wheels.face_width / 2), "m"))
+    half = float(units.values(np.array(mesh.face_width / 2), "m"))
     panel = Panel(
         Axis(f"along the face, {units.unit('m')}", (-half, half)),
         Axis(f"load per face width, {unit}", (0.0, 1.08 * top)),

@@ -50,6 +50,13 @@ def contact(
         bool,
         typer.Option("--curve/--no-curve", help="Solve further torques as well, for the curves."),
     ] = True,
+    judge: Annotated[
+        bool,
+        typer.Option(
+            "--judge",
+            help="Solve the teeth by the norm, slices and in 3D, and say which is enough.",
+        ),
+    ] = False,
     out: Annotated[
         Path | None,
         typer.Option("--out", "-o", help="Folder for a page, charts and the mesh cycle."),
@@ -71,6 +78,7 @@ def contact(
                 point,
                 model=TeethModel(teeth.value, slices, positions),
                 factors=FACTORS if curve else (),
+                judge=judge,
                 progress=progress,
             )
         return contact_sheet(solved, units)

@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from time import perf_counter
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -28,7 +28,9 @@ from solidgear.trains.file.planetary import PlanetMesh
 #: numbers that are judged, and what they are called
 STIFFNESS, ERROR, FACE = "frequencies", "transmission error", "face load factor"
 #: models, the cheapest first
-NORM, SLICES, SOLID = "ISO 6336-1", "slices", "solid"
+NORM = "ISO 6336-1"
+SLICES: Literal["slices"] = "slices"
+SOLID: Literal["solid"] = "solid"
 
 
 @dataclass(frozen=True)
@@ -132,13 +134,13 @@ def ladder(
     carried: Carried,
     mesh: Pair | PlanetMesh,
     tolerance: float,
-    reference: str = SOLID,
+    reference: Literal["slices", "solid"] = SOLID,
     progress: Callable[[str], None] = lambda text: None,
 ) -> Ladder:
     """Solve a mesh with every model of its teeth up to the reference, and judge them."""
-    models = {SLICES: TeethModel()}
+    models: dict[str, TeethModel] = {SLICES: TeethModel()}
     if reference == SOLID:
-        models[SOLID] = TeethModel(SOLID)
+        models[SOLID] = TeethModel("solid")
     solved: dict[str, tuple[MeshContact, float]] = {}
     for name, model in models.items():
         progress(f"teeth of the {mesh.name}: {name}")
@@ -156,8 +158,7 @@ def ladder(
     rungs = []
     for name, (judged, seconds) in numbers.items():
         off = judged.off(judge)
-        if off[STIFFNESS] is not None:
-            off[STIFFNESS] *= share / 2
+        off[STIFFNESS] = (judged.tangent / judge.tangent - 1) * share / 2
         verdict = {
             key: OPEN if value is None else gap_verdict(value, bars[key], tolerance)
             for key, value in off.items()

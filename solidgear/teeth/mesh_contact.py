@@ -44,15 +44,10 @@ class Skew:
 
 
 @dataclass(frozen=True, eq=False)
-class MeshContact:
-    """The teeth of one mesh under one load.
-
-    Stiffnesses are along the line of action; those of the norm, c, are converted by the face width and
-    ``cos^2 beta_b``, for they count the transverse error under the transverse force.
-    """
+class SolvedMesh:
+    """The teeth of one mesh under one load, on their supports."""
 
     name: str
-    pair: CylindricalPair
     supports: Supports
     cycle: MeshCycle
     aligned: MeshCycle  #: under the same torque, with wheels that are held as they lie without load
@@ -62,6 +57,85 @@ class MeshContact:
     def status(self) -> str:
         """How the numbers came about, as in a file."""
         return "calculated"
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Sentences on numbers of the file that were not taken."""
+        return ()
+
+    @property
+    def face_width(self) -> float:
+        """Width of the face that both wheels share, m."""
+        raise NotImplementedError
+
+    @property
+    def path_ends(self) -> tuple[float, ...]:
+        """Places beyond which corners of tips touch, m; none where cells have no such places."""
+        return ()
+
+    @property
+    def edge(self) -> str:
+        """Where contact leaves the flank: a sentence, or nothing."""
+        raise NotImplementedError
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain data in SI for JSON."""
+        cycle = self.cycle
+        orders = cycle.orders(ORDERS)
+        return plain(
+            {
+                "mesh": self.name,
+                "status": self.status,
+                "torque": cycle.torque,
+                "force": cycle.force,
+                "transmission_error": {
+                    "phase": cycle.phases,
+                    "loaded": cycle.error,
+                    "unloaded": cycle.free_error,
+                    "peak_to_peak": cycle.peak_to_peak,
+                    "orders": np.abs(orders),
+                    "angles": np.angle(orders),
+                },
+                "stiffness": {
+                    "secant": cycle.secant,
+                    "tangent": cycle.tangent,
+                    "secant_with_supports": cycle.supported_secant,
+                    "tangent_with_supports": cycle.supported_tangent,
+                    "aligned_tangent": self.aligned.tangent,
+                },
+                "face_load_factor": cycle.face_load_factor,
+                "line_load_factor": cycle.line_load_factor,
+                "face_load": cycle.face_loads / (self.face_width / cycle.slices),
+                "pressure": cycle.pressure,
+                "load_share": cycle.load_share,
+                "mean_lines": cycle.mean_lines,
+                "corner_share": cycle.corner_share,
+                "mesh_point": cycle.points,
+                "line_of_action": cycle.lines_of_action,
+                "assumed": self.assumed,
+            }
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class MeshContact(SolvedMesh):
+    """The teeth of two cylindrical wheels under one load.
+
+    Stiffnesses are along the line of action; those of the norm, c, are converted by the face width and
+    ``cos^2 beta_b``, for they count the transverse error under the transverse force.
+    """
+
+    pair: CylindricalPair
+
+    @property
+    def face_width(self) -> float:
+        """Width of the face that both wheels share, m."""
+        return self.wheels.face_width
+
+    @property
+    def path_ends(self) -> tuple[float, ...]:
+        """Both ends of the path of contact, m."""
+        return self.wheels.ends
 
     @property
     def wheels(self) -> WheelPair:
@@ -129,49 +203,25 @@ class MeshContact:
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain data in SI for JSON."""
-        cycle = self.cycle
-        orders = cycle.orders(ORDERS)
         skew = self.skew
-        return plain(
+        data = super().as_dict()
+        data |= plain(
             {
-                "mesh": self.name,
-                "torque": cycle.torque,
-                "force": cycle.force,
                 "contact_ratio": self.wheels.contact_ratio,
                 "overlap_ratio": self.wheels.overlap_ratio,
-                "transmission_error": {
-                    "phase": cycle.phases,
-                    "loaded": cycle.error,
-                    "unloaded": cycle.free_error,
-                    "peak_to_peak": cycle.peak_to_peak,
-                    "orders": np.abs(orders),
-                    "angles": np.angle(orders),
-                },
-                "stiffness": {
-                    "secant": cycle.secant,
-                    "tangent": cycle.tangent,
-                    "secant_with_supports": cycle.supported_secant,
-                    "tangent_with_supports": cycle.supported_tangent,
-                    "aligned_tangent": self.aligned.tangent,
-                    "norm_single": self.along_line(self.norm.single),
-                    "norm_mesh": self.along_line(self.norm.mesh),
-                },
-                "face_load_factor": cycle.face_load_factor,
                 "face_load_factor_norm": self.norm_face_load_factor,
-                "line_load_factor": cycle.line_load_factor,
-                "face_load": cycle.face_loads / (self.wheels.face_width / cycle.slices),
                 "skew": {
                     "bending": skew.bending,
                     "turning": skew.turning,
                     "shape": skew.shape,
                     "total": skew.total,
                 },
-                "pressure": cycle.pressure,
-                "load_share": cycle.load_share,
-                "mean_lines": cycle.mean_lines,
-                "corner_share": cycle.corner_share,
-                "mesh_point": cycle.points,
-                "line_of_action": cycle.lines_of_action,
-                "assumed": self.assumed,
             }
         )
+        data["stiffness"] |= plain(
+            {
+                "norm_single": self.along_line(self.norm.single),
+                "norm_mesh": self.along_line(self.norm.mesh),
+            }
+        )
+        return data

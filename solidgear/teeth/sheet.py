@@ -7,13 +7,17 @@ from functools import partial
 
 import numpy as np
 
+from solidgear.core.judge.deviations import BEYOND, WITHIN
 from solidgear.show.command import caution
 from solidgear.show.plot import Make
 from solidgear.show.sheet import Sheet, Terminal
-from solidgear.show.table import NUMBER, Column, Table, numbers, word
+from solidgear.show.table import NUMBER, Cell, Column, Table, numbers, word
 from solidgear.show.units import Units, in_ascii
+from solidgear.show.words import percent
+from solidgear.teeth.bevel.train import BevelContact
 from solidgear.teeth.charts import cycle_chart, face_chart, pattern_chart, torque_chart
-from solidgear.teeth.mesh_contact import MeshContact
+from solidgear.teeth.ladder import ERROR, FACE, STIFFNESS, Ladder, Rung
+from solidgear.teeth.mesh_contact import MeshContact, SolvedMesh
 from solidgear.teeth.study import AtTorque, TeethStudy
 
 #: motion that rounding leaves, m
@@ -49,6 +53,7 @@ def contact_sheet(study: TeethStudy, units: Units) -> Sheet:
             tables.append(over_torque(curve, units, name))
             charts["torque" + end] = partial(torque_chart, curve, units, name)
             words["torque" + end] = TORQUE_SHOWN
+    tables += [of_models(found, units) for found in study.ladders]
     notes = [line for mesh in meshes for line in sentences(mesh, study, units)]
     return Sheet(
         name="contact",
@@ -61,6 +66,7 @@ def contact_sheet(study: TeethStudy, units: Units) -> Sheet:
             f"cycle_{number}" if several else "cycle": cycle_lines(mesh)
             for number, mesh in enumerate(meshes, start=1)
         },
+        verdict=[line for found in study.ladders for line in found.sentences()],
         notes=notes,
         cautions=study.cautions,
         words=words,
@@ -78,7 +84,7 @@ NOTE = (
 )
 
 
-def of_mesh(mesh: MeshContact, units: Units, note: str) -> Table:
+def of_mesh(mesh: SolvedMesh, units: Units, note: str) -> Table:
     """Return the numbers of a mesh, with their range over the cycle."""
     columns = [
         word(""),
@@ -97,7 +103,7 @@ def _alone(head: str, value: str) -> Row:
     return [head, value, "", ""]
 
 
-def _stiffnesses(mesh: MeshContact, units: Units) -> list[Row]:
+def _stiffnesses(mesh: SolvedMesh, units: Units) -> list[Row]:
     """Return rows of load and stiffness."""
     cycle, unit = mesh.cycle, units.unit("N/m")
 
@@ -105,24 +111,29 @@ def _stiffnesses(mesh: MeshContact, units: Units) -> list[Row]:
         shown = values.mean(), values.min(), values.max()
         return [f"{head}, {unit}", *(units.number(float(v), "N/m", 4) for v in shown)]
 
-    def norm(head: str, specific: float) -> Row:
-        return _alone(f"{head}, {unit}", units.number(mesh.along_line(specific), "N/m", 4))
-
     torque, force = units.unit("N m"), units.unit("N")
-    return [
+    rows = [
         _alone(f"torque on the first wheel, {torque}", units.number(cycle.torque, "N m", 4)),
         _alone(f"force along the line of action, {force}", units.number(cycle.force, "N", 4)),
-        _alone("contact ratio, overlap", _ratios(mesh)),
         spread("teeth, tangent", cycle.tangent),
         spread("teeth, secant", cycle.secant),
         spread("if aligned, tangent", mesh.aligned.tangent),
         spread("teeth and supports, tangent", cycle.supported_tangent),
-        norm("ISO 6336-1, one pair of teeth", mesh.norm.single),
-        norm("ISO 6336-1, mesh", mesh.norm.mesh),
     ]
+    if isinstance(mesh, MeshContact):
+        norm = {
+            "ISO 6336-1, one pair of teeth": mesh.norm.single,
+            "ISO 6336-1, mesh": mesh.norm.mesh,
+        }
+        rows += [
+            _alone(f"{head}, {unit}", units.number(mesh.along_line(c), "N/m", 4))
+            for head, c in norm.items()
+        ]
+        rows.insert(2, _alone("contact ratio, overlap", _ratios(mesh)))
+    return rows
 
 
-def _errors(mesh: MeshContact, units: Units) -> list[Row]:
+def _errors(mesh: SolvedMesh, units: Units) -> list[Row]:
     """Return rows of the transmission error."""
     cycle, unit = mesh.cycle, units.unit("m moved")
 
@@ -137,19 +148,24 @@ def _errors(mesh: MeshContact, units: Units) -> list[Row]:
     ]
 
 
-def _along_the_face(mesh: MeshContact, units: Units) -> list[Row]:
+def _along_the_face(mesh: SolvedMesh, units: Units) -> list[Row]:
     """Return rows of how load lies on the flank."""
     cycle, unit = mesh.cycle, units.unit("m moved")
     pressure = units.number(cycle.pressure, "Pa stressed", 4)
-    return [
-        _alone(f"askew by bending, {unit}", _size(mesh.skew.bending, units)),
-        _alone(f"askew by wind-up, {unit}", _size(mesh.skew.turning, units)),
+    rows = [
         _alone("face load factor", f"{cycle.face_load_factor:.2f}"),
-        _alone("face load factor, ISO 6336-1", f"{mesh.norm_face_load_factor:.2f}"),
         _alone("largest line load over its mean", f"{cycle.line_load_factor:.2f}"),
         _alone(f"largest pressure, {units.unit('Pa stressed')}", pressure),
         _alone("lines that carry, mean", f"{cycle.mean_lines:.2f}"),
     ]
+    if isinstance(mesh, MeshContact):
+        rows[:1] = [
+            _alone(f"askew by bending, {unit}", _size(mesh.skew.bending, units)),
+            _alone(f"askew by wind-up, {unit}", _size(mesh.skew.turning, units)),
+            *rows[:1],
+            _alone("face load factor, ISO 6336-1", f"{mesh.norm_face_load_factor:.2f}"),
+        ]
+    return rows
 
 
 def _size(value: float, units: Units) -> str:
@@ -181,7 +197,51 @@ def over_torque(curve: Sequence[AtTorque], units: Units, name: str) -> Table:
     return Table(f"Over the torque{f': {name}' if name else ''}", columns, curve)
 
 
-def cycle_lines(mesh: MeshContact) -> Table:
+def of_models(found: Ladder, units: Units) -> Table:
+    """Return models of the teeth side by side."""
+
+    def off(name: str, rung: Rung) -> Cell | str | None:
+        share = rung.off.get(name)
+        if share is None:
+            return None
+        if rung is found.reference:
+            return f"+- {percent(found.bars[name])}"
+        look = {WITHIN: "good", BEYOND: "bad"}.get(rung.verdict[name], "")
+        return Cell(f"{100 * share:+.2g} %", look)
+
+    rows = [
+        [
+            rung.model,
+            units.number(rung.numbers.tangent, "N/m", 4),
+            off(STIFFNESS, rung),
+            None
+            if rung.numbers.peak_to_peak is None
+            else units.number(rung.numbers.peak_to_peak, "m moved", 3),
+            off(ERROR, rung),
+            f"{rung.numbers.face_load_factor:.3f}",
+            off(FACE, rung),
+            rung.seconds,
+        ]
+        for rung in found.rungs
+    ]
+    columns = [
+        word("teeth by"),
+        Column(f"tangent, {units.unit('N/m')}"),
+        Column("frequency"),
+        Column(f"error pp, {units.unit('m moved')}"),
+        Column("off"),
+        Column("KHb"),
+        Column("off"),
+        Column("s", write=lambda seconds: f"{seconds:.1f}"),
+    ]
+    note = (
+        "Off: against the last, whose own error bars stand there; frequency: what the stiffness does to "
+        f"the mode with most strain energy in these teeth, {100 * found.share:.0f} %."
+    )
+    return Table(f"Models of the teeth: {found.mesh}", columns, rows, note)
+
+
+def cycle_lines(mesh: SolvedMesh) -> Table:
     """Return a mesh cycle in SI, for other programs."""
     cycle = mesh.cycle
     return numbers(
@@ -197,7 +257,7 @@ def cycle_lines(mesh: MeshContact) -> Table:
     )
 
 
-def sentences(mesh: MeshContact, study: TeethStudy, units: Units) -> list[str]:
+def sentences(mesh: SolvedMesh, study: TeethStudy, units: Units) -> list[str]:
     """Return what is to be said of a mesh."""
     several = len(study.meshes) > 1
     head = f"{mesh.name}: " if several else ""
@@ -208,8 +268,17 @@ def sentences(mesh: MeshContact, study: TeethStudy, units: Units) -> list[str]:
             f"{head}the file has a mesh stiffness of {units.text(stated, 'N/m', 4)}; its teeth give "
             f'{units.text(tangent, "N/m", 4)} about this load: write stiffness = "teeth" to take it.'
         )
+    if isinstance(mesh, BevelContact) and mesh.estimated:
+        low, high = mesh.band.stiffness
+        lines.append(
+            f"{head}cutter and mismatch are estimated: over those that are usual the mesh stiffness "
+            f"is {units.number(low, 'N/m', 3)} to {units.text(high, 'N/m', 3)}, a factor of "
+            f"{high / low:.1f}."
+        )
+        lines += [f"{head}{reason}" for reason in mesh.band.refused]
     if mesh.edge:
         lines.append(f"{head}{mesh.edge}.")
     if mesh.assumed:
         lines.append(f"{head}assumed: {'; '.join(mesh.assumed)}.")
+    lines += [f"{head}{note}" for note in mesh.notes]
     return lines

@@ -11,9 +11,10 @@ import numpy as np
 
 from solidgear.core import SolidgearError, pinned
 from solidgear.core.plain import plain
-from solidgear.teeth.mesh_contact import MeshContact
+from solidgear.teeth.ladder import Ladder, ladder
+from solidgear.teeth.mesh_contact import SolvedMesh
 from solidgear.teeth.supports import Carried, with_sections
-from solidgear.teeth.train_teeth import TeethModel, mesh_contact
+from solidgear.teeth.train_teeth import TeethModel, solved_mesh
 from solidgear.trains.assembly.mesh_stiffness import with_usual_meshes
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.pairs import Pair
@@ -29,7 +30,7 @@ class AtTorque:
     """A mesh at one torque of the operating point's shaft."""
 
     torque: float  #: of the operating point's shaft, N m
-    contact: MeshContact
+    contact: SolvedMesh
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain data in SI for JSON."""
@@ -43,20 +44,20 @@ class AtTorque:
                 "secant": cycle.secant.mean(),
                 "face_load_factor": cycle.face_load_factor,
                 "pressure": cycle.pressure,
-                "skew": self.contact.skew.total,
             }
         )
 
 
 @dataclass(frozen=True, eq=False)
 class TeethStudy:
-    """Contact of all meshes of a train with parallel shafts."""
+    """Contact of all meshes of a train."""
 
     title: str
     point: OperatingPoint
-    meshes: tuple[MeshContact, ...]
+    meshes: tuple[SolvedMesh, ...]
     curves: dict[str, tuple[AtTorque, ...]]  #: by mesh, torque ascending; empty without
     stiffness: dict[str, float | None]  #: of each mesh in the file, N/m; None where of teeth
+    ladders: tuple[Ladder, ...]  #: models of the teeth side by side, where asked for
     cautions: tuple[str, ...]
     seconds: float
 
@@ -71,6 +72,7 @@ class TeethStudy:
                     name: [at.as_dict() for at in curve] for name, curve in self.curves.items()
                 },
                 "file_stiffness": self.stiffness,
+                "models": {ladder.mesh: ladder.as_dict() for ladder in self.ladders},
                 "cautions": self.cautions,
                 "seconds": self.seconds,
             }
@@ -84,6 +86,7 @@ def teeth_study(
     *,
     model: TeethModel | None = None,
     factors: Sequence[float] = FACTORS,
+    judge: bool = False,
     progress: Callable[[str], None] = lambda text: None,
 ) -> TeethStudy:
     """Solve the contact of all meshes over a mesh cycle, and over the torque.
@@ -91,20 +94,20 @@ def teeth_study(
     Parameters
     ----------
     train : Train
-        With parallel shafts.
     point : OperatingPoint, optional
         By default the first of the train.
     model : TeethModel, optional
     factors : sequence of float
         Torques of the curves, of that of the point; none without curves.
+    judge : bool
+        Whether other models of the teeth are solved as well, and judged by the finest.
     progress : callable
         Is told in words what is solved.
 
     Raises
     ------
     SolidgearError
-        For a train without an operating point or parallel meshes, and teeth that the file does not
-        describe.
+        For a train without an operating point or teeth, and teeth that the file does not describe.
 
     Examples
     --------
@@ -127,33 +130,43 @@ def teeth_study(
     meshes = []
     for mesh in teeth:
         progress(f"teeth of the {mesh.name}")
-        meshes.append(mesh_contact(carried, mesh, model))
+        meshes.append(solved_mesh(carried, mesh, model))
     curves: dict[str, list[AtTorque]] = {mesh.name: [] for mesh in teeth} if factors else {}
     for factor in sorted(factors):
         torque = factor * point.torque
         progress(f"teeth at {torque:.4g} N m")
         at = carried if factor == 1 else carried.at(point.with_changes(torque=torque))
         for mesh, solved in zip(teeth, meshes):
-            contact = solved if factor == 1 else mesh_contact(at, mesh, model)
+            contact = solved if factor == 1 else solved_mesh(at, mesh, model)
             curves[mesh.name].append(AtTorque(torque, contact))
+    tolerance = train.ask.tolerance
+    ladders = [
+        ladder(carried, mesh, tolerance, progress=progress)
+        for mesh in teeth
+        if judge and not _is_bevel(mesh)
+    ]
     return TeethStudy(
         title=train.title or train.name,
         point=point,
         meshes=tuple(meshes),
         curves={name: tuple(curve) for name, curve in curves.items()},
         stiffness={mesh.name: stated_stiffness(train, mesh.name) for mesh in teeth},
+        ladders=tuple(ladders),
         cautions=tuple(carried.state.notes),
         seconds=perf_counter() - start,
     )
 
 
+def _is_bevel(mesh: Pair | PlanetMesh) -> bool:
+    return isinstance(mesh, Pair) and bool(mesh.mesh.shaft_angle)
+
+
 def touching(train: Train) -> list[Pair | PlanetMesh]:
-    """Return the meshes of parallel shafts, of planets those of the first; refused without any."""
-    pairs: list[Pair | PlanetMesh] = [pair for pair in train.pairs if not pair.mesh.shaft_angle]
+    """Return the meshes of pairs, and of planets those of the first; refused without any."""
     planets = [mesh for stage in train.stages for mesh in stage.meshes if mesh.planets == (1,)]
-    if not (pairs or planets):
-        raise SolidgearError(f"{train.name} has no mesh of parallel shafts")
-    return [*pairs, *planets]
+    if not (train.pairs or planets):
+        raise SolidgearError(f"{train.name} has no teeth in mesh")
+    return [*train.pairs, *planets]
 
 
 def stated_stiffness(train: Train, name: str) -> float | None:

@@ -173,6 +173,18 @@ def mesh_contact(
     )
 
 
+def solved_mesh(
+    carried: Carried, mesh: Pair | PlanetMesh, model: TeethModel | None = None
+) -> MeshContact | BevelContact:
+    """Solve the contact of any mesh over its cycle; bevel teeth are of slices."""
+    if isinstance(mesh, Pair) and mesh.mesh.shaft_angle:
+        model = model or TeethModel()
+        materials = [_material(member.scene) for member in mesh.members.values()]
+        both = materials[0], materials[1]
+        return bevel_contact(carried, mesh, both, model.slices, model.positions)
+    return mesh_contact(carried, mesh, model)
+
+
 def mesh_of_teeth(train: Train) -> Train:
     """Return a train whose meshes with ``stiffness = "teeth"`` have the numbers of their teeth at the
     first operating point: tangent stiffness, mesh point and line of action, and the orders of the
@@ -205,12 +217,7 @@ def _point(train: Train) -> OperatingPoint:
 
 def _filled(carried: Carried, pair: Pair, mesh):
     """Return the table of a mesh with the numbers of its teeth."""
-    solved: MeshContact | BevelContact
-    if pair.mesh.shaft_angle:
-        materials = [_material(member.scene) for member in pair.members.values()]
-        solved = bevel_contact(carried, pair, (materials[0], materials[1]))
-    else:
-        solved = mesh_contact(carried, pair)
+    solved = solved_mesh(carried, pair)
     cycle = solved.cycle
     orders = cycle.orders(ORDERS)
     changes = {

@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from math import cos, degrees, sin, sqrt
+from typing import Any
 
 from solidgear.teeth.bevel.band import EASE_OFFS, SettingBand, setting_band
 from solidgear.teeth.bevel.blank import BevelBlank
@@ -21,6 +22,7 @@ from solidgear.teeth.compliance.slices import Slices
 from solidgear.teeth.contact.cycle import POSITIONS, MeshCycle, mesh_cycle
 from solidgear.teeth.contact.frame import Frame, Supports
 from solidgear.teeth.contact.local import Elasticity, LineContact
+from solidgear.teeth.mesh_contact import SolvedMesh
 from solidgear.teeth.mesh_place import place_of_pair
 from solidgear.teeth.supports import Carried
 from solidgear.trains.file.pairs import Pair
@@ -51,16 +53,21 @@ ESTIMATES = {
 
 
 @dataclass(frozen=True, eq=False)
-class BevelContact:
+class BevelContact(SolvedMesh):
     """The teeth of one bevel mesh under one load."""
 
-    name: str
     pair: BevelPair
-    supports: Supports
-    cycle: MeshCycle
-    aligned: MeshCycle  #: under the same torque, with wheels that are held
-    assumed: tuple[str, ...]  #: what the file leaves open, sentences
     estimated: bool  #: whether cutter or mismatch are
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Sentences on numbers of the file that were not taken."""
+        return self.pair.flanks.blank.notes
+
+    @property
+    def face_width(self) -> float:
+        """Face width, m."""
+        return self.pair.flanks.blank.face
 
     @property
     def status(self) -> str:
@@ -81,6 +88,17 @@ class BevelContact:
     def band(self) -> SettingBand:
         """Contact over the settings that the file leaves open."""
         return setting_band(self.pair, self.cycle.torque, self.supports)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain data in SI for JSON."""
+        data = super().as_dict()
+        if self.estimated:
+            data["band"] = {
+                "stiffness": self.band.stiffness,
+                "peak_to_peak": self.band.error,
+                "refused": list(self.band.refused),
+            }
+        return data
 
     @property
     def edge(self) -> str:
@@ -121,7 +139,7 @@ def assumed(blank: BevelBlank, mismatch: Mismatch | None) -> tuple[str, ...]:
     out = [ESTIMATES[key](blank) for key in blank.estimated]
     if mismatch is None:
         out.append(f"ease-off {1e6 * USUAL_EASE_OFF:.0f} um by the cutter radius")
-    return (*out, *blank.notes)
+    return tuple(out)
 
 
 def apex_frame(carried: Carried, pair: Pair, blank: BevelBlank) -> Frame:
