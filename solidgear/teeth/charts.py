@@ -10,6 +10,8 @@ from solidgear.show.panel import GREY, Panel, Series, curve, lines_legend, reado
 from solidgear.show.plot import NARROW, WIDE, Chart, in_columns
 from solidgear.show.scales import HEAT, Axis, Shade, log_ticks, number
 from solidgear.show.units import Units
+from solidgear.teeth.bevel.train import BevelContact
+from solidgear.teeth.contact.cycle import MeshCycle
 from solidgear.teeth.mesh_contact import MeshContact
 from solidgear.teeth.study import AtTorque
 from solidgear.trains.page.chart import COLOURS
@@ -20,7 +22,9 @@ HEIGHTS, DECADES = 22, 1.3
 DRAWN_ORDERS = 3
 
 
-def cycle_chart(mesh: MeshContact, units: Units, title: str = "", width: float = WIDE) -> Chart:
+def cycle_chart(
+    mesh: MeshContact | BevelContact, units: Units, title: str = "", width: float = WIDE
+) -> Chart:
     """Chart transmission error and stiffness over two mesh cycles."""
     cycle = mesh.cycle
     error = _lines(
@@ -82,26 +86,65 @@ def pattern(mesh: MeshContact) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     beyond = mesh.pair.beyond * wheels.pitch
     heights = np.linspace(wheels.ends[0] - beyond, wheels.ends[1] + beyond, HEIGHTS + 1)
     faces = np.linspace(-wheels.face_width / 2, wheels.face_width / 2, slices + 1)
-    loads = np.full((HEIGHTS, slices), np.nan)
-    for position in mesh.cycle.positions:
-        cells = position.cells
-        row = np.clip(np.searchsorted(heights, cells.place) - 1, 0, HEIGHTS - 1)
-        for i, j, load in zip(row, cells.slice, position.line_load):
-            loads[i, j] = np.nanmax([loads[i, j], load])
-    return loads, heights, faces
+    return _largest(mesh.cycle, heights), heights, faces
 
 
 def pattern_chart(mesh: MeshContact, units: Units, title: str = "", width: float = WIDE) -> Chart:
     """Chart the contact pattern on the flank of the first wheel."""
     loads, heights, faces = pattern(mesh)
+    panel = _flank(loads, heights, faces, "along the path of contact", units)
+    for end in mesh.wheels.ends:
+        place = float(units.values(np.array(end), "m"))
+        panel.draw({"type": "rule", "color": GREY, "strokeDash": [4, 3]}, [{"y": place}])
+    return Chart([[panel]], width, title)
+
+
+def bevel_pattern(mesh: BevelContact) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the largest line load over a mesh cycle on every cell of the pinion's flank, (heights,
+    slices) N/m, and the edges of the cells above the pitch cone and along the face, m; nan where
+    nothing touches.
+    """
+    lifts = np.concatenate([position.cells.place for position in mesh.cycle.positions])
+    heights = np.linspace(lifts.min(), mesh.pair.flanks.blank.addenda[0], HEIGHTS + 1)
+    half = mesh.pair.flanks.blank.face / 2
+    faces = np.linspace(-half, half, mesh.cycle.slices + 1)
+    return _largest(mesh.cycle, heights), heights, faces
+
+
+def bevel_pattern_chart(
+    mesh: BevelContact, units: Units, title: str = "", width: float = WIDE
+) -> Chart:
+    """Chart the contact pattern on the flank of the pinion, its tip above and its heel to the right."""
+    loads, heights, faces = bevel_pattern(mesh)
+    panel = _flank(loads, heights, faces, "above the pitch cone", units)
+    panel.draw({"type": "rule", "color": GREY, "strokeDash": [4, 3]}, [{"y": 0.0}])
+    return Chart([[panel]], width, title)
+
+
+def _largest(cycle: MeshCycle, heights: np.ndarray) -> np.ndarray:
+    """Return the largest line load of a cycle by height, of whose cells these are the edges, and slice;
+    nan where nothing touches.
+    """
+    loads = np.full((len(heights) - 1, cycle.slices), np.nan)
+    for position in cycle.positions:
+        cells = position.cells
+        row = np.clip(np.searchsorted(heights, cells.place) - 1, 0, len(heights) - 2)
+        for i, j, load in zip(row, cells.slice, position.line_load):
+            loads[i, j] = np.nanmax([loads[i, j], load])
+    return loads
+
+
+def _flank(
+    loads: np.ndarray, heights: np.ndarray, faces: np.ndarray, name: str, units: Units
+) -> Panel:
+    """Return the panel of line loads on a flank, whose axis of heights has a name."""
     length, unit = units.unit("m"), units.unit("N/m")
     place, along = units.values(heights, "m"), units.values(faces, "m")
     panel = Panel(
         Axis(f"along the face, {length}", (float(along[0]), float(along[-1]))),
-        Axis(f"along the path of contact, {length}", (float(place[0]), float(place[-1]))),
+        Axis(f"{name}, {length}", (float(place[0]), float(place[-1]))),
         260.0,
     )
-    top = float(np.nanmax(loads))
     rows = []
     for i, j in zip(*np.nonzero(np.nan_to_num(loads) > 0)):
         load = float(units.values(loads[i, j], "N/m"))
@@ -115,7 +158,7 @@ def pattern_chart(mesh: MeshContact, units: Units, title: str = "", width: float
                 "readout": readout("line load", ("", f"{load:.4g}", unit)),
             }
         )
-    most = float(units.values(np.array(top), "N/m"))
+    most = float(units.values(np.array(np.nanmax(loads)), "N/m"))
     low = most * 10**-DECADES
     shade = Shade(
         "load",
@@ -125,10 +168,7 @@ def pattern_chart(mesh: MeshContact, units: Units, title: str = "", width: float
         {value: number(value) for value in log_ticks(low, most)},
     )
     panel.draw({"type": "rect"}, rows, shade)
-    for end in mesh.wheels.ends:
-        place_of_end = float(units.values(np.array(end), "m"))
-        panel.draw({"type": "rule", "color": GREY, "strokeDash": [4, 3]}, [{"y": place_of_end}])
-    return Chart([[panel]], width, title)
+    return panel
 
 
 def face_chart(mesh: MeshContact, units: Units, title: str = "", width: float = WIDE) -> Chart:

@@ -12,7 +12,14 @@ from solidgear.show.plot import Make
 from solidgear.show.sheet import Sheet, Terminal
 from solidgear.show.table import NUMBER, Column, Table, numbers, word
 from solidgear.show.units import Units, in_ascii
-from solidgear.teeth.charts import cycle_chart, face_chart, pattern_chart, torque_chart
+from solidgear.teeth.bevel.train import BevelContact
+from solidgear.teeth.charts import (
+    bevel_pattern_chart,
+    cycle_chart,
+    face_chart,
+    pattern_chart,
+    torque_chart,
+)
 from solidgear.teeth.mesh_contact import MeshContact
 from solidgear.teeth.study import AtTorque, TeethStudy
 
@@ -31,8 +38,10 @@ TORQUE_SHOWN = "Transmission error, its first orders and stiffness over the torq
 
 def contact_sheet(study: TeethStudy, units: Units) -> Sheet:
     """Return the sheet of the contact of all meshes."""
-    meshes, several = study.meshes, len(study.meshes) > 1
+    meshes, bevels = study.meshes, study.bevels
+    several = len(meshes) + len(bevels) > 1
     tables = [of_mesh(mesh, units, NOTE if mesh is meshes[-1] else "") for mesh in meshes]
+    tables += [of_bevel(mesh, units) for mesh in bevels]
     charts: dict[str, Make] = {}
     words: dict[str, str] = {}
     for number, mesh in enumerate(meshes, start=1):
@@ -49,7 +58,14 @@ def contact_sheet(study: TeethStudy, units: Units) -> Sheet:
             tables.append(over_torque(curve, units, name))
             charts["torque" + end] = partial(torque_chart, curve, units, name)
             words["torque" + end] = TORQUE_SHOWN
-    notes = [line for mesh in meshes for line in sentences(mesh, study, units)]
+    for number, bevel in enumerate(bevels, start=len(meshes) + 1):
+        end = f"_{number}" if several else ""
+        name = bevel.name if several else ""
+        charts["cycle" + end] = partial(cycle_chart, bevel, units, name)
+        charts["pattern" + end] = partial(bevel_pattern_chart, bevel, units, name)
+        words |= {"cycle" + end: CYCLE_SHOWN, "pattern" + end: PATTERN_SHOWN}
+    all_meshes: tuple[MeshContact | BevelContact, ...] = (*meshes, *bevels)
+    notes = [line for mesh in all_meshes for line in sentences(mesh, study, units)]
     return Sheet(
         name="contact",
         title=f"{study.title}: contact of teeth",
@@ -59,7 +75,7 @@ def contact_sheet(study: TeethStudy, units: Units) -> Sheet:
         charts=charts,
         lines={
             f"cycle_{number}" if several else "cycle": cycle_lines(mesh)
-            for number, mesh in enumerate(meshes, start=1)
+            for number, mesh in enumerate(all_meshes, start=1)
         },
         notes=notes,
         cautions=study.cautions,
@@ -75,6 +91,12 @@ def contact_sheet(study: TeethStudy, units: Units) -> Sheet:
 NOTE = (
     "Tangent: about the load, what vibrates; secant: from first touch to the load. ISO 6336-1: with "
     "CM = 0.8, along the line of action. Askew: how far flanks open from end to end of the face."
+)
+
+
+BEVEL_NOTE = (
+    "Tangent: about the load, what vibrates; secant: from first touch to the load. Flanks follow from "
+    "the blank's data, as a face-mill cutter leaves them."
 )
 
 
@@ -97,32 +119,70 @@ def _alone(head: str, value: str) -> Row:
     return [head, value, "", ""]
 
 
-def _stiffnesses(mesh: MeshContact, units: Units) -> list[Row]:
-    """Return rows of load and stiffness."""
+def of_bevel(mesh: BevelContact, units: Units) -> Table:
+    """Return the numbers of a bevel mesh, with their range over the cycle."""
+    columns = [
+        word(""),
+        Column("mean or all", kind=NUMBER),
+        Column("least", kind=NUMBER),
+        Column("largest", kind=NUMBER),
+    ]
+    cycle, flanks = mesh.cycle, mesh.pair.flanks
+    band: list[Row] = []
+    if mesh.band is not None:
+        ends = (units.number(value, "N/m", 4) for value in mesh.band.stiffness)
+        band = [[f"tangent by usual cutters, ease-offs, {units.unit('N/m')}", "", *ends]]
+    rows = [
+        *_loads(mesh, f"{flanks.contact_ratio:.2f}", units),
+        *band,
+        *_errors(mesh, units),
+        _alone(
+            f"largest pressure, {units.unit('Pa stressed')}",
+            units.number(cycle.pressure, "Pa stressed", 4),
+        ),
+        _alone("load on tips and ends of the face", f"{100 * cycle.corner_share:.0f} %"),
+        _alone("lines that carry, mean", f"{cycle.mean_lines:.2f}"),
+    ]
+    return Table(f"Contact of bevel teeth: {mesh.name}", columns, rows, BEVEL_NOTE)
+
+
+def _loads(mesh: MeshContact | BevelContact, ratio: str, units: Units) -> list[Row]:
+    """Return rows of load, contact ratio and stiffness by contact."""
     cycle, unit = mesh.cycle, units.unit("N/m")
 
     def spread(head: str, values: np.ndarray) -> Row:
         shown = values.mean(), values.min(), values.max()
         return [f"{head}, {unit}", *(units.number(float(v), "N/m", 4) for v in shown)]
 
-    def norm(head: str, specific: float) -> Row:
-        return _alone(f"{head}, {unit}", units.number(mesh.along_line(specific), "N/m", 4))
-
     torque, force = units.unit("N m"), units.unit("N")
     return [
         _alone(f"torque on the first wheel, {torque}", units.number(cycle.torque, "N m", 4)),
         _alone(f"force along the line of action, {force}", units.number(cycle.force, "N", 4)),
-        _alone("contact ratio, overlap", _ratios(mesh)),
+        _alone(
+            "contact ratio" if isinstance(mesh, BevelContact) else "contact ratio, overlap", ratio
+        ),
         spread("teeth, tangent", cycle.tangent),
         spread("teeth, secant", cycle.secant),
         spread("if aligned, tangent", mesh.aligned.tangent),
         spread("teeth and supports, tangent", cycle.supported_tangent),
+    ]
+
+
+def _stiffnesses(mesh: MeshContact, units: Units) -> list[Row]:
+    """Return rows of load and stiffness."""
+
+    def norm(head: str, specific: float) -> Row:
+        value = units.number(mesh.along_line(specific), "N/m", 4)
+        return _alone(f"{head}, {units.unit('N/m')}", value)
+
+    return [
+        *_loads(mesh, _ratios(mesh), units),
         norm("ISO 6336-1, one pair of teeth", mesh.norm.single),
         norm("ISO 6336-1, mesh", mesh.norm.mesh),
     ]
 
 
-def _errors(mesh: MeshContact, units: Units) -> list[Row]:
+def _errors(mesh: MeshContact | BevelContact, units: Units) -> list[Row]:
     """Return rows of the transmission error."""
     cycle, unit = mesh.cycle, units.unit("m moved")
 
@@ -181,7 +241,7 @@ def over_torque(curve: Sequence[AtTorque], units: Units, name: str) -> Table:
     return Table(f"Over the torque{f': {name}' if name else ''}", columns, curve)
 
 
-def cycle_lines(mesh: MeshContact) -> Table:
+def cycle_lines(mesh: MeshContact | BevelContact) -> Table:
     """Return a mesh cycle in SI, for other programs."""
     cycle = mesh.cycle
     return numbers(
@@ -197,9 +257,9 @@ def cycle_lines(mesh: MeshContact) -> Table:
     )
 
 
-def sentences(mesh: MeshContact, study: TeethStudy, units: Units) -> list[str]:
+def sentences(mesh: MeshContact | BevelContact, study: TeethStudy, units: Units) -> list[str]:
     """Return what is to be said of a mesh."""
-    several = len(study.meshes) > 1
+    several = len(study.meshes) + len(study.bevels) > 1
     head = f"{mesh.name}: " if several else ""
     lines = []
     tangent, stated = float(mesh.cycle.tangent.mean()), study.stiffness[mesh.name]
@@ -212,4 +272,10 @@ def sentences(mesh: MeshContact, study: TeethStudy, units: Units) -> list[str]:
         lines.append(f"{head}{mesh.edge}.")
     if mesh.assumed:
         lines.append(f"{head}assumed: {'; '.join(mesh.assumed)}.")
+    if isinstance(mesh, BevelContact) and mesh.band is not None:
+        least, most = (units.text(value, "N/m", 3) for value in mesh.band.stiffness)
+        lines.append(
+            f"{head}over usual cutters and ease-offs the mesh stiffness is {least} to {most}, a "
+            f"factor of {mesh.band.factor:.1f}: give cutter_radius and ease_off."
+        )
     return lines

@@ -11,9 +11,10 @@ import numpy as np
 
 from solidgear.core import SolidgearError, pinned
 from solidgear.core.plain import plain
+from solidgear.teeth.bevel.train import BevelContact
 from solidgear.teeth.mesh_contact import MeshContact
 from solidgear.teeth.supports import Carried, with_sections
-from solidgear.teeth.train_teeth import TeethModel, mesh_contact
+from solidgear.teeth.train_teeth import TeethModel, bevel_mesh_contact, mesh_contact
 from solidgear.trains.assembly.mesh_stiffness import with_usual_meshes
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.pairs import Pair
@@ -50,11 +51,12 @@ class AtTorque:
 
 @dataclass(frozen=True, eq=False)
 class TeethStudy:
-    """Contact of all meshes of a train with parallel shafts."""
+    """Contact of all meshes of a train."""
 
     title: str
     point: OperatingPoint
-    meshes: tuple[MeshContact, ...]
+    meshes: tuple[MeshContact, ...]  #: of parallel shafts
+    bevels: tuple[BevelContact, ...]
     curves: dict[str, tuple[AtTorque, ...]]  #: by mesh, torque ascending; empty without
     stiffness: dict[str, float | None]  #: of each mesh in the file, N/m; None where of teeth
     cautions: tuple[str, ...]
@@ -67,6 +69,7 @@ class TeethStudy:
                 "train": self.title,
                 "point": self.point,
                 "meshes": {mesh.name: mesh.as_dict() for mesh in self.meshes},
+                "bevels": {mesh.name: mesh.as_dict() for mesh in self.bevels},
                 "curves": {
                     name: [at.as_dict() for at in curve] for name, curve in self.curves.items()
                 },
@@ -103,8 +106,7 @@ def teeth_study(
     Raises
     ------
     SolidgearError
-        For a train without an operating point or parallel meshes, and teeth that the file does not
-        describe.
+        For a train without an operating point, and teeth that the file does not describe.
 
     Examples
     --------
@@ -123,13 +125,16 @@ def teeth_study(
         )
     sectioned = with_sections(with_usual_meshes(train))
     carried = Carried.at_rest(sectioned, point)
-    teeth = touching(carried.train)
-    meshes = []
+    teeth, bevels = touching(carried.train)
+    meshes, bevel_meshes = [], []
+    for pair in bevels:
+        progress(f"bevel teeth of the {pair.name}")
+        bevel_meshes.append(bevel_mesh_contact(carried, pair, model))
     for mesh in teeth:
         progress(f"teeth of the {mesh.name}")
         meshes.append(mesh_contact(carried, mesh, model))
     curves: dict[str, list[AtTorque]] = {mesh.name: [] for mesh in teeth} if factors else {}
-    for factor in sorted(factors):
+    for factor in sorted(factors if teeth else ()):
         torque = factor * point.torque
         progress(f"teeth at {torque:.4g} N m")
         at = carried if factor == 1 else carried.at(point.with_changes(torque=torque))
@@ -140,20 +145,24 @@ def teeth_study(
         title=train.title or train.name,
         point=point,
         meshes=tuple(meshes),
+        bevels=tuple(bevel_meshes),
         curves={name: tuple(curve) for name, curve in curves.items()},
-        stiffness={mesh.name: stated_stiffness(train, mesh.name) for mesh in teeth},
+        stiffness={mesh.name: stated_stiffness(train, mesh.name) for mesh in (*teeth, *bevels)},
         cautions=tuple(carried.state.notes),
         seconds=perf_counter() - start,
     )
 
 
-def touching(train: Train) -> list[Pair | PlanetMesh]:
-    """Return the meshes of parallel shafts, of planets those of the first; refused without any."""
+def touching(train: Train) -> tuple[list[Pair | PlanetMesh], list[Pair]]:
+    """Return the meshes of parallel shafts, of planets those of the first, and those of bevel gears;
+    refused without any.
+    """
     pairs: list[Pair | PlanetMesh] = [pair for pair in train.pairs if not pair.mesh.shaft_angle]
+    bevels = [pair for pair in train.pairs if pair.mesh.shaft_angle]
     planets = [mesh for stage in train.stages for mesh in stage.meshes if mesh.planets == (1,)]
-    if not (pairs or planets):
-        raise SolidgearError(f"{train.name} has no mesh of parallel shafts")
-    return [*pairs, *planets]
+    if not (pairs or planets or bevels):
+        raise SolidgearError(f"{train.name} has no mesh")
+    return [*pairs, *planets], bevels
 
 
 def stated_stiffness(train: Train, name: str) -> float | None:

@@ -132,6 +132,15 @@ def mesh_contact(
     )
 
 
+def bevel_mesh_contact(
+    carried: Carried, pair: Pair, model: TeethModel | None = None
+) -> BevelContact:
+    """Solve the contact of a bevel mesh over its cycle where its train is carried."""
+    model = model or TeethModel()
+    first, second = (_material(member.scene) for member in pair.members.values())
+    return bevel_contact(carried, pair, (first, second), model.slices, model.positions)
+
+
 def mesh_of_teeth(train: Train) -> Train:
     """Return a train whose meshes with ``stiffness = "teeth"`` have the numbers of their teeth at the
     first operating point: tangent stiffness, mesh point and line of action, and the orders of the
@@ -166,8 +175,7 @@ def _filled(carried: Carried, pair: Pair, mesh):
     """Return the table of a mesh with the numbers of its teeth."""
     solved: MeshContact | BevelContact
     if pair.mesh.shaft_angle:
-        materials = [_material(member.scene) for member in pair.members.values()]
-        solved = bevel_contact(carried, pair, (materials[0], materials[1]))
+        solved = bevel_mesh_contact(carried, pair)
     else:
         solved = mesh_contact(carried, pair)
     cycle = solved.cycle

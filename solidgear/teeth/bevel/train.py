@@ -10,7 +10,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from math import cos, degrees, sin, sqrt
+from typing import Any
 
+import numpy as np
+
+from solidgear.core.plain import plain
 from solidgear.teeth.bevel.band import EASE_OFFS, SettingBand, setting_band
 from solidgear.teeth.bevel.blank import BevelBlank
 from solidgear.teeth.bevel.flank import BevelFlanks, Mismatch, lengthwise
@@ -33,6 +37,8 @@ USUAL_EASE_OFF = sqrt(EASE_OFFS[0] * EASE_OFFS[-1])
 RIM = 4.0
 #: slices of the face
 SLICES = 24
+#: orders of the transmission error that are listed
+ORDERS = 5
 #: share of the load at tips and ends of the face that is worth a sentence
 EDGE = 0.2
 #: what estimated values of a blank are, by the attribute
@@ -59,8 +65,13 @@ class BevelContact:
     supports: Supports
     cycle: MeshCycle
     aligned: MeshCycle  #: under the same torque, with wheels that are held
-    assumed: tuple[str, ...]  #: what the file leaves open, sentences
-    estimated: bool  #: whether cutter or mismatch are
+    assumed: tuple[str, ...]  #: what the file leaves open
+    eased: bool  #: whether the mismatch is estimated
+
+    @property
+    def estimated(self) -> bool:
+        """Whether cutter or mismatch are."""
+        return self.eased or "cutter_radius" in self.pair.flanks.blank.estimated
 
     @property
     def status(self) -> str:
@@ -78,9 +89,58 @@ class BevelContact:
         return -gear * sin(angle), gear * cos(angle) - pinion, 0.0
 
     @cached_property
-    def band(self) -> SettingBand:
-        """Contact over the settings that the file leaves open."""
-        return setting_band(self.pair, self.cycle.torque, self.supports)
+    def band(self) -> SettingBand | None:
+        """Contact over the settings that the file leaves open; None where it leaves none open."""
+        if not self.estimated:
+            return None
+        ease_offs = EASE_OFFS if self.eased else (self.pair.flanks.ease_off(),)
+        return setting_band(self.pair, self.cycle.torque, self.supports, ease_offs=ease_offs)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain data in SI for JSON."""
+        cycle, band, flanks = self.cycle, self.band, self.pair.flanks
+        orders = cycle.orders(ORDERS)
+        return plain(
+            {
+                "mesh": self.name,
+                "torque": cycle.torque,
+                "force": cycle.force,
+                "contact_ratio": flanks.contact_ratio,
+                "ease_off": flanks.ease_off(),
+                "cutter_radius": flanks.blank.cutter_radius,
+                "transmission_error": {
+                    "phase": cycle.phases,
+                    "loaded": cycle.error,
+                    "unloaded": cycle.free_error,
+                    "peak_to_peak": cycle.peak_to_peak,
+                    "orders": np.abs(orders),
+                    "angles": np.angle(orders),
+                },
+                "stiffness": {
+                    "secant": cycle.secant,
+                    "tangent": cycle.tangent,
+                    "secant_with_supports": cycle.supported_secant,
+                    "tangent_with_supports": cycle.supported_tangent,
+                    "aligned_tangent": self.aligned.tangent,
+                },
+                "band": [
+                    {
+                        "cutter_radius": setting.cutter_radius,
+                        "ease_off": setting.ease_off,
+                        "tangent": setting.cycle.tangent.mean(),
+                        "secant": setting.cycle.secant.mean(),
+                        "peak_to_peak": setting.cycle.peak_to_peak,
+                    }
+                    for setting in (() if band is None else band.settings)
+                ],
+                "pressure": cycle.pressure,
+                "mean_lines": cycle.mean_lines,
+                "edge_share": cycle.corner_share,
+                "mesh_point": cycle.points,
+                "line_of_action": cycle.lines_of_action,
+                "assumed": self.assumed,
+            }
+        )
 
     @property
     def edge(self) -> str:
@@ -170,5 +230,5 @@ def bevel_contact(
         cycle=cycle(supports),
         aligned=cycle(None),
         assumed=assumed(blank, mismatch),
-        estimated=mismatch is None or "cutter_radius" in blank.estimated,
+        eased=mismatch is None,
     )
