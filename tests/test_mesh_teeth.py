@@ -8,6 +8,8 @@ import pytest
 
 import solidgear as sg
 from solidgear.core.errors import SceneError
+from solidgear.trains.assembly.assembly import Assembly
+from solidgear.trains.assembly.stages import mesh_row
 from solidgear.trains.file.mesh_teeth import wheels_of
 from solidgear.trains.load.contact import contact
 
@@ -221,3 +223,32 @@ def test_grids_that_are_none_are_refused(gearbox, grid, words):
     plain = {"z": (0.0, 1e-2), "deviation": ((0.0, 0.0), (0.0, 0.0))}
     with pytest.raises(SceneError, match=words):
         gearbox.pinion.with_changes(measured_flank=plain | grid)
+
+
+@pytest.mark.parametrize("hand", ["right", "left"])
+@pytest.mark.parametrize("coast", [False, True])
+def test_face_places_of_planets_run_as_the_axial_force_of_their_teeth_says(hand, coast):
+    """As of pairs, by the rows of the meshes in the system: they push the first wheel off the other."""
+    train = sg.load_train(GEOMETRY / "reducer.toml")
+    (stage,) = train.stages
+    side, port = stage.shafts[0], stage.ports[0]
+    gears = train.shafts[side].gears
+    leaning = gears[port].with_changes(helix_angle=radians(12), hand=hand)
+    shaft = train.shafts[side].with_changes(gears={**gears, port: leaning})
+    assembly = Assembly(train.with_changes(shafts={**train.shafts, side: shaft}))
+    assembly = assembly.on_flank(coast)
+    system = assembly.system("euler")
+    (at_work,) = assembly.stages.values()
+    sun, planet = (
+        system.port(f"{side}.{port}"),
+        system.port(f"{at_work.planets['planet 1']}.centre"),
+    )
+    axis = sun.axes[:, 1]
+    outward = planet.point - sun.point
+    outward -= (outward @ axis) * axis
+    for mesh, first in zip(at_work.stage.together, (sun, planet)):
+        row, _ = mesh_row(system, f"{stage.name} {mesh.mate} 1")
+        push = first.axes @ np.linalg.lstsq(first.rows.T, row, rcond=None)[0][:3]
+        push *= -np.sign(push @ outward)
+        due = np.sign(push @ axis)
+        assert wheels_of(mesh, at_work.way < 0).along == (due, due)

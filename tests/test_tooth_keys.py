@@ -15,7 +15,7 @@ from solidgear.core.gears.wheel_pair import WheelPair
 from solidgear.core.registry import _PLACES, addition, register
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.mesh_stiffness import USUAL, asks_for_teeth
-from solidgear.trains.file.tooth_fit import fit_cautions, path_cuts
+from solidgear.trains.file.tooth_fit import fit_cautions, fit_line, path_cuts
 from solidgear.trains.judge.check import _facts
 from solidgear.trains.load.operation import at_point
 from solidgear.variants.sweep.design import Design
@@ -40,6 +40,10 @@ def stand_in(train):
         for m in train.meshes
     )
     return train.with_changes(meshes=meshes)
+
+
+def unchanged(train):
+    return train
 
 
 @pytest.fixture
@@ -192,6 +196,13 @@ def test_without_anyone_to_solve_teeth_a_number_is_asked_for(tmp_path, solving):
         Assembly(train)
 
 
+def test_a_mesh_that_stays_without_a_number_is_refused(tmp_path, solving):
+    register("mesh stiffness", "teeth", f"{__name__}:unchanged")
+    train = sg.load_train(written(tmp_path, with_teeth()))
+    with pytest.raises(SolidgearError, match="give a number there"):
+        Assembly(train)
+
+
 def test_check_solves_nothing_and_says_what_it_takes(tmp_path, solving):
     train = sg.load_train(written(tmp_path, with_teeth(with_lines('crowning = "5 um"'))))
     assembly = Assembly(train, solves_teeth=False)
@@ -269,6 +280,11 @@ def test_tips_that_meet_fillets_are_told():
     assert f"end at {hypot(start, base):.6g} mm" in caution
     tips = 115.5 * sine - ((85.5 + 3.6) ** 2 - (85.5 * cos(radians(20))) ** 2) ** 0.5
     assert path_cuts(fit) == pytest.approx((1e-3 * (start - tips), 0.0), rel=1e-6)
+    lost = f"{1e6 * path_cuts(fit)[0]:.1f} um of the path lost at fillets"
+    assert fit_line(fit).endswith(lost)
+    assert "lost" not in fit_line(WheelPair(fit.first, Wheel(57, 3e-3)))
+    # undercut by its rack, a wheel of 12 teeth ends the path before tips would
+    assert "lost at fillets" in fit_line(WheelPair(Wheel(12, 3e-3), Wheel(57, 3e-3)))
     assert not any(
         "fillets" in c for c in fit_cautions(WheelPair(fit.first, Wheel(57, 3e-3)), "ab")
     )

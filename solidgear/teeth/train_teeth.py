@@ -8,14 +8,17 @@ the load lies along the face, and for nothing else there.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
 from solidgear.core import Scene, SceneError
 from solidgear.core.gears.wheel import Wheel
 from solidgear.teeth.bevel.train import BevelContact, bevel_contact
-from solidgear.teeth.compliance.plane import PlaneTeeth
-from solidgear.teeth.compliance.slices import Slices
+from solidgear.teeth.compliance.flank import FlankCompliance
+from solidgear.teeth.compliance.plane import DEPTH, PlaneTeeth
+from solidgear.teeth.compliance.slices import SPREAD, Slices
+from solidgear.teeth.compliance.solid import SolidTeeth
 from solidgear.teeth.contact.cycle import POSITIONS, MeshCycle, mesh_cycle
 from solidgear.teeth.contact.cylindrical import CylindricalPair
 from solidgear.teeth.contact.frame import Supports
@@ -39,8 +42,44 @@ THINNEST = 0.2
 class TeethModel:
     """How teeth are modelled."""
 
+    name: Literal["slices", "solid"] = "slices"
     slices: int = 24  #: of the face
     positions: int = POSITIONS  #: of a mesh cycle
+    coarse: bool = False  #: whether finite elements are twice as large
+    depth: float = DEPTH  #: of readings below the flank, modules
+    spread: float = SPREAD  #: along the face, modules; of slices alone
+
+    def compliance(self, wheel: Wheel, body: WheelBody) -> FlankCompliance:
+        """Return the compliance of a wheel's teeth."""
+        depth = self.depth * wheel.module
+        if self.name == "slices":
+            plane = PlaneTeeth(wheel, hold=body.hold, elasticity=body.elasticity)
+            plane = plane.coarser if self.coarse else plane
+            return Slices(plane, body.face_width, self.slices, depth, self.spread)
+        solid = SolidTeeth(
+            wheel,
+            hold=body.hold,
+            reading_depth=depth,
+            elasticity=body.elasticity,
+            hand=body.hand,
+            width=body.face_width,
+            offset=body.offset,
+            slices=self.slices,
+        )
+        return solid.coarser if self.coarse else solid
+
+
+@dataclass(frozen=True)
+class WheelBody:
+    """What carries the teeth of a wheel, and the face that it shares."""
+
+    elasticity: Elasticity
+    #: radius at which the body ends: its bore, or the seat of a wheel that is no part of its shaft, m;
+    #: None where it is solid
+    hold: float | None
+    hand: int  #: as of :class:`solidgear.teeth.compliance.solid.SolidTeeth`
+    face_width: float  #: shared, m
+    offset: float  #: of its middle from that of the wheel's face, m
 
 
 def teeth_of(mesh: Pair | PlanetMesh, coast: bool) -> MeshTeeth:
@@ -65,19 +104,21 @@ def teeth_of(mesh: Pair | PlanetMesh, coast: bool) -> MeshTeeth:
 
 def toothed(mesh: Pair | PlanetMesh, teeth: MeshTeeth, model: TeethModel) -> CylindricalPair:
     """Return both wheels with their compliance."""
-    compliances, materials = [], []
-    for wheel, gear in zip((teeth.wheels.first, teeth.wheels.second), _gears(mesh)):
+    wheels = teeth.wheels
+    bodies = []
+    for wheel, gear, hand, middle in zip(
+        (wheels.first, wheels.second), _gears(mesh), (1, -1), wheels.face_middles
+    ):
         scene, rigid = gear
         material = Elasticity() if scene is None else _material(scene)
         hold = None if scene is None else _hold(scene, wheel, rigid)
-        plane = PlaneTeeth(wheel, hold=hold, elasticity=material)
-        compliances.append(Slices(plane, teeth.wheels.face_width, model.slices))
-        materials.append(material)
-    depths = tuple(compliance.depth for compliance in compliances)
-    law = LineContact((materials[0], materials[1]), (depths[0], depths[1]))
-    return CylindricalPair(
-        teeth.wheels, (compliances[0], compliances[1]), law, teeth.shapes, model.slices
+        bodies.append(WheelBody(material, hold, hand, wheels.face_width, -middle))
+    first, second = bodies
+    compliances = model.compliance(wheels.first, first), model.compliance(wheels.second, second)
+    law = LineContact(
+        (first.elasticity, second.elasticity), (compliances[0].depth, compliances[1].depth)
     )
+    return CylindricalPair(wheels, compliances, law, teeth.shapes, model.slices)
 
 
 def _gears(mesh: Pair | PlanetMesh) -> list[tuple[Scene | None, bool]]:

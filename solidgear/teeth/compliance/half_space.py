@@ -20,7 +20,11 @@ from solidgear.teeth.contact.local import Elasticity
 
 
 def between_pieces(
-    along: np.ndarray, across: np.ndarray, depth: float, length: float, material: Elasticity
+    along: np.ndarray,
+    across: np.ndarray,
+    depth: float | np.ndarray,
+    length: float | np.ndarray,
+    material: Elasticity,
 ) -> np.ndarray:
     """Return the mean motion of pieces of lines at a depth by a unit force on other pieces, m/N.
 
@@ -30,7 +34,7 @@ def between_pieces(
         Distance of the middles of both pieces along them, m.
     across : (...,) ndarray
         Square of their distance across, m^2.
-    depth, length : float
+    depth, length : float or (...,) ndarray
         Below the surface, and of every piece, m.
     material : Elasticity
 

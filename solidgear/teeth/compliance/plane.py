@@ -7,16 +7,12 @@ one does, turned and times that factor.  So the interior of one pitch is condens
 in real numbers; what is left of a wave is a small Hermitian matrix, and the motion of tooth d is the
 inverse Fourier transform over the waves.
 
-**Near the force.**  Below a force on the flank a tooth moves as a half-plane does, and smoothly beside.
-Per force and face width a half-plane moves at the distance x along its surface and the depth h by
-
-    F = 2 (1 - nu^2) / (pi E) [ h^2 / (2 (1 - nu) (x^2 + h^2)) - ln(x^2 + h^2) / 2 ]
-
-along the force, but for a constant (Flamant; Johnson, Contact Mechanics, 1985, 2.3).  What finite
-elements read at a depth, less F there, is smooth: three depths are extrapolated to the surface by a
-parabola, and F at the depth that is asked for is added again.  So a depth is nothing but where the
-closed form of :mod:`solidgear.teeth.contact.local` takes over.  (A single reading leaves out what the
-smooth part gives way by up to its depth, 1 % of a tooth at a quarter of a module.)
+**Near the force.**  Below a force on the flank a tooth moves as a half-plane does, F
+(:mod:`solidgear.teeth.compliance.half_plane`), and smoothly beside.  What finite elements read at a
+depth, less F there, is smooth: three depths are extrapolated to the surface by a parabola, and F at the
+depth that is asked for is added again.  So a depth is nothing but where the closed form of
+:mod:`solidgear.teeth.contact.local` takes over.  (A single reading leaves out what the smooth part
+gives way by up to its depth, 1 % of a tooth at a quarter of a module.)
 
 **What is body and what is tooth.**  The rim is held at a circle, which no shaft does, and the shaft's
 model has the wheel's body in it.  So the motion of the body as that model would know it is taken out
@@ -34,7 +30,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
-from math import pi
 
 import numpy as np
 import scipy.sparse as sp
@@ -48,6 +43,7 @@ from skfem.refdom import RefQuad
 from solidgear.core.errors import SolidgearError
 from solidgear.core.gears.wheel import Wheel
 from solidgear.core.kernel.assembly import Pattern, reference, tabulate
+from solidgear.teeth.compliance.half_plane import half_plane, near_force
 from solidgear.teeth.compliance.mesh import Fineness, PitchMesh, pitch_mesh
 from solidgear.teeth.contact.local import Elasticity
 
@@ -56,9 +52,11 @@ FINENESS = Fineness(fillet=8, flank=20, across=12)
 #: depth at which compliances are given, first depth of readings, port below the root, modules
 DEPTH, BASE, PORT = 0.25, 0.2, 0.1
 #: hold of a solid wheel, part of the root radius; rim of a ring wheel, modules
-HUB, RIM = 0.2, 2.0
+HUB, RIM = 0.1, 2.0
 #: most that the first depth may be of the way to the middle of the tooth
 HALF = 0.5
+#: by how much larger depths are, for error bars
+DEEPER = 1.5
 #: degree of polynomials that the quadrature of a cell integrates
 DEGREE = 7
 #: points of a pitch of the port at which its mean motion is read
@@ -147,7 +145,7 @@ class PlaneTeeth:
             m per N/m, symmetric.
         """
         solved, count = self._solved, self.wheel.count
-        r = np.clip(r, *sorted(solved.radii[[0, -1]]))
+        r = self._on_flank(r)
         weights = solved.weights(self._place(r))
         points, _ = self.wheel.flank_points(r)
         out = np.empty((len(r), len(r)))
@@ -161,15 +159,25 @@ class PlaneTeeth:
                 out[np.ix_(rows, columns)] = block
         return out
 
+    def near(self, tooth: np.ndarray, r: np.ndarray, depth: float) -> np.ndarray:
+        """Return the part of the matrix that is near the force: of each tooth, the motion of a
+        half-plane within the thickness of a tooth.
+        """
+        points, _ = self.wheel.flank_points(self._on_flank(r))
+        reach = self.wheel.thickness
+        near = near_force(_distances(points), depth, reach, self.elasticity)
+        return np.where(tooth[:, None] == tooth, near, 0.0)
+
     def error(self, r: np.ndarray, depth: float) -> np.ndarray:
-        """Return error bars (n,) of a tooth's compliance at radii (n,), m, relative: what a mesh of
-        half as many cells in every direction changes, and what other depths of readings change.
+        """Return error bars (n,) of a tooth's compliance at radii (n,), m, relative: by a coarser mesh,
+        of second order at least, and by deeper readings, whose extrapolation leaves the third.
         """
         r = np.asarray(r, float)
         tooth = np.zeros(len(r), int)
-        variants = (self, self.coarser, self.deeper)
-        usual, coarse, deep = (np.diag(v.matrix(tooth, r, depth)) for v in variants)
-        return (abs(coarse - usual) + abs(deep - usual)) / usual
+        usual, coarse, deep = (
+            np.diag(v.matrix(tooth, r, depth)) for v in (self, self.coarser, self.deeper)
+        )
+        return (abs(coarse - usual) / (2**2 - 1) + abs(deep - usual) / (DEEPER**3 - 1)) / usual
 
     @property
     def coarser(self) -> PlaneTeeth:
@@ -178,8 +186,8 @@ class PlaneTeeth:
 
     @property
     def deeper(self) -> PlaneTeeth:
-        """The same teeth, read at depths that are half as large again."""
-        return replace(self, base=1.5 * self.base)
+        """The same teeth, read at larger depths."""
+        return replace(self, base=DEEPER * self.base)
 
     @property
     def asymmetry(self) -> float:
@@ -193,16 +201,15 @@ class PlaneTeeth:
         # the face and the mesh of no wheel depend on each other
         return _tables(replace(self, wheel=self.wheel.thinned(0.0)))
 
+    def _on_flank(self, r: np.ndarray) -> np.ndarray:
+        return np.clip(r, *sorted(self._solved.radii[[0, -1]]))
+
     def _place(self, radii: np.ndarray) -> np.ndarray:
         """Return places along the flank that grow from the fillet to the tip."""
         return self.wheel.sign * (radii / self.wheel.radius) ** 2
 
     def _half_plane(self, distance: np.ndarray, depth: np.ndarray | float) -> np.ndarray:
-        """Return the motion of a half-plane under a force at distances along it and a depth, m."""
-        x, h = distance / self.wheel.module, depth / self.wheel.module
-        squares = x**2 + h**2
-        side = h**2 / (2 * (1 - self.elasticity.poisson) * squares)
-        return 2 / (pi * self.elasticity.plane) * (side - np.log(squares) / 2)
+        return half_plane(distance, depth, self.wheel.module, self.elasticity)
 
 
 @dataclass(frozen=True, eq=False)

@@ -51,13 +51,16 @@ def port_of(mesh: SweptPitch, radius: float, pitch: float) -> Port:
     points = radius * directions((around - 0.5) * pitch)
     cells, at = mesh.inside(points)
     n = mesh.solid.nodes.shape[1]
-    loads, gram = np.zeros((n, 3, 6)), np.zeros((6, 6))
-    for start, stop in zip(mesh.ends, mesh.ends[1:]):
-        for share, weight in zip(*gauss(ALONG)):
-            z = start + (stop - start) * share
-            shape, nodes = mesh.shapes(cells, at, z)
-            motion = rigid_motions(mesh.places(points, np.asarray(z)).T).reshape(-1, 3, 6)
-            area = weights * weight * (stop - start) * radius * pitch
-            gram += np.einsum("k,kia,kib->ab", area, motion, motion)
-            np.add.at(loads, nodes, np.einsum("bk,k,kia->bkia", shape, area, motion))
+    loads = np.zeros((n, 3, 6))
+    share, part = gauss(ALONG)
+    steps = np.diff(mesh.ends)[:, None]
+    z, along = (mesh.ends[:-1, None] + steps * share).ravel(), (steps * part).ravel()
+    shape, nodes = mesh.shapes(
+        np.repeat(cells, len(z)), np.repeat(at, len(z), axis=0), np.tile(z, AROUND)
+    )
+    places = mesh.places(points[:, None], z)
+    motion = rigid_motions(places.reshape(-1, 3).T).reshape(-1, 3, 6)
+    area = np.outer(weights * radius * pitch, along).ravel()
+    gram = np.einsum("k,kia,kib->ab", area, motion, motion)
+    np.add.at(loads, nodes, np.einsum("bk,k,kia->bkia", shape, area, motion))
     return Port(sp.csr_matrix(loads.reshape(3 * n, 6)), gram)

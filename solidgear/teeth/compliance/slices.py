@@ -1,22 +1,26 @@
-r"""Compliance of teeth by slices of the face: plane strain across, an elastic layer along.
+r"""Compliance of teeth by slices of the face: plane strain across, elastic layers along.
 
 Under a load on one place of the face a tooth gives way beside it too, less and less.  Plane strain has
 the motion c q under an even line load q; along the face it follows
 
     w - lambda^2 w'' = c q,    w' = 0 at both ends of the face
 
-(a tooth as a cantilever plate, whose bending and shear reach as far as lambda; Jaramillo, Journal of
-Applied Mechanics 17, 1950, p. 67-72, has the plate).  Its answer at z to a unit force at z' is c times
+(a tooth bends as a cantilever plate, whose motion falls so; Jaramillo, Journal of Applied Mechanics 17,
+1950, p. 67-72).  The answer at z to a unit force at z' is c times
 
     G = [cosh((b - |z - z'|) / lambda) + cosh((z + z') / lambda)] / (2 lambda sinh(b / lambda)),
 
-which is symmetric, has the integral 1 and keeps an even load even.  A cell of a contact line is the
-load of a slice and not a point: G has a kink at z = z', so that points would make a slice stiff or
-soft by how many there are.  It is averaged in closed form over both slices, exactly for any places;
-the rows of all slices of a face then add up to 1 over the width of a slice, as the integral does.
+which is symmetric, has the integral 1 and keeps an even load even.
 
-**How long lambda is** was measured on teeth in 3D (:data:`SPREAD`); it is no constant of nature.  Near
-the load, motion spreads less far than the bending of the tooth does, and a rim spreads further.
+**Two lengths.**  The motion of a half-plane near the force reaches along the face about as far as below
+it, what bends and tilts the tooth reaches further: each has a lambda, measured on teeth in 3D
+(:data:`NEAR`, :data:`SPREAD`).  One lambda for both would have to be 0.7 modules for forces at the root
+and 1.3 at the tip.
+
+**Slices.**  A cell of a contact line is the load of a slice and not a point.  G has a kink at z = z', so
+that points would make a slice soft or stiff by how many there are.  It is averaged in closed form over
+both slices, for any places; the rows of all slices of a face add up to 1 over the width of a slice, as
+the integral does.
 
 Forces are normal to the flank: their transverse part is ``cos beta_b`` of them, and so is the part of
 a transverse motion along the normal.  What a tooth gives way by along the axis is left out, which makes
@@ -34,8 +38,9 @@ import numpy as np
 from solidgear.core.errors import SolidgearError
 from solidgear.teeth.compliance.plane import DEPTH, PlaneTeeth
 
-#: length lambda of the spread along the face, modules, and how far it was off for single wheels
-SPREAD, SPREAD_OFF = 1.05, 0.25
+#: lengths lambda in modules: of what bends the tooth, which wheels in 3D leave open by so much, and of
+#: what is near the force, a quarter of a module below it
+SPREAD, SPREAD_OFF, NEAR = 1.4, 0.25, 0.5
 
 
 @dataclass(frozen=True)
@@ -51,8 +56,8 @@ class Slices:
     slices : int
     reading_depth : float, optional
         Depth below the flanks at which compliances are given, m; by default a quarter of a module.
-    spread : float
-        How far loads spread along the face, modules.
+    spread, near_spread : float
+        How far what bends a tooth, and what is near the force, reach along the face, modules.
 
     Raises
     ------
@@ -76,6 +81,7 @@ class Slices:
     slices: int
     reading_depth: float | None = None
     spread: float = SPREAD
+    near_spread: float = NEAR
 
     def __post_init__(self):
         if not self.plane.wheel.face_width > 0 or not self.face_width > 0 or self.slices < 1:
@@ -103,14 +109,22 @@ class Slices:
         parameters as of :class:`~solidgear.teeth.compliance.flank.FlankCompliance`.
         """
         across = self.plane.matrix(tooth, r, self.depth)
-        return cos(self.plane.wheel.base_helix) ** 2 * across * self.along(z)
+        near = self.plane.near(tooth, r, self.depth)
+        # cells of several lines share slices
+        places, number = np.unique(z, return_inverse=True)
+        along, beside = (
+            self.along(places, length)[number[:, None], number]
+            for length in (self.spread, self.near_spread)
+        )
+        return cos(self.plane.wheel.base_helix) ** 2 * ((across - near) * along + near * beside)
 
-    def along(self, z: np.ndarray) -> np.ndarray:
-        """Return the (n, n) spread along the face between slices at places z, (n,) m, 1/m.
+    def along(self, z: np.ndarray, spread: float) -> np.ndarray:
+        """Return the (n, n) spread along the face between slices at places z, (n,) m, by a length in
+        modules, 1/m.
 
-        Slices that stand out over an end of the face are cut there.
+        Slices that stand out over an end of the face are moved within it.
         """
-        width, length = self.plane.wheel.face_width, self.spread * self.plane.wheel.module
+        width, length = self.plane.wheel.face_width, spread * self.plane.wheel.module
         z = np.clip(z, (self.step - width) / 2, (width - self.step) / 2)
         low, high = z - self.step / 2, z + self.step / 2
 

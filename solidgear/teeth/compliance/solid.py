@@ -1,10 +1,13 @@
 r"""Teeth of a whole wheel in 3D, of second-order hexahedra.
 
 One pitch is meshed, condensed to its sides and repeated (:mod:`solidgear.teeth.compliance.ring`).
-Unit forces act on slices of the face along lines of constant radius; motions are read at the depth h
-below.  Near a load the motion is as wide as h, which a table over radii would have to resolve: there
-it is that of a half-space (:mod:`solidgear.teeth.compliance.half_space`), and the table, from which
-that is taken out, is smooth and interpolated.
+Unit forces act on slices of the face along lines of constant radius; motions are read below.
+
+**Near a load** a tooth moves as a half-space does (:mod:`solidgear.teeth.compliance.half_space`).  The
+motion that is read at a depth, less that, is smooth: along the flank, so that a table of few radii is
+interpolated, and with the depth, so that readings at two depths are continued to the surface by a
+line.  With the half-space at the depth that is asked for the sum then depends on this depth as the
+closed form does that takes over there.
 
 **Teeth alone.**  A force on a tooth also moves the rim as a rigid body, and shafts have this motion
 already.  With the mean motion of the port, a cylinder in the rim, under loads that are spread over it,
@@ -35,10 +38,13 @@ from solidgear.teeth.compliance.ring import CondensedPitch, at_pitch, condensed
 from solidgear.teeth.compliance.solid_mesh import SweptPitch, turned
 from solidgear.teeth.contact.local import Elasticity
 
-#: depth of readings, port below the root, modules; hold of a solid wheel, share of the root radius
-DEPTH, PORT, HUB = 0.25, 0.1, 0.2
-#: thickness of a ring, modules
-RIM = 2.0
+#: depth at which compliances are given, port below the root, modules
+DEPTH, PORT = 0.25, 0.1
+#: hold of a solid wheel, share of the root radius; rim of a ring wheel, modules
+HUB, RIM = 0.2, 2.0
+#: depth of the second reading, modules, but no deeper than the middle of the tooth; the first is at
+#: half of it, and both count so many times at the surface
+DEEPEST, COUNTED = 0.5, (2.0, -1.0)
 #: cells along the parts of a tooth
 USUAL = Fineness(fillet=4, flank=8, across=6)
 #: thickness of the layers of cells along the face, modules
@@ -63,7 +69,7 @@ class SolidTeeth:
         Radius of the cylinder whose mean motion the body's model knows, m; by default just below the
         roots.
     reading_depth : float, optional
-        Of readings below the flank, m; by default a quarter of a module.
+        Below the flank, at which compliances are given, m; by default a quarter of a module.
     elasticity : Elasticity
     free : bool
         Whether the rim ends freely for all but its motion as a whole.
@@ -124,7 +130,7 @@ class SolidTeeth:
 
     @property
     def depth(self) -> float:
-        """Depth of readings below the flank, m."""
+        """Depth below the flank at which compliances are given, m."""
         return DEPTH * self.wheel.module if self.reading_depth is None else self.reading_depth
 
     @property
@@ -172,21 +178,41 @@ class SolidTeeth:
         axial = np.full(len(flat), self.hand * sin(helix))
         return self.mesh.places(points, z), np.column_stack([flat, axial])
 
-    def _rows(self, depth: float) -> sp.csr_matrix:
-        """Return the rows of the mean normal motions of slices at a depth below the flank, those of a
-        radius together.
-        """
+    @cached_property
+    def _depths(self) -> np.ndarray:
+        """(2, k) depths of both readings below the radii of the tables, m."""
         points, normals = self.wheel.flank_points(self.radii)
-        helix = self.wheel.base_helix
+        middle = -points[:, 0] / (normals[:, 0] * cos(self.wheel.base_helix))
+        deepest = np.minimum(DEEPEST * self.wheel.module, middle)
+        return np.array([deepest / 2, deepest])
+
+    def _rows(self, depths: np.ndarray) -> sp.csr_matrix:
+        """Return the rows of the mean normal motions of slices at depths (k,) below the radii of the
+        tables, those of a radius together.
+        """
+        helix, mesh = self.wheel.base_helix, self.mesh
+        points, normals = self.wheel.flank_points(self.radii)
         # the normal leads along the face as well, to where the mesh is turned further
-        ahead = self.hand * depth * sin(helix)
-        below = turned(points + depth * cos(helix) * normals, -self.mesh.twist * ahead)
-        cells, at = self.mesh.inside(below)
+        ahead = self.hand * depths * sin(helix)
+        below = turned(points + depths[:, None] * cos(helix) * normals, -mesh.twist * ahead)
+        cells, at = mesh.inside(below)
+        parts = []
+        for k, r in enumerate(self.radii):
+            z, weights, numbers = mesh.means(self.ends + ahead[k])
+            _, directions = self.flank(np.full(len(z), r), z - ahead[k])
+            cell, place = np.full(len(z), cells[k]), np.tile(at[k], (len(z), 1))
+            parts.append(mesh.rows(cell, place, z, directions, weights, numbers))
+        return sp.vstack(parts).tocsr()
 
-        def direction(z: float) -> np.ndarray:
-            return self.flank(self.radii, np.asarray(z))[1]
+    @cached_property
+    def _forces(self) -> sp.csr_matrix:
+        """Rows of the flank itself, by which forces act."""
+        return self._rows(np.zeros(len(self.radii)))
 
-        return self.mesh.rows(cells, at, self.ends, direction, ahead)
+    @cached_property
+    def _readings(self) -> sp.csr_matrix:
+        """Rows of both readings, continued to the surface."""
+        return sum(times * self._rows(depths) for times, depths in zip(COUNTED, self._depths))
 
     @cached_property
     def _port(self) -> Port:
@@ -209,8 +235,8 @@ class SolidTeeth:
         width = self.wheel.face_width / self.wheel.module
         power = min(max(LEAST_POWER, round(POWER * width)), mesh.layers)
         sides = mesh.side_motions(self.wheel.pitch_angle, power, held)
-        loads = sp.hstack([self._rows(0.0).T, self._port.loads]).tocsr()
-        readings = sp.vstack([self._rows(self.depth), self._port.loads.T]).tocsr()
+        loads = sp.hstack([self._forces.T, self._port.loads]).tocsr()
+        readings = sp.vstack([self._readings, self._port.loads.T]).tocsr()
         return condensed(self._stiffness, mesh.inner(held), sides, loads, readings)
 
     @cached_property
@@ -263,13 +289,19 @@ class SolidTeeth:
         the mean of both senses, m/N.
         """
         if tooth not in self._tables:
-            table = (self.teeth(tooth) + self.teeth(-tooth).T) / 2
-            near = self._near(*self._places) if tooth == 0 else 0.0
-            self._tables[tooth] = table - near
+            there, back = self.teeth(tooth), self.teeth(-tooth)
+            if tooth == 0:
+                near = np.zeros_like(there)
+                for times, depths in zip(COUNTED, np.repeat(self._depths, self.slices, axis=1)):
+                    near += times * self._near(*self._places, depths[:, None])
+                there, back = there - near, back - near
+            self._tables[tooth] = (there + back.T) / 2
         return self._tables[tooth]
 
-    def _near(self, r: np.ndarray, z: np.ndarray) -> np.ndarray:
-        """Return the (n, n) motion of a half-space between places on one flank, m/N."""
+    def _near(self, r: np.ndarray, z: np.ndarray, depth: float | np.ndarray) -> np.ndarray:
+        """Return the (n, n) motion of a half-space between places on one flank, m/N, at a depth or at
+        one (n, 1) by place.
+        """
         points, _ = self.flank(r, z)
         lean = self.mesh.twist * (r[:, None] + r) / 2
         stretch = np.sqrt(1 + lean**2)
@@ -277,7 +309,7 @@ class SolidTeeth:
         apart = ((points[:, None] - points) ** 2).sum(axis=-1)
         across = np.maximum(apart - along**2, 0.0)
         length = (self.ends[1] - self.ends[0]) * stretch
-        return between_pieces(along, across, self.depth, length, self.elasticity)
+        return between_pieces(along, across, depth, length, self.elasticity)
 
     def matrix(self, tooth: np.ndarray, r: np.ndarray, z: np.ndarray) -> np.ndarray:
         """Return the compliance between places
@@ -292,7 +324,7 @@ class SolidTeeth:
                     continue
                 block = weights[rows] @ self.table(k - j) @ weights[columns].T
                 if j == k:
-                    block = block + self._near(r[rows], z[rows])
+                    block = block + self._near(r[rows], z[rows], self.depth)
                 out[np.ix_(rows, columns)] = block
                 out[np.ix_(columns, rows)] = block.T
         return out

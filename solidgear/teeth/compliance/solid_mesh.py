@@ -8,7 +8,6 @@ the plane mesh do, and on helices between the layers.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -171,71 +170,63 @@ class SweptPitch:
             raise SolidgearError("teeth: a place below the flank lies outside the mesh")
         return cell, np.clip(place, 0.0, 1.0)
 
+    def means(self, slices: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return places along z (p,), their weights and slices, for means over slices of the face with
+        ends (s + 1,), m; pieces of slices beyond the face count as its end.
+        """
+        x, w = gauss(ALONG)
+        places, weights, numbers = [], [], []
+        for number, (low, high) in enumerate(zip(slices, slices[1:])):
+            inner = self.ends[(self.ends > low) & (self.ends < high)]
+            edges = np.concatenate([[low], inner, [high]])
+            steps = np.diff(edges)[:, None]
+            places.append((edges[:-1, None] + steps * x).ravel())
+            weights.append((steps * w).ravel() / (high - low))
+            numbers.append(np.full(steps.size * ALONG, number))
+        return np.concatenate(places), np.concatenate(weights), np.concatenate(numbers)
+
     def rows(
         self,
         cells: np.ndarray,
         at: np.ndarray,
-        slices: np.ndarray,
-        direction: Callable[[float], np.ndarray],
-        ahead: float = 0.0,
+        z: np.ndarray,
+        directions: np.ndarray,
+        weights: np.ndarray,
+        numbers: np.ndarray,
     ) -> sp.csr_matrix:
-        """Return rows that take the mean motion along a direction over slices of the face.
+        """Return rows that read motions at places, weighed and summed up.
 
         Parameters
         ----------
-        cells, at : (k,), (k, 2) ndarray
-            Cells of the plane, and coordinates in them.
-        slices : (s + 1,) ndarray
-            Ends of the slices along z, m.
-        direction : callable
-            Directions (k, 3) at some z.
-        ahead : float
-            How much further along z the motion is taken, within the face, m.
+        cells, at, z : (p,), (p, 2), (p,) ndarray
+            Cells of the plane and coordinates in them, and places along the face, m.
+        directions : (p, 3) ndarray
+            In which motions are read.
+        weights, numbers : (p,) ndarray
+            Weight of each place, and the row that it belongs to.
 
         Returns
         -------
-        (k s, 3 n) csr_matrix
-            Slices of a place stand together.
+        (rows, 3 n) csr_matrix
         """
-        count = len(slices) - 1
-        rows, columns, values = [], [], []
-        for s, (low, high) in enumerate(zip(slices, slices[1:])):
-            for z, weight in self._points_between(low + ahead, high + ahead):
-                shape, nodes = self.shapes(cells, at, z)
-                along = direction(z - ahead).T[:, None, :]
-                rows.append(np.broadcast_to(np.arange(len(at)) * count + s, (3, *nodes.shape)))
-                columns.append(3 * nodes + np.arange(3)[:, None, None])
-                values.append(weight * shape * along)
-        size = (len(at) * count, 3 * self.solid.nodes.shape[1])
-        value, row, column = (np.concatenate(part, axis=None) for part in (values, rows, columns))
-        return sp.csr_matrix((value, (row, column)), shape=size)
+        shape, nodes = self.shapes(cells, at, z)
+        values = shape * weights * directions.T[:, None]
+        columns = 3 * nodes + np.arange(3)[:, None, None]
+        rows = np.broadcast_to(numbers, values.shape)
+        size = (int(numbers.max()) + 1, 3 * self.solid.nodes.shape[1])
+        return sp.csr_matrix((values.ravel(), (rows.ravel(), columns.ravel())), shape=size)
 
-    def shapes(self, cells: np.ndarray, at: np.ndarray, z: float) -> tuple[np.ndarray, np.ndarray]:
-        """Return the functions (nb, k) of the mesh above places in the plane, given as for
-        :meth:`rows`, at the z of the face nearest to some z, and their nodes (nb, k).
+    def shapes(
+        self, cells: np.ndarray, at: np.ndarray, z: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return the functions (nb, p) of the mesh at places as for :meth:`rows`, or the nearest ones
+        of the face, and their nodes (nb, p).
         """
-        layer, third = self._layer(z)
-        places = np.column_stack([at, np.full(len(at), third)])
-        shape, _ = reference(self.solid.element, places.T)
+        z = np.clip(z, self.ends[0], self.ends[-1])
+        layer = np.minimum(np.searchsorted(self.ends, z, side="right"), self.layers) - 1
+        third = (z - self.ends[layer]) / np.diff(self.ends)[layer]
+        shape, _ = reference(self.solid.element, np.column_stack([at, third]).T)
         return shape, self.solid.dofs[:, layer * len(self.plane.cells) + cells]
-
-    def _layer(self, z: float) -> tuple[int, float]:
-        """Return the layer nearest to some z, and the coordinate there."""
-        z = min(max(z, self.ends[0]), self.ends[-1])
-        layer = min(int(np.searchsorted(self.ends, z, side="right")), self.layers) - 1
-        start, stop = self.ends[layer : layer + 2]
-        return layer, (z - start) / (stop - start)
-
-    def _points_between(self, low: float, high: float) -> list[tuple[float, float]]:
-        """Return places along z and weights of a mean between two places."""
-        inner = self.ends[(self.ends > low) & (self.ends < high)]
-        pieces = np.concatenate([[low], inner, [high]])
-        x, w = gauss(ALONG)
-        return [
-            (float(a + (b - a) * place), float(weight * (b - a) / (high - low)))
-            for a, b in zip(pieces, pieces[1:])
-            for place, weight in zip(x, w)
-        ]
 
 
 def _inverted(nodes: np.ndarray, points: np.ndarray) -> np.ndarray:

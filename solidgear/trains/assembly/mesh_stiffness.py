@@ -41,8 +41,12 @@ def with_solved_meshes(train: Train) -> Train:
             f'{train.name}: stiffness = "teeth" needs the room of teeth, which is not installed; '
             'give a number, such as "3e8 N/m"'
         )
-    solved_train = mesh_of_teeth(train)
-    assert not asks_for_teeth(solved_train)
+    solved_train: Train = mesh_of_teeth(train)
+    if asks_for_teeth(solved_train):
+        raise SolidgearError(
+            f'{train.name}: not every mesh with stiffness = "teeth" has teeth whose contact can be '
+            'solved; give a number there, such as "3e8 N/m"'
+        )
     return solved_train
 
 

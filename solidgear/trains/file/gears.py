@@ -64,8 +64,8 @@ class Gear(Flanks):
     #: of cylindrical gears, in modules
     profile_shift: Annotated[float, Field(gt=-1.5, lt=2.5)] = 0.0
     #: of bevel gears: radius of the cutter at the pitch plane, m, and curvature of its blade, 1/m;
-    #: the radius that the concave flank has in excess, and the curvature that the pinion has, open the
-    #: flanks away from their middle
+    #: flanks open away from their middle where the one that cuts the concave flank has the larger
+    #: radius, and where the pinion's blade is curved
     cutter_radius: PositiveLength | None = None
     blade_curvature: Annotated[float, Field(ge=-MOST_CURVED, le=MOST_CURVED)] | None = None
     apex: Literal["start", "end"] = "start"  #: towards which end of the shaft the pitch apex lies

@@ -182,6 +182,9 @@ def fit_line(fit: WheelPair) -> str:
     ratio = f"{fit.contact_ratio:.3f}"
     if fit.overlap_ratio:
         ratio += f" and {fit.overlap_ratio:.3f} by their helix"
+    cut = sum(path_cuts(fit))
+    if cut > ROUNDED * fit.first.module:
+        ratio += f", {_um(cut)} of the path lost at fillets"
     return (
         f"axes {_mm(fit.distance)} apart: backlash of teeth without allowances "
         f"{_um(fit.backlash)} along the line of action, contact ratio {ratio}"
