@@ -84,6 +84,18 @@ def test_a_train_with_cutters_is_calculated(axle):
     assert not any("cutter" in text or "ease-off" in text for text in done.assumed)
 
 
+def test_a_train_that_coasts_carries_on_the_other_flanks(axle):
+    """The force turns the pinion the other way and pulls it in, by the train's line of action."""
+    point = POINT.with_changes(torque=-200.0)
+    assert point.coast
+    carried = Carried.at_rest(with_sections(axle), point)
+    pair = carried.train.pairs[0]
+    done = bevel_contact(carried, pair, (STEEL, STEEL), slices=12, positions=2)
+    assert done.pair.flanks.blank.loaded_side == "convex"
+    line = done.cycle.lines_of_action.mean(axis=0)
+    assert line @ carried.assembly.contacts[pair.name].pinion.normal > 0.98
+
+
 def test_conjugate_teeth_of_table_1_and_mismatched_ones():
     """Orders of magnitude of the thesis's plots, and what a mismatch does: 1.8e8 to 3.2e8 N/m stand
     there, with supports.

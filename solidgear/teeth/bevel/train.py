@@ -212,7 +212,7 @@ def bevel_contact(
     slices, positions : int
         Of the face and of the mesh cycle.
     """
-    blank = blank_of(pair)
+    blank = blank_of(pair, carried.coast(pair))
     mismatch = mismatch_of(pair, blank)
     toothed = toothed_bevel(blank, materials, mismatch, slices)
     place = place_of_pair(carried.assembly, carried.system, pair)
