@@ -747,6 +747,32 @@ MUTATIONS = (
         "tests/test_gear_mesh.py::test_components_are_the_textbook_ones",
     ),
     Mutation(
+        "sliding left out of the relative curvature of bevel flanks",
+        "solidgear/teeth/bevel/flank.py",
+        "BevelFlanks.points",
+        "1 - cot_pinion * slide",
+        "1 - 0 * slide",
+        "tests/test_bevel_flanks.py::test_the_relative_curvature_is_that_of_real_flanks[concave]",
+    ),
+    Mutation(
+        "tips of bevel gears as a rack has them",
+        "solidgear/teeth/bevel/flank.py",
+        "BevelFlanks._lift",
+        "self.blank.mean_distance * np.tan(angle - self.blank.pitch_angles[member])",
+        "point[..., 2] * (-1) ** (member + 1)",
+        "tests/test_bevel_flanks.py::"
+        "test_straight_narrow_teeth_have_the_contact_ratio_of_their_virtual_spur_wheels",
+    ),
+    Mutation(
+        "neighbours of bevel teeth taken the wrong way round",
+        "solidgear/teeth/bevel/pair.py",
+        "BevelPair.bulk",
+        "(1, -1)",
+        "(1, 1)",
+        "tests/test_bevel_pair.py::"
+        "test_on_both_wheels_the_next_tooth_clockwise_touches_nearer_to_the_tip[concave-left]",
+    ),
+    Mutation(
         "flanks: a helix slope turns with the flank that carries",
         "solidgear/trains/file/mesh_teeth.py",
         "_mesh_teeth",

@@ -130,6 +130,8 @@ def _stiffnesses(mesh: SolvedMesh, units: Units) -> list[Row]:
             for head, c in norm.items()
         ]
         rows.insert(2, _alone("contact ratio, overlap", _ratios(mesh)))
+    elif isinstance(mesh, BevelContact):
+        rows.insert(2, _alone("contact ratio", f"{mesh.pair.flanks.contact_ratio:.3f}"))
     return rows
 
 
@@ -268,7 +270,7 @@ def sentences(mesh: SolvedMesh, study: TeethStudy, units: Units) -> list[str]:
             f"{head}the file has a mesh stiffness of {units.text(stated, 'N/m', 4)}; its teeth give "
             f'{units.text(tangent, "N/m", 4)} about this load: write stiffness = "teeth" to take it.'
         )
-    if isinstance(mesh, BevelContact) and mesh.estimated:
+    if isinstance(mesh, BevelContact) and mesh.band is not None:
         low, high = mesh.band.stiffness
         lines.append(
             f"{head}cutter and mismatch are estimated: over those that are usual the mesh stiffness "

@@ -56,13 +56,10 @@ class SettingBand:
         return self.ends(lambda cycle: cycle.peak_to_peak)
 
     @property
-    def sentence(self) -> str:
-        """What the band says."""
+    def factor(self) -> float:
+        """Largest over least stiffness."""
         least, most = self.stiffness
-        return (
-            f"Cutter and mismatch are estimated: over those that are usual the mesh stiffness is "
-            f"{least:.2g} to {most:.2g} N/m, a factor of {most / least:.1f}."
-        )
+        return most / least
 
 
 def setting_band(

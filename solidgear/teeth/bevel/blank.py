@@ -82,7 +82,7 @@ class BevelBlank:
     estimated : tuple of str
         Attributes that are estimated.
     notes : tuple of str
-        Sentences on data that were not taken as they stand.
+        On data that were not taken as they stand.
 
     Raises
     ------
@@ -364,7 +364,7 @@ def completed_blank(
 def _pitch_angle_notes(
     published: tuple[float | None, float | None], of_teeth: tuple[float, float]
 ) -> Iterator[str]:
-    """Yield a sentence where published pitch angles are not those of the teeth."""
+    """Yield a note where published pitch angles are not those of the teeth."""
     pairs = [
         (name, angle, due)
         for name, angle, due in zip(("pinion", "gear"), published, of_teeth)
@@ -376,6 +376,4 @@ def _pitch_angle_notes(
         )
         total = [angle for angle in published if angle is not None]
         sums = f", {degrees(sum(total)):.1f} degrees in all" if len(total) == 2 else ""
-        yield (
-            f"The pitch angles are those of the teeth and the shaft angle, in place of {words}{sums}."
-        )
+        yield (f"pitch angles of the teeth and the shaft angle, in place of {words}{sums}")

@@ -13,8 +13,9 @@ from solidgear.trains.file.pairs import Pair
 OTHER = {"left": "right", "right": "left", "concave": "convex", "convex": "concave"}
 
 
-def blank_of(pair: Pair) -> BevelBlank:
-    """Return the blanks of two bevel gears of a train, completed by estimates.
+def blank_of(pair: Pair, coast: bool = False) -> BevelBlank:
+    """Return the blanks of two bevel gears of a train, completed by estimates; on the flanks that the
+    file does not name with `coast`.
 
     Raises
     ------
@@ -35,6 +36,8 @@ def blank_of(pair: Pair) -> BevelBlank:
         raise SceneError("is 0, that of a cylindrical pair", path=("mesh", "shaft_angle"))
     hand = pinion.hand or OTHER.get(gear.hand or "")
     side = pinion.loaded_side or OTHER.get(gear.loaded_side or "")
+    if coast and side is not None:
+        side = OTHER[side]
     wanted = {
         "pitch_radius": pinion.pitch_radius,
         "face_width": pinion.face_width,

@@ -12,6 +12,7 @@ from functools import cached_property
 from math import cos, degrees, sin, sqrt
 from typing import Any
 
+from solidgear.core.plain import plain
 from solidgear.teeth.bevel.band import EASE_OFFS, SettingBand, setting_band
 from solidgear.teeth.bevel.blank import BevelBlank
 from solidgear.teeth.bevel.flank import BevelFlanks, Mismatch, lengthwise
@@ -35,6 +36,8 @@ USUAL_EASE_OFF = sqrt(EASE_OFFS[0] * EASE_OFFS[-1])
 RIM = 4.0
 #: slices of the face
 SLICES = 24
+#: orders of the transmission error that are listed
+ORDERS = 5
 #: share of the load at tips and ends of the face that is worth a sentence
 EDGE = 0.2
 #: what estimated values of a blank are, by the attribute
@@ -57,7 +60,12 @@ class BevelContact(SolvedMesh):
     """The teeth of one bevel mesh under one load."""
 
     pair: BevelPair
-    estimated: bool  #: whether cutter or mismatch are
+    eased: bool  #: whether the mismatch is estimated
+
+    @property
+    def estimated(self) -> bool:
+        """Whether cutter or mismatch are."""
+        return self.eased or "cutter_radius" in self.pair.flanks.blank.estimated
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -85,19 +93,33 @@ class BevelContact(SolvedMesh):
         return -gear * sin(angle), gear * cos(angle) - pinion, 0.0
 
     @cached_property
-    def band(self) -> SettingBand:
-        """Contact over the settings that the file leaves open."""
-        return setting_band(self.pair, self.cycle.torque, self.supports)
+    def band(self) -> SettingBand | None:
+        """Contact over the settings that the file leaves open; None where it leaves none open."""
+        if not self.estimated:
+            return None
+        ease_offs = EASE_OFFS if self.eased else (self.pair.flanks.ease_off(),)
+        return setting_band(self.pair, self.cycle.torque, self.supports, ease_offs=ease_offs)
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain data in SI for JSON."""
-        data = super().as_dict()
-        if self.estimated:
-            data["band"] = {
-                "stiffness": self.band.stiffness,
-                "peak_to_peak": self.band.error,
-                "refused": list(self.band.refused),
+        flanks, band = self.pair.flanks, self.band
+        data = super().as_dict() | plain(
+            {
+                "contact_ratio": flanks.contact_ratio,
+                "ease_off": flanks.ease_off(),
+                "cutter_radius": flanks.blank.cutter_radius,
+                "band": [
+                    {
+                        "cutter_radius": setting.cutter_radius,
+                        "ease_off": setting.ease_off,
+                        "tangent": setting.cycle.tangent.mean(),
+                        "secant": setting.cycle.secant.mean(),
+                        "peak_to_peak": setting.cycle.peak_to_peak,
+                    }
+                    for setting in (() if band is None else band.settings)
+                ],
             }
+        )
         return data
 
     @property
@@ -170,7 +192,7 @@ def bevel_contact(
     slices, positions : int
         Of the face and of the mesh cycle.
     """
-    blank = blank_of(pair)
+    blank = blank_of(pair, carried.coast(pair))
     mismatch = mismatch_of(pair, blank)
     toothed = toothed_bevel(blank, materials, mismatch, slices)
     place = place_of_pair(carried.assembly, carried.system, pair)
@@ -188,5 +210,5 @@ def bevel_contact(
         cycle=cycle(supports),
         aligned=cycle(None),
         assumed=assumed(blank, mismatch),
-        estimated=mismatch is None or "cutter_radius" in blank.estimated,
+        eased=mismatch is None,
     )
