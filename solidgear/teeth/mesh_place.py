@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import cos
 
 import numpy as np
@@ -24,7 +24,7 @@ class MeshPlace:
     force: str  #: name of the force in a state at rest
     #: ports of both wheels; the second is None for a ring that is part of the ground
     ends: tuple[str, str | None]
-    pitch_point: np.ndarray  #: (3,) in the plane of the first port, m
+    pitch_point: np.ndarray  #: (3,) of cylindrical gears at the middle of the shared face, m
     normal: np.ndarray  #: (3,) direction of the force on the first wheel
     axis: np.ndarray  #: (3,) unit, y of the first wheel's shaft
 
@@ -36,8 +36,7 @@ class MeshPlace:
         transverse = self.normal - (self.normal @ self.axis) * self.axis
         u = -transverse / np.linalg.norm(transverse)
         w = teeth.along[0] * self.axis
-        origin = self.pitch_point + teeth.middles[0] * self.axis
-        return Frame(origin, np.column_stack([u, np.cross(w, u), w]))
+        return Frame(self.pitch_point, np.column_stack([u, np.cross(w, u), w]))
 
     def load(self, system: System) -> list[tuple[str, np.ndarray]]:
         """Return the (6,) load on each end by a unit force of the teeth, in the axes of the end."""
@@ -60,7 +59,10 @@ def place_of(
     """
     if isinstance(mesh, PlanetMesh):
         return _of_planet(assembly, system, mesh, teeth)
-    return place_of_pair(assembly, system, mesh)
+    place = place_of_pair(assembly, system, mesh)
+    # a given mesh point may lie anywhere along the face
+    aside = teeth.middles[0] - assembly.contacts[mesh.name].pinion.point[1]
+    return replace(place, pitch_point=place.pitch_point + aside * place.axis)
 
 
 def place_of_pair(assembly: Assembly, system: System, pair: Pair) -> MeshPlace:
@@ -100,7 +102,7 @@ def _of_planet(assembly: Assembly, system: System, mesh: PlanetMesh, teeth: Mesh
         link=link,
         force=stage.name,
         ends=ends,
-        pitch_point=start + rolling * outward,
+        pitch_point=start + rolling * outward + teeth.middles[0] * axis,
         normal=-np.sign(along @ outward) * along,
         axis=axis,
     )
