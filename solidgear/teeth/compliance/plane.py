@@ -3,9 +3,8 @@ r"""Teeth of a whole wheel in plane strain, from one pitch by cyclic symmetry.
 **Waves.**  With z equal pitches, a load on tooth 0 alone is the mean of z loads that grow from pitch to
 pitch by the factor ``exp(2 pi i n / z)``, each a wave n (Thomas, International Journal for Numerical
 Methods in Engineering 14, 1979, p. 81-102).  Under a wave the right side of a pitch moves as the left
-one does, turned and times that factor.  So the interior of one pitch is condensed to both sides once,
-in real numbers; what is left of a wave is a small Hermitian matrix, and the motion of tooth d is the
-inverse Fourier transform over the waves.
+one does, turned and times that factor (:mod:`solidgear.teeth.compliance.pitch`), and the motion of
+tooth d is the inverse Fourier transform over the waves.
 
 **Near the force.**  Below a force on the flank a tooth moves as a half-plane does, F
 (:mod:`solidgear.teeth.compliance.half_plane`), and smoothly beside.  What finite elements read at a
@@ -34,17 +33,12 @@ from functools import cached_property, lru_cache
 import numpy as np
 import scipy.sparse as sp
 from scipy.interpolate import BSpline, make_interp_spline
-from scipy.sparse.linalg import splu
-from scipy.spatial import cKDTree
-from skfem import ElementQuad2
-from skfem.quadrature import get_quadrature
-from skfem.refdom import RefQuad
 
 from solidgear.core.errors import SolidgearError
 from solidgear.core.gears.wheel import Wheel
-from solidgear.core.kernel.assembly import Pattern, reference, tabulate
 from solidgear.teeth.compliance.half_plane import half_plane, near_force
 from solidgear.teeth.compliance.mesh import Fineness, PitchMesh, pitch_mesh
+from solidgear.teeth.compliance.pitch import Pitch, motion_rows, read_rows
 from solidgear.teeth.contact.local import Elasticity
 
 #: cells of a tooth: those below the flank are small beside the depths of readings
@@ -57,14 +51,8 @@ HUB, RIM = 0.1, 2.0
 HALF = 0.5
 #: by how much larger depths are, for error bars
 DEEPER = 1.5
-#: degree of polynomials that the quadrature of a cell integrates
-DEGREE = 7
 #: points of a pitch of the port at which its mean motion is read
 PORT_POINTS = 40
-#: cells whose middles are nearest to a point, one of which has it
-NEAREST = 9
-#: steps of Newton from the middle of a cell, and what rounding leaves outside it
-STEPS, OUTSIDE = 12, 1e-9
 
 
 @dataclass(frozen=True)
@@ -83,6 +71,8 @@ class PlaneTeeth:
     elasticity : Elasticity
     free : bool
         Whether the rim ends freely for all but its motion as a whole.
+    body : bool
+        Whether the motion of the body on its held circle is left in.
     fineness : Fineness
     base : float
         First of the depths at which finite elements are read, modules.
@@ -108,6 +98,7 @@ class PlaneTeeth:
     port: float | None = None
     elasticity: Elasticity = Elasticity()
     free: bool = False
+    body: bool = False
     fineness: Fineness = FINENESS
     base: float = BASE
 
@@ -231,12 +222,12 @@ def _tables(teeth: PlaneTeeth) -> _Tables:
     mesh = pitch_mesh(wheel, teeth.hold_radius, teeth.fineness)
     nodes, radii = mesh.flank[::2], mesh.radii[::2]
     points, normals = mesh.points[nodes], wheel.flank_points(radii)[1]
-    forces = _rows(nodes[:, None], np.ones((len(nodes), 1)), normals, len(mesh.points))
+    forces = motion_rows(nodes[:, None], np.ones((len(nodes), 1)), normals, len(mesh.points))
     to_middle = points[:, 0] / -normals[:, 0]
     base = np.minimum(teeth.base * wheel.module, HALF * to_middle)[:, None]
     depths = [k * base for k in (1, 2, 3)]
-    readings = [_read(mesh, points + depth * normals, normals) for depth in depths]
-    pitches = [_Pitch(mesh, teeth.elasticity, holds) for holds in (True, not teeth.free)]
+    readings = [read_rows(mesh, points + depth * normals, normals) for depth in depths]
+    pitches = [Pitch(mesh, teeth.elasticity, holds) for holds in (True, not teeth.free)]
     waves = np.arange(count // 2 + 1)
     read = sp.vstack(readings, format="csr")
     responses = pitches[1].responses(read, forces, waves, count)
@@ -247,7 +238,7 @@ def _tables(teeth: PlaneTeeth) -> _Tables:
         moved[0, k] -= teeth._half_plane(distances, depth)
     surface = 3 * moved[:, 0] - 3 * moved[:, 1] + moved[:, 2]
 
-    translation, rotation = _port_compliance(mesh, pitches[0], teeth)
+    translation, rotation = _port_compliance(mesh, pitches[0], teeth) if not teeth.body else (0, 0)
     moment = points[:, 0] * normals[:, 1] - points[:, 1] * normals[:, 0]
     for table, angle in zip(surface, wheel.pitch_angle * np.arange(count)):
         c, s = np.cos(angle), np.sin(angle)
@@ -266,120 +257,7 @@ def _distances(points: np.ndarray) -> np.ndarray:
     return np.hypot(between[..., 0], between[..., 1])
 
 
-class _Pitch:
-    """One pitch, condensed to its sides; the circle that ends the rim is held or free."""
-
-    def __init__(self, mesh: PitchMesh, elasticity: Elasticity, holds: bool):
-        stiffness = _stiffness(mesh, elasticity)
-        fixed = np.zeros(len(mesh.points), bool)
-        fixed[mesh.circle] = holds
-        sides = mesh.sides[:, ~fixed[mesh.sides[0]]]
-        inside = ~fixed
-        inside[sides] = False
-        unknowns = 2 * np.flatnonzero(inside)[:, None] + np.arange(2)
-        #: unknowns inside, and those of both sides, left before right, radial and clockwise
-        self.inside = unknowns.ravel()
-        self.polar = _polar(mesh.points[sides.ravel()])
-        self.edge = (2 * sides.ravel()[:, None] + np.arange(2)).ravel()
-        self.factor = splu(stiffness[self.inside][:, self.inside].tocsc())
-        to_edge = stiffness[self.inside][:, self.edge] @ self.polar.T
-        self.coupling = to_edge.toarray()
-        follow = self.factor.solve(self.coupling)
-        at_edge = self.polar @ stiffness[self.edge][:, self.edge] @ self.polar.T
-        condensed = at_edge.toarray() - self.coupling.T @ follow
-        self.condensed = (condensed + condensed.T) / 2
-
-    def responses(
-        self, readings: sp.csr_matrix, forces: sp.csr_matrix, waves: np.ndarray, count: int
-    ) -> np.ndarray:
-        """Return the (waves, readings, forces) response of a pitch to forces that grow from pitch to
-        pitch as waves do; readings and forces are rows of the unknowns.
-        """
-        inner = forces[:, self.inside].toarray().T
-        solved = self.factor.solve(inner)
-        read = readings[:, self.inside]
-        # what a unit motion of the sides moves, and what forces press on the sides
-        by_edge = -(read @ self.factor.solve(self.coupling))
-        by_edge += (readings[:, self.edge] @ self.polar.T).toarray()
-        pressed = -(self.coupling.T @ solved)
-        pressed += (self.polar @ forces[:, self.edge].T).toarray()
-        grown = np.exp(2j * np.pi * waves / count)
-        by_side = np.split(by_edge, 2, axis=1)
-        on_side = np.split(pressed, 2, axis=0)
-        moved = by_side[0] + grown[:, None, None] * by_side[1]
-        push = on_side[0] + grown.conj()[:, None, None] * on_side[1]
-        return read @ solved + moved @ np.linalg.solve(self._wave_matrices(grown), push)
-
-    def _wave_matrices(self, grown: np.ndarray) -> np.ndarray:
-        """Return the stiffness of the left side under waves with these factors from pitch to pitch."""
-        half = len(self.condensed) // 2
-        ends = self.condensed.reshape(2, half, 2, half).transpose(0, 2, 1, 3)
-        across = grown[:, None, None] * ends[0, 1]
-        return ends[0, 0] + ends[1, 1] + across + across.conj().transpose(0, 2, 1)
-
-
-def _polar(points: np.ndarray) -> sp.csr_matrix:
-    """Return the rotation of motions at points into their radial and clockwise parts."""
-    out = points / np.hypot(points[:, 0], points[:, 1])[:, None]
-    around = np.column_stack([out[:, 1], -out[:, 0]])
-    return sp.block_diag(np.stack([out, around], axis=1), format="csr")
-
-
-def _stiffness(mesh: PitchMesh, elasticity: Elasticity) -> sp.csr_matrix:
-    """Return the stiffness of a pitch in plane strain, per face width, N/m^2."""
-    youngs, poisson = elasticity.youngs, elasticity.poisson
-    shear = youngs / (2 * (1 + poisson))
-    lame = youngs * poisson / ((1 + poisson) * (1 - 2 * poisson))
-    points, weights = get_quadrature(RefQuad, DEGREE)
-    element = ElementQuad2()
-    cells = tabulate(element, mesh.points[mesh.cells].transpose(2, 1, 0), element, points)
-    gradient = cells.gradient(np.sqrt(cells.det * weights))
-    products = np.einsum("eiaq,ejbq->ijeab", gradient, gradient, optimize=True)
-    swapped = products.transpose(1, 0, 2, 3, 4)
-    values = lame * products + shear * swapped
-    for i in range(2):
-        values[i, i] += shear * (products[0, 0] + products[1, 1])
-    total = Pattern(mesh.cells.T).sum(2)
-    total.add(slice(None), values)
-    return total.matrix()
-
-
-def _rows(
-    nodes: np.ndarray, shares: np.ndarray, directions: np.ndarray, count: int
-) -> sp.csr_matrix:
-    """Return rows over the unknowns of `count` nodes: the (m, b) shares of the motions of (m, b) nodes
-    along (m, 2) directions.
-    """
-    entries = shares[:, :, None] * directions[:, None, :]
-    columns = 2 * nodes[:, :, None] + np.arange(2)
-    rows = np.broadcast_to(np.arange(len(nodes))[:, None, None], entries.shape)
-    return sp.csr_matrix(
-        (entries.ravel(), (rows.ravel(), columns.ravel())), shape=(len(nodes), 2 * count)
-    )
-
-
-def _read(mesh: PitchMesh, points: np.ndarray, directions: np.ndarray) -> sp.csr_matrix:
-    """Return rows that read the motion along (m, 2) directions at (m, 2) points inside the mesh."""
-    nodes = mesh.points[mesh.cells]
-    _, near = cKDTree(nodes[:, 8]).query(points, min(NEAREST, len(nodes)))
-    place = np.full((*near.shape, 2), 0.5)
-    element = ElementQuad2()
-    for _ in range(STEPS):
-        shapes, slopes = reference(element, place.reshape(-1, 2).T)
-        shapes, slopes = shapes.reshape(9, *near.shape), slopes.reshape(9, 2, *near.shape)
-        missing = points[:, None] - np.einsum("bmk,mkbi->mki", shapes, nodes[near])
-        jacobian = np.einsum("bdmk,mkbi->mkid", slopes, nodes[near])
-        step = np.linalg.solve(jacobian, missing[..., None])[..., 0]
-        place = np.clip(place + step, -1.0, 2.0)  # a cell far from the point has it nowhere
-    outside = np.abs(place - 0.5).max(axis=2) - 0.5
-    cell = np.arange(len(points)), np.argmin(outside, axis=1)
-    if outside[cell].max() > OUTSIDE:
-        raise SolidgearError("teeth: a place at which motion is read is in no tooth or rim")
-    shapes, _ = reference(element, place[cell].T)
-    return _rows(mesh.cells[near[cell]], shapes.T, directions, len(mesh.points))
-
-
-def _port_compliance(mesh: PitchMesh, pitch: _Pitch, teeth: PlaneTeeth) -> tuple[float, float]:
+def _port_compliance(mesh: PitchMesh, pitch: Pitch, teeth: PlaneTeeth) -> tuple[float, float]:
     """Return the compliance of translation and of rotation of the port, per face width, m per N/m and
     rad per N.
 
@@ -393,7 +271,7 @@ def _port_compliance(mesh: PitchMesh, pitch: _Pitch, teeth: PlaneTeeth) -> tuple
     out = np.column_stack([np.sin(angles), np.cos(angles)])
     clockwise = np.column_stack([out[:, 1], -out[:, 0]])
     aside, ahead = np.broadcast_to(np.eye(2)[:, None], (2, PORT_POINTS, 2))
-    means = [_read(mesh, radius * out, d).mean(axis=0) for d in (aside, ahead, clockwise)]
+    means = [read_rows(mesh, radius * out, d).mean(axis=0) for d in (aside, ahead, clockwise)]
     port = sp.csr_matrix(np.vstack(means))
     still, once = pitch.responses(port, port, np.arange(2), wheel.count)
     along = np.array([1.0, -1j, 0.0])

@@ -1,4 +1,4 @@
-r"""Compliance of teeth by slices of the face: plane strain across, elastic layers along.
+r"""Compliance of teeth by slices of the face: plane strain across, an elastic layer along.
 
 Under a load on one place of the face a tooth gives way beside it too, less and less.  Plane strain has
 the motion c q under an even line load q; along the face it follows
@@ -12,10 +12,12 @@ the motion c q under an even line load q; along the face it follows
 
 which is symmetric, has the integral 1 and keeps an even load even.
 
-**Two lengths.**  The motion of a half-plane near the force reaches along the face about as far as below
-it, what bends and tilts the tooth reaches further: each has a lambda, measured on teeth in 3D
-(:data:`NEAR`, :data:`SPREAD`).  One lambda for both would have to be 0.7 modules for forces at the root
-and 1.3 at the tip.
+**Near the force** a tooth moves as a half-plane does, and that reaches along the face hardly further than
+below it; what bends and tilts the tooth reaches further.  So the first part acts within a slice, as the
+local law of contact does, and the layer has the rest.  (In a layer that had both, the ends of the face
+would carry a tenth too much of a tilted load: its ends are stiff against a slope, those of a tooth are
+not.)  How long lambda is was measured on teeth in 3D, by the loads on the ends of tilted faces
+(:data:`SPREAD`): it is no constant of nature, and shorter for a thin rim and a narrow face.
 
 **Slices.**  A cell of a contact line is the load of a slice and not a point.  G has a kink at z = z', so
 that points would make a slice soft or stiff by how many there are.  It is averaged in closed form over
@@ -38,9 +40,8 @@ import numpy as np
 from solidgear.core.errors import SolidgearError
 from solidgear.teeth.compliance.plane import DEPTH, PlaneTeeth
 
-#: lengths lambda in modules: of what bends the tooth, which wheels in 3D leave open by so much, and of
-#: what is near the force, a quarter of a module below it
-SPREAD, SPREAD_OFF, NEAR = 1.4, 0.25, 0.5
+#: length lambda of the layer, modules, and how far single wheels in 3D are off
+SPREAD, SPREAD_OFF = 1.4, 0.25
 
 
 @dataclass(frozen=True)
@@ -56,8 +57,8 @@ class Slices:
     slices : int
     reading_depth : float, optional
         Depth below the flanks at which compliances are given, m; by default a quarter of a module.
-    spread, near_spread : float
-        How far what bends a tooth, and what is near the force, reach along the face, modules.
+    spread : float
+        How far what bends a tooth reaches along the face, modules.
 
     Raises
     ------
@@ -81,7 +82,6 @@ class Slices:
     slices: int
     reading_depth: float | None = None
     spread: float = SPREAD
-    near_spread: float = NEAR
 
     def __post_init__(self):
         if not self.plane.wheel.face_width > 0 or not self.face_width > 0 or self.slices < 1:
@@ -112,19 +112,17 @@ class Slices:
         near = self.plane.near(tooth, r, self.depth)
         # cells of several lines share slices
         places, number = np.unique(z, return_inverse=True)
-        along, beside = (
-            self.along(places, length)[number[:, None], number]
-            for length in (self.spread, self.near_spread)
-        )
-        return cos(self.plane.wheel.base_helix) ** 2 * ((across - near) * along + near * beside)
+        apart = np.abs(np.subtract.outer(places, places))
+        within = np.maximum(self.step - apart, 0.0) / self.step**2
+        along, within = (part[number[:, None], number] for part in (self.along(places), within))
+        return cos(self.plane.wheel.base_helix) ** 2 * ((across - near) * along + near * within)
 
-    def along(self, z: np.ndarray, spread: float) -> np.ndarray:
-        """Return the (n, n) spread along the face between slices at places z, (n,) m, by a length in
-        modules, 1/m.
+    def along(self, z: np.ndarray) -> np.ndarray:
+        """Return the (n, n) answers G of the layer between slices at places z, (n,) m, 1/m.
 
         Slices that stand out over an end of the face are moved within it.
         """
-        width, length = self.plane.wheel.face_width, spread * self.plane.wheel.module
+        width, length = self.plane.wheel.face_width, self.spread * self.plane.wheel.module
         z = np.clip(z, (self.step - width) / 2, (width - self.step) / 2)
         low, high = z - self.step / 2, z + self.step / 2
 

@@ -1,0 +1,141 @@
+r"""One pitch of a toothed wheel in plane strain, condensed to its sides.
+
+Under a wave n the right side of a pitch moves as the left one does, turned and times ``exp(2 pi i n /
+z)``.  The interior is condensed to both sides once, in real numbers, in radial and clockwise parts: the
+stiffness K of both sides becomes a small Hermitian matrix of the left one for each wave.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.linalg import splu
+from scipy.spatial import cKDTree
+from skfem import ElementQuad2
+from skfem.quadrature import get_quadrature
+from skfem.refdom import RefQuad
+
+from solidgear.core.errors import SolidgearError
+from solidgear.core.kernel.assembly import Pattern, reference, tabulate
+from solidgear.teeth.compliance.mesh import PitchMesh
+from solidgear.teeth.contact.local import Elasticity
+
+#: degree of polynomials that the quadrature of a cell integrates
+DEGREE = 7
+#: cells whose middles are nearest to a point, one of which has it
+NEAREST = 9
+#: steps of Newton from the middle of a cell, and what rounding leaves outside it
+STEPS, OUTSIDE = 12, 1e-9
+
+
+class Pitch:
+    """One pitch, condensed to its sides; the circle that ends the rim is held or free."""
+
+    def __init__(self, mesh: PitchMesh, elasticity: Elasticity, holds: bool):
+        stiffness = _stiffness(mesh, elasticity)
+        fixed = np.zeros(len(mesh.points), bool)
+        fixed[mesh.circle] = holds
+        sides = mesh.sides[:, ~fixed[mesh.sides[0]]]
+        inside = ~fixed
+        inside[sides] = False
+        unknowns = 2 * np.flatnonzero(inside)[:, None] + np.arange(2)
+        #: unknowns inside, and those of both sides, left before right, radial and clockwise
+        self.inside = unknowns.ravel()
+        self.polar = _polar(mesh.points[sides.ravel()])
+        self.edge = (2 * sides.ravel()[:, None] + np.arange(2)).ravel()
+        self.factor = splu(stiffness[self.inside][:, self.inside].tocsc())
+        to_edge = stiffness[self.inside][:, self.edge] @ self.polar.T
+        self.coupling = to_edge.toarray()
+        follow = self.factor.solve(self.coupling)
+        at_edge = self.polar @ stiffness[self.edge][:, self.edge] @ self.polar.T
+        condensed = at_edge.toarray() - self.coupling.T @ follow
+        self.condensed = (condensed + condensed.T) / 2
+
+    def responses(
+        self, readings: sp.csr_matrix, forces: sp.csr_matrix, waves: np.ndarray, count: int
+    ) -> np.ndarray:
+        """Return the (waves, readings, forces) response of a pitch to forces that grow from pitch to
+        pitch as waves do; readings and forces are rows of the unknowns.
+        """
+        inner = forces[:, self.inside].toarray().T
+        solved = self.factor.solve(inner)
+        read = readings[:, self.inside]
+        # what a unit motion of the sides moves, and what forces press on the sides
+        by_edge = -(read @ self.factor.solve(self.coupling))
+        by_edge += (readings[:, self.edge] @ self.polar.T).toarray()
+        pressed = -(self.coupling.T @ solved)
+        pressed += (self.polar @ forces[:, self.edge].T).toarray()
+        grown = np.exp(2j * np.pi * waves / count)
+        by_side = np.split(by_edge, 2, axis=1)
+        on_side = np.split(pressed, 2, axis=0)
+        moved = by_side[0] + grown[:, None, None] * by_side[1]
+        push = on_side[0] + grown.conj()[:, None, None] * on_side[1]
+        return read @ solved + moved @ np.linalg.solve(self._wave_matrices(grown), push)
+
+    def _wave_matrices(self, grown: np.ndarray) -> np.ndarray:
+        """Return the stiffness of the left side under waves with these factors from pitch to pitch."""
+        half = len(self.condensed) // 2
+        ends = self.condensed.reshape(2, half, 2, half).transpose(0, 2, 1, 3)
+        across = grown[:, None, None] * ends[0, 1]
+        return ends[0, 0] + ends[1, 1] + across + across.conj().transpose(0, 2, 1)
+
+
+def _polar(points: np.ndarray) -> sp.csr_matrix:
+    """Return the rotation of motions at points into their radial and clockwise parts."""
+    out = points / np.hypot(points[:, 0], points[:, 1])[:, None]
+    around = np.column_stack([out[:, 1], -out[:, 0]])
+    return sp.block_diag(np.stack([out, around], axis=1), format="csr")
+
+
+def _stiffness(mesh: PitchMesh, elasticity: Elasticity) -> sp.csr_matrix:
+    """Return the stiffness of a pitch in plane strain, per face width, N/m^2."""
+    youngs, poisson = elasticity.youngs, elasticity.poisson
+    shear = youngs / (2 * (1 + poisson))
+    lame = youngs * poisson / ((1 + poisson) * (1 - 2 * poisson))
+    points, weights = get_quadrature(RefQuad, DEGREE)
+    element = ElementQuad2()
+    cells = tabulate(element, mesh.points[mesh.cells].transpose(2, 1, 0), element, points)
+    gradient = cells.gradient(np.sqrt(cells.det * weights))
+    products = np.einsum("eiaq,ejbq->ijeab", gradient, gradient, optimize=True)
+    swapped = products.transpose(1, 0, 2, 3, 4)
+    values = lame * products + shear * swapped
+    for i in range(2):
+        values[i, i] += shear * (products[0, 0] + products[1, 1])
+    total = Pattern(mesh.cells.T).sum(2)
+    total.add(slice(None), values)
+    return total.matrix()
+
+
+def motion_rows(
+    nodes: np.ndarray, shares: np.ndarray, directions: np.ndarray, count: int
+) -> sp.csr_matrix:
+    """Return rows over the unknowns of `count` nodes: the (m, b) shares of the motions of (m, b) nodes
+    along (m, 2) directions.
+    """
+    entries = shares[:, :, None] * directions[:, None, :]
+    columns = 2 * nodes[:, :, None] + np.arange(2)
+    rows = np.broadcast_to(np.arange(len(nodes))[:, None, None], entries.shape)
+    return sp.csr_matrix(
+        (entries.ravel(), (rows.ravel(), columns.ravel())), shape=(len(nodes), 2 * count)
+    )
+
+
+def read_rows(mesh: PitchMesh, points: np.ndarray, directions: np.ndarray) -> sp.csr_matrix:
+    """Return rows that read the motion along (m, 2) directions at (m, 2) points inside the mesh."""
+    nodes = mesh.points[mesh.cells]
+    _, near = cKDTree(nodes[:, 8]).query(points, min(NEAREST, len(nodes)))
+    place = np.full((*near.shape, 2), 0.5)
+    element = ElementQuad2()
+    for _ in range(STEPS):
+        shapes, slopes = reference(element, place.reshape(-1, 2).T)
+        shapes, slopes = shapes.reshape(9, *near.shape), slopes.reshape(9, 2, *near.shape)
+        missing = points[:, None] - np.einsum("bmk,mkbi->mki", shapes, nodes[near])
+        jacobian = np.einsum("bdmk,mkbi->mkid", slopes, nodes[near])
+        step = np.linalg.solve(jacobian, missing[..., None])[..., 0]
+        place = np.clip(place + step, -1.0, 2.0)  # a cell far from the point has it nowhere
+    outside = np.abs(place - 0.5).max(axis=2) - 0.5
+    cell = np.arange(len(points)), np.argmin(outside, axis=1)
+    if outside[cell].max() > OUTSIDE:
+        raise SolidgearError("teeth: a place at which motion is read is in no tooth or rim")
+    shapes, _ = reference(element, place[cell].T)
+    return motion_rows(mesh.cells[near[cell]], shapes.T, directions, len(mesh.points))
