@@ -3,8 +3,9 @@ r"""Teeth of a whole wheel in 3D, of second-order hexahedra.
 One pitch is meshed, condensed to its sides and repeated (:mod:`solidgear.teeth.compliance.ring`).
 Unit forces act on slices of the face along lines of constant radius; motions are read below.
 
-**Near a load** a tooth moves as a half-space does (:mod:`solidgear.teeth.compliance.half_space`).  The
-motion that is read at a depth, less that, is smooth: along the flank, so that a table of few radii is
+**Near a load** a tooth moves as a half-space does (:mod:`solidgear.teeth.compliance.half_space`), near
+an end of the face as one under the load and its mirror image, which hold the plane between them free
+of shear.  The motion that is read at a depth, less that, is smooth: along the flank, so that a table of few radii is
 interpolated, and with the depth, so that readings at two depths are continued to the surface by a
 line.  With the half-space at the depth that is asked for the sum then depends on this depth as the
 closed form does that takes over there.
@@ -77,9 +78,10 @@ class SolidTeeth:
         1 where the teeth turn clockwise along z, as those of the first wheel of a pair, and -1 where
         they turn the other way, as those of its mate.
     width, offset : float
-        Of the common face, and of its middle from that of the wheel's face, m; by default all of it.
+        Of the face that both wheels share, by default all of it, and of its middle from that of the
+        wheel's face, m.
     slices : int
-        Of the common face.
+        Of the shared face.
     fineness : Fineness
     layer : float
         Thickness of the layers of cells along the face, modules.
@@ -142,13 +144,13 @@ class SolidTeeth:
 
     @cached_property
     def ends(self) -> np.ndarray:
-        """(slices + 1,) ends of the slices, from the middle of the wheel's face, m."""
+        """(slices + 1,) ends of the slices, from the middle of the shared face, m."""
         width = self.wheel.face_width if self.width is None else self.width
-        return np.linspace(-width / 2, width / 2, self.slices + 1) + self.offset
+        return np.linspace(-width / 2, width / 2, self.slices + 1)
 
     @property
     def middles(self) -> np.ndarray:
-        """(slices,) middles of the slices, m."""
+        """(slices,) middles of the slices, from the middle of the shared face, m."""
         return (self.ends[1:] + self.ends[:-1]) / 2
 
     @cached_property
@@ -170,7 +172,7 @@ class SolidTeeth:
 
     def flank(self, r: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return points (k, 3) of tooth 0's right flank, m, and unit normals into the tooth, at radii
-        (k,) and places z (k,) or one.
+        (k,) and places z (k,) from the middle of the wheel's face.
         """
         points, normals = self.wheel.flank_points(r)
         helix = self.wheel.base_helix
@@ -198,7 +200,7 @@ class SolidTeeth:
         cells, at = mesh.inside(below)
         parts = []
         for k, r in enumerate(self.radii):
-            z, weights, numbers = mesh.means(self.ends + ahead[k])
+            z, weights, numbers = mesh.means(self.ends + self.offset + ahead[k])
             _, directions = self.flank(np.full(len(z), r), z - ahead[k])
             cell, place = np.full(len(z), cells[k]), np.tile(at[k], (len(z), 1))
             parts.append(mesh.rows(cell, place, z, directions, weights, numbers))
@@ -265,14 +267,15 @@ class SolidTeeth:
 
     def _rigid(self, tooth: int) -> np.ndarray:
         """Return the (n, 6) motion of the places on a tooth along their normals by a rigid body."""
-        points, normals = self.flank(*self._places)
+        r, z = self._places
+        points, normals = self.flank(r, z + self.offset)
         for part in (points, normals):
             part[:, :2] = turned(part[:, :2], tooth * self.wheel.pitch_angle)
         return np.hstack([normals, np.cross(points, normals)])
 
     @property
     def _places(self) -> tuple[np.ndarray, np.ndarray]:
-        """Radii and z (n,) of the places, m."""
+        """Radii and z (n,) of the places in the tables, from the middle of the shared face, m."""
         return np.repeat(self.radii, self.slices), np.tile(self.middles, len(self.radii))
 
     def teeth(self, tooth: int) -> np.ndarray:
@@ -300,16 +303,21 @@ class SolidTeeth:
 
     def _near(self, r: np.ndarray, z: np.ndarray, depth: float | np.ndarray) -> np.ndarray:
         """Return the (n, n) motion of a half-space between places on one flank, m/N, at a depth or at
-        one (n, 1) by place.
+        one (n, 1) by place, by forces there and by their images beyond both ends of the face.
         """
-        points, _ = self.flank(r, z)
+        half, own = self.wheel.face_width / 2, z + self.offset
+        points, _ = self.flank(r, own)
         lean = self.mesh.twist * (r[:, None] + r) / 2
         stretch = np.sqrt(1 + lean**2)
-        along = (z[:, None] - z) * stretch
-        apart = ((points[:, None] - points) ** 2).sum(axis=-1)
-        across = np.maximum(apart - along**2, 0.0)
         length = (self.ends[1] - self.ends[0]) * stretch
-        return between_pieces(along, across, depth, length, self.elasticity)
+        near = np.zeros((len(r), len(r)))
+        for sense, shift in ((1, 0.0), (-1, 2 * half), (-1, -2 * half)):
+            along = (own[:, None] - sense * own - shift) * stretch
+            image = points * [1, 1, sense] + [0, 0, shift]
+            apart = ((points[:, None] - image) ** 2).sum(axis=-1)
+            across = np.maximum(apart - along**2, 0.0)
+            near += between_pieces(along, across, depth, length, self.elasticity)
+        return near
 
     def matrix(self, tooth: np.ndarray, r: np.ndarray, z: np.ndarray) -> np.ndarray:
         """Return the compliance between places
