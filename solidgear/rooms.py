@@ -65,6 +65,8 @@ ADDITIONS = {
         "seats": "guards.bearings:misfits",
         "directions": "guards.data:facing_one_way",
     },
+    # numbers of a train that another room computes
+    "mesh stiffness": {"teeth": "teeth.train_teeth:mesh_of_teeth"},
     # solvers
     "back end": {"mumps": "petsc.mumps:Mumps"},
     "engine": {"ranks": "petsc.solver:plan_on_ranks"},

@@ -245,3 +245,15 @@ def test_teeth_that_do_not_fit_are_told_in_one_sentence(teeth, more, words):
 def test_unequal_angles_that_assemble_are_taken():
     tooth = 2 * pi / (17 + 85)
     assert len(sg.PlanetaryTeeth(17, 34, 85, 1e-3, (0, 35 * tooth, 69 * tooth)).azimuths) == 3
+
+
+def test_tips_of_helical_planets_count_in_normal_modules():
+    """16 and 89 teeth at 30 degrees: axes 90.933 transverse modules apart, tips 89 + 2 cos 30 deg
+    across; a straight addendum of two modules would touch.
+    """
+    helical = sg.PlanetaryTeeth(16, 89, 194, 1e-3, helix=np.radians(30))
+    assert helical.spacing == pytest.approx(105e-3 * np.sin(np.pi / 3), rel=1e-12)
+    assert (89 + 2 * np.cos(np.radians(30))) * 1e-3 < helical.spacing < 91e-3
+    with pytest.raises(SolidgearError, match="overlap"):
+        sg.PlanetaryTeeth(16, 89, 194, 1e-3)
+    assert sg.PlanetaryTeeth(17, 34, 85, 1e-3, planets=1).spacing == np.inf

@@ -8,6 +8,8 @@ import pytest
 
 import solidgear as sg
 from solidgear.core.errors import SceneError
+from solidgear.trains.assembly.assembly import Assembly
+from solidgear.trains.assembly.stages import mesh_row
 from solidgear.trains.file.mesh_teeth import wheels_of
 from solidgear.trains.load.contact import contact
 
@@ -105,6 +107,25 @@ def test_faces_lie_where_the_file_puts_them(gearbox, apex, loaded_side):
         assert teeth.shapes[k].middle == pytest.approx(z, abs=1e-15)
 
 
+@pytest.mark.parametrize("apex", ["start", "end"])
+def test_teeth_push_where_both_faces_lie(gearbox, apex):
+    """50 mm about +6 mm of the pinion and 40 mm about -9 mm of the gear share -19 to 11 mm: -4 mm of
+    both shafts, whose lumped points lie side by side.
+    """
+    offsets = {"start": (6e-3, -9e-3), "end": (-6e-3, 9e-3)}[apex]
+    train = by_module(
+        gearbox,
+        {"face_offset": offsets[0], "apex": apex},
+        {"face_offset": offsets[1], "apex": apex, "face_width": 40e-3},
+    )
+    vectors, plain = contact(train.pairs[0]), contact(by_module(gearbox).pairs[0])
+    due = {"start": -4e-3, "end": 4e-3}[apex]
+    for here, there in ((vectors.pinion, plain.pinion), (vectors.gear, plain.gear)):
+        assert here.point[1] == pytest.approx(due, abs=1e-15)
+        assert abs(here.point[0]) == pytest.approx(abs(there.point[0]), rel=1e-12)
+        assert here.lever == pytest.approx(there.lever * np.sign(due) * -1, rel=1e-12)
+
+
 def test_a_slope_is_missing_at_the_end_of_the_shaft_whatever_flank_carries(gearbox):
     for loaded_side in ("left", "right"):
         for apex in ("start", "end"):
@@ -179,7 +200,11 @@ def test_planets_mesh_with_the_sun_first_and_with_the_ring_second():
     table = stage.table.with_changes(
         ring_flanks={"crowning": 4e-6}, planet=stage.table.planet.with_changes(crowning=3e-6)
     )
-    changed = train.with_changes(planetary={stage.called: table}).stages[0]
+    side, port = stage.shafts[0], stage.ports[0]
+    shaft = train.shafts[side]
+    wide = shaft.with_changes(gears={**shaft.gears, port: stage.sun.with_changes(face_width=0.03)})
+    shafts = {**train.shafts, side: wide}
+    changed = train.with_changes(shafts=shafts, planetary={stage.called: table}).stages[0]
     sun, ring = (wheels_of(mesh) for mesh in changed.together)
     assert [s.crowning for s in (*sun.shapes, *ring.shapes)] == [0.0, 3e-6, 3e-6, 4e-6]
 
@@ -198,3 +223,32 @@ def test_grids_that_are_none_are_refused(gearbox, grid, words):
     plain = {"z": (0.0, 1e-2), "deviation": ((0.0, 0.0), (0.0, 0.0))}
     with pytest.raises(SceneError, match=words):
         gearbox.pinion.with_changes(measured_flank=plain | grid)
+
+
+@pytest.mark.parametrize("hand", ["right", "left"])
+@pytest.mark.parametrize("coast", [False, True])
+def test_face_places_of_planets_run_as_the_axial_force_of_their_teeth_says(hand, coast):
+    """As of pairs, by the rows of the meshes in the system: they push the first wheel off the other."""
+    train = sg.load_train(GEOMETRY / "reducer.toml")
+    (stage,) = train.stages
+    side, port = stage.shafts[0], stage.ports[0]
+    gears = train.shafts[side].gears
+    leaning = gears[port].with_changes(helix_angle=radians(12), hand=hand)
+    shaft = train.shafts[side].with_changes(gears={**gears, port: leaning})
+    assembly = Assembly(train.with_changes(shafts={**train.shafts, side: shaft}))
+    assembly = assembly.on_flank(coast)
+    system = assembly.system("euler")
+    (at_work,) = assembly.stages.values()
+    sun, planet = (
+        system.port(f"{side}.{port}"),
+        system.port(f"{at_work.planets['planet 1']}.centre"),
+    )
+    axis = sun.axes[:, 1]
+    outward = planet.point - sun.point
+    outward -= (outward @ axis) * axis
+    for mesh, first in zip(at_work.stage.together, (sun, planet)):
+        row, _ = mesh_row(system, f"{stage.name} {mesh.mate} 1")
+        push = first.axes @ np.linalg.lstsq(first.rows.T, row, rcond=None)[0][:3]
+        push *= -np.sign(push @ outward)
+        due = np.sign(push @ axis)
+        assert wheels_of(mesh, at_work.way < 0).along == (due, due)

@@ -4,6 +4,7 @@ from math import pi, radians
 
 import numpy as np
 import pytest
+import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 from scipy.spatial import cKDTree
 from skfem import Basis, ElementQuad2, ElementVector, MeshQuad1, MeshQuad2
@@ -13,9 +14,12 @@ from skfem.refdom import RefQuad
 
 from solidgear.core.errors import SolidgearError
 from solidgear.core.gears.wheel import Rack, Wheel
+from solidgear.core.gears.wheel_pair import WheelPair
 from solidgear.core.kernel.assembly import tabulate
 from solidgear.teeth.compliance.mesh import Fineness, pitch_mesh
-from solidgear.teeth.compliance.plane import PlaneTeeth
+from solidgear.teeth.compliance.plane import PlaneTeeth, _Pitch, _port_compliance
+from solidgear.teeth.compliance.slices import Slices
+from solidgear.teeth.contact.local import Elasticity, LineContact
 
 PINION, WHEEL, RING = Wheel(23, 4e-3), Wheel(57, 4e-3), Wheel(-60, 2e-3)
 
@@ -85,7 +89,7 @@ def test_shapes_without_a_mesh_are_refused():
 class Teeth:
     """Some or all teeth of a wheel in one mesh, with the forms, maps and numbers of scikit-fem."""
 
-    def __init__(self, wheel, radius, fineness, teeth):
+    def __init__(self, wheel, radius, fineness, teeth, free=False):
         pitch = pitch_mesh(wheel, radius, fineness)
         angles = wheel.pitch_angle * (np.arange(teeth) - teeth // 2)
         copies = [pitch.points @ turn(angle) for angle in angles]
@@ -100,6 +104,9 @@ class Teeth:
         lame, shear = lame_parameters(2.06e11, 0.3)
         stiffness = linear_elasticity(lame, shear).assemble(self.basis)
         off_circle = np.abs(np.hypot(*self.basis.doflocs) - radius) > 1e-9 * radius
+        if free:
+            off_circle[:] = True
+            off_circle[[*self.basis.nodal_dofs[:, 0], self.basis.nodal_dofs[0, 1]]] = False
         self.keep = np.flatnonzero(off_circle)
         self.factor = splu(stiffness[self.keep][:, self.keep].tocsc())
 
@@ -145,7 +152,9 @@ def merged(points, cells, count, teeth):
 
 
 COARSE = Fineness(4, 8, 4, 0.5)
-SMALL, SMALL_RING = Wheel(9, 4e-3, shift=0.5), Wheel(-24, 4e-3)
+SMALL = Wheel(9, 4e-3, shift=0.5)
+# an inner circle that the involute reaches
+SMALL_RING = Wheel(-18, 4e-3, tip_radius=34.4e-3)
 
 
 @pytest.mark.parametrize("wheel", [SMALL, SMALL_RING], ids=["external", "ring"])
@@ -186,3 +195,195 @@ def test_waves_give_what_the_whole_ring_gives(wheel):
     matrix = teeth.matrix(np.repeat(numbers, 3), np.tile(radii, len(numbers)), 1e-3)
     assert matrix == pytest.approx(expected, abs=1e-9 * expected.max())
     assert matrix == pytest.approx(matrix.T, abs=1e-25)
+
+
+def test_a_rim_that_ends_freely_is_soft_in_waves_from_2_on():
+    """Forces that grow as wave 2 around the wheel move no body: a free ring, three motions fixed."""
+    teeth = PlaneTeeth(SMALL, hold=hold(SMALL, 1.5), fineness=COARSE, free=True)
+    ring = Teeth(SMALL, hold(SMALL, 1.5), COARSE, SMALL.count, free=True)
+    r = pitch_mesh(SMALL, hold(SMALL, 1.5), COARSE).radii[[6]]
+    (point,), (normal,) = SMALL.flank_points(r)
+    angles = SMALL.pitch_angle * np.arange(SMALL.count)
+    at = np.array([point @ turn(a) for a in angles])
+    along = np.array([normal @ turn(a) for a in angles])
+    share = np.cos(2 * angles)
+    moved = ring.solve(share[None] @ ring.rows(at, along))[:, 0]
+    step = 0.2 * SMALL.module
+    read = [share @ ring.rows(at + k * step * along, along) @ moved for k in (1, 2, 3)]
+    plane = 2 * (1 - 0.09) / (pi * 2.06e11)
+    h = 0.25
+    near = share @ share * plane * (np.log([0.2, 0.4, 0.6]) - 1 / 1.4)
+    smooth = np.array(read) + near
+    expected = smooth @ [3, -3, 1] + share @ share * plane * (1 / 1.4 - np.log(h))
+    matrix = teeth.matrix(np.arange(SMALL.count), np.repeat(r, SMALL.count), h * SMALL.module)
+    assert share @ matrix @ share == pytest.approx(expected, rel=1e-8)
+    held = PlaneTeeth(SMALL, hold=hold(SMALL, 1.5), fineness=COARSE)
+    stiff = held.matrix(np.arange(SMALL.count), np.repeat(r, SMALL.count), h * SMALL.module)
+    assert share @ stiff @ share < 0.8 * expected
+
+
+def test_single_stiffness_of_a_sector_of_five_teeth():
+    """Plane finite elements of a sector held four modules below the root, refined four times, give
+    15.15 N/(mm um) at the pitch point under 300 N/mm, read a quarter of a module below the flanks.
+    """
+    pair = WheelPair(PINION, WHEEL)
+    s, depth = pair.pitch_point, 1e-3
+    load, plane = 3e5, 2.06e11 / (1 - 0.09)
+    # Hertz: from the surface to the depth, on both sides
+    width = np.sqrt(8 * load * pair.curvature_radius(s) / (pi * plane))
+    total = 2 * 2 / (pi * plane) * (np.log(2 * depth / width) - 0.3 / 1.4)
+    for wheel, r in ((PINION, pair.first_radius(s)), (WHEEL, pair.second_radius(s))):
+        sector = Teeth(wheel, hold(wheel), Fineness(), 5)
+        points, normals = wheel.flank_points(np.array([r]))
+        # loaded and read through the shape functions, a hair below the flank
+        loads = sector.rows(points + 1e-9 * normals, normals)
+        total += (sector.rows(points + depth * normals, normals) @ sector.solve(loads)).item()
+    # the usual mesh of a pitch is 0.3 % off, by the force in the middle of its edges
+    assert 1e-9 / total == pytest.approx(15.15, rel=4e-3)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("place", [0.15, 0.5, 0.85])
+def test_with_the_local_law_teeth_move_as_under_a_resolved_pressure(place):
+    """Half an ellipse of pressure over cells a seventh as wide as it, motion read in its middle."""
+    teeth = PlaneTeeth(PINION, hold=hold(PINION))
+    r = float(np.sqrt(PINION.form**2 + place * (PINION.tip**2 - PINION.form**2)))
+    fine = pitch_mesh(PINION, hold(PINION), Fineness(12, 70, 24, 2.0))
+    pitch = _Pitch(fine, Elasticity(), True)
+    half, load, radius = 0.25e-3, 1.0, 8e-3
+    plane = 2.06e11 / (1 - 0.09)
+    t = np.cos(pi * (np.arange(400) + 0.5) / 400)
+    rolled = np.sqrt(r**2 - PINION.base**2 + 2 * t * half * PINION.base)
+    pressed = edge_rows(PINION, fine, np.hypot(PINION.base, rolled))
+    force = sp.csr_matrix((1 - t**2) / np.sum(1 - t**2) @ pressed)
+    middle = sp.csr_matrix(edge_rows(PINION, fine, np.array([r])))
+    waves = np.arange(PINION.count // 2 + 1)
+    response = pitch.responses(middle, force, waves, PINION.count)
+    resolved = np.fft.irfft(response, n=PINION.count, axis=0)[0].item()
+    # the body's motion, with which the mesh has it
+    translation, rotation = _port_compliance(fine, pitch, teeth)
+    resolved -= translation + rotation * PINION.base**2
+    # deep, where the law's form for any depth is the half-plane's; the width by the load it belongs to
+    law = LineContact((Elasticity(), Elasticity()), (2e-3, 2e-3))
+    load = pi * plane * half**2 / (8 * radius)
+    assert law.half_width(load, radius) == pytest.approx(half)
+    surface = law.compliances(load, radius)[0] / 2
+    total = teeth.matrix(np.array([0]), np.array([r]), 2e-3).item() + surface
+    assert total == pytest.approx(resolved, rel=2.5e-3)
+
+
+def edge_rows(wheel, mesh, r):
+    """Rows of the normal motion of places on the edges of the flank."""
+    low, high = mesh.radii[[0, -1]] ** 2
+    places = (r**2 - low) / (high - low) * (len(mesh.flank) // 2)
+    edge = np.minimum(places.astype(int), len(mesh.flank) // 2 - 1)
+    t = places - edge
+    shares = np.column_stack([(1 - t) * (1 - 2 * t), 4 * t * (1 - t), t * (2 * t - 1)])
+    nodes = mesh.flank[2 * edge[:, None] + np.arange(3)]
+    _, normals = wheel.flank_points(r)
+    out = np.zeros((len(r), 2 * len(mesh.points)))
+    for i in range(2):
+        out[np.arange(len(r))[:, None], 2 * nodes + i] = shares * normals[:, i : i + 1]
+    return out
+
+
+def test_compliance_with_the_local_law_does_not_depend_on_the_depth():
+    """Under a load so small that contact is narrow beside every depth."""
+    teeth, r = PlaneTeeth(PINION, hold=hold(PINION)), np.array([46e-3])
+    totals = []
+    for depth in (0.4e-3, 1e-3, 2e-3):
+        law = LineContact((Elasticity(), Elasticity()), (depth, depth))
+        surface = law.compliances(1e3, 8e-3)[0] / 2
+        totals.append(teeth.matrix(np.array([0]), r, depth).item() + surface)
+    assert totals == pytest.approx([totals[-1]] * 3, rel=1e-3)
+
+
+@pytest.mark.parametrize("wheel", [PINION, RING], ids=["external", "ring"])
+def test_error_bars_contain_what_a_finer_mesh_changes(wheel):
+    teeth = PlaneTeeth(wheel, hold=hold(wheel, 2.0))
+    finer = PlaneTeeth(wheel, hold=hold(wheel, 2.0), fineness=teeth.fineness.finer(1.5))
+    r = wheel.form + np.array([0.1, 0.3, 0.5, 0.7, 0.9]) * (wheel.tip - wheel.form)
+    depth = 0.25 * wheel.module
+    tooth = np.zeros(5, int)
+    usual, better = (np.diag(t.matrix(tooth, r, depth)) for t in (teeth, finer))
+    error = teeth.error(r, depth)
+    assert np.all(abs(better - usual) < error * usual)
+    assert error.max() < 0.03
+
+
+def test_what_a_tooth_gives_way_by_does_not_depend_on_a_small_hub():
+    """Waves from 2 on fall towards the axis; the body's motion, which does not, is out."""
+    r = np.array([44e-3, 46e-3, 49e-3])
+    small, large = (
+        np.diag(PlaneTeeth(PINION, hold=part * PINION.root).matrix(np.zeros(3, int), r, 1e-3))
+        for part in (0.05, 0.1)
+    )
+    assert small == pytest.approx(large, rel=2e-3)
+    assert np.diag(PlaneTeeth(PINION).matrix(np.zeros(3, int), r, 1e-3)) == pytest.approx(large)
+
+
+def test_teeth_are_solved_once():
+    """Of equal wheels, whatever their face."""
+    teeth = [
+        PlaneTeeth(PINION.thinned(b), hold=hold(PINION), fineness=COARSE) for b in (1e-2, 2e-2)
+    ]
+    first, second = (t._solved for t in teeth)
+    assert first is second
+
+
+def test_ports_and_depths_outside_the_rim_are_refused():
+    with pytest.raises(SolidgearError, match="port"):
+        PlaneTeeth(PINION, port=42e-3, fineness=COARSE).matrix(
+            np.array([0]), np.array([46e-3]), 1e-3
+        )
+    with pytest.raises(SolidgearError, match="no tooth or rim"):
+        PlaneTeeth(PINION, hold=30e-3, port=29e-3, fineness=COARSE).asymmetry  # noqa: B018
+
+
+@pytest.mark.parametrize(
+    "z, w, middle", [(-7, -5, -7), (0.4, 3, 0.4), (2, 2, 2), (1.3, 2, 1.3), (9.6, 7, 9)]
+)
+def test_the_spread_along_the_face_is_the_mean_over_both_slices(z, w, middle):
+    """By the eigenfunctions of an elastic layer, whose mean over a slice is theirs in its middle times
+    a cardinal sine; a slice that stands out over the end lies within it.
+    """
+    slices = Slices(PlaneTeeth(Wheel(23, 4e-3, face_width=20e-3)), 16e-3, 8)
+    k = pi / 20 * np.arange(1, 20001)
+    waves = np.cos(k * (middle + 10)) * np.cos(k * (w + 10)) * np.sinc(k / pi) ** 2
+    expected = (1 + 2 * np.sum(waves / (1 + (1.05 * 4 * k) ** 2))) / 20e-3
+    spread = slices.along(1e-3 * np.array([z, w]), 1.05)
+    assert spread[0, 1] == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize("count, width", [(1, 20e-3), (7, 20e-3), (99, 20e-3), (40, 2.0)])
+def test_an_even_load_stays_even_for_any_number_of_slices(count, width):
+    slices = Slices(PlaneTeeth(Wheel(23, 4e-3, face_width=width)), width, count)
+    spread = slices.along(slices.middles, 1.05)
+    assert spread.sum(axis=1) * slices.step == pytest.approx(np.ones(count), rel=1e-12)
+    assert np.linalg.eigvalsh(spread).min() > 0
+    assert spread == pytest.approx(spread.T, rel=1e-14)
+
+
+def test_slices_of_helical_teeth_move_along_the_normal():
+    wheel = Wheel(30, 2e-3, radians(20), face_width=15e-3)
+    slices = Slices(PlaneTeeth(wheel, fineness=COARSE), 15e-3, 5, reading_depth=1e-3)
+    tooth, r = np.array([0, 0, 1, -1, 1]), np.array([31.0, 32.0, 31.5, 33.0, 33.9]) * 1e-3
+    r = np.clip(r, wheel.form, wheel.tip)
+    matrix = slices.matrix(tooth, r, slices.middles)
+    across, near = (f(tooth, r, 1e-3) for f in (slices.plane.matrix, slices.plane.near))
+    long, short = (slices.along(slices.middles, length) for length in (1.4, 0.5))
+    expected = near * short + (across - near) * long
+    assert matrix == pytest.approx(np.cos(wheel.base_helix) ** 2 * expected, rel=1e-12)
+    assert np.linalg.eigvalsh(matrix).min() > 0
+    # two cells in one slice spread alike
+    z = np.array([1.0, 2.0, 1.0, 2.0, 2.0]) * 1e-3
+    again = slices.matrix(np.zeros(5, int), np.full(5, r[0]), z)
+    assert again[0, 1] == pytest.approx(again[2, 4], rel=1e-13)
+    assert again[0, 2] == pytest.approx(again[0, 0], rel=1e-13)
+
+
+def test_faces_that_have_no_slices_are_refused():
+    with pytest.raises(SolidgearError, match="face width"):
+        Slices(PlaneTeeth(PINION), 20e-3, 8)
+    with pytest.raises(SolidgearError, match="at least one"):
+        Slices(PlaneTeeth(PINION.thinned(20e-3)), 20e-3, 0)

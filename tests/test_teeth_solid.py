@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 from functools import lru_cache
-from math import log, pi, radians
+from math import pi, radians
 
 import numpy as np
 import pytest

@@ -1,10 +1,14 @@
 """Claims of the thesis: the verdicts, and the figures they rest on."""
 
+import numpy as np
 import pytest
 
+import solidgear as sg
 from tests.charted import facts_of
-from validation.thesis import claims, curves
+from validation.thesis import claims, contact, curves
 from validation.thesis.claims import CAVEAT, CONFIRMED, NOT, OPEN
+from validation.thesis.lumped_pair import shaft_stiffness
+from validation.thesis.pair import DATA
 
 FOUND = {claim.__name__: claim for claim in claims.CLAIMS}
 VERDICTS = {
@@ -16,7 +20,16 @@ VERDICTS = {
     "moments": CAVEAT,
     "pinion_motion": CAVEAT,
     "amplitude": OPEN,
-    "mesh_stiffness": OPEN,
+    "mesh_point_still": CONFIRMED,
+    "line_of_action_still": CONFIRMED,
+    "stiffness_by_pilot": CONFIRMED,
+    "close_pilot_counts_more": NOT,
+    "span_with_pilot": CONFIRMED,
+    "span_without_pilot": CAVEAT,
+    "pilot_stiffens": CONFIRMED,
+    "stiffness_without_shafts": NOT,
+    "stiffness_level": OPEN,
+    "mesh_stiffness": NOT,
     "masses": NOT,
 }
 
@@ -98,3 +111,56 @@ def test_masses_and_geometry_of_table_1_are_of_two_rotors(judged):
     assert numbers["pinion mass"] == pytest.approx(15.91, abs=0.01)
     assert numbers["pinion torsional"] == pytest.approx(0.0202, abs=1e-4)
     assert numbers["gear mass"] == pytest.approx(79.82, abs=0.01)
+
+
+# ---------------------------------------------------------------- teeth in contact
+def test_mountings_of_table_1_have_the_published_stiffness():
+    for mounting, key in ((contact.TWO, "2-bearing"), (contact.THREE, "3-bearing")):
+        scene = mounting.scene
+        ours = sg.condense(sg.build(scene, "euler"), scene, "pinion").stiffness
+        published = shaft_stiffness(**DATA["support"][key])
+        assert ours == pytest.approx(published, rel=5e-3, abs=1e3)
+
+
+def test_a_compliance_at_the_apex_is_that_of_the_shaft():
+    """A force at the mesh point moves it by what the shaft does at its lumped point."""
+    stiffness = shaft_stiffness(**DATA["support"]["2-bearing"])
+    stiffness[4, 4] = 1e30
+    place, point = 0.185, np.array([-0.06, 0.18, -0.005])
+    normal = np.array([0.24, 0.54, 0.80])
+    row = np.concatenate([normal, np.cross(point, normal)])
+    lumped = np.concatenate([normal, np.cross(point - [0.0, place, 0.0], normal)])
+    moved = row @ contact.at_apex(stiffness, place) @ row
+    assert moved == pytest.approx(lumped @ np.linalg.solve(stiffness, lumped), rel=1e-9)
+
+
+def test_mesh_point_and_line_of_action_are_those_of_the_plots():
+    """Read off figures 3.11 and 3.15: within 6 mm and 0.03."""
+    cycle = contact.contact("200 N m, 300 um", contact.THREE)
+    assert cycle.points.mean(axis=0) == pytest.approx(DATA["plotted"]["mesh_point"], abs=6e-3)
+    line = cycle.lines_of_action.mean(axis=0)
+    assert line == pytest.approx(DATA["plotted"]["line_of_action"], abs=0.03)
+
+
+def test_the_published_stiffness_has_the_supports_in_it(judged):
+    """Taken out in series, they leave the teeth: so a train with shafts counts them twice."""
+    numbers = judged["stiffness_without_shafts"].numbers
+    for way in contact.WAYS:
+        for mounting in ("two bearings", "three"):
+            teeth, series = (numbers[f"{way} {mounting} {key}"] for key in ("teeth", "series"))
+            assert series == pytest.approx(teeth, rel=0.02)
+            assert numbers[f"{way} {mounting}"] < 0.85 * teeth
+        assert numbers[f"{way} tangent"] > 1.3 * numbers[f"{way} secant"]
+
+
+def test_what_a_pilot_changes_is_not_the_teeth(judged):
+    numbers = judged["mesh_stiffness"].numbers
+    for way in contact.WAYS:
+        assert numbers[f"{way} k_m"] > 0.04
+        assert abs(numbers[f"{way} teeth"]) < 0.2 * numbers[f"{way} k_m"]
+
+
+def test_torque_and_ease_off_decide_the_level(judged):
+    levels = list(judged["stiffness_level"].numbers.values())
+    assert max(levels) > 2.5 * min(levels)
+    assert min(levels) < 3.2e8 < max(levels)

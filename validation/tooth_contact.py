@@ -16,7 +16,7 @@ import re
 import shutil
 import tempfile
 from dataclasses import dataclass
-from math import atan2, cos, degrees, radians
+from math import radians
 from pathlib import Path
 
 import numpy as np
@@ -102,8 +102,9 @@ def deck(pair: WheelPair) -> tuple[str, np.ndarray]:
     """Return the input of CalculiX, and the places (n, 3) of all nodes, m."""
     wheels = pair.first, pair.second
     pitch_radii = pair.first_radius(pair.pitch_point), pair.second_radius(pair.pitch_point)
-    turns = -float(wheels[0].half_angle(pitch_radii[0])), np.pi - float(
-        wheels[1].half_angle(pitch_radii[1])
+    turns = (
+        -float(wheels[0].half_angle(pitch_radii[0])),
+        np.pi - float(wheels[1].half_angle(pitch_radii[1])),
     )
     centres = np.zeros(3), np.array([0.0, pair.distance, 0.0])
     lines, places, elements = [], [], 0

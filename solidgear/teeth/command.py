@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
@@ -18,6 +19,14 @@ from solidgear.teeth.study import FACTORS, teeth_study
 from solidgear.teeth.train_teeth import TeethModel
 from solidgear.trains.options import TrainFile
 
+
+class TeethName(StrEnum):
+    """Models of the teeth."""
+
+    slices = "slices"
+    solid = "solid"
+
+
 #: most slices and positions that are of any use
 MOST_SLICES, MOST_POSITIONS = 200, 256
 
@@ -27,6 +36,10 @@ def contact(
     train: TrainFile,
     *,
     acting: Acting,
+    teeth: Annotated[
+        TeethName,
+        typer.Option("--teeth", help="Model of the teeth: slices (plane), or solid (3D)."),
+    ] = TeethName.slices,
     slices: Annotated[
         int, typer.Option("--slices", help="Slices of the face.")
     ] = TeethModel.slices,
@@ -56,7 +69,7 @@ def contact(
             solved = teeth_study(
                 assembly.train,
                 point,
-                model=TeethModel(slices, positions),
+                model=TeethModel(teeth.value, slices, positions),
                 factors=FACTORS if curve else (),
                 progress=progress,
             )

@@ -59,6 +59,11 @@ class MeshContact:
     assumed: tuple[str, ...]  #: what the file leaves open, sentences
 
     @property
+    def status(self) -> str:
+        """How the numbers came about, as in a file."""
+        return "calculated"
+
+    @property
     def wheels(self) -> WheelPair:
         """Geometry of both wheels."""
         return self.pair.wheels

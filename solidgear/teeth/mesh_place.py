@@ -60,11 +60,16 @@ def place_of(
     """
     if isinstance(mesh, PlanetMesh):
         return _of_planet(assembly, system, mesh, teeth)
-    first, second = (f"{side}.{port}" for side, port in zip(mesh.shafts, mesh.ports))
-    port, vector = system.port(first), assembly.contacts[mesh.name].pinion
+    return place_of_pair(assembly, system, mesh)
+
+
+def place_of_pair(assembly: Assembly, system: System, pair: Pair) -> MeshPlace:
+    """Return where a pair of gears lies in the system of a train, on the flanks of the assembly."""
+    first, second = (f"{side}.{port}" for side, port in zip(pair.shafts, pair.ports))
+    port, vector = system.port(first), assembly.contacts[pair.name].pinion
     return MeshPlace(
-        link=mesh.name,
-        force=mesh.name,
+        link=pair.name,
+        force=pair.name,
         ends=(first, second),
         pitch_point=port.point + port.axes @ vector.point,
         normal=port.axes @ vector.normal,

@@ -13,7 +13,8 @@ from solidgear.core import SolidgearError, pinned
 from solidgear.core.plain import plain
 from solidgear.teeth.mesh_contact import MeshContact
 from solidgear.teeth.supports import Carried, with_sections
-from solidgear.teeth.train_teeth import TeethModel, mesh_contact, provisional
+from solidgear.teeth.train_teeth import TeethModel, mesh_contact
+from solidgear.trains.assembly.mesh_stiffness import with_usual_meshes
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.planetary import PlanetMesh
@@ -120,7 +121,7 @@ def teeth_study(
             f"{train.name} has no torque: teeth touch under a load; give --torque, or [operation] "
             "in the file"
         )
-    sectioned = with_sections(provisional(train))
+    sectioned = with_sections(with_usual_meshes(train))
     carried = Carried.at_rest(sectioned, point)
     teeth = touching(carried.train)
     meshes = []

@@ -8,20 +8,24 @@ the load lies along the face, and for nothing else there.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
 from solidgear.core import Scene, SceneError
 from solidgear.core.gears.wheel import Wheel
-from solidgear.teeth.compliance.plane import PlaneTeeth
-from solidgear.teeth.compliance.slices import Slices
+from solidgear.teeth.bevel.train import BevelContact, bevel_contact
+from solidgear.teeth.compliance.flank import FlankCompliance
+from solidgear.teeth.compliance.plane import DEPTH, PlaneTeeth
+from solidgear.teeth.compliance.slices import SPREAD, Slices
+from solidgear.teeth.compliance.solid import SolidTeeth
 from solidgear.teeth.contact.cycle import POSITIONS, MeshCycle, mesh_cycle
 from solidgear.teeth.contact.cylindrical import CylindricalPair
 from solidgear.teeth.contact.frame import Supports
 from solidgear.teeth.contact.local import Elasticity, LineContact
 from solidgear.teeth.mesh_contact import ORDERS, MeshContact
-from solidgear.teeth.norm import norm_stiffness
 from solidgear.teeth.supports import Carried, with_sections
+from solidgear.trains.assembly.mesh_stiffness import with_usual_meshes
 from solidgear.trains.file.mesh_teeth import MeshTeeth, wheels_of
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.pairs import Pair
@@ -38,8 +42,44 @@ THINNEST = 0.2
 class TeethModel:
     """How teeth are modelled."""
 
+    name: Literal["slices", "solid"] = "slices"
     slices: int = 24  #: of the face
     positions: int = POSITIONS  #: of a mesh cycle
+    coarse: bool = False  #: whether finite elements are twice as large
+    depth: float = DEPTH  #: of readings below the flank, modules
+    spread: float = SPREAD  #: along the face, modules; of slices alone
+
+    def compliance(self, wheel: Wheel, body: WheelBody) -> FlankCompliance:
+        """Return the compliance of a wheel's teeth."""
+        depth = self.depth * wheel.module
+        if self.name == "slices":
+            plane = PlaneTeeth(wheel, hold=body.hold, elasticity=body.elasticity)
+            plane = plane.coarser if self.coarse else plane
+            return Slices(plane, body.face_width, self.slices, depth, self.spread)
+        solid = SolidTeeth(
+            wheel,
+            hold=body.hold,
+            reading_depth=depth,
+            elasticity=body.elasticity,
+            hand=body.hand,
+            width=body.face_width,
+            offset=body.offset,
+            slices=self.slices,
+        )
+        return solid.coarser if self.coarse else solid
+
+
+@dataclass(frozen=True)
+class WheelBody:
+    """What carries the teeth of a wheel, and the face that it shares."""
+
+    elasticity: Elasticity
+    #: radius at which the body ends: its bore, or the seat of a wheel that is no part of its shaft, m;
+    #: None where it is solid
+    hold: float | None
+    hand: int  #: as of :class:`solidgear.teeth.compliance.solid.SolidTeeth`
+    face_width: float  #: shared, m
+    offset: float  #: of its middle from that of the wheel's face, m
 
 
 def teeth_of(mesh: Pair | PlanetMesh, coast: bool) -> MeshTeeth:
@@ -64,19 +104,21 @@ def teeth_of(mesh: Pair | PlanetMesh, coast: bool) -> MeshTeeth:
 
 def toothed(mesh: Pair | PlanetMesh, teeth: MeshTeeth, model: TeethModel) -> CylindricalPair:
     """Return both wheels with their compliance."""
-    compliances, materials = [], []
-    for wheel, gear in zip((teeth.wheels.first, teeth.wheels.second), _gears(mesh)):
+    wheels = teeth.wheels
+    bodies = []
+    for wheel, gear, hand, middle in zip(
+        (wheels.first, wheels.second), _gears(mesh), (1, -1), wheels.face_middles
+    ):
         scene, rigid = gear
         material = Elasticity() if scene is None else _material(scene)
         hold = None if scene is None else _hold(scene, wheel, rigid)
-        plane = PlaneTeeth(wheel, hold=hold, elasticity=material)
-        compliances.append(Slices(plane, wheel.face_width, model.slices))
-        materials.append(material)
-    depths = tuple(compliance.depth for compliance in compliances)
-    law = LineContact((materials[0], materials[1]), (depths[0], depths[1]))
-    return CylindricalPair(
-        teeth.wheels, (compliances[0], compliances[1]), law, teeth.shapes, model.slices
+        bodies.append(WheelBody(material, hold, hand, wheels.face_width, -middle))
+    first, second = bodies
+    compliances = model.compliance(wheels.first, first), model.compliance(wheels.second, second)
+    law = LineContact(
+        (first.elasticity, second.elasticity), (compliances[0].depth, compliances[1].depth)
     )
+    return CylindricalPair(wheels, compliances, law, teeth.shapes, model.slices)
 
 
 def _gears(mesh: Pair | PlanetMesh) -> list[tuple[Scene | None, bool]]:
@@ -131,21 +173,6 @@ def mesh_contact(
     )
 
 
-def provisional(train: Train) -> Train:
-    """Return a train with stiffness by the norm where its file leaves it to the teeth: what shafts do
-    under a given torque hardly depends on it.
-    """
-    meshes = []
-    for pair, mesh in zip(train.pairs, train.meshes):
-        if mesh.stiffness == "teeth":
-            teeth = teeth_of(pair, False)
-            wheels = teeth.wheels
-            along = norm_stiffness(wheels).mesh * wheels.face_width / np.cos(wheels.base_helix) ** 2
-            mesh = mesh.with_changes(stiffness=float(along))
-        meshes.append(mesh)
-    return train.with_changes(meshes=tuple(meshes))
-
-
 def mesh_of_teeth(train: Train) -> Train:
     """Return a train whose meshes with ``stiffness = "teeth"`` have the numbers of their teeth at the
     first operating point: tangent stiffness, mesh point and line of action, and the orders of the
@@ -160,7 +187,7 @@ def mesh_of_teeth(train: Train) -> Train:
     if not any(wanted):
         return train
     point = _point(train)
-    carried = Carried.at_rest(with_sections(provisional(train)), point)
+    carried = Carried.at_rest(with_sections(with_usual_meshes(train)), point)
     meshes = []
     for pair, mesh, asked in zip(carried.train.pairs, train.meshes, wanted):
         meshes.append(_filled(carried, pair, mesh) if asked else mesh)
@@ -178,13 +205,20 @@ def _point(train: Train) -> OperatingPoint:
 
 def _filled(carried: Carried, pair: Pair, mesh):
     """Return the table of a mesh with the numbers of its teeth."""
-    solved = mesh_contact(carried, pair)
+    solved: MeshContact | BevelContact
+    if pair.mesh.shaft_angle:
+        materials = [_material(member.scene) for member in pair.members.values()]
+        solved = bevel_contact(carried, pair, (materials[0], materials[1]))
+    else:
+        solved = mesh_contact(carried, pair)
     cycle = solved.cycle
     orders = cycle.orders(ORDERS)
     changes = {
         "stiffness": float(cycle.tangent.mean()),
-        "status": "calculated",
+        "status": solved.status,
     }
+    if isinstance(solved, BevelContact) and mesh.gear_position is None:
+        changes["gear_position"] = solved.gear_position
     if mesh.transmission_error is None or mesh.transmission_error_status == "assumed":
         changes["transmission_error"] = ErrorTable(
             orders=tuple(float(a) for a in np.abs(orders)),
@@ -201,7 +235,7 @@ def _filled(carried: Carried, pair: Pair, mesh):
 
 
 def in_pinion_frame(
-    carried: Carried, pair: Pair, solved: MeshContact
+    carried: Carried, pair: Pair, solved: MeshContact | BevelContact
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return mesh points from the pinion's lumped point and lines of action, (p, 3) each, in the frame
     of the pinion.

@@ -96,7 +96,10 @@ class Reduced(Reduction):
     ] = None
 
     def assembly(
-        self, path: Path, settings: Mapping[str | tuple[str, str], Mapping] | None = None
+        self,
+        path: Path,
+        settings: Mapping[str | tuple[str, str], Mapping] | None = None,
+        solves_teeth: bool = True,
     ) -> Assembly:
         """Return the assembly of a train, once these options are sound, with builder options by
         side and model.
@@ -118,6 +121,7 @@ class Reduced(Reduction):
                 settings or {},
                 tol=self.tol,
                 highest_hz=self.max_frequency,
+                solves_teeth=solves_teeth,
             )
         except SceneError as error:  # what the mesh of a sound file cannot be
             raw = parse(str(path))

@@ -18,6 +18,18 @@ from solidgear.trains.response.respond import respond
 from solidgear.trains.response.response import TrainResponse
 from validation.thesis import claims
 from validation.thesis.claims import AXES, WAYS, fourteen, mounted
+from validation.thesis.contact import WAYS as WAYS_OF_CONTACT
+from validation.thesis.contact_curves import (  # noqa: F401  (by the names of claims)
+    close_pilot_counts_more,
+    line_of_action_still,
+    mesh_point_still,
+    pilot_stiffens,
+    span_with_pilot,
+    span_without_pilot,
+    stiffness_by_pilot,
+    stiffness_level,
+    stiffness_without_shafts,
+)
 from validation.thesis.pair import CASES, DATA
 
 HIGHEST = 4000.0
@@ -141,8 +153,18 @@ def amplitude(width: float) -> Chart | None:
 
 
 def mesh_stiffness(width: float) -> Chart:
-    half = respond(claims.softer(), "thesis", "thesis", highest_hz=HIGHEST)
-    return over(width, mesh_stiffness=responses("identified")[0], half_of_it=half)
+    grown = claims.mesh_stiffness().numbers
+    way = next(iter(WAYS_OF_CONTACT))
+    more = respond(claims.scaled(1 + grown[f"{way} k_m"]), "thesis", "thesis", highest_hz=HIGHEST)
+    teeth = respond(
+        claims.scaled(1 + grown[f"{way} teeth"]), "thesis", "thesis", highest_hz=HIGHEST
+    )
+    return over(
+        width,
+        two_bearings=responses("identified")[0],
+        k_m_with_a_pilot=more,
+        teeth_with_a_pilot=teeth,
+    )
 
 
 def masses(width: float) -> Chart:

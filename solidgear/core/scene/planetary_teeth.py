@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from math import atan, cos, isclose, isfinite, pi, radians, sin, tan
+from math import atan, cos, inf, isclose, isfinite, pi, radians, sin, tan
 
 import numpy as np
 
 from solidgear.core.errors import SceneError
+from solidgear.core.gears.wheel import Rack
 from solidgear.core.scene.units import TYPED
 
 #: share of a tooth by which an azimuth typed with six digits is off from where a planet fits
 FITS = 1e-3
-#: tip of a tooth beyond its pitch circle, modules
-ADDENDUM = 1.0
 
 
 @dataclass(frozen=True)
@@ -115,18 +114,29 @@ class PlanetaryTeeth:
 
     def _side_by_side(self) -> None:
         """Refuse neighbours whose tips overlap."""
-        tips = self.module * (self.planet + 2 * ADDENDUM)
-        turns = np.sort(np.array(self.azimuths) % (2 * pi))
-        if len(turns) < 2:
-            return
-        closest = float(np.diff([*turns, turns[0] + 2 * pi]).min())
-        spacing = 2 * self.pin_radius * sin(closest / 2)
-        if spacing <= tips:
+        # a rack's addendum counts in normal modules
+        tips = self.module * (self.planet + 2 * Rack().addendum * cos(self.helix))
+        if self.spacing <= tips:
             raise SceneError(
-                f"planets {np.degrees(closest):.4g} deg apart overlap: their axes are "
-                f"{1e3 * spacing:.4g} mm from each other, their tips {1e3 * tips:.4g} mm across",
+                f"planets {np.degrees(self._closest):.4g} deg apart overlap: their axes are "
+                f"{1e3 * self.spacing:.4g} mm from each other, their tips {1e3 * tips:.4g} mm across",
                 path=("planets",),
             )
+
+    @property
+    def _closest(self) -> float:
+        """Angle between the planets that are nearest to each other, rad."""
+        turns = np.sort(np.array(self.azimuths) % (2 * pi))
+        return float(np.diff([*turns, turns[0] + 2 * pi]).min())
+
+    @property
+    def spacing(self) -> float:
+        """Distance between the axes of the planets that are nearest to each other, m; without end
+        for a single planet.
+        """
+        if len(self.azimuths) < 2:
+            return inf
+        return 2 * self.pin_radius * sin(self._closest / 2)
 
     @property
     def speed_ratio(self) -> float:

@@ -19,8 +19,10 @@ class FlankCompliance(Protocol):
     :mod:`solidgear.core.gears.wheel`, without the motion of its body.
     """
 
-    #: below the flank at which the motion is read, m
-    depth: float
+    @property
+    def depth(self) -> float:
+        """Depth below the flank at which the motion is read, m."""
+        ...
 
     def matrix(self, tooth: np.ndarray, r: np.ndarray, z: np.ndarray) -> np.ndarray:
         """Return the (n, n) normal motion at the depth below each place per normal force on each, m/N.

@@ -55,7 +55,9 @@ def port_of(mesh: SweptPitch, radius: float, pitch: float) -> Port:
     share, part = gauss(ALONG)
     steps = np.diff(mesh.ends)[:, None]
     z, along = (mesh.ends[:-1, None] + steps * share).ravel(), (steps * part).ravel()
-    shape, nodes = mesh.shapes(np.repeat(cells, len(z)), np.repeat(at, len(z), axis=0), np.tile(z, AROUND))
+    shape, nodes = mesh.shapes(
+        np.repeat(cells, len(z)), np.repeat(at, len(z), axis=0), np.tile(z, AROUND)
+    )
     places = mesh.places(points[:, None], z)
     motion = rigid_motions(places.reshape(-1, 3).T).reshape(-1, 3, 6)
     area = np.outer(weights * radius * pitch, along).ravel()

@@ -25,9 +25,7 @@ from solidgear.teeth.compliance.mesh import PitchMesh
 #: element that teeth are made of
 NAME = "hex20"
 #: coordinates of the nodes of a quadrilateral: corners, then middles of sides
-FLAT = np.array(
-    [[0, 0], [1, 0], [1, 1], [0, 1], [0.5, 0.0], [1.0, 0.5], [0.5, 1.0], [0.0, 0.5]]
-)
+FLAT = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [0.5, 0.0], [1.0, 0.5], [0.5, 1.0], [0.0, 0.5]])
 #: points of quadrature along z within a cell and a slice
 ALONG = 3
 #: distance from a cell, in its size, at which a point counts as inside: between nodes a flank departs
@@ -95,7 +93,9 @@ class SweptPitch:
         element = basis_of(NAME)
         dofs = unknowns(mesh, element)
         flat, level = self._names(element.doflocs)
-        of_plane = np.broadcast_to(self.plane.cells[:, flat], (self.layers, len(corners), len(flat)))
+        of_plane = np.broadcast_to(
+            self.plane.cells[:, flat], (self.layers, len(corners), len(flat))
+        )
         of_level = np.broadcast_to(2 * layer + level, of_plane.shape)
         numbers = np.full((count, len(self.levels)), -1)
         numbers[of_plane, of_level] = dofs.T.reshape(of_plane.shape)

@@ -28,6 +28,8 @@ from solidgear.teeth.contact.local import LineContact
 
 #: pitches beyond both ends of the path that corners may reach under load
 BEYOND = 0.3
+#: steps in which contact lines go beyond the path
+STEPS = 6
 #: least share of a cell that a line crosses
 SLIVER = 1e-3
 
@@ -53,8 +55,10 @@ class CylindricalPair:
         half = step * lean / 2
         start, stop = wheels.ends
         first, last = start - self.beyond * wheels.pitch, stop + self.beyond * wheels.pitch
-        # a cell lies on one side of an end of the path, beyond which flanks part
-        regions = [(first, start), (start, stop), (stop, last)] if self.beyond else [(start, stop)]
+        # a cell lies on one side of an end of the path, beyond which flanks part ever faster
+        steps = wheels.pitch * self.beyond * np.linspace(0, 1, STEPS + 1) ** 2
+        places = np.concatenate([start - steps[::-1], stop + steps])
+        regions = list(zip(places, places[1:])) if self.beyond else [(start, stop)]
         parts = [
             (k, j, place, z[j], share * step / cos(wheels.base_helix))
             for k in self._lines(phase, first, last)
@@ -125,7 +129,7 @@ def _crossed(
     """
     for j, place in enumerate(places):
         if half < 1e-12 * abs(last - first):
-            if first <= place <= last:
+            if first <= place < last:
                 yield j, float(place), 1.0
             continue
         low, high = max(place - half, first), min(place + half, last)

@@ -55,6 +55,7 @@ from solidgear.trains.assembly.mesh_errors import (
     refine_meshes,
     resolving,
 )
+from solidgear.trains.assembly.mesh_stiffness import with_solved_meshes, with_usual_meshes
 from solidgear.trains.assembly.shaft import (
     JUDGE,
     LUMPED,
@@ -99,6 +100,8 @@ class Assembly:
     #: file over the share of it that a judge may take
     tol: float | str | None = None
     highest_hz: float | None = None  #: up to which modes are wanted; by default that of the file
+    #: false to leave the contact of teeth alone that are to give the stiffness of their mesh
+    solves_teeth: bool = True
 
     @classmethod
     def of(cls, scene: Scene, kept: int = KEPT, tol: float | str | None = None) -> Assembly:
@@ -132,6 +135,8 @@ class Assembly:
         self._read_train(self.train)
 
     def _read_train(self, train: Train) -> None:
+        self.asked_train = train  #: before the stiffness of teeth was put in
+        train = with_solved_meshes(train) if self.solves_teeth else with_usual_meshes(train)
         self.train = train
         self.scenes: dict[str, Scene] = {side: train.shaft(side) for side in train.shafts}
         self.contacts: dict[str, Contact] = contacts(train)

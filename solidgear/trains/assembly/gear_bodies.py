@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from math import cos, pi, sin, sqrt
 
 from solidgear.core import Scene
-from solidgear.core.gears.wheel import Rack
+from solidgear.core.gears.wheel import Rack, Wheel
 from solidgear.core.gears.wheel_pair import WheelPair
 from solidgear.trains.assembly.layout import mesh_forces
 from solidgear.trains.file.gears import HeadInertia
@@ -56,7 +56,7 @@ class GearSize:
     face_width: float
 
     @classmethod
-    def of(cls, wheel: GearSize) -> GearSize:
+    def of(cls, wheel: Wheel) -> GearSize:
         """Return the size of a wheel that rolls on its reference circle."""
         return cls(wheel.radius, wheel.root, wheel.tip, wheel.module, wheel.face_width)
 

@@ -55,7 +55,7 @@ class StageAtWork:
         """The stage alone; sun and carrier are there for their places."""
         table, teeth = self.stage.table, self.stage.teeth
         sun, planet, ring = teeth.base_radii
-        planet_table, mesh = table.planet, table.mesh
+        planet_table, stage = table.planet, self.stage
         assert planet_table.pin is not None
         planets = tuple(
             Planet(
@@ -63,8 +63,8 @@ class StageAtWork:
                 planet_table.torsional,
                 planet,
                 np.diag(planet_table.pin.diagonal),
-                mesh.sun_stiffness,
-                mesh.ring_stiffness,
+                stage.stiffness("sun"),
+                stage.stiffness("ring"),
                 self.way * (azimuth + table.position),
                 planet_table.bending,
             )

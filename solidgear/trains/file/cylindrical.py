@@ -16,6 +16,7 @@ from solidgear.core import SceneError
 from solidgear.core.gears.wheel import Rack, Wheel
 from solidgear.core.gears.wheel_pair import WheelPair
 from solidgear.core.scene.units import TYPED
+from solidgear.trains.file.flanks import Flanks
 
 if TYPE_CHECKING:
     from solidgear.trains.file.gears import Member
@@ -25,9 +26,15 @@ if TYPE_CHECKING:
 RADIUS = 5e-3
 #: keys of cylindrical gears, by table
 WORDS = {
-    "pinion": ("module", "helix_angle", "profile_shift"),
-    "gear": ("module", "helix_angle", "profile_shift"),
+    "pinion": ("module", "helix_angle", "profile_shift", *Flanks.model_fields),
+    "gear": ("module", "helix_angle", "profile_shift", *Flanks.model_fields),
     "mesh": ("centre_distance",),
+}
+#: keys of bevel gears alone, by table
+BEVEL_WORDS = {
+    "pinion": ("cutter_radius", "blade_curvature"),
+    "gear": ("cutter_radius", "blade_curvature"),
+    "mesh": ("ease_off", "gear_share", "working_depth"),
 }
 
 
@@ -100,7 +107,17 @@ def cylindrical_problems(pinion: Member, gear: Member, mesh: Mesh) -> Iterator[S
                         "pitch_radius and spiral_angle of a bevel gear",
                         path=(table, key),
                     )
+        radii = pinion.cutter_radius, gear.cutter_radius
+        if mesh.ease_off is not None and None not in radii:
+            yield SceneError(
+                "follows from the cutter_radius of both gears; leave one of the three out",
+                path=("mesh", "ease_off"),
+            )
         return
+    for table, keys in BEVEL_WORDS.items():
+        for key in keys:
+            if getattr(tables[table], key) is not None:
+                yield SceneError("is for bevel gears; these shafts are parallel", path=(table, key))
     for side, member in (("pinion", pinion), ("gear", gear)):
         for key, bevel_key in (("helix_angle", "spiral_angle"), ("module", "pitch_radius")):
             if getattr(member, key) is not None and getattr(member, bevel_key) is not None:

@@ -25,7 +25,7 @@ class RackTable(Model):
     dedendum: Annotated[float, Field(gt=0, le=2.5)] = 1.25
     root_radius: Annotated[float, Field(gt=0, le=0.8)] = 0.38
 
-    def at(self, pressure_angle: float) -> Rack:
+    def with_angle(self, pressure_angle: float) -> Rack:
         """Return the rack with a pressure angle, rad."""
         return Rack(pressure_angle, self.addendum, self.dedendum, self.root_radius)
 

@@ -16,6 +16,9 @@ ROUNDED = 5e-3
 #: teeth that a wheel may have
 FEWEST_TEETH, MOST_TEETH = 3, 2000
 
+#: 1/m, of the blade of a cutter: a circle of a tenth of a metre
+MOST_CURVED = 10.0
+
 Teeth = Annotated[int, Field(strict=True, ge=FEWEST_TEETH, le=MOST_TEETH)]
 #: of cylindrical gears (ISO 21771)
 FLANKS = ("left", "right")
@@ -60,6 +63,11 @@ class Gear(Flanks):
     helix_angle: SpiralAngle | None = None
     #: of cylindrical gears, in modules
     profile_shift: Annotated[float, Field(gt=-1.5, lt=2.5)] = 0.0
+    #: of bevel gears: radius of the cutter at the pitch plane, m, and curvature of its blade, 1/m;
+    #: flanks open away from their middle where the one that cuts the concave flank has the larger
+    #: radius, and where the pinion's blade is curved
+    cutter_radius: PositiveLength | None = None
+    blade_curvature: Annotated[float, Field(ge=-MOST_CURVED, le=MOST_CURVED)] | None = None
     apex: Literal["start", "end"] = "start"  #: towards which end of the shaft the pitch apex lies
     head: HeadInertia | None = None
 

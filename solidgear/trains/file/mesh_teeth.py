@@ -8,7 +8,6 @@ end, so that z runs to the end where hand and loaded flank have one name, else t
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from math import ceil, cos, degrees, radians
 
@@ -134,6 +133,9 @@ def _of_planets(mesh: PlanetMesh, coast: bool) -> MeshTeeth:
     # a sun that drives about +y pushes with its right flanks, and planets the ring with left ones
     way = _way(helix, sun.hand, FLANKS[1], coast)
     wheels, assumed = _wheels(numbers, sun.module, helix, table.mesh.pressure_angle)
+    if mesh.mate == "ring" and numbers[1].flanks.tip_diameter is None:
+        # no rack cuts a ring, and fillets of planets may end the path before such tips do
+        assumed = (*assumed, f"tip diameter of the ring {_mm(2 * wheels[1].tip)}")
     first, second = (wheel.flanks.face_offset for wheel in numbers)
     pair_wheels = WheelPair(*wheels, offset=way * (second - first))
     return _mesh_teeth(pair_wheels, numbers, (way, way), assumed)
@@ -161,7 +163,7 @@ def _wheels(
     faces = widths[0] or widths[1] or 0.0, widths[1] or widths[0] or 0.0
     wheels, assumed = [], []
     for wheel, width in zip(numbers, faces):
-        rack = (wheel.flanks.rack or RackTable()).at(pressure)
+        rack = (wheel.flanks.rack or RackTable()).with_angle(pressure)
         tip = wheel.flanks.tip_diameter
         tip_radius = None if tip is None else tip / 2
         wheels.append(Wheel(wheel.teeth, module, helix, wheel.shift, rack, tip_radius, width))
@@ -233,17 +235,6 @@ def _single_contact(wheels: WheelPair, k: int) -> tuple[float, float]:
         float(wheels.second_length(start + overlap)),
         float(wheels.second_length(stop - overlap)),
     )
-
-
-def missing_size(pair: Pair) -> Iterator[str]:
-    """Yield the keys without which the teeth of a pair have no size or no face."""
-    if pair.mesh.shaft_angle:
-        return
-    teeth = wheels_of(pair)
-    if teeth is None:
-        yield "module"
-    if not (pair.pinion.face_width or pair.gear.face_width):
-        yield "face_width"
 
 
 def _both(names: list[str]) -> str:

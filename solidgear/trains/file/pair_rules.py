@@ -8,6 +8,7 @@ from math import isclose, pi
 from solidgear.core import SceneError
 from solidgear.core.scene.units import TYPED
 from solidgear.trains.file.cylindrical import cylindrical_problems
+from solidgear.trains.file.flank_rules import flank_problems
 from solidgear.trains.file.gears import FLANKS
 from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.tooth_fit import fit_problems
@@ -29,6 +30,7 @@ def pair_problems(pair: Pair) -> Iterator[SceneError]:
         yield from wrong
     else:
         yield from fit_problems(pair)
+        yield from flank_problems(pair)
     ratio, file_ratio = pair.ratio, mesh.ratio
     if file_ratio is not None and not isclose(file_ratio, ratio, rel_tol=TYPED):
         yield SceneError(

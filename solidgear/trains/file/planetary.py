@@ -20,7 +20,7 @@ from solidgear.core.scene.units import MeshSpring, PressureAngle, TorsionSpring
 from solidgear.trains.file.flanks import Flanks
 from solidgear.trains.file.gears import Gear, HeadInertia, Shaft, Teeth
 from solidgear.trains.file.pairs import Pair
-from solidgear.trains.file.tables import Azimuth, Error, ErrorTable
+from solidgear.trains.file.tables import Azimuth, Error, ErrorTable, MeshStiffness, solved
 
 MATES = ("sun", "ring")
 MOST_PLANETS = 20
@@ -76,9 +76,9 @@ class RingTable(HeadInertia):
 class PlanetMeshes(Model):
     """Meshes of every planet with sun and ring."""
 
-    #: sun_stiffness, ring_stiffness: of the meshes with sun and ring, N/m
-    sun_stiffness: MeshSpring
-    ring_stiffness: MeshSpring
+    #: sun_stiffness, ring_stiffness: of the meshes with sun and ring, N/m, or ``teeth``
+    sun_stiffness: MeshStiffness
+    ring_stiffness: MeshStiffness
     pressure_angle: PressureAngle  #: normal to the tooth, at the reference cylinder, rad
     #: of each mesh; a single number is a constant amplitude, m; needed where it drives a motion
     transmission_error: Error = None
@@ -133,7 +133,7 @@ class PlanetMesh:
     @property
     def stiffness(self) -> float:
         """Stiffness of each planet's mesh, N/m."""
-        return float(getattr(self.mesh, f"{self.mate}_stiffness"))
+        return self.stage.stiffness(self.mate)
 
     def phases(self, way: float) -> dict[str, float]:
         """Return the phase lag of the error at each planet behind the first, rad, by name of the mesh;
@@ -166,6 +166,10 @@ class Stage:
     def name(self) -> str:
         """Name of all meshes of the stage together."""
         return f"mesh {self.called}"
+
+    def stiffness(self, mate: str) -> float:
+        """Return the stiffness of each planet's mesh with sun or ring, N/m."""
+        return solved(getattr(self.table.mesh, f"{mate}_stiffness"))
 
     @property
     def ring_point(self) -> str:

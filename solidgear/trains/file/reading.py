@@ -6,22 +6,20 @@ The format is documented by ``geometry/axle_overhung.toml``, for more than two s
 
 from __future__ import annotations
 
-import csv
 import os
 from collections.abc import Callable, Mapping
 from functools import partial
-from math import isfinite, sqrt
 from pathlib import Path
 from typing import Any
 
 from pydantic import model_validator
 
-from solidgear.core import Model, Scene, SceneError, near, parse, show
+from solidgear.core import Model, Scene, SceneError, near, parse
 from solidgear.core.scene.file import load
 from solidgear.core.scene.housing_matrices import ARRAYS, read_matrices
 from solidgear.core.scene.toml_file import name_of, with_table_paths
 from solidgear.core.scene.typed import Problems
-from solidgear.core.scene.units import TYPED
+from solidgear.trains.file.columns import CELL_COLUMNS, read_cells, read_flank
 from solidgear.trains.file.gears import Member, Shaft
 from solidgear.trains.file.housing import HOUSING, TrainHousing
 from solidgear.trains.file.layout import layout_problems
@@ -30,11 +28,10 @@ from solidgear.trains.file.planetary import Planetary
 from solidgear.trains.file.tables import Losses, Mesh, Rotor, TrainAsk
 from solidgear.trains.file.train import SHORT, SIDES, Train
 
+#: key of the file of a measured flank
+MEASURED = "measured_flank"
 #: reads the scene of a side from a file, given whether the shaft stands alone
 ReadShaft = Callable[[str, Path, bool], Scene]
-
-CELL_COLUMNS = ("x", "y", "z", "nx", "ny", "nz", "force")
-MOST_CELLS = 100_000
 
 
 def _as_written(side: str, path: Path, alone: bool) -> Scene:
@@ -144,6 +141,13 @@ def train_of(raw: Mapping[str, Any], file_path: str, shaft: ReadShaft = _as_writ
             if isinstance(raw.get(side), Mapping):
                 data[side] = _read(problems, partial(read_scene, raw[side], (side,))) or raw[side]
         _read_meshes(data, kind is LongFile, folder)
+        if isinstance(stages := raw.get("planetary"), Mapping):
+            data["planetary"] = {
+                name: _with_flanks(stage, folder, ("planetary", name))
+                if isinstance(stage, Mapping)
+                else stage
+                for name, stage in stages.items()
+            }
         if isinstance(box := raw.get(HOUSING), Mapping) and "matrices" in box:
             data[HOUSING] = _with_matrices(box, folder)
         for role in (role for role in SHORT if role in raw):
@@ -242,7 +246,30 @@ def _with_scene(
     if not isinstance(name, str):
         reason = 'names the file of the shaft, such as "gear_shaft.toml"'
         raise SceneError(reason, path=(*path, "scene"))
-    return {**table, "scene": shaft(path[-1], folder / name, alone)}
+    fields = {**table, "scene": shaft(path[-1], folder / name, alone)}
+    return _with_flanks(fields, folder, path)
+
+
+def _with_flanks(table: Mapping[str, Any], folder: Path, path: tuple) -> dict[str, Any]:
+    """Return the table of a gear, a shaft or a planetary stage with the measured flanks in it read."""
+    fields = dict(table)
+    if MEASURED in table:
+        name = table[MEASURED]
+        if not isinstance(name, str):
+            reason = "names a CSV file with the columns z, roll or diameter, and deviation, in m"
+            raise SceneError(reason, path=(*path, MEASURED))
+        fields[MEASURED] = read_flank(folder / name)
+    for key in ("planet", "ring_flanks"):
+        if isinstance(gear := table.get(key), Mapping):
+            fields[key] = _with_flanks(gear, folder, (*path, key))
+    if isinstance(gears := table.get("gears"), Mapping):
+        fields["gears"] = {
+            name: _with_flanks(gear, folder, (*path, "gears", name))
+            if isinstance(gear, Mapping)
+            else gear
+            for name, gear in gears.items()
+        }
+    return fields
 
 
 def _check_rotor(raw: Mapping[str, Any], rotor: str, name: str) -> None:
@@ -279,54 +306,3 @@ def _with_matrices(table: Mapping[str, Any], folder: Path) -> dict[str, Any]:
         reason = "names an .npz file with " + ", ".join(ARRAYS)
         raise SceneError(reason, path=(HOUSING, "matrices"))
     return {**table, "matrices": read_matrices(folder / name)}
-
-
-def read_cells(path: str | os.PathLike) -> tuple[dict[str, Any], ...]:
-    """Read contact cells from a CSV file with the columns x, y, z (m), nx, ny, nz and force (N), as a
-    `Mesh` takes them: ``point``, unit ``normal`` and ``force``.
-    """
-    file_path = os.fspath(path)
-    try:
-        with open(path, newline="", encoding="utf-8-sig") as file:
-            rows = list(csv.DictReader(file, skipinitialspace=True))
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        cause = getattr(error, "strerror", None) or "not a CSV file in UTF-8"
-        raise SceneError(f"the contact cells cannot be read: {cause}", where=file_path) from None
-    if not rows or len(rows) > MOST_CELLS:
-        raise SceneError(
-            f"{len(rows)} contact cells; there must be 1 to {MOST_CELLS}", where=file_path
-        )
-    missing = [c for c in CELL_COLUMNS if c not in rows[0]]
-    if missing:
-        reason = f"no column {missing[0]}; the first line must name {', '.join(CELL_COLUMNS)}"
-        raise SceneError(reason, where=file_path)
-    cells = tuple(_cell(row, k, file_path) for k, row in enumerate(rows, start=2))
-    if not sum(cell["force"] for cell in cells) > 0:
-        raise SceneError("no cell carries a force; the sum must be above zero", where=file_path)
-    return cells
-
-
-def _cell(row: Mapping[str, Any], line: int, file_path: str) -> dict[str, Any]:
-    value = []
-    for column in CELL_COLUMNS:
-        try:
-            number = float(row[column])
-        except (TypeError, ValueError):
-            number = float("nan")
-        if not isfinite(number):
-            reason = f"line {line}, {column} = {show(row[column], 30)}: must be a number in SI"
-            raise SceneError(reason, where=file_path)
-        value.append(number)
-    normal, force = value[3:6], value[6]
-    length = sqrt(sum(v * v for v in normal))
-    if abs(length - 1) > TYPED:
-        reason = f"line {line}: the normal has length {length:.6g}; it must be a unit vector"
-        raise SceneError(reason, where=file_path)
-    if force < 0:
-        reason = (
-            f"line {line}, force = {force:g}: must not be negative, since teeth push and do not "
-            "pull"
-        )
-        raise SceneError(reason, where=file_path)
-    unit = tuple(v / length for v in normal)
-    return {"point": tuple(value[:3]), "normal": unit, "force": force}

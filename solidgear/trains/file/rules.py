@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from solidgear.core import SceneError, listed, nearest
+from solidgear.trains.file.flank_rules import stage_flank_problems
 from solidgear.trains.file.housing import HOUSING
 from solidgear.trains.file.planetary import Planetary, stage_of
 from solidgear.trains.file.shafting import Shafting
@@ -65,6 +66,7 @@ def _teeth(train: Shafting, name: str) -> Iterator[SceneError]:
     else:
         try:
             _ = stage.teeth
+            yield from stage_flank_problems(stage)
         except SceneError as error:
             keys = {"ring": "ring_teeth", "planets": "angles" if stage.table.angles else "planets"}
             for problem in error.problems:

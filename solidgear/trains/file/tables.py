@@ -3,23 +3,31 @@
 from __future__ import annotations
 
 from math import pi
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
-from solidgear.core import MOST_MODES, Length, Model, PositiveLength, SceneError, SignedAngle
+from solidgear.core import (
+    MOST_MODES,
+    Length,
+    Model,
+    PositiveLength,
+    SceneError,
+    SignedAngle,
+    SolidgearError,
+)
 from solidgear.core.scene.stations import Status
 from solidgear.core.scene.units import (
     TYPED,
     Frequency,
     Inertia,
     Loss,
-    MeshSpring,
     PressureAngle,
     ShaftAngle,
     Thickness,
     Tolerance,
     TorsionSpring,
+    quantity,
 )
 from solidgear.trains.file.mesh_cycle import LineCycle, StiffnessCycle, Vector
 
@@ -39,6 +47,33 @@ def _within_a_turn(value: float) -> float:
 
 #: rad, of a place around an axis
 Azimuth = Annotated[SignedAngle, AfterValidator(_within_a_turn)]
+
+
+#: in place of a stiffness, which then follows from the contact of the teeth
+TEETH = "teeth"
+
+
+def _number_or_teeth(value: Any) -> float | str:
+    if isinstance(value, str) and value.strip() == TEETH:
+        return TEETH
+    number = quantity(value, "force_per_length")
+    if number <= 0:
+        raise SceneError("must be greater than zero")
+    return number
+
+
+#: of a mesh, N/m, or ``teeth``
+MeshStiffness = Annotated[float | Literal["teeth"], BeforeValidator(_number_or_teeth)]
+
+
+def solved(stiffness: float | str) -> float:
+    """Return the stiffness of a mesh, N/m; refuse that of teeth which nobody has solved."""
+    if isinstance(stiffness, str):
+        raise SolidgearError(
+            'stiffness = "teeth": the contact of these teeth is not solved yet; studies solve it '
+            "when they assemble a train"
+        )
+    return stiffness
 
 
 class TorsionSpringTable(Model):
@@ -129,8 +164,9 @@ class Mesh(Model):
     #: of the mesh about the pinion's axis from -x, right-handed about y, and of parallel shafts
     #: about the gear's as well, so that their scenes keep parallel axes, rad
     azimuth: Azimuth = 0.0
-    #: N/m; with contact cells it may follow from ``loaded_error`` and ``unloaded_error``
-    stiffness: MeshSpring | None = None
+    #: N/m, or ``teeth``, whose contact gives it; with contact cells it may follow from
+    #: ``loaded_error`` and ``unloaded_error``
+    stiffness: MeshStiffness | None = None
     status: Status = "assumed"  #: of the stiffness
     shaft_angle: ShaftAngle = pi / 2  #: rad
     #: teeth of the gear over teeth of the pinion, where a source gives it
@@ -140,6 +176,12 @@ class Mesh(Model):
     pressure_angle: PressureAngle | None = None
     #: of parallel shafts, m; by default that without backlash
     centre_distance: PositiveLength | None = None
+    #: of bevel gears: gap of both flanks at their corners, m, by the radii of the cutters, where
+    #: these are not both given
+    ease_off: Thickness | None = None
+    #: of bevel gears: addendum of the gear over the working depth, and this in mean normal modules
+    gear_share: Annotated[float, Field(gt=0, lt=1)] | None = None
+    working_depth: Annotated[float, Field(gt=0, le=3)] | None = None
     #: given instead, in the pinion's frame, from its lumped point
     line_of_action: tuple[float, float, float] | None = None
     line_of_action_status: Status = "assumed"

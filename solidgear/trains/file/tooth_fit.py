@@ -69,33 +69,27 @@ def fit_problems(pair: Pair) -> Iterator[SceneError]:
 
 
 def _distance(pair: Pair, fit: WheelPair) -> Iterator[SceneError]:
-    """Yield problems of the centre distance, or of tips that do not reach at any."""
-    first, second = wheels_in(fit)
-    path, module = ("mesh", "centre_distance"), first.module
-    teeth_label = (
-        f"{first.count} and {second.count} teeth of {_mm(module)} module with profile shifts that "
-        f"sum to {first.shift + second.shift:.4g}"
-    )
-    tips = f"their tips lie at {_mm(first.tip)} and {_mm(second.tip)}"
+    """Yield problems of the centre distance."""
     if pair.mesh.centre_distance is None:
-        short = [side for side, gear in pair.members.items() if gear.tip_diameter]
-        if fit.contact_ratio <= 0 and short:
-            yield SceneError(
-                f"is too small: {teeth_label} do not reach each other {_mm(fit.distance)} apart, "
-                f"for {tips}; correct the diameter or leave it out",
-                path=(short[0], "tip_diameter"),
-            )
-    elif fit.backlash < -THINNED * module:
+        return
+    first, second = wheels_in(fit)
+    path = ("mesh", "centre_distance")
+    teeth_label = (
+        f"{first.count} and {second.count} teeth of {_mm(first.module)} module with profile shifts "
+        f"that sum to {first.shift + second.shift:.4g}"
+    )
+    if fit.backlash < -THINNED * first.module:
         yield SceneError(
             f"is too short: {teeth_label} overlap there by {_um(-fit.backlash)} along the line of "
             f"action; they have no backlash at {_mm(fit.tight)}; correct the distance, the teeth, "
             "the module, the helix angle or the profile shifts",
             path=path,
         )
-    elif fit.contact_ratio <= 0:
+    elif fit.contact_ratio <= 0 and first.tip_radius is second.tip_radius is None:
         yield SceneError(
-            f"is too long: {teeth_label} do not reach each other, for {tips}; correct the "
-            "distance, the teeth, the module, the helix angle or the profile shifts",
+            f"is too long: {teeth_label} do not reach each other, for their tips lie at "
+            f"{_mm(first.tip)} and {_mm(second.tip)}; correct the distance, the teeth, the "
+            "module, the helix angle or the profile shifts",
             path=path,
         )
 
@@ -146,10 +140,10 @@ def wheel_cautions(wheel: Wheel, side: str) -> Iterator[str]:
             f"undercut their profile shift is at least {wheel.shift + wheel.missing_shift:.2f}"
         )
     if wheel.tip_thickness < 0:
-        cause = f"a profile shift of {wheel.shift:g} is too much for {wheel.count} teeth"
-        if wheel.tip_radius is not None:
-            cause = f"a tip_diameter of {_mm(2 * wheel.tip)} is too much"
-        yield f"teeth of the {side} end in a point before their tip circle: {cause}"
+        yield (
+            f"teeth of the {side} end in a point before their tip circle: a profile shift of "
+            f"{wheel.shift:g} is too much for {wheel.count} teeth"
+        )
 
 
 def backlash_cautions(fit: WheelPair, file_backlash: float | None) -> Iterator[str]:
@@ -188,6 +182,9 @@ def fit_line(fit: WheelPair) -> str:
     ratio = f"{fit.contact_ratio:.3f}"
     if fit.overlap_ratio:
         ratio += f" and {fit.overlap_ratio:.3f} by their helix"
+    cut = sum(path_cuts(fit))
+    if cut > ROUNDED * fit.first.module:
+        ratio += f", {_um(cut)} of the path lost at fillets"
     return (
         f"axes {_mm(fit.distance)} apart: backlash of teeth without allowances "
         f"{_um(fit.backlash)} along the line of action, contact ratio {ratio}"

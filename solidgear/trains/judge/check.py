@@ -19,10 +19,13 @@ from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.housing import housing_facts
 from solidgear.trains.assembly.layout import senses, senses_sentence
 from solidgear.trains.assembly.local import undriven
+from solidgear.trains.assembly.mesh_stiffness import USUAL
 from solidgear.trains.assembly.shaft import JUDGE
 from solidgear.trains.assembly.slips import mesh_unit_slips
+from solidgear.trains.file.mesh_teeth import wheels_of
 from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.planetary import PlanetMesh
+from solidgear.trains.file.tables import TEETH
 from solidgear.trains.file.tooth_fit import fit_line, fit_of
 from solidgear.trains.file.train import Train
 from solidgear.trains.modes.modes import (
@@ -95,6 +98,7 @@ def _notices(assembly: Assembly, light: Assembly, limit: float) -> Notices:
 
 def _facts(assembly: Assembly, limit: float) -> Iterator[str]:
     train = assembly.train
+    asked = {pair.name: pair for pair in assembly.asked_train.pairs}
     for pair in train.pairs:
         contact, prefix = assembly.contacts[pair.name], f"{pair.name}: " if pair.label else ""
         levers = [1e3 * abs(vector.lever) for vector in (contact.pinion, contact.gear)]
@@ -103,20 +107,20 @@ def _facts(assembly: Assembly, limit: float) -> Iterator[str]:
             f"{levers[1]:.2f} mm, mesh {contact.stiffness:.4g} N/m along "
             f"({', '.join(f'{v:.3f}' for v in contact.pinion.normal)}) on the {pair.shafts[0]}"
         )
-        if (fit := fit_of(pair)) is not None:
-            yield prefix + fit_line(fit)
+        yield from (prefix + fact for fact in _tooth_facts(asked[pair.name]))
         teeth = train.per_turn(pair)
         yield (
             f"{prefix}the {limit:g} Hz asked for is the mesh frequency at {60 * limit / teeth:.0f} "
             f"rpm of the {teeth.of}"
         )
     for stage in train.stages:
-        mesh, gears, (sun, carrier) = stage.table.mesh, stage.teeth, stage.shafts
+        gears, (sun, carrier) = stage.teeth, stage.shafts
         yield (
             f"{stage.called}: {gears.sun}, {gears.planet} and {gears.ring} teeth, "
             f"{len(gears.azimuths)} planets, one turn of the {carrier} in {stage.ratio:.6g} of the "
             f"{sun}; pins at {1e3 * gears.pin_radius:.6g} mm, meshes "
-            f"{mesh.sun_stiffness:.4g} N/m with the sun and {mesh.ring_stiffness:.4g} N/m with the ring"
+            f"{stage.stiffness('sun'):.4g} N/m with the sun and {stage.stiffness('ring'):.4g} N/m with "
+            "the ring"
         )
     yield senses_sentence(senses(train, assembly.contacts))
     loss = train.losses
@@ -124,6 +128,24 @@ def _facts(assembly: Assembly, limit: float) -> Iterator[str]:
         f"losses are loss factors, twice a damping ratio: shafts {loss.shafts:g}, bearings "
         f"{loss.bearings:g}, mesh {loss.mesh:g}, springs {loss.springs:g}"
     )
+
+
+def _tooth_facts(pair: Pair) -> Iterator[str]:
+    """Yield facts on the teeth of a pair: their fit, and what is assumed where it counts."""
+    fit, solves = fit_of(pair), pair.mesh.stiffness == TEETH
+    is_described = any(gear.is_described for gear in pair.members.values())
+    teeth = wheels_of(pair) if solves or is_described else None
+    if fit is None and teeth is not None:
+        fit = teeth.wheels
+    if fit is not None:
+        yield fit_line(fit)
+    if solves:
+        yield (
+            f"the teeth give this stiffness (stiffness = {TEETH!r}); check solves no contact and "
+            f"takes {1e-9 * USUAL:g} N/(mm um) of face width"
+        )
+    if teeth is not None and teeth.assumed:
+        yield f"assumed of the teeth: {'; '.join(teeth.assumed)}"
 
 
 def _loss_cautions(train: Train) -> Iterator[str]:

@@ -20,7 +20,9 @@ from solidgear.core.system.gear_mesh import (
     mesh_point,
     to_gear_frame,
 )
+from solidgear.trains.file.mesh_teeth import wheels_of
 from solidgear.trains.file.pairs import Pair
+from solidgear.trains.file.tables import solved
 
 #: a typed line of action with six digits
 UNIT = 1e-6
@@ -64,10 +66,16 @@ class Contact:
     #: pinion, gear: points from each lumped point
     pinion: MeshVector
     gear: MeshVector
-    stiffness: float  #: N/m
+    #: N/m, ``teeth`` where their contact gives it
+    file_stiffness: float | str
     origin: np.ndarray  #: (3,) the gear's lumped point from the pinion's, in the pinion's frame, m
     wrench: ContactWrench | None  #: of contact cells
     cautions: tuple[str, ...]  #: on data that do not fit together but can be solved
+
+    @property
+    def stiffness(self) -> float:
+        """Stiffness of the mesh, N/m; refused where teeth give it and are not solved."""
+        return solved(self.file_stiffness)
 
 
 def contact(pair: Pair, coast: bool | None = None) -> Contact:
@@ -113,7 +121,8 @@ def _contact(pair: Pair, coast: bool | None) -> Contact:
     elif mesh.line_of_action is not None:
         normal, point = _given_line(pair), np.array(mesh.point)
     else:
-        normal, point = _of_teeth(pair, mesh.pressure_angle), mesh_point(_mean_radius(pair))
+        normal = _of_teeth(pair, mesh.pressure_angle)
+        point = mesh_point(_mean_radius(pair)) + np.array([0.0, _face_middle(pair), 0.0])
     if coast is None:
         coast = pair.point is not None and pair.point.coast
     if coast:
@@ -128,14 +137,14 @@ def _contact(pair: Pair, coast: bool | None) -> Contact:
         _refuse_point_off_head(pair, side, vector.point)
     cautions += _levers(pair, pinion, gear)
     cautions += [line for side in pair.members for line in _scene_load(pair, side, vectors[side])]
-    stiffness = mesh.stiffness
+    stiffness: float | str | None = mesh.stiffness
     if stiffness is None:
         assert wrench and mesh.loaded_error is not None and mesh.unloaded_error is not None
         stiffness = wrench.mesh_stiffness(mesh.loaded_error, mesh.unloaded_error)
     return Contact(
         pinion=_in_scene(pair, "pinion", pinion),
         gear=_in_scene(pair, "gear", gear),
-        stiffness=stiffness,
+        file_stiffness=stiffness,
         origin=origin,
         wrench=wrench,
         cautions=tuple(cautions),
@@ -294,6 +303,19 @@ def _mean_radius(pair: Pair) -> float:
         return mean_radius(p.pitch_radius, p.pitch_angle, p.face_width)
     except SolidgearError as error:
         raise SceneError(str(error), path=("pinion", "face_width")) from None
+
+
+def _face_middle(pair: Pair) -> float:
+    """Return the middle of the face that cylindrical gears share, from the pinion's lumped point along
+    its frame, m.
+    """
+    pinion, gear = pair.pinion, pair.gear
+    if not (pinion.face_offset or gear.face_offset):
+        return 0.0
+    teeth = wheels_of(pair)
+    if teeth is None:
+        return 0.0
+    return teeth.middles[0] if pinion.apex == "start" else -teeth.middles[0]
 
 
 def _gear_position(pair: Pair, point: np.ndarray) -> np.ndarray:

@@ -350,7 +350,9 @@ def at_point(train: Train, word: str | int | None = None) -> Train:
     -30.0
     """
     point = train.operation[0] if word is None and train.operation else named_point(train, word)
-    settled_train = with_settled_bearings(train, Operating(Assembly(train)).at(point))
+    # bearings settle under the force of the teeth, whatever stiffness these have
+    assembly = Assembly(train, solves_teeth=False)
+    settled_train = with_settled_bearings(train, Operating(assembly).at(point))
     return (
         settled_train if word is not None else settled_train.with_changes(operation=train.operation)
     )

@@ -21,6 +21,7 @@ from solidgear.trains.assembly.assembly import KEPT
 from solidgear.trains.assembly.layout import contacts
 from solidgear.trains.assembly.shaft import JUDGE, LUMPED, checked_model
 from solidgear.trains.assembly.turn import over_a_turn, stages_over_a_turn
+from solidgear.trains.file.flanks import Flanks
 from solidgear.trains.file.housing import HOUSING
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.reading import train_of
@@ -130,10 +131,17 @@ class TrainTask(FileTask):
         tables = variants.tables(self.first)
         # further files that these name
         cells = [cell.model_dump() for mesh in usual.meshes for cell in mesh.contact_cells]
+        gears: list[Flanks | None] = []
+        for shaft in usual.shafts.values():
+            gears += shaft.gears.values()
+        for table in usual.planetary.values():
+            gears += [table.planet, table.ring_flanks]
+        flanks = [gear.measured_flank for gear in gears if gear and gear.measured_flank]
         parts = [shaft.scene.body for shaft in usual.shafts.values()]
         return {
             "files": {name or "train": tables_for_plan(tables[name]) for name in tables},
             "cells": cells,
+            "flanks": [flank.model_dump() for flank in flanks],
             "parts": [part and part.model_dump(mode="json") for part in parts],
             "scenes": {word: tables_for_plan(scene) for word, scene in variants.scenes_in_turn()},
             "point": variants.point,

@@ -1,0 +1,161 @@
+r"""Compliance of teeth by slices of the face: plane strain across, elastic layers along.
+
+Under a load on one place of the face a tooth gives way beside it too, less and less.  Plane strain has
+the motion c q under an even line load q; along the face it follows
+
+    w - lambda^2 w'' = c q,    w' = 0 at both ends of the face
+
+(a tooth bends as a cantilever plate, whose motion falls so; Jaramillo, Journal of Applied Mechanics 17,
+1950, p. 67-72).  The answer at z to a unit force at z' is c times
+
+    G = [cosh((b - |z - z'|) / lambda) + cosh((z + z') / lambda)] / (2 lambda sinh(b / lambda)),
+
+which is symmetric, has the integral 1 and keeps an even load even.
+
+**Two lengths.**  The motion of a half-plane near the force reaches along the face about as far as below
+it, what bends and tilts the tooth reaches further: each has a lambda, measured on teeth in 3D
+(:data:`NEAR`, :data:`SPREAD`).  One lambda for both would have to be 0.7 modules for forces at the root
+and 1.3 at the tip.
+
+**Slices.**  A cell of a contact line is the load of a slice and not a point.  G has a kink at z = z', so
+that points would make a slice soft or stiff by how many there are.  It is averaged in closed form over
+both slices, for any places; the rows of all slices of a face add up to 1 over the width of a slice, as
+the integral does.
+
+Forces are normal to the flank: their transverse part is ``cos beta_b`` of them, and so is the part of
+a transverse motion along the normal.  What a tooth gives way by along the axis is left out, which makes
+helical teeth stiff.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from math import cos
+
+import numpy as np
+
+from solidgear.core.errors import SolidgearError
+from solidgear.teeth.compliance.plane import DEPTH, PlaneTeeth
+
+#: lengths lambda in modules: of what bends the tooth, which wheels in 3D leave open by so much, and of
+#: what is near the force, a quarter of a module below it
+SPREAD, SPREAD_OFF, NEAR = 1.4, 0.25, 0.5
+
+
+@dataclass(frozen=True)
+class Slices:
+    """Compliance of the flanks of a wheel by slices of its face.
+
+    Attributes
+    ----------
+    plane : PlaneTeeth
+        The transverse section; the face of its wheel ends where the spread does.
+    face_width : float
+        Face that both wheels of the pair share, which is cut into slices, m.
+    slices : int
+    reading_depth : float, optional
+        Depth below the flanks at which compliances are given, m; by default a quarter of a module.
+    spread, near_spread : float
+        How far what bends a tooth, and what is near the force, reach along the face, modules.
+
+    Raises
+    ------
+    SolidgearError
+        For a face without width, and no slice.
+
+    Examples
+    --------
+    >>> from solidgear.core.gears.wheel import Wheel
+    >>> teeth = PlaneTeeth(Wheel(23, 4e-3, face_width=20e-3), hold=25e-3)
+    >>> slices = Slices(teeth, face_width=20e-3, slices=10)
+    >>> z = slices.middles
+    >>> matrix = slices.matrix(np.zeros(10, int), np.full(10, 46e-3), z)
+    >>> even = matrix.sum(axis=1) * 2e-3  # under 1 N/mm
+    >>> print(f"{even[0]:.3g} {even[5]:.3g}")
+    2.5e-11 2.5e-11
+    """
+
+    plane: PlaneTeeth
+    face_width: float
+    slices: int
+    reading_depth: float | None = None
+    spread: float = SPREAD
+    near_spread: float = NEAR
+
+    def __post_init__(self):
+        if not self.plane.wheel.face_width > 0 or not self.face_width > 0 or self.slices < 1:
+            raise SolidgearError("slices of teeth need a face width and at least one slice")
+
+    @property
+    def depth(self) -> float:
+        """Depth below the flanks at which compliances are given, m."""
+        if self.reading_depth is not None:
+            return self.reading_depth
+        return DEPTH * self.plane.wheel.module
+
+    @property
+    def step(self) -> float:
+        """Width of a slice, m."""
+        return self.face_width / self.slices
+
+    @property
+    def middles(self) -> np.ndarray:
+        """(slices,) middles of the slices from the middle of the common face, m."""
+        return (np.arange(self.slices) + 0.5) * self.step - self.face_width / 2
+
+    def matrix(self, tooth: np.ndarray, r: np.ndarray, z: np.ndarray) -> np.ndarray:
+        """Return the (n, n) normal motion at the depth below each place per normal force on each, m/N;
+        parameters as of :class:`~solidgear.teeth.compliance.flank.FlankCompliance`.
+        """
+        across = self.plane.matrix(tooth, r, self.depth)
+        near = self.plane.near(tooth, r, self.depth)
+        # cells of several lines share slices
+        places, number = np.unique(z, return_inverse=True)
+        along, beside = (
+            self.along(places, length)[number[:, None], number]
+            for length in (self.spread, self.near_spread)
+        )
+        return cos(self.plane.wheel.base_helix) ** 2 * ((across - near) * along + near * beside)
+
+    def along(self, z: np.ndarray, spread: float) -> np.ndarray:
+        """Return the (n, n) spread along the face between slices at places z, (n,) m, by a length in
+        modules, 1/m.
+
+        Slices that stand out over an end of the face are moved within it.
+        """
+        width, length = self.plane.wheel.face_width, spread * self.plane.wheel.module
+        z = np.clip(z, (self.step - width) / 2, (width - self.step) / 2)
+        low, high = z - self.step / 2, z + self.step / 2
+
+        def direct(s: np.ndarray) -> np.ndarray:
+            return length**2 * _ratio(width - np.abs(s), width, length) + np.abs(s) / 2
+
+        def reflected(s: np.ndarray) -> np.ndarray:
+            return length**2 * _ratio(s, width, length)
+
+        # both are second antiderivatives: four corners give the integral over two slices
+        total = direct(np.subtract.outer(high, low)) - direct(np.subtract.outer(low, low))
+        total += direct(np.subtract.outer(low, high)) - direct(np.subtract.outer(high, high))
+        total += reflected(np.add.outer(high, high)) - reflected(np.add.outer(low, high))
+        total += reflected(np.add.outer(low, low)) - reflected(np.add.outer(high, low))
+        return total / self.step**2
+
+    @property
+    def variants(self) -> Iterator[Slices]:
+        """The same teeth on a coarser mesh, read at other depths, and with the spread as short and as
+        long as single wheels have it: what they change is how sure the usual one is.
+        """
+        yield replace(self, plane=self.plane.coarser)
+        yield replace(self, plane=self.plane.deeper)
+        for off in (-SPREAD_OFF, SPREAD_OFF):
+            yield replace(self, spread=self.spread + off)
+
+
+def _ratio(s: np.ndarray, width: float, length: float) -> np.ndarray:
+    """Return ``cosh(s / length) / (2 length sinh(width / length))`` for s up to the width, without
+    large numbers.
+    """
+    whole = width / length
+    grown = np.exp(np.abs(s) / length - whole) + np.exp(-np.abs(s) / length - whole)
+    return grown / (2 * length * -np.expm1(-2 * whole))

@@ -1,0 +1,202 @@
+r"""Which model of the teeth is enough: the norm, plane slices, teeth in 3D.
+
+The finest model that was solved is the reference, with an error bar by what the numbers move if its
+mesh is coarser, its readings deeper and its slices twice as many.  Each number of a cheaper model is
+held against it, and asks for its own share: the transmission error and the face load factor as they
+are, the stiffness by what it does to the train, for a natural frequency moves by half the share of its
+strain energy that is in the teeth, times the relative change of their stiffness (Rayleigh).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+
+from solidgear.core.judge.deviations import OPEN, WITHIN, gap_verdict
+from solidgear.core.plain import plain
+from solidgear.teeth.mesh_contact import MeshContact
+from solidgear.teeth.supports import Carried
+from solidgear.teeth.train_teeth import TeethModel, mesh_contact
+from solidgear.trains.assembly.assembly import Assembly
+from solidgear.trains.file.pairs import Pair
+from solidgear.trains.file.planetary import PlanetMesh
+
+#: numbers that are judged, and what they are called
+STIFFNESS, ERROR, FACE = "frequencies", "transmission error", "face load factor"
+#: models, the cheapest first
+NORM, SLICES, SOLID = "ISO 6336-1", "slices", "solid"
+
+
+@dataclass(frozen=True)
+class Judged:
+    """Numbers of one model of the teeth of a mesh; None for what it does not have."""
+
+    tangent: float  #: mean, N/m
+    peak_to_peak: float | None  #: of the loaded transmission error, m
+    face_load_factor: float
+
+    @classmethod
+    def of(cls, contact: MeshContact) -> Judged:
+        """Return the numbers of a solved contact."""
+        cycle = contact.cycle
+        return cls(float(cycle.tangent.mean()), cycle.peak_to_peak, cycle.face_load_factor)
+
+    def off(self, other: Judged) -> dict[str, float | None]:
+        """Return by how much these numbers are off others, relative."""
+        pairs = {
+            STIFFNESS: (self.tangent, other.tangent),
+            ERROR: (self.peak_to_peak, other.peak_to_peak),
+            FACE: (self.face_load_factor, other.face_load_factor),
+        }
+        return {name: None if a is None or not b else a / b - 1 for name, (a, b) in pairs.items()}
+
+
+@dataclass(frozen=True)
+class Rung:
+    """One model of the teeth of a mesh beside the reference."""
+
+    model: str
+    numbers: Judged
+    #: off the reference, relative; of frequencies as they move; None for what it does not have
+    off: Mapping[str, float | None]
+    verdict: Mapping[str, str]  #: within, open or beyond the tolerance; empty for the reference
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Ladder:
+    """Models of the teeth of one mesh, the cheapest first."""
+
+    mesh: str
+    tolerance: float
+    rungs: tuple[Rung, ...]
+    #: of the reference, relative: what its numbers move by with mesh, depth and slices
+    bars: Mapping[str, float]
+    share: (
+        float  #: largest share of the strain energy of a mode within the asked range in the teeth
+    )
+
+    @property
+    def reference(self) -> Rung:
+        """The finest model."""
+        return self.rungs[-1]
+
+    def cheapest(self, name: str) -> str | None:
+        """Return the cheapest model within the tolerance for a number; None where only the reference
+        is.
+        """
+        return next((r.model for r in self.rungs[:-1] if r.verdict.get(name) == WITHIN), None)
+
+    def sentences(self) -> list[str]:
+        """Return which model is enough for what."""
+        lines = []
+        for name in (STIFFNESS, ERROR, FACE):
+            bar = f"its own error bar there is {100 * self.bars[name]:.2g} %"
+            cheapest = self.cheapest(name)
+            enough = self.reference.model if cheapest is None else cheapest
+            state = "no cheaper model was shown to be" if cheapest is None else f"{enough} is"
+            lines.append(
+                f"{self.mesh}, {name}: {state} within {100 * self.tolerance:g} % of "
+                f"{self.reference.model}; {bar}."
+            )
+        return lines
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain data in SI for JSON."""
+        return plain(
+            {
+                "mesh": self.mesh,
+                "tolerance": self.tolerance,
+                "bars": dict(self.bars),
+                "energy_share": self.share,
+                "models": {
+                    rung.model: {
+                        "tangent": rung.numbers.tangent,
+                        "peak_to_peak": rung.numbers.peak_to_peak,
+                        "face_load_factor": rung.numbers.face_load_factor,
+                        "off": dict(rung.off),
+                        "verdict": dict(rung.verdict),
+                        "seconds": rung.seconds,
+                    }
+                    for rung in self.rungs
+                },
+            }
+        )
+
+
+def ladder(
+    carried: Carried,
+    mesh: Pair | PlanetMesh,
+    tolerance: float,
+    reference: str = SOLID,
+    progress: Callable[[str], None] = lambda text: None,
+) -> Ladder:
+    """Solve a mesh with every model of its teeth up to the reference, and judge them."""
+    models = {SLICES: TeethModel()}
+    if reference == SOLID:
+        models[SOLID] = TeethModel(SOLID)
+    solved: dict[str, tuple[MeshContact, float]] = {}
+    for name, model in models.items():
+        progress(f"teeth of the {mesh.name}: {name}")
+        start = perf_counter()
+        contact = mesh_contact(carried, mesh, model)
+        solved[name] = contact, perf_counter() - start
+    finest, _ = solved[reference]
+    numbers = {NORM: (_norm(finest), 0.0)}
+    numbers |= {name: (Judged.of(contact), time) for name, (contact, time) in solved.items()}
+    judge = Judged.of(finest)
+    progress(f"error bars of the {mesh.name}")
+    bars = _bars(carried, mesh, models[reference], judge)
+    share = energy_share(carried, mesh)
+    bars[STIFFNESS] *= share / 2
+    rungs = []
+    for name, (judged, seconds) in numbers.items():
+        off = judged.off(judge)
+        if off[STIFFNESS] is not None:
+            off[STIFFNESS] *= share / 2
+        verdict = {
+            key: OPEN if value is None else gap_verdict(value, bars[key], tolerance)
+            for key, value in off.items()
+        }
+        rungs.append(Rung(name, judged, off, {} if name == reference else verdict, seconds))
+    return Ladder(mesh.name, tolerance, tuple(rungs), bars, share)
+
+
+def _norm(contact: MeshContact) -> Judged:
+    return Judged(contact.along_line(contact.norm.mesh), None, contact.norm_face_load_factor)
+
+
+def _bars(
+    carried: Carried, mesh: Pair | PlanetMesh, model: TeethModel, judge: Judged
+) -> dict[str, float]:
+    """Return the sum of what numbers move by, relative, with each part of the discretisation."""
+    bars = dict.fromkeys((STIFFNESS, ERROR, FACE), 0.0)
+    for other in variants(model):
+        moved = Judged.of(mesh_contact(carried, mesh, other)).off(judge)
+        for name, off in moved.items():
+            bars[name] += abs(off or 0.0)
+    return bars
+
+
+def variants(model: TeethModel) -> Sequence[TeethModel]:
+    """Return the models that an error bar compares: a coarser mesh, deeper readings, other slices."""
+    return (
+        replace(model, coarse=True),
+        replace(model, depth=2 * model.depth),
+        replace(model, slices=model.slices // 2),
+    )
+
+
+def energy_share(carried: Carried, mesh: Pair | PlanetMesh) -> float:
+    """Return the largest share of the strain energy in the teeth of a mesh, of the modes up to the
+    highest frequency that the train asks for.
+    """
+    assembly: Assembly = carried.assembly
+    modes = carried.system.modes()
+    wanted = (modes.frequency_hz > 0) & (modes.frequency_hz <= assembly.train.ask.max_frequency)
+    share = modes.energy[mesh.name][wanted]
+    return float(np.max(share, initial=0.0))

@@ -1,0 +1,86 @@
+"""Meshes whose stiffness is that of their teeth in contact.
+
+A file asks for it by ``stiffness = "teeth"``.  An assembly has the contact solved, by the addition "teeth"
+of the kind "mesh stiffness" (:mod:`solidgear.rooms`), which returns the train with numbers in place of
+that word: stiffness, its cycle, the line of action and the transmission error at the operating point.
+It is called for each train that is assembled, and so for each row of a sweep and for each operating
+point.  While bearings of catalogue data have no stiffness yet, and where nothing may be solved, a usual
+stiffness stands in.
+"""
+
+from __future__ import annotations
+
+from solidgear.core import SolidgearError
+from solidgear.core.registry import addition
+from solidgear.trains.file.mesh_teeth import wheels_of
+from solidgear.trains.file.pairs import Pair
+from solidgear.trains.file.tables import TEETH
+from solidgear.trains.file.train import Train
+
+#: mesh stiffness of steel teeth per face width, N/m^2 (ISO 6336-1:1996, method C: 20 N/(mm um))
+USUAL = 20e9
+
+
+def asks_for_teeth(train: Train) -> bool:
+    """Return True for a train with a mesh whose teeth are to give its stiffness."""
+    stages = (table.mesh for table in train.planetary.values())
+    return any(mesh.stiffness == TEETH for mesh in train.meshes) or any(
+        TEETH in (mesh.sun_stiffness, mesh.ring_stiffness) for mesh in stages
+    )
+
+
+def with_solved_meshes(train: Train) -> Train:
+    """Return a train with the stiffness of its teeth; the usual one while bearings have no stiffness."""
+    if not asks_for_teeth(train):
+        return train
+    if not _has_settled(train):
+        return with_usual_meshes(train)
+    mesh_of_teeth = addition("mesh stiffness", TEETH)
+    if mesh_of_teeth is None:
+        raise SolidgearError(
+            f'{train.name}: stiffness = "teeth" needs the room of teeth, which is not installed; '
+            'give a number, such as "3e8 N/m"'
+        )
+    solved_train: Train = mesh_of_teeth(train)
+    if asks_for_teeth(solved_train):
+        raise SolidgearError(
+            f'{train.name}: not every mesh with stiffness = "teeth" has teeth whose contact can be '
+            'solved; give a number there, such as "3e8 N/m"'
+        )
+    return solved_train
+
+
+def with_usual_meshes(train: Train) -> Train:
+    """Return a train with the usual stiffness of steel teeth where they are to give it."""
+    if not asks_for_teeth(train):
+        return train
+    meshes = [
+        pair.mesh.with_changes(stiffness=USUAL * _face_width(pair), status="estimated")
+        if pair.mesh.stiffness == TEETH
+        else pair.mesh
+        for pair in train.pairs
+    ]
+    planetary = {}
+    for stage in train.stages:
+        mesh = stage.table.mesh
+        width = stage.sun.face_width or 0.0
+        keys = [k for k in ("sun_stiffness", "ring_stiffness") if getattr(mesh, k) == TEETH]
+        changes = dict.fromkeys(keys, USUAL * width)
+        if changes:
+            mesh = mesh.with_changes(**changes, status="estimated")
+        planetary[stage.called] = stage.table.with_changes(mesh=mesh)
+    return train.with_changes(meshes=tuple(meshes), planetary=planetary)
+
+
+def _has_settled(train: Train) -> bool:
+    bearings = [b for shaft in train.shafts.values() for b in shaft.scene.bearings]
+    return all(b.catalogue is None or b.matrix is not None for b in bearings)
+
+
+def _face_width(pair: Pair) -> float:
+    """Return the face width that both gears share, m."""
+    teeth = wheels_of(pair)
+    if teeth is not None:
+        return teeth.wheels.face_width
+    widths = [wheel.face_width for wheel in (pair.pinion, pair.gear) if wheel.face_width]
+    return min(widths)
