@@ -34,15 +34,12 @@ from solidgear.core.models.solid.matrices import _matrices
 from solidgear.core.scene.parts import Material
 from solidgear.teeth.compliance.half_space import between_pieces
 from solidgear.teeth.compliance.mesh import Fineness, pitch_mesh
+from solidgear.teeth.compliance.plane import DEPTH, HUB, PORT, RIM
 from solidgear.teeth.compliance.port import Port, port_of
 from solidgear.teeth.compliance.ring import CondensedPitch, at_pitch, condensed
 from solidgear.teeth.compliance.solid_mesh import SweptPitch, turned
 from solidgear.teeth.contact.local import Elasticity
 
-#: depth at which compliances are given, port below the root, modules
-DEPTH, PORT = 0.25, 0.1
-#: hold of a solid wheel, share of the root radius; rim of a ring wheel, modules
-HUB, RIM = 0.2, 2.0
 #: depth of the second reading, modules, but no deeper than the middle of the tooth; the first is at
 #: half of it, and both count so many times at the surface
 DEEPEST, COUNTED = 0.5, (2.0, -1.0)
@@ -197,12 +194,12 @@ class SolidTeeth:
         # the normal leads along the face as well, to where the mesh is turned further
         ahead = self.hand * depths * sin(helix)
         below = turned(points + depths[:, None] * cos(helix) * normals, -mesh.twist * ahead)
-        cells, at = mesh.inside(below)
+        cells, local = mesh.inside(below)
         parts = []
         for k, r in enumerate(self.radii):
             z, weights, numbers = mesh.means(self.ends + self.offset + ahead[k])
             _, directions = self.flank(np.full(len(z), r), z - ahead[k])
-            cell, place = np.full(len(z), cells[k]), np.tile(at[k], (len(z), 1))
+            cell, place = np.full(len(z), cells[k]), np.tile(local[k], (len(z), 1))
             parts.append(mesh.rows(cell, place, z, directions, weights, numbers))
         return sp.vstack(parts).tocsr()
 
@@ -229,27 +226,27 @@ class SolidTeeth:
         )
         return _matrices(mesh.solid, [constants])[0]
 
-    def pitch(self, held: bool = True) -> CondensedPitch:
+    def pitch(self, holds: bool = True) -> CondensedPitch:
         """Return one pitch seen from its sides, its rim held or free: forces on the places of the
         tables and six loads of the port, motions of both.
         """
         mesh = self.mesh
         width = self.wheel.face_width / self.wheel.module
         power = min(max(LEAST_POWER, round(POWER * width)), mesh.layers)
-        sides = mesh.side_motions(self.wheel.pitch_angle, power, held)
+        sides = mesh.side_motions(self.wheel.pitch_angle, power, holds)
         loads = sp.hstack([self._forces.T, self._port.loads]).tocsr()
         readings = sp.vstack([self._readings, self._port.loads.T]).tocsr()
-        return condensed(self._stiffness, mesh.inner(held), sides, loads, readings)
+        return condensed(self._stiffness, mesh.inner(holds), sides, loads, readings)
 
     @cached_property
     def _responses(self) -> tuple[np.ndarray, np.ndarray]:
         """(waves, n, n) motion of the places by forces on them, and (6, 6) compliance of the port."""
         count = self.wheel.count
-        held = self.pitch()
-        rigid = np.array([held.response(wave, count) for wave in (0, 1)])
-        others = self.pitch(held=False) if self.free else held
+        pitch = self.pitch()
+        rigid = np.array([pitch.response(wave, count) for wave in (0, 1)])
+        pitch = self.pitch(holds=False) if self.free else pitch
         waves = range(2, count // 2 + 1)
-        responses = np.array([*rigid, *(others.response(wave, count) for wave in waves)])
+        responses = np.array([*rigid, *(pitch.response(wave, count) for wave in waves)])
         places, port = slice(-6), slice(-6, None)
         compliance = self._port.compliance(rigid[:, port, port], count)
         return responses[:, places, places], compliance
@@ -259,7 +256,7 @@ class SolidTeeth:
         """(6, 6) mean motion of the port by loads spread over it, about the middle of the face."""
         return self._responses[1]
 
-    def whole(self, tooth: int) -> np.ndarray:
+    def with_rim(self, tooth: int) -> np.ndarray:
         """Return the (n, n) motion of places on a tooth by forces on those of tooth 0, with the motion
         of the rim, m/N.
         """
@@ -278,10 +275,10 @@ class SolidTeeth:
         """Radii and z (n,) of the places in the tables, from the middle of the shared face, m."""
         return np.repeat(self.radii, self.slices), np.tile(self.middles, len(self.radii))
 
-    def teeth(self, tooth: int) -> np.ndarray:
+    def without_rim(self, tooth: int) -> np.ndarray:
         """Return the same without the motion of the rim."""
         rim = self._rigid(tooth) @ self.port_compliance @ self._rigid(0).T
-        return self.whole(tooth) - rim
+        return self.with_rim(tooth) - rim
 
     @cached_property
     def _tables(self) -> dict[int, np.ndarray]:
@@ -292,30 +289,31 @@ class SolidTeeth:
         the mean of both senses, m/N.
         """
         if tooth not in self._tables:
-            there, back = self.teeth(tooth), self.teeth(-tooth)
+            table, exchanged = self.without_rim(tooth), self.without_rim(-tooth)
             if tooth == 0:
-                near = np.zeros_like(there)
+                near = np.zeros_like(table)
                 for times, depths in zip(COUNTED, np.repeat(self._depths, self.slices, axis=1)):
                     near += times * self._near(*self._places, depths[:, None])
-                there, back = there - near, back - near
-            self._tables[tooth] = (there + back.T) / 2
+                table, exchanged = table - near, exchanged - near
+            self._tables[tooth] = (table + exchanged.T) / 2
         return self._tables[tooth]
 
     def _near(self, r: np.ndarray, z: np.ndarray, depth: float | np.ndarray) -> np.ndarray:
         """Return the (n, n) motion of a half-space between places on one flank, m/N, at a depth or at
         one (n, 1) by place, by forces there and by their images beyond both ends of the face.
         """
-        half, own = self.wheel.face_width / 2, z + self.offset
-        points, _ = self.flank(r, own)
+        z = z + self.offset
+        points, _ = self.flank(r, z)
         lean = self.mesh.twist * (r[:, None] + r) / 2
         stretch = np.sqrt(1 + lean**2)
         length = (self.ends[1] - self.ends[0]) * stretch
+        face = self.wheel.face_width
         near = np.zeros((len(r), len(r)))
-        for sense, shift in ((1, 0.0), (-1, 2 * half), (-1, -2 * half)):
-            along = (own[:, None] - sense * own - shift) * stretch
+        for sense, shift in ((1, 0.0), (-1, face), (-1, -face)):
+            along = (z[:, None] - sense * z - shift) * stretch
             image = points * [1, 1, sense] + [0, 0, shift]
-            apart = ((points[:, None] - image) ** 2).sum(axis=-1)
-            across = np.maximum(apart - along**2, 0.0)
+            squares = ((points[:, None] - image) ** 2).sum(axis=-1)
+            across = np.maximum(squares - along**2, 0.0)
             near += between_pieces(along, across, depth, length, self.elasticity)
         return near
 
