@@ -10,6 +10,7 @@ import scipy.sparse as sp
 from scipy.integrate import dblquad
 
 from solidgear.core import SolidgearError
+from solidgear.core.frames import rotation
 from solidgear.core.gears.wheel import Wheel
 from solidgear.core.machine.memory import NoRoom
 from solidgear.core.models.solid.block import rigid_motions
@@ -17,12 +18,14 @@ from solidgear.core.solve.factor import factorise
 from solidgear.teeth.compliance import solid as solid_module
 from solidgear.teeth.compliance.half_space import between_pieces
 from solidgear.teeth.compliance.mesh import Fineness
+from solidgear.teeth.compliance.plane import PlaneTeeth
 from solidgear.teeth.compliance.solid import SolidTeeth
 from solidgear.teeth.compliance.solid_mesh import turned
 from solidgear.teeth.contact.local import Elasticity
 
 WHEEL = Wheel(23, 4e-3, face_width=20e-3)
 HELICAL = replace(WHEEL, helix_angle=radians(20))
+RING = Wheel(-60, 2e-3, face_width=10e-3)
 COARSE = {"slices": 4, "fineness": Fineness(2, 4, 4), "layer": 1.25, "hold": 25e-3}
 
 
@@ -64,10 +67,20 @@ def test_the_ring_of_all_pitches_solved_at_once_moves_as_the_waves_of_one():
         moved.append(sp.hstack([inside, sides]) @ pick)
         total += moved[-1].T @ stiffness @ moved[-1]
     loads = (teeth._forces @ moved[0]).T.toarray()
-    motion = factorise(total.tocsr()).solve(loads)
+    solved = factorise(total.tocsr())
+    motion = solved.solve(loads)
     for tooth in (0, 1, 5, -1):
         direct = teeth._readings @ (moved[tooth] @ motion)
         assert np.allclose(teeth.with_rim(tooth), direct, rtol=0, atol=1e-9 * direct.max())
+
+    port = teeth._port
+    turns = [rotation(2, -k * teeth.wheel.pitch_angle) for k in range(count)]
+    gram = sum(turn @ port.gram @ turn.T for turn in turns)
+    spread = sum((port.loads.T @ part).T @ turn.T for part, turn in zip(moved, turns))
+    by_loads = np.linalg.solve(gram, spread.T).T
+    direct = by_loads.T @ solved.solve(by_loads)
+    scale = np.sqrt(np.outer(np.diag(direct), np.diag(direct)))
+    assert np.abs((teeth.port_compliance - direct) / scale).max() < 1e-9
 
 
 def test_sides_of_a_pitch_move_smoothly_enough(monkeypatch):
@@ -133,6 +146,20 @@ def test_the_table_is_smooth_along_the_flank():
     between = fine.radii[2:-2:3]
     for r in between:
         assert evenly_loaded(usual, r) == pytest.approx(evenly_loaded(fine, r), rel=0.015)
+
+
+@pytest.mark.parametrize("wheel, hold", [(WHEEL, 25e-3), (RING, None)])
+def test_without_lateral_strain_an_even_load_is_that_of_the_plane_section(wheel, hold):
+    """Poisson's ratio zero: a section of the plane solution moves as every section in 3D."""
+    soft = Elasticity(2.06e11, 0.0)
+    in_3d = SolidTeeth(
+        wheel, hold=hold, elasticity=soft, slices=2, fineness=Fineness(4, 8, 6), layer=2.5
+    )
+    in_plane = PlaneTeeth(wheel, hold=hold, elasticity=soft)
+    middle = (wheel.form + wheel.tip) / 2
+    for r in (0.5 * (wheel.form + middle), middle, 0.5 * (wheel.tip + middle)):
+        plane = in_plane.matrix(np.zeros(1, int), np.array([r]), in_3d.depth).item()
+        assert evenly_loaded(in_3d, r) == pytest.approx(plane, rel=0.01)
 
 
 def test_the_port_turns_as_a_disc_in_shear_and_moves_with_rigid_bodies():
