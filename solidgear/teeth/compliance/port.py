@@ -49,14 +49,14 @@ def port_of(mesh: SweptPitch, radius: float, pitch: float) -> Port:
     """Return the port on a cylinder, by the pitch angle."""
     around, weights = gauss(AROUND)
     points = radius * directions((around - 0.5) * pitch)
-    cells, at = mesh.inside(points)
+    cells, local = mesh.inside(points)
     n = mesh.solid.nodes.shape[1]
     loads = np.zeros((n, 3, 6))
     share, part = gauss(ALONG)
     steps = np.diff(mesh.ends)[:, None]
     z, along = (mesh.ends[:-1, None] + steps * share).ravel(), (steps * part).ravel()
     shape, nodes = mesh.shapes(
-        np.repeat(cells, len(z)), np.repeat(at, len(z), axis=0), np.tile(z, AROUND)
+        np.repeat(cells, len(z)), np.repeat(local, len(z), axis=0), np.tile(z, AROUND)
     )
     places = mesh.places(points[:, None], z)
     motion = rigid_motions(places.reshape(-1, 3).T).reshape(-1, 3, 6)

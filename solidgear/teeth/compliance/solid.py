@@ -3,8 +3,9 @@ r"""Teeth of a whole wheel in 3D, of second-order hexahedra.
 One pitch is meshed, condensed to its sides and repeated (:mod:`solidgear.teeth.compliance.ring`).
 Unit forces act on slices of the face along lines of constant radius; motions are read below.
 
-**Near a load** a tooth moves as a half-space does (:mod:`solidgear.teeth.compliance.half_space`).  The
-motion that is read at a depth, less that, is smooth: along the flank, so that a table of few radii is
+**Near a load** a tooth moves as a half-space does (:mod:`solidgear.teeth.compliance.half_space`), near
+an end of the face as one under the load and its mirror image, which hold the plane between them free
+of shear.  The motion that is read at a depth, less that, is smooth: along the flank, so that a table of few radii is
 interpolated, and with the depth, so that readings at two depths are continued to the surface by a
 line.  With the half-space at the depth that is asked for the sum then depends on this depth as the
 closed form does that takes over there.
@@ -33,15 +34,12 @@ from solidgear.core.models.solid.matrices import _matrices
 from solidgear.core.scene.parts import Material
 from solidgear.teeth.compliance.half_space import between_pieces
 from solidgear.teeth.compliance.mesh import Fineness, pitch_mesh
+from solidgear.teeth.compliance.plane import DEPTH, HUB, PORT, RIM
 from solidgear.teeth.compliance.port import Port, port_of
 from solidgear.teeth.compliance.ring import CondensedPitch, at_pitch, condensed
 from solidgear.teeth.compliance.solid_mesh import SweptPitch, turned
 from solidgear.teeth.contact.local import Elasticity
 
-#: depth at which compliances are given, port below the root, modules
-DEPTH, PORT = 0.25, 0.1
-#: hold of a solid wheel, share of the root radius; rim of a ring wheel, modules
-HUB, RIM = 0.2, 2.0
 #: depth of the second reading, modules, but no deeper than the middle of the tooth; the first is at
 #: half of it, and both count so many times at the surface
 DEEPEST, COUNTED = 0.5, (2.0, -1.0)
@@ -77,9 +75,10 @@ class SolidTeeth:
         1 where the teeth turn clockwise along z, as those of the first wheel of a pair, and -1 where
         they turn the other way, as those of its mate.
     width, offset : float
-        Of the common face, and of its middle from that of the wheel's face, m; by default all of it.
+        Of the face that both wheels share, by default all of it, and of its middle from that of the
+        wheel's face, m.
     slices : int
-        Of the common face.
+        Of the shared face.
     fineness : Fineness
     layer : float
         Thickness of the layers of cells along the face, modules.
@@ -142,13 +141,13 @@ class SolidTeeth:
 
     @cached_property
     def ends(self) -> np.ndarray:
-        """(slices + 1,) ends of the slices, from the middle of the wheel's face, m."""
+        """(slices + 1,) ends of the slices, from the middle of the shared face, m."""
         width = self.wheel.face_width if self.width is None else self.width
-        return np.linspace(-width / 2, width / 2, self.slices + 1) + self.offset
+        return np.linspace(-width / 2, width / 2, self.slices + 1)
 
     @property
     def middles(self) -> np.ndarray:
-        """(slices,) middles of the slices, m."""
+        """(slices,) middles of the slices, from the middle of the shared face, m."""
         return (self.ends[1:] + self.ends[:-1]) / 2
 
     @cached_property
@@ -170,7 +169,7 @@ class SolidTeeth:
 
     def flank(self, r: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return points (k, 3) of tooth 0's right flank, m, and unit normals into the tooth, at radii
-        (k,) and places z (k,) or one.
+        (k,) and places z (k,) from the middle of the wheel's face.
         """
         points, normals = self.wheel.flank_points(r)
         helix = self.wheel.base_helix
@@ -195,12 +194,12 @@ class SolidTeeth:
         # the normal leads along the face as well, to where the mesh is turned further
         ahead = self.hand * depths * sin(helix)
         below = turned(points + depths[:, None] * cos(helix) * normals, -mesh.twist * ahead)
-        cells, at = mesh.inside(below)
+        cells, local = mesh.inside(below)
         parts = []
         for k, r in enumerate(self.radii):
-            z, weights, numbers = mesh.means(self.ends + ahead[k])
+            z, weights, numbers = mesh.means(self.ends + self.offset + ahead[k])
             _, directions = self.flank(np.full(len(z), r), z - ahead[k])
-            cell, place = np.full(len(z), cells[k]), np.tile(at[k], (len(z), 1))
+            cell, place = np.full(len(z), cells[k]), np.tile(local[k], (len(z), 1))
             parts.append(mesh.rows(cell, place, z, directions, weights, numbers))
         return sp.vstack(parts).tocsr()
 
@@ -227,27 +226,27 @@ class SolidTeeth:
         )
         return _matrices(mesh.solid, [constants])[0]
 
-    def pitch(self, held: bool = True) -> CondensedPitch:
+    def pitch(self, holds: bool = True) -> CondensedPitch:
         """Return one pitch seen from its sides, its rim held or free: forces on the places of the
         tables and six loads of the port, motions of both.
         """
         mesh = self.mesh
         width = self.wheel.face_width / self.wheel.module
         power = min(max(LEAST_POWER, round(POWER * width)), mesh.layers)
-        sides = mesh.side_motions(self.wheel.pitch_angle, power, held)
+        sides = mesh.side_motions(self.wheel.pitch_angle, power, holds)
         loads = sp.hstack([self._forces.T, self._port.loads]).tocsr()
         readings = sp.vstack([self._readings, self._port.loads.T]).tocsr()
-        return condensed(self._stiffness, mesh.inner(held), sides, loads, readings)
+        return condensed(self._stiffness, mesh.inner(holds), sides, loads, readings)
 
     @cached_property
     def _responses(self) -> tuple[np.ndarray, np.ndarray]:
         """(waves, n, n) motion of the places by forces on them, and (6, 6) compliance of the port."""
         count = self.wheel.count
-        held = self.pitch()
-        rigid = np.array([held.response(wave, count) for wave in (0, 1)])
-        others = self.pitch(held=False) if self.free else held
+        pitch = self.pitch()
+        rigid = np.array([pitch.response(wave, count) for wave in (0, 1)])
+        pitch = self.pitch(holds=False) if self.free else pitch
         waves = range(2, count // 2 + 1)
-        responses = np.array([*rigid, *(others.response(wave, count) for wave in waves)])
+        responses = np.array([*rigid, *(pitch.response(wave, count) for wave in waves)])
         places, port = slice(-6), slice(-6, None)
         compliance = self._port.compliance(rigid[:, port, port], count)
         return responses[:, places, places], compliance
@@ -257,7 +256,7 @@ class SolidTeeth:
         """(6, 6) mean motion of the port by loads spread over it, about the middle of the face."""
         return self._responses[1]
 
-    def whole(self, tooth: int) -> np.ndarray:
+    def with_rim(self, tooth: int) -> np.ndarray:
         """Return the (n, n) motion of places on a tooth by forces on those of tooth 0, with the motion
         of the rim, m/N.
         """
@@ -265,20 +264,21 @@ class SolidTeeth:
 
     def _rigid(self, tooth: int) -> np.ndarray:
         """Return the (n, 6) motion of the places on a tooth along their normals by a rigid body."""
-        points, normals = self.flank(*self._places)
+        r, z = self._places
+        points, normals = self.flank(r, z + self.offset)
         for part in (points, normals):
             part[:, :2] = turned(part[:, :2], tooth * self.wheel.pitch_angle)
         return np.hstack([normals, np.cross(points, normals)])
 
     @property
     def _places(self) -> tuple[np.ndarray, np.ndarray]:
-        """Radii and z (n,) of the places, m."""
+        """Radii and z (n,) of the places in the tables, from the middle of the shared face, m."""
         return np.repeat(self.radii, self.slices), np.tile(self.middles, len(self.radii))
 
-    def teeth(self, tooth: int) -> np.ndarray:
+    def without_rim(self, tooth: int) -> np.ndarray:
         """Return the same without the motion of the rim."""
         rim = self._rigid(tooth) @ self.port_compliance @ self._rigid(0).T
-        return self.whole(tooth) - rim
+        return self.with_rim(tooth) - rim
 
     @cached_property
     def _tables(self) -> dict[int, np.ndarray]:
@@ -289,27 +289,33 @@ class SolidTeeth:
         the mean of both senses, m/N.
         """
         if tooth not in self._tables:
-            there, back = self.teeth(tooth), self.teeth(-tooth)
+            table, exchanged = self.without_rim(tooth), self.without_rim(-tooth)
             if tooth == 0:
-                near = np.zeros_like(there)
+                near = np.zeros_like(table)
                 for times, depths in zip(COUNTED, np.repeat(self._depths, self.slices, axis=1)):
                     near += times * self._near(*self._places, depths[:, None])
-                there, back = there - near, back - near
-            self._tables[tooth] = (there + back.T) / 2
+                table, exchanged = table - near, exchanged - near
+            self._tables[tooth] = (table + exchanged.T) / 2
         return self._tables[tooth]
 
     def _near(self, r: np.ndarray, z: np.ndarray, depth: float | np.ndarray) -> np.ndarray:
         """Return the (n, n) motion of a half-space between places on one flank, m/N, at a depth or at
-        one (n, 1) by place.
+        one (n, 1) by place, by forces there and by their images beyond both ends of the face.
         """
+        z = z + self.offset
         points, _ = self.flank(r, z)
         lean = self.mesh.twist * (r[:, None] + r) / 2
         stretch = np.sqrt(1 + lean**2)
-        along = (z[:, None] - z) * stretch
-        apart = ((points[:, None] - points) ** 2).sum(axis=-1)
-        across = np.maximum(apart - along**2, 0.0)
         length = (self.ends[1] - self.ends[0]) * stretch
-        return between_pieces(along, across, depth, length, self.elasticity)
+        face = self.wheel.face_width
+        near = np.zeros((len(r), len(r)))
+        for sense, shift in ((1, 0.0), (-1, face), (-1, -face)):
+            along = (z[:, None] - sense * z - shift) * stretch
+            image = points * [1, 1, sense] + [0, 0, shift]
+            squares = ((points[:, None] - image) ** 2).sum(axis=-1)
+            across = np.maximum(squares - along**2, 0.0)
+            near += between_pieces(along, across, depth, length, self.elasticity)
+        return near
 
     def matrix(self, tooth: np.ndarray, r: np.ndarray, z: np.ndarray) -> np.ndarray:
         """Return the compliance between places

@@ -99,9 +99,11 @@ class SweptPitch:
         of_level = np.broadcast_to(2 * layer + level, of_plane.shape)
         numbers = np.full((count, len(self.levels)), -1)
         numbers[of_plane, of_level] = dofs.T.reshape(of_plane.shape)
-        node, at = np.nonzero(numbers >= 0)
+        node, level_of = np.nonzero(numbers >= 0)
         nodes = np.empty((3, int(dofs.max()) + 1))
-        nodes[:, numbers[node, at]] = self.places(self.plane.points[node], self.levels[at]).T
+        nodes[:, numbers[node, level_of]] = self.places(
+            self.plane.points[node], self.levels[level_of]
+        ).T
         return SolidMesh(mesh, NAME, element, dofs, nodes, np.zeros(mesh.nelements, int)), numbers
 
     def _names(self, local: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -123,21 +125,21 @@ class SweptPitch:
         index, level = np.nonzero(self.numbers[plane_nodes] >= 0)
         return self.numbers[plane_nodes[index], level], index, level
 
-    def inner(self, held: bool) -> np.ndarray:
+    def inner(self, holds: bool) -> np.ndarray:
         """Return the (i,) unknowns neither on a side nor, where it is held, on the cylinder that ends
         the rim.
         """
         inner = np.ones(self.solid.nodes.shape[1], bool)
-        for nodes in (*self.plane.sides, *([self.plane.circle] if held else [])):
+        for nodes in (*self.plane.sides, *([self.plane.circle] if holds else [])):
             inner[self.nodes_of(nodes)[0]] = False
         return (3 * np.flatnonzero(inner)[:, None] + np.arange(3)).ravel()
 
-    def side_motions(self, pitch: float, power: int, held: bool) -> sp.csr_matrix:
+    def side_motions(self, pitch: float, power: int, holds: bool) -> sp.csr_matrix:
         """Return the (3 n, 2 q) motions of the unknowns of both sides, which are polynomials along z
         above each node of the plane, by those of the left side and of the next left side at the
         pitch angle; the end of the rim does not move where it is held.
         """
-        sides = self.plane.sides[:, :-1] if held else self.plane.sides
+        sides = self.plane.sides[:, :-1] if holds else self.plane.sides
         turn = np.eye(3)
         turn[:2, :2] = turned(np.eye(2), pitch).T
         parts = []
@@ -161,11 +163,11 @@ class SweptPitch:
         best = np.full(len(points), np.inf)
         cell, place = np.zeros(len(points), int), np.zeros((len(points), 2))
         for candidate in np.argsort(far, axis=1)[:, :NEAR].T:
-            at = _inverted(nodes[candidate], points)
-            outside = np.abs(at - 0.5).max(axis=1) - 0.5
+            local = _inverted(nodes[candidate], points)
+            outside = np.abs(local - 0.5).max(axis=1) - 0.5
             better = outside < best
             best[better], cell[better] = outside[better], candidate[better]
-            place[better] = at[better]
+            place[better] = local[better]
         if best.max() > EDGE:
             raise SolidgearError("teeth: a place below the flank lies outside the mesh")
         return cell, np.clip(place, 0.0, 1.0)
@@ -188,7 +190,7 @@ class SweptPitch:
     def rows(
         self,
         cells: np.ndarray,
-        at: np.ndarray,
+        local: np.ndarray,
         z: np.ndarray,
         directions: np.ndarray,
         weights: np.ndarray,
@@ -198,7 +200,7 @@ class SweptPitch:
 
         Parameters
         ----------
-        cells, at, z : (p,), (p, 2), (p,) ndarray
+        cells, local, z : (p,), (p, 2), (p,) ndarray
             Cells of the plane and coordinates in them, and places along the face, m.
         directions : (p, 3) ndarray
             In which motions are read.
@@ -209,7 +211,7 @@ class SweptPitch:
         -------
         (rows, 3 n) csr_matrix
         """
-        shape, nodes = self.shapes(cells, at, z)
+        shape, nodes = self.shapes(cells, local, z)
         values = shape * weights * directions.T[:, None]
         columns = 3 * nodes + np.arange(3)[:, None, None]
         rows = np.broadcast_to(numbers, values.shape)
@@ -217,7 +219,7 @@ class SweptPitch:
         return sp.csr_matrix((values.ravel(), (rows.ravel(), columns.ravel())), shape=size)
 
     def shapes(
-        self, cells: np.ndarray, at: np.ndarray, z: np.ndarray
+        self, cells: np.ndarray, local: np.ndarray, z: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
         """Return the functions (nb, p) of the mesh at places as for :meth:`rows`, or the nearest ones
         of the face, and their nodes (nb, p).
@@ -225,7 +227,7 @@ class SweptPitch:
         z = np.clip(z, self.ends[0], self.ends[-1])
         layer = np.minimum(np.searchsorted(self.ends, z, side="right"), self.layers) - 1
         third = (z - self.ends[layer]) / np.diff(self.ends)[layer]
-        shape, _ = reference(self.solid.element, np.column_stack([at, third]).T)
+        shape, _ = reference(self.solid.element, np.column_stack([local, third]).T)
         return shape, self.solid.dofs[:, layer * len(self.plane.cells) + cells]
 
 
@@ -233,18 +235,18 @@ def _inverted(nodes: np.ndarray, points: np.ndarray) -> np.ndarray:
     """Return the coordinates (k, 2) of points (k, 2) in cells with nodes (k, 8, 2), far outside where
     there are none.
     """
-    at = np.full((len(points), 2), 0.5)
+    local = np.full((len(points), 2), 0.5)
     for _ in range(STEPS):
-        value, slope = _serendipity(at)
+        value, slope = _serendipity(local)
         miss = points - np.einsum("kb,kbi->ki", value, nodes)
         step = np.linalg.solve(np.einsum("kbj,kbi->kij", slope, nodes), miss[..., None])
-        at = np.clip(at + step[..., 0], -1.0, 2.0)
-    return at
+        local = np.clip(local + step[..., 0], -1.0, 2.0)
+    return local
 
 
-def _serendipity(at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _serendipity(local: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the functions (k, 8) of a quadrilateral of eight nodes at coordinates (k, 2), and their
     gradients (k, 8, 2).
     """
-    value, slope = reference(ElementQuadS2(), at.T)
+    value, slope = reference(ElementQuadS2(), local.T)
     return value.T, slope.transpose(2, 0, 1)
