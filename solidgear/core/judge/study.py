@@ -17,6 +17,7 @@ from solidgear.core.body import Body, Supports, as_supports
 from solidgear.core.bounds.clusters import ROOM
 from solidgear.core.errors import NoBounds, SolidgearError
 from solidgear.core.judge.bounded import Bounded, bounded
+from solidgear.core.judge.deviations import deviations, select_gaps
 from solidgear.core.judge.hidden import complete_list
 from solidgear.core.judge.quantities import judged, usual
 from solidgear.core.judge.record import LevelRecord
@@ -52,8 +53,13 @@ def study(
     counted: bool = True,
     progress: Progress = lambda _: None,
     keep: Keep = lambda _: None,
+    reference: Solution | None = None,
 ) -> Solution:
     """Solve one model of a scene, a solid on as many meshes as its error bars need.
+
+    A solid that checks a reference needs no narrow bars of its own: it ends with the first mesh on
+    which every judged number is within the tolerance at the far end of the reference's error bar,
+    or differs by more than both error bars as on the mesh before, or has a bar within the tolerance.
 
     Parameters
     ----------
@@ -68,6 +74,8 @@ def study(
         Count the modes, unless `counted` is False, and solve the other attachments.
     keep : callable
         Called with the solution so far after every mesh, to be kept after an interrupt.
+    reference : Solution, optional
+        A solid with error bars within the tolerance, which this model checks.
 
     Raises
     ------
@@ -86,13 +94,13 @@ def study(
         refinement = Refinement(
             scene,
             ladder_model,
-            wanted=usual(scene),
-            tol=scene.ask.tolerance / (share or ladder_model.share),
+            wanted=usual(scene) if reference is None else judged(scene),
+            tol=scene.ask.tolerance / (share or ladder_model.share if reference is None else 1.0),
             plan=ladder_model.meshes_of(scene, options),
             middles=False,
             most=most,
         )
-        solution = TiedSolver(refinement, progress, count_modes, keep).study()
+        solution = TiedSolver(refinement, progress, count_modes, keep, reference).study()
     if evidence:
         _add_variants(scene, solution, progress)
     return solution
@@ -101,9 +109,19 @@ def study(
 class TiedSolver:
     """Solves meshes in all ways of tying, a :class:`~solidgear.core.judge.refinement.Solver`."""
 
-    def __init__(self, refinement: Refinement, progress: Progress, count_modes: bool, keep: Keep):
+    def __init__(
+        self,
+        refinement: Refinement,
+        progress: Progress,
+        count_modes: bool,
+        keep: Keep,
+        reference: Solution | None = None,
+    ):
         self.refinement, self.progress = refinement, progress
         self.count_modes, self.keep = count_modes, keep
+        self.reference = reference  #: a solid that this one checks
+        #: numbers of the last mesh beyond the error bars of both solids
+        self.beyond: set[Quantity] = set()
         self.solution: Solution | None = None  #: of the last mesh
         self.meter = Meter()
         self.failed: dict[str, str] = {}  #: part left out -> reason
@@ -120,6 +138,9 @@ class TiedSolver:
                 raise
             self.failed["finer mesh"] = _reason(error)
         assert self.solution is not None
+        bar = refinement.largest()
+        too_wide = bar is None or bar > refinement.tol
+        self.solution.check = self.reference is not None and too_wide and not refinement.unmet()
         reason = refinement.steps[-1].why
         if reason and refinement.most is None and not fixed and not refinement.without_bars:
             self.failed["narrower bars"] = reason
@@ -150,7 +171,37 @@ class TiedSolver:
         bars = refinement.error_bars
         # no frequency without an error bar
         barred = {q: v for q, v in answer.quantities.items() if q in bars or not q.is_frequency}
-        return Solved(answer.body, Numbers(barred, answer.numbers.solver), answer.body.size, score)
+        return Solved(
+            answer.body,
+            Numbers(barred, answer.numbers.solver),
+            answer.body.size,
+            score,
+            self._distances(solution),
+        )
+
+    def _distances(self, solution: Solution) -> dict[Quantity, float]:
+        """Return how far each judged number may be from that of the reference, zero where the error
+        bars of both exclude each other on this mesh and the last; none where a frequency without a
+        bar may be too far.
+        """
+        if self.reference is None:
+            return {}
+        pair = {solution.model: solution, self.reference.model: self.reference}
+        bars, reference_bars = (s.error_bars.get(SCENE, {}) for s in pair.values())
+        gaps = deviations(pair, self.reference.model)
+        distances: dict[Quantity, float] = {}
+        beyond: set[Quantity] = set()
+        for gap in select_gaps(gaps, solution.model, self.refinement.wanted, SCENE):
+            if gap.quantity not in reference_bars:
+                continue
+            distances[gap.quantity] = gap.size + gap.reference_bar
+            if gap.quantity in bars and gap.verdict == "resolved":
+                beyond.add(gap.quantity)
+        # the error bar of one coarse mesh may be too small: a difference shows on two
+        distances |= dict.fromkeys(beyond & self.beyond, 0.0)
+        self.beyond = beyond
+        without = (d for q, d in distances.items() if q.is_frequency and q not in bars)
+        return {} if max(without, default=0.0) > self.refinement.tol else distances
 
     def _judge_mesh(self, solution: Solution) -> np.ndarray | None:
         """Add the error bars of a mesh to its solution; return weights of its cells by those that
