@@ -13,17 +13,24 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from solidgear.core.body import Body, Supports, as_supports
-from solidgear.core.bounds.clusters import ROOM
+from solidgear.core.body import as_supports
 from solidgear.core.errors import NoBounds, SolidgearError
 from solidgear.core.judge.bounded import Bounded, bounded
-from solidgear.core.judge.deviations import deviations, select_gaps
 from solidgear.core.judge.hidden import complete_list
 from solidgear.core.judge.quantities import judged, usual
 from solidgear.core.judge.record import LevelRecord
+from solidgear.core.judge.reference_check import Distances, ReferenceCheck
 from solidgear.core.judge.refinement import Progress, Refinement, Solved, refine
 from solidgear.core.judge.solution import Solution
-from solidgear.core.judge.solving import ENOUGH, Answer, Numbers, Statics, search_modes
+from solidgear.core.judge.solving import Answer, Numbers, numbers
+from solidgear.core.judge.tied import (
+    Tied,
+    modes_of,
+    solved_modes,
+    solved_ties,
+    tied_by,
+    tied_statics,
+)
 from solidgear.core.judge.ties import SCENE, SECTION, attached
 from solidgear.core.ladder import build
 from solidgear.core.ladder.model import SOLID
@@ -32,8 +39,6 @@ from solidgear.core.machine.memory import NoRoom
 from solidgear.core.machine.meter import Meter
 from solidgear.core.models.options import ATTACHMENTS
 from solidgear.core.quantity import C_ZZ, FIRST_BENDING, Quantity
-from solidgear.core.solve.modes import ModeSet
-from solidgear.core.solve.statics import SOLVED, flexibility
 
 if TYPE_CHECKING:
     from solidgear.core.scene import Scene
@@ -87,20 +92,25 @@ def study(
     if ladder_model.family != SOLID:
         meter = Meter()
         progress(f"{model}: build, statics, modes")
-        ties = solved_ties(scene, model, options, meter, 0 if count_modes else math.inf)
+        tied = tied_statics(scene, model, options, meter)
+        ties = solved_ties(scene, tied, model, options, meter, 0 if count_modes else math.inf)
         solution = Solution(model, ties, meter, options=options)
         keep(solution)
     else:
         refinement = Refinement(
             scene,
             ladder_model,
-            wanted=usual(scene) if reference is None else judged(scene),
-            tol=scene.ask.tolerance / (share or ladder_model.share if reference is None else 1.0),
+            wanted=usual(scene),
+            tol=scene.ask.tolerance / (share or ladder_model.share),
             plan=ladder_model.meshes_of(scene, options),
             middles=False,
             most=most,
         )
-        solution = TiedSolver(refinement, progress, count_modes, keep, reference).study()
+        check: ReferenceCheck | None = None
+        if reference is not None:
+            refinement.wanted, refinement.tol = judged(scene), scene.ask.tolerance
+            check = ReferenceCheck(reference, refinement.wanted, refinement.tol)
+        solution = TiedSolver(refinement, progress, count_modes, keep, check).study()
     if evidence:
         _add_variants(scene, solution, progress)
     return solution
@@ -115,13 +125,13 @@ class TiedSolver:
         progress: Progress,
         count_modes: bool,
         keep: Keep,
-        reference: Solution | None = None,
+        check: ReferenceCheck | None = None,
     ):
         self.refinement, self.progress = refinement, progress
         self.count_modes, self.keep = count_modes, keep
-        self.reference = reference  #: a solid that this one checks
-        #: numbers of the last mesh beyond the error bars of both solids
-        self.beyond: set[Quantity] = set()
+        self.check = check  #: of a reference, which is all that this solid is for
+        #: options of the first mesh, where its statics alone are beyond the tolerance of a check
+        self.passed_over: Mapping[str, Any] | None = None
         self.solution: Solution | None = None  #: of the last mesh
         self.meter = Meter()
         self.failed: dict[str, str] = {}  #: part left out -> reason
@@ -134,13 +144,15 @@ class TiedSolver:
         try:
             refine(refinement, self, self.progress, model.name)
         except (SolidgearError, MemoryError) as error:
+            if self.solution is None and self.passed_over is not None:
+                self.solve(self.passed_over)
             if self.solution is None or fixed:
                 raise
             self.failed["finer mesh"] = _reason(error)
         assert self.solution is not None
         bar = refinement.largest()
         too_wide = bar is None or bar > refinement.tol
-        self.solution.check = self.reference is not None and too_wide and not refinement.unmet()
+        self.solution.check = self.check is not None and too_wide and not refinement.unmet()
         reason = refinement.steps[-1].why
         if reason and refinement.most is None and not fixed and not refinement.without_bars:
             self.failed["narrower bars"] = reason
@@ -157,9 +169,14 @@ class TiedSolver:
         before = dict(self.meter.seconds)
         if self.solution is not None:
             self.solution.body.cache.clear()  # its factor need not be held beside the next one
-        ties = solved_ties(refinement.scene, refinement.model.name, options, self.meter, spare=True)
-        if self.solution is not None:
-            _book_as_evidence(self.meter, before)
+        scene, name = refinement.scene, refinement.model.name
+        tied = tied_statics(scene, name, options, self.meter)
+        if distances := self._beyond_check(tied):
+            self.passed_over = options
+            tied.body.cache.clear()
+            return Solved(tied.body, numbers(tied.statics, None), tied.body.size, None, distances)
+        ties = solved_ties(scene, tied, name, options, self.meter, spare=True)
+        _book_as_evidence(self.meter, before)
         answer = ties[SCENE]
         solution = Solution(refinement.model.name, ties, self.meter, failed=self.failed)
         solution.levels, solution.options = self.meshes, dict(options)
@@ -176,32 +193,15 @@ class TiedSolver:
             Numbers(barred, answer.numbers.solver),
             answer.body.size,
             score,
-            self._distances(solution),
+            {} if self.check is None else self.check.distances(solution),
         )
 
-    def _distances(self, solution: Solution) -> dict[Quantity, float]:
-        """Return how far each judged number may be from that of the reference, zero where the error
-        bars of both exclude each other on this mesh and the last; none where a frequency without a
-        bar may be too far.
-        """
-        if self.reference is None:
+    def _beyond_check(self, tied: Tied) -> Distances:
+        """Return the distances of a check by which a first mesh, of several, cannot be the last."""
+        several = len(self.refinement.plan.levels) > 1 and self.refinement.most != 1
+        if self.check is None or self.passed_over is not None or self.solution or not several:
             return {}
-        pair = {solution.model: solution, self.reference.model: self.reference}
-        bars, reference_bars = (s.error_bars.get(SCENE, {}) for s in pair.values())
-        gaps = deviations(pair, self.reference.model)
-        distances: dict[Quantity, float] = {}
-        beyond: set[Quantity] = set()
-        for gap in select_gaps(gaps, solution.model, self.refinement.wanted, SCENE):
-            if gap.quantity not in reference_bars:
-                continue
-            distances[gap.quantity] = gap.size + gap.reference_bar
-            if gap.quantity in bars and gap.verdict == "resolved":
-                beyond.add(gap.quantity)
-        # the error bar of one coarse mesh may be too small: a difference shows on two
-        distances |= dict.fromkeys(beyond & self.beyond, 0.0)
-        self.beyond = beyond
-        without = (d for q, d in distances.items() if q.is_frequency and q not in bars)
-        return {} if max(without, default=0.0) > self.refinement.tol else distances
+        return self.check.distances_beyond(tied.statics.values())
 
     def _judge_mesh(self, solution: Solution) -> np.ndarray | None:
         """Add the error bars of a mesh to its solution; return weights of its cells by those that
@@ -236,7 +236,7 @@ class TiedSolver:
         if self.count_modes:
             assert answer.supports is not None  # of the answer just found
             with self.meter.stage("count"):
-                answer.modes = _modes(scene, answer.body, answer.supports, count=True, spare=True)
+                answer.modes = modes_of(scene, answer.body, answer.supports, count=True, spare=True)
                 complete = complete_list(scene, answer.body, answer.supports, answer.modes)
                 answer.modes = replace(answer.modes, evidence=complete.evidence)
 
@@ -262,96 +262,6 @@ def _judged(
         existing,
         answer.numbers.solver,
         later.modes if later is not None and later.body is answer.body else None,
-    )
-
-
-def solved_ties(
-    scene: Scene,
-    model: str,
-    options: Mapping[str, Any],
-    meter: Meter,
-    counted_from: float = math.inf,
-    spare: bool = False,
-) -> dict[str, Answer]:
-    """Solve one mesh, tied as in the scene and by section means; modes are counted from so many
-    unknowns on.
-    """
-    attachments = {s.attachment for s in scene.stations}
-    # Means over seats and over sections are only rows on the same matrices; a rigid seat is another
-    # matrix.
-    one_matrix = "rigid" not in attachments
-    sections = LADDER[model].section_ties
-    builder_options = dict(options)
-    if one_matrix:
-        kinds = (*sorted(attachments), "section") if sections else sorted(attachments)
-        builder_options["attachments"] = tuple(dict.fromkeys(kinds))
-    body = _built(scene, model, builder_options, meter)
-    supports, count = as_supports(scene), body.size >= counted_from
-    port_attachments: list[str] | None = None
-    if one_matrix:
-        supports = supports.on_stations(scene.stations)
-        port_attachments = [port.attachment for port in scene.ports]
-    ties = {SCENE: _answer(scene, body, supports, port_attachments, meter, count, spare)}
-    if attachments == {"section"}:
-        ties[SECTION] = ties[SCENE]
-    elif not sections:
-        pass  # planes of section ties would have to be graded; another solid judges like for like
-    elif one_matrix:
-        section_supports = supports.with_attachment("section")
-        ties[SECTION] = _answer(scene, body, section_supports, "section", meter)
-    else:
-        tied = scene.with_attachment("section")
-        tied_body = _built(tied, model, options, meter)
-        ties[SECTION] = _answer(tied, tied_body, as_supports(tied), None, meter, spare=spare)
-    return ties
-
-
-def _built(scene: Scene, model: str, options: Mapping[str, Any], meter: Meter) -> Body:
-    with meter.stage("build"):
-        body = build(scene, model, **options)
-    if LADDER[model].follows:
-        with meter.stage("statics"):
-            flexibility(body, SOLVED)
-    return body
-
-
-def _answer(
-    scene: Scene,
-    body: Body,
-    supports: Supports,
-    attachments: list[str] | str | None,
-    meter: Meter,
-    count: bool = False,
-    spare: bool = False,
-) -> Answer:
-    """Solve statics and modes of a body tied in one way."""
-    with meter.stage("statics"):
-        ports = [port.name for port in scene.ports]
-        statics = Statics.at_points(body, supports, ports, attachments)
-    with meter.stage("modes"):
-        modes = _modes(scene, body, supports, count, spare)
-    # Evidence, not part of the answer: kept apart from what the modes cost.
-    meter.move("modes", "count", modes.evidence.get("count_seconds", 0.0))
-    return Answer.measured(body, supports, statics, modes)
-
-
-def _modes(
-    scene: Scene, body: Body, supports: Supports, count: bool, spare: bool = False
-) -> ModeSet:
-    """Find the modes of a comparison, those that models are judged by among them."""
-    names = dict.fromkeys((*usual(scene), *judged(scene)))
-    return search_modes(
-        body,
-        supports,
-        max(scene.ask.modes, ENOUGH),
-        [q for q in names if q.is_frequency],
-        spare=spare,
-        max_frequency=scene.ask.max_frequency,
-        count=count,
-        room=ROOM if count or spare else 0.0,
-        # Families of two waves and more are reported for the finest mesh; bearings do not move
-        # them, nor do error bars rest on them.
-        ovalising=count,
     )
 
 
@@ -392,8 +302,7 @@ def _add_variants(scene: Scene, solution: Solution, progress: Progress) -> None:
                 elif LADDER[solution.model].section_ties:
                     variant = attached(scene, attachment)
                     body = build(variant, solution.model, **solution.options)
-                    solution.variants[attachment] = _answer(
-                        variant, body, as_supports(variant), None, unbooked
-                    )
+                    tied = tied_by(variant, body, as_supports(variant), None, unbooked)
+                    solution.variants[attachment] = solved_modes(variant, tied, unbooked)
             except SolidgearError as error:
                 log.info("%s: attachment %s skipped: %s", solution.model, attachment, error)
