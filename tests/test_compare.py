@@ -348,7 +348,7 @@ def failing(monkeypatch, model, error):
             raise error
         return build(scene, fidelity, **options)
 
-    monkeypatch.setattr("solidgear.core.judge.study.build", broken)
+    monkeypatch.setattr("solidgear.core.judge.tied.build", broken)
 
 
 @pytest.mark.long

@@ -146,12 +146,30 @@ def test_quantities_that_one_side_lacks_are_left_out():
 def test_a_solid_is_judged_by_the_bar_of_the_reference_and_not_by_its_own():
     """Its own bar says how far it may be from the truth, which the reference tells better."""
     for c_zz, valid in ((0.97, True), (0.94, False)):
-        solutions = {
-            "harmonic": solution(1.0, model="harmonic", bar=0.001),
-            "solid": solution(c_zz, model="solid", bar=0.045),
-        }
-        judgement = judged(solutions, 0.05)[1]["solid"]
-        assert judgement.valid is valid and not judgement.open
+        for bar in (None, 0.045, 0.2):
+            solutions = {
+                "harmonic": solution(1.0, model="harmonic", bar=0.001),
+                "solid": solution(c_zz, model="solid", bar=bar),
+            }
+            judgement = judged(solutions, 0.05)[1]["solid"]
+            assert judgement.valid is valid and not judgement.open
+
+
+def test_a_check_is_called_no_surer_than_it_is():
+    def sentence(c_zz, bar):
+        solid = solution(c_zz, model="solid", bar=bar)
+        solid.check = True
+        solutions = {"harmonic": solution(model="harmonic", bar=0.001), "solid": solid}
+        return next(s for s in judged(solutions, 0.05)[0].sentences if "is a check" in s)
+
+    assert sentence(0.97, 0.2).endswith(
+        "whose numbers are within 5 % of the harmonic solid; its own error bar is wider, 20 %."
+    )
+    assert sentence(0.97, None).endswith("of the harmonic solid; it has no error bar.")
+    assert sentence(0.8, 0.1).endswith(
+        "on which each number is within 5 % of the harmonic solid, or beyond both error bars on "
+        "two meshes, or sure; its own error bar is wider, 10 %."
+    )
 
 
 def test_a_gap_counts_with_its_bar():

@@ -28,8 +28,10 @@ from solidgear.core import (
 )
 from solidgear.core.judge.causes import SHOWN, attachment_causes, beam_causes, shoulder_cause
 from solidgear.core.judge.lumped import synthesise_all
+from solidgear.core.judge.quantities import usual
 from solidgear.core.judge.study import study
 from solidgear.core.judge.ties import SECTION
+from solidgear.core.judge.verdict import trusted
 from solidgear.core.ladder.meshes import FREE
 from solidgear.core.ladder.model import LUMPED, SOLID
 from solidgear.core.machine.memory import one_run
@@ -141,7 +143,10 @@ def compare(
     """Solve a scene with several models and compare them; or two scenes beside each other.
 
     Solids are solved on ever finer meshes until their error bars are small enough: a tenth of the
-    tolerance of the scene for the harmonic solid, which judges, all of it for the 3D solid.
+    tolerance of the scene for the harmonic solid, which judges, all of it for the 3D solid. Where
+    the harmonic solid is that sure, the 3D solid is a check, and ends with the first mesh whose
+    numbers are within the tolerance of it, or differ by more than both error bars as on the mesh
+    before.
 
     Parameters
     ----------
@@ -250,6 +255,7 @@ def _run(
                 counted=counted,
                 progress=progress,
                 keep=functools.partial(findings.solutions.__setitem__, model),
+                reference=_checked(scene, model, findings.solutions),
             )
         except (SolidgearError, MemoryError) as error:
             findings.failed[model] = str(error) or "not enough memory"
@@ -277,6 +283,14 @@ def _after_a_solid(model: str, done: Collection[str]) -> bool:
     """Return True where a model is a solid and another solid is done."""
     solids = LADDER.of(SOLID)
     return model in solids and any(s in done for s in solids if s != model)
+
+
+def _checked(scene: Scene, model: str, solutions: dict[str, Solution]) -> Solution | None:
+    """Return the solution that a solid only checks: one on the exact geometry, of small error."""
+    reference, _ = trusted(solutions, scene.ask.tolerance, usual(scene))
+    if reference is None or LADDER[model].family != SOLID or not LADDER[reference].follows:
+        return None
+    return solutions[reference]
 
 
 def _circumference(scene: Scene, model: str, options: dict, findings: Findings) -> dict:

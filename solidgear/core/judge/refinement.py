@@ -69,6 +69,9 @@ class Solved:
     unknowns: int  #: of all bodies
     #: (ne,) weights of the cells of a meridian by the error bars that exceed the tolerance
     score: np.ndarray | None = None
+    #: largest distance that numbers may have from a reference, relative; zero where a difference is
+    #: shown. Numbers that are not compared with one are missing.
+    distances: Mapping[Quantity, float] = field(default_factory=dict)
 
 
 class Solver(Protocol):
@@ -158,7 +161,12 @@ class Refinement:
 
     def unmet(self) -> list[Quantity]:
         """Return the quantities that exist and are not yet within the tolerance."""
-        return [q for q in self.existing() if not self.bar(q) <= self.tol]
+        return [q for q in self.existing() if not self.doubt(q) <= self.tol]
+
+    def doubt(self, name: Quantity) -> float:
+        """Return the error bar of a quantity, or the distance from a reference where that is less."""
+        distances = {} if self.last is None else self.last.distances
+        return min(self.bar(name), distances.get(name, math.inf))
 
     def largest(self) -> float | None:
         """Return the largest error bar of all quantities to be judged; None without any."""
@@ -259,15 +267,16 @@ class Refinement:
 
 
 def refine(refinement: Refinement, solver: Solver, progress: Progress, label: str) -> None:
-    """Solve finer and finer meshes until every error bar is within the tolerance, or no finer mesh
-    would help, or there is none; `progress` gets a sentence on every mesh that begins with `label`.
+    """Solve finer and finer meshes until every error bar is within the tolerance or its number has
+    been compared with a reference, or no finer mesh would help, or there is none; `progress` gets a
+    sentence on every mesh that begins with `label`.
     """
 
     def announce(unknowns: int, mb: float) -> None:
         if unknowns >= HEAVY:
             progress(f"{label}: {cost_text(unknowns, mb)}")
 
-    wanted, tol = refinement.wanted, refinement.tol
+    wanted = refinement.wanted
     for options in _meshes(refinement):
         start = time.perf_counter()
         requested = set(solver.next_quantities())
@@ -295,7 +304,7 @@ def refine(refinement: Refinement, solver: Solver, progress: Progress, label: st
         if not refinement.existing():
             refinement.end("nothing that was asked for exists in this scene")
             return
-        if bar is not None and bar <= tol:
+        if not refinement.unmet():
             refinement.end("")
             return
         if reason := refinement.in_vain():
@@ -333,8 +342,7 @@ def _listed(
     place = 0
     while place < len(levels):
         yield levels[place]
-        bar = refinement.steps[-1].bar if refinement.steps else None
-        too_wide = 0.0 if bar is None else bar / refinement.tol
+        too_wide = max(map(refinement.doubt, refinement.unmet()), default=0.0) / refinement.tol
         jump = math.log(too_wide) / math.log(FALL) if 1 < too_wide < math.inf else 1.0
         place = max(place + 1, min(place + math.floor(jump), len(levels) - 1))
 

@@ -43,6 +43,8 @@ class Solution:
     levels: list[LevelRecord] = field(default_factory=list)  #: coarse to fine
     failed: dict[str, str] = field(default_factory=dict)  #: part left out -> reason
     options: dict[str, Any] = field(default_factory=dict)
+    #: whether it only checks a reference: its meshes ended before its bars were within the tolerance
+    check: bool = False
 
     @property
     def body(self) -> Body:

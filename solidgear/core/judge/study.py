@@ -13,16 +13,24 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from solidgear.core.body import Body, Supports, as_supports
-from solidgear.core.bounds.clusters import ROOM
+from solidgear.core.body import as_supports
 from solidgear.core.errors import NoBounds, SolidgearError
 from solidgear.core.judge.bounded import Bounded, bounded
 from solidgear.core.judge.hidden import complete_list
 from solidgear.core.judge.quantities import judged, usual
 from solidgear.core.judge.record import LevelRecord
+from solidgear.core.judge.reference_check import Distances, ReferenceCheck
 from solidgear.core.judge.refinement import Progress, Refinement, Solved, refine
 from solidgear.core.judge.solution import Solution
-from solidgear.core.judge.solving import ENOUGH, Answer, Numbers, Statics, search_modes
+from solidgear.core.judge.solving import Answer, Numbers, numbers
+from solidgear.core.judge.tied import (
+    Tied,
+    modes_of,
+    solved_modes,
+    solved_ties,
+    tied_by,
+    tied_statics,
+)
 from solidgear.core.judge.ties import SCENE, SECTION, attached
 from solidgear.core.ladder import build
 from solidgear.core.ladder.model import SOLID
@@ -31,8 +39,6 @@ from solidgear.core.machine.memory import NoRoom
 from solidgear.core.machine.meter import Meter
 from solidgear.core.models.options import ATTACHMENTS
 from solidgear.core.quantity import C_ZZ, FIRST_BENDING, Quantity
-from solidgear.core.solve.modes import ModeSet
-from solidgear.core.solve.statics import SOLVED, flexibility
 
 if TYPE_CHECKING:
     from solidgear.core.scene import Scene
@@ -52,8 +58,13 @@ def study(
     counted: bool = True,
     progress: Progress = lambda _: None,
     keep: Keep = lambda _: None,
+    reference: Solution | None = None,
 ) -> Solution:
     """Solve one model of a scene, a solid on as many meshes as its error bars need.
+
+    A solid that checks a reference needs no narrow bars of its own: it ends with the first mesh on
+    which every judged number is within the tolerance at the far end of the reference's error bar,
+    or differs by more than both error bars as on the mesh before, or has a bar within the tolerance.
 
     Parameters
     ----------
@@ -68,6 +79,8 @@ def study(
         Count the modes, unless `counted` is False, and solve the other attachments.
     keep : callable
         Called with the solution so far after every mesh, to be kept after an interrupt.
+    reference : Solution, optional
+        A solid with error bars within the tolerance, which this model checks.
 
     Raises
     ------
@@ -79,7 +92,8 @@ def study(
     if ladder_model.family != SOLID:
         meter = Meter()
         progress(f"{model}: build, statics, modes")
-        ties = solved_ties(scene, model, options, meter, 0 if count_modes else math.inf)
+        tied = tied_statics(scene, model, options, meter)
+        ties = solved_ties(scene, tied, model, options, meter, 0 if count_modes else math.inf)
         solution = Solution(model, ties, meter, options=options)
         keep(solution)
     else:
@@ -92,7 +106,11 @@ def study(
             middles=False,
             most=most,
         )
-        solution = TiedSolver(refinement, progress, count_modes, keep).study()
+        check: ReferenceCheck | None = None
+        if reference is not None:
+            refinement.wanted, refinement.tol = judged(scene), scene.ask.tolerance
+            check = ReferenceCheck(reference, refinement.wanted, refinement.tol)
+        solution = TiedSolver(refinement, progress, count_modes, keep, check).study()
     if evidence:
         _add_variants(scene, solution, progress)
     return solution
@@ -101,9 +119,19 @@ def study(
 class TiedSolver:
     """Solves meshes in all ways of tying, a :class:`~solidgear.core.judge.refinement.Solver`."""
 
-    def __init__(self, refinement: Refinement, progress: Progress, count_modes: bool, keep: Keep):
+    def __init__(
+        self,
+        refinement: Refinement,
+        progress: Progress,
+        count_modes: bool,
+        keep: Keep,
+        check: ReferenceCheck | None = None,
+    ):
         self.refinement, self.progress = refinement, progress
         self.count_modes, self.keep = count_modes, keep
+        self.check = check  #: of a reference, which is all that this solid is for
+        #: options of the first mesh, where its statics alone are beyond the tolerance of a check
+        self.passed_over: Mapping[str, Any] | None = None
         self.solution: Solution | None = None  #: of the last mesh
         self.meter = Meter()
         self.failed: dict[str, str] = {}  #: part left out -> reason
@@ -116,10 +144,15 @@ class TiedSolver:
         try:
             refine(refinement, self, self.progress, model.name)
         except (SolidgearError, MemoryError) as error:
+            if self.solution is None and self.passed_over is not None:
+                self.solve(self.passed_over)
             if self.solution is None or fixed:
                 raise
             self.failed["finer mesh"] = _reason(error)
         assert self.solution is not None
+        bar = refinement.largest()
+        too_wide = bar is None or bar > refinement.tol
+        self.solution.check = self.check is not None and too_wide and not refinement.unmet()
         reason = refinement.steps[-1].why
         if reason and refinement.most is None and not fixed and not refinement.without_bars:
             self.failed["narrower bars"] = reason
@@ -136,9 +169,14 @@ class TiedSolver:
         before = dict(self.meter.seconds)
         if self.solution is not None:
             self.solution.body.cache.clear()  # its factor need not be held beside the next one
-        ties = solved_ties(refinement.scene, refinement.model.name, options, self.meter, spare=True)
-        if self.solution is not None:
-            _book_as_evidence(self.meter, before)
+        scene, name = refinement.scene, refinement.model.name
+        tied = tied_statics(scene, name, options, self.meter)
+        if distances := self._beyond_check(tied):
+            self.passed_over = options
+            tied.body.cache.clear()
+            return Solved(tied.body, numbers(tied.statics, None), tied.body.size, None, distances)
+        ties = solved_ties(scene, tied, name, options, self.meter, spare=True)
+        _book_as_evidence(self.meter, before)
         answer = ties[SCENE]
         solution = Solution(refinement.model.name, ties, self.meter, failed=self.failed)
         solution.levels, solution.options = self.meshes, dict(options)
@@ -150,7 +188,20 @@ class TiedSolver:
         bars = refinement.error_bars
         # no frequency without an error bar
         barred = {q: v for q, v in answer.quantities.items() if q in bars or not q.is_frequency}
-        return Solved(answer.body, Numbers(barred, answer.numbers.solver), answer.body.size, score)
+        return Solved(
+            answer.body,
+            Numbers(barred, answer.numbers.solver),
+            answer.body.size,
+            score,
+            {} if self.check is None else self.check.distances(solution),
+        )
+
+    def _beyond_check(self, tied: Tied) -> Distances:
+        """Return the distances of a check by which a first mesh, of several, cannot be the last."""
+        several = len(self.refinement.plan.levels) > 1 and self.refinement.most != 1
+        if self.check is None or self.passed_over is not None or self.solution or not several:
+            return {}
+        return self.check.distances_beyond(tied.statics.values())
 
     def _judge_mesh(self, solution: Solution) -> np.ndarray | None:
         """Add the error bars of a mesh to its solution; return weights of its cells by those that
@@ -185,7 +236,7 @@ class TiedSolver:
         if self.count_modes:
             assert answer.supports is not None  # of the answer just found
             with self.meter.stage("count"):
-                answer.modes = _modes(scene, answer.body, answer.supports, count=True, spare=True)
+                answer.modes = modes_of(scene, answer.body, answer.supports, count=True, spare=True)
                 complete = complete_list(scene, answer.body, answer.supports, answer.modes)
                 answer.modes = replace(answer.modes, evidence=complete.evidence)
 
@@ -211,96 +262,6 @@ def _judged(
         existing,
         answer.numbers.solver,
         later.modes if later is not None and later.body is answer.body else None,
-    )
-
-
-def solved_ties(
-    scene: Scene,
-    model: str,
-    options: Mapping[str, Any],
-    meter: Meter,
-    counted_from: float = math.inf,
-    spare: bool = False,
-) -> dict[str, Answer]:
-    """Solve one mesh, tied as in the scene and by section means; modes are counted from so many
-    unknowns on.
-    """
-    attachments = {s.attachment for s in scene.stations}
-    # Means over seats and over sections are only rows on the same matrices; a rigid seat is another
-    # matrix.
-    one_matrix = "rigid" not in attachments
-    sections = LADDER[model].section_ties
-    builder_options = dict(options)
-    if one_matrix:
-        kinds = (*sorted(attachments), "section") if sections else sorted(attachments)
-        builder_options["attachments"] = tuple(dict.fromkeys(kinds))
-    body = _built(scene, model, builder_options, meter)
-    supports, count = as_supports(scene), body.size >= counted_from
-    port_attachments: list[str] | None = None
-    if one_matrix:
-        supports = supports.on_stations(scene.stations)
-        port_attachments = [port.attachment for port in scene.ports]
-    ties = {SCENE: _answer(scene, body, supports, port_attachments, meter, count, spare)}
-    if attachments == {"section"}:
-        ties[SECTION] = ties[SCENE]
-    elif not sections:
-        pass  # planes of section ties would have to be graded; another solid judges like for like
-    elif one_matrix:
-        section_supports = supports.with_attachment("section")
-        ties[SECTION] = _answer(scene, body, section_supports, "section", meter)
-    else:
-        tied = scene.with_attachment("section")
-        tied_body = _built(tied, model, options, meter)
-        ties[SECTION] = _answer(tied, tied_body, as_supports(tied), None, meter, spare=spare)
-    return ties
-
-
-def _built(scene: Scene, model: str, options: Mapping[str, Any], meter: Meter) -> Body:
-    with meter.stage("build"):
-        body = build(scene, model, **options)
-    if LADDER[model].follows:
-        with meter.stage("statics"):
-            flexibility(body, SOLVED)
-    return body
-
-
-def _answer(
-    scene: Scene,
-    body: Body,
-    supports: Supports,
-    attachments: list[str] | str | None,
-    meter: Meter,
-    count: bool = False,
-    spare: bool = False,
-) -> Answer:
-    """Solve statics and modes of a body tied in one way."""
-    with meter.stage("statics"):
-        ports = [port.name for port in scene.ports]
-        statics = Statics.at_points(body, supports, ports, attachments)
-    with meter.stage("modes"):
-        modes = _modes(scene, body, supports, count, spare)
-    # Evidence, not part of the answer: kept apart from what the modes cost.
-    meter.move("modes", "count", modes.evidence.get("count_seconds", 0.0))
-    return Answer.measured(body, supports, statics, modes)
-
-
-def _modes(
-    scene: Scene, body: Body, supports: Supports, count: bool, spare: bool = False
-) -> ModeSet:
-    """Find the modes of a comparison, those that models are judged by among them."""
-    names = dict.fromkeys((*usual(scene), *judged(scene)))
-    return search_modes(
-        body,
-        supports,
-        max(scene.ask.modes, ENOUGH),
-        [q for q in names if q.is_frequency],
-        spare=spare,
-        max_frequency=scene.ask.max_frequency,
-        count=count,
-        room=ROOM if count or spare else 0.0,
-        # Families of two waves and more are reported for the finest mesh; bearings do not move
-        # them, nor do error bars rest on them.
-        ovalising=count,
     )
 
 
@@ -341,8 +302,7 @@ def _add_variants(scene: Scene, solution: Solution, progress: Progress) -> None:
                 elif LADDER[solution.model].section_ties:
                     variant = attached(scene, attachment)
                     body = build(variant, solution.model, **solution.options)
-                    solution.variants[attachment] = _answer(
-                        variant, body, as_supports(variant), None, unbooked
-                    )
+                    tied = tied_by(variant, body, as_supports(variant), None, unbooked)
+                    solution.variants[attachment] = solved_modes(variant, tied, unbooked)
             except SolidgearError as error:
                 log.info("%s: attachment %s skipped: %s", solution.model, attachment, error)

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from solidgear.core.judge.deviations import BEYOND, OPEN, TIES, Deviation, select_gaps
+from solidgear.core.judge.deviations import BEYOND, OPEN, TIES, WITHIN, Deviation, select_gaps
 from solidgear.core.judge.quantities import in_words, judged, usual
 from solidgear.core.judge.record import GuardRecord, VerdictRecord
 from solidgear.core.judge.solution import Solution
@@ -85,7 +85,7 @@ def judge(
         sentences = [f"Not judged: {reason}."]
     else:
         sentences = [
-            *_trust(solutions, reference, gaps, names),
+            *_trust(solutions, reference, gaps, names, tolerance),
             *_points(scene, names),
             *_cheapest(solutions, cheapest, tolerance),
             *_beams(solutions, gaps, names, tolerance),
@@ -121,20 +121,8 @@ def _judged(
         return Judgement(False, f"not judged: {reason}", open=True)
     if against:
         return Judgement(False, against[0])
-    solution = solutions[model]
-    if LADDER[model].family == SOLID:
-        worst = solution.worst_bar(judged)
-        if worst is None or worst > tolerance:
-            text = (
-                "it has no error bar" if worst is None else f"its own error may be {percent(worst)}"
-            )
-            return Judgement(
-                False,
-                f"{text}, and {percent(tolerance)} is asked for ({_reason(solution)})",
-                open=True,
-            )
     if model == reference:
-        return Judgement(True)
+        return _judged_by_itself(solutions[model], judged, tolerance)
     model_gaps = select_gaps(gaps, model, judged)
     paired = {gap.quantity for gap in model_gaps}
     missing = [q for q in judged if q in solutions[reference].quantities and q not in paired]
@@ -152,6 +140,18 @@ def _judged(
                     False, _gap_reason(gap, solutions, kind, tolerance), open=kind == OPEN
                 )
     return Judgement(True)
+
+
+def _judged_by_itself(
+    solution: Solution, judged: Sequence[Quantity], tolerance: float
+) -> Judgement:
+    """Judge the reference by its error bars; what is asked for may be more than it was chosen by."""
+    worst = solution.worst_bar(judged)
+    if worst is not None and worst <= tolerance:
+        return Judgement(True)
+    text = "it has no error bar" if worst is None else f"its own error may be {percent(worst)}"
+    reason = f"{text}, and {percent(tolerance)} is asked for ({_reason(solution)})"
+    return Judgement(False, reason, open=True)
 
 
 def _quantity_text(gap: Deviation, solutions: dict[str, Solution]) -> str:
@@ -182,7 +182,7 @@ def percent(x: float) -> str:
     return f"{100 * x:.2g} %" if abs(x) < 0.995 else f"{100 * x:.0f} %"
 
 
-def _trust(solutions, reference, gaps, judged) -> list[str]:
+def _trust(solutions, reference, gaps, judged, tolerance) -> list[str]:
     base = solutions[reference]
     error_bars = base.error_bars[SCENE]
     size = []
@@ -204,6 +204,7 @@ def _trust(solutions, reference, gaps, judged) -> list[str]:
                 "copies of the same mesh" if same_mesh else "another mesh and another formulation"
             )
             out += _other_solid(model, kind, solutions[model], gaps, judged)
+            out += _check(model, solutions[model], base, gaps, judged, tolerance)
     return out
 
 
@@ -233,6 +234,30 @@ def _other_solid(
     return [
         f"{text}{'; all differences lie inside the error bars (not resolved)' if not outside else ''}."
     ]
+
+
+def _check(
+    model: str,
+    solution: Solution,
+    base: Solution,
+    gaps: list[Deviation],
+    judged: Sequence[Quantity],
+    tolerance: float,
+) -> list[str]:
+    """Say where the meshes of a solid ended that only checks the one that judges."""
+    if not solution.check:
+        return []
+    within = f"within {percent(tolerance)} of the {LADDER[base.model].title}"
+    model_gaps = select_gaps(gaps, model, judged, SCENE)
+    if all(gap.standing(tolerance) == WITHIN for gap in model_gaps):
+        end = f"whose numbers are {within}"
+    else:
+        end = f"on which each number is {within}, or beyond both error bars on two meshes, or sure"
+    worst = solution.worst_bar(judged)
+    bar = (
+        "it has no error bar" if worst is None else f"its own error bar is wider, {percent(worst)}"
+    )
+    return [f"The {LADDER[model].title} is a check: it ended at a mesh {end}; {bar}."]
 
 
 def _points(scene: Scene, names: Sequence[Quantity]) -> list[str]:
