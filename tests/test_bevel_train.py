@@ -7,7 +7,7 @@ import solidgear as sg
 from solidgear.show.units import ENGINEERING
 from solidgear.teeth.bevel.flank import Mismatch
 from solidgear.teeth.bevel.train import bevel_contact, toothed_bevel
-from solidgear.teeth.charts import bevel_pattern
+from solidgear.teeth.charts import pattern
 from solidgear.teeth.contact.cycle import mesh_cycle
 from solidgear.teeth.contact.local import Elasticity
 from solidgear.teeth.sheet import contact_sheet
@@ -48,7 +48,6 @@ def test_the_contact_of_an_axle(solved):
         "addendum",
         "working",
         "ease-off",
-        "pitch",
     ]
     assert 1.5 < solved.band.factor < 1.9
 
@@ -111,20 +110,18 @@ def test_conjugate_teeth_of_table_1_and_mismatched_ones():
 
 
 def test_the_sheet_of_an_axle_has_its_band_and_pattern(axle):
-    study = teeth_study(axle, model=TeethModel(slices=12, positions=4))
-    assert study.meshes == () and [mesh.name for mesh in study.bevels] == ["mesh"]
+    study = teeth_study(axle, model=TeethModel(slices=12, positions=4), factors=(0.5, 1.0))
+    (mesh,) = study.meshes
     sheet = contact_sheet(study, ENGINEERING)
-    assert {*sheet.charts} == {"cycle", "pattern"}
-    rows = {str(row[0]).rpartition(",")[0]: row[1:] for row in sheet.tables[0].rows}
-    least, most = (float(text) for text in rows["tangent by usual cutters, ease-offs"][1:])
-    band = study.bevels[0].band
-    assert (least, most) == pytest.approx([1e-6 * value for value in band.stiffness], rel=1e-3)
-    assert any("a factor of 1." in note for note in sheet.notes)
+    assert {*sheet.charts} == {"cycle", "pattern", "face", "torque"}
+    low, high = (ENGINEERING.number(value, "N/m", 3) for value in mesh.band.stiffness)
+    assert any(f"{low} to {high}" in note and "a factor of 1." in note for note in sheet.notes)
     # the face is dark in its middle, and its ends stay white
-    loads, heights, faces = bevel_pattern(study.bevels[0])
+    loads, heights, faces = pattern(mesh)
     assert loads.shape == (len(heights) - 1, len(faces) - 1)
     carried = np.nan_to_num(loads).max(axis=0)
     assert carried[[0, -1]].max() == 0 and carried.argmax() in (5, 6)
-    assert study.as_dict()["bevels"]["mesh"]["band"][0]["ease_off"] == pytest.approx(
-        50e-6, rel=0.01
-    )
+    band = study.as_dict()["meshes"]["mesh"]["band"]
+    assert band[0]["ease_off"] == pytest.approx(50e-6, rel=0.01)
+    stiffness = [at.contact.cycle.tangent.mean() for at in study.curves["mesh"]]
+    assert stiffness[1] > 1.1 * stiffness[0]

@@ -18,11 +18,13 @@ if TYPE_CHECKING:
     from solidgear.core.errors import SceneError, SolidgearError, listed, near, nearest, show
     from solidgear.core.frames import DOF_NAMES, rotation
     from solidgear.core.judge.change import BarredMode
+    from solidgear.core.judge.deviations import WITHIN, gap_verdict
     from solidgear.core.judge.quantities import change, size
     from solidgear.core.judge.record import OpenNumbers, Record, WhereRecord
     from solidgear.core.judge.settle import Settled, bars_of_modes, settle
     from solidgear.core.judge.solution import Solution
     from solidgear.core.judge.ties import SCENE
+    from solidgear.core.kernel.room import assemblable
     from solidgear.core.ladder import build
     from solidgear.core.ladder.meshes import HARMONIC
     from solidgear.core.ladder.model import BEAM
@@ -94,15 +96,18 @@ __all__ = [
     "Surface",
     "System",
     "TOUCH",
+    "WITHIN",
     "WhereRecord",
     "as_supports",
     "as_written",
+    "assemblable",
     "bars_of_modes",
     "build",
     "change",
     "coned",
     "explained",
     "flexibility",
+    "gap_verdict",
     "is_train",
     "listed",
     "load",
@@ -140,6 +145,8 @@ _WHERE = {
     "show": "solidgear.core.errors",
     "DOF_NAMES": "solidgear.core.frames",
     "rotation": "solidgear.core.frames",
+    "WITHIN": "solidgear.core.judge.deviations",
+    "gap_verdict": "solidgear.core.judge.deviations",
     "BarredMode": "solidgear.core.judge.change",
     "OpenNumbers": "solidgear.core.judge.record",
     "change": "solidgear.core.judge.quantities",
@@ -151,6 +158,7 @@ _WHERE = {
     "settle": "solidgear.core.judge.settle",
     "Solution": "solidgear.core.judge.solution",
     "SCENE": "solidgear.core.judge.ties",
+    "assemblable": "solidgear.core.kernel.room",
     "build": "solidgear.core.ladder",
     "HARMONIC": "solidgear.core.ladder.meshes",
     "BEAM": "solidgear.core.ladder.model",

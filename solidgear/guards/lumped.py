@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from solidgear.core import BEAM, FIRST_BENDING, LADDER, SCENE, SolidgearError
+from solidgear.core import BEAM, FIRST_BENDING, LADDER, SCENE, SolidgearError, gap_verdict
 from solidgear.core.judge import deviations
-from solidgear.core.judge.deviations import gap_verdict
 from solidgear.core.judge.lumped import preferred
 from solidgear.guards.notice import Notice, Notices, against, beams, beyond, sure
 from solidgear.guards.probe import Probe

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from solidgear.core import LADDER, SCENE, Solution, change, listed
-from solidgear.core.judge.deviations import BEYOND, WITHIN, gap_verdict
+from solidgear.core import LADDER, SCENE, WITHIN, Solution, change, gap_verdict, listed
+from solidgear.core.judge.deviations import BEYOND
 from solidgear.core.judge.quantities import judged
 from solidgear.core.judge.verdict import percent
 from solidgear.core.ladder.model import SOLID

@@ -16,7 +16,8 @@ from typing import Any, Literal
 
 import numpy as np
 
-from solidgear.core.judge.deviations import OPEN, WITHIN, gap_verdict
+from solidgear.core import WITHIN, gap_verdict
+from solidgear.core.judge.deviations import OPEN
 from solidgear.core.plain import plain
 from solidgear.teeth.mesh_contact import MeshContact
 from solidgear.teeth.supports import Carried

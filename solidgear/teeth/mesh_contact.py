@@ -69,6 +69,11 @@ class SolvedMesh:
         raise NotImplementedError
 
     @property
+    def height(self) -> str:
+        """What places of cells up the tooth are, in words."""
+        raise NotImplementedError
+
+    @property
     def path_ends(self) -> tuple[float, ...]:
         """Places beyond which corners of tips touch, m; none where cells have no such places."""
         return ()
@@ -131,6 +136,11 @@ class MeshContact(SolvedMesh):
     def face_width(self) -> float:
         """Width of the face that both wheels share, m."""
         return self.wheels.face_width
+
+    @property
+    def height(self) -> str:
+        """What places of cells up the tooth are, in words."""
+        return "along the path of contact"
 
     @property
     def path_ends(self) -> tuple[float, ...]:

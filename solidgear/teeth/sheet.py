@@ -7,7 +7,8 @@ from functools import partial
 
 import numpy as np
 
-from solidgear.core.judge.deviations import BEYOND, WITHIN
+from solidgear.core import WITHIN
+from solidgear.core.judge.deviations import BEYOND
 from solidgear.show.command import caution
 from solidgear.show.plot import Make
 from solidgear.show.sheet import Sheet, Terminal

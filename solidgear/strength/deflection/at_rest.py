@@ -12,8 +12,7 @@ from typing import Any
 import numpy as np
 
 from solidgear.bearings.bearing_life import left_open
-from solidgear.core import DOF_NAMES, SolidgearError, listed, pinned
-from solidgear.core.judge.deviations import WITHIN, gap_verdict
+from solidgear.core import DOF_NAMES, WITHIN, SolidgearError, gap_verdict, listed, pinned
 from solidgear.core.plain import plain
 from solidgear.strength.deflection.misalignment import Measure, misalignment
 from solidgear.strength.deflection.shaft import ShaftDeflection, shaft_deflection

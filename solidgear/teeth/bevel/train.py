@@ -78,6 +78,11 @@ class BevelContact(SolvedMesh):
         return self.pair.flanks.blank.face
 
     @property
+    def height(self) -> str:
+        """What places of cells up the tooth are, in words."""
+        return "above the pitch cone"
+
+    @property
     def status(self) -> str:
         """How the numbers came about, as in a file."""
         return "estimated" if self.estimated else "calculated"

@@ -28,8 +28,8 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.interpolate import CubicSpline
 
+from solidgear.core import assemblable
 from solidgear.core.gears.wheel import Wheel
-from solidgear.core.kernel.room import assemblable
 from solidgear.core.models.solid.matrices import _matrices
 from solidgear.core.scene.parts import Material
 from solidgear.teeth.compliance.half_space import between_pieces
