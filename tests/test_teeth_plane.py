@@ -348,7 +348,7 @@ def test_the_spread_along_the_face_is_the_mean_over_both_slices(z, w, middle):
     slices = Slices(PlaneTeeth(Wheel(23, 4e-3, face_width=20e-3)), 16e-3, 8)
     k = pi / 20 * np.arange(1, 20001)
     waves = np.cos(k * (middle + 10)) * np.cos(k * (w + 10)) * np.sinc(k / pi) ** 2
-    expected = (1 + 2 * np.sum(waves / (1 + (1.4 * 4 * k) ** 2))) / 20e-3
+    expected = (1 + 2 * np.sum(waves / (1 + (1.2 * 4 * k) ** 2))) / 20e-3
     spread = slices.along(1e-3 * np.array([z, w]))
     assert spread[0, 1] == pytest.approx(expected, rel=1e-9)
 
