@@ -123,7 +123,7 @@ def test_half_as_many_slices_have_the_means_of_pairs():
     assert np.allclose(means.reshape(few.with_rim(1).shape), few.with_rim(1), rtol=1e-7, atol=0)
     r = np.full(8, 46e-3)
     near = many._near(r, many.middles, 1e-3).reshape(4, 2, 4, 2).mean(axis=(1, 3))
-    assert np.allclose(near, few._near(r[:4], few.middles, 1e-3), rtol=1e-3)
+    assert np.allclose(near, few._near(r[:4], few.middles, 1e-3), rtol=1e-3, atol=0)
 
 
 def test_between_pieces_is_the_mean_of_a_force_on_a_half_space():
@@ -137,15 +137,14 @@ def test_between_pieces_is_the_mean_of_a_force_on_a_half_space():
     half = length / 2
     mean = dblquad(point, -half, half, -half, half, epsabs=0, epsrel=1e-10)[0] / length**2
     pieces = between_pieces(np.array(along), np.array(across**2), depth, length, steel)
-    assert float(pieces) == pytest.approx(mean, rel=1e-9)
+    assert float(pieces) / mean == pytest.approx(1.0, rel=1e-9)
 
 
 def test_the_table_is_smooth_along_the_flank():
-    """A finer mesh has its table at other radii: there the coarse one is interpolated."""
-    usual, fine = coarse(layer=2.5), coarse(layer=2.5, fineness=Fineness(4, 10, 6))
-    between = fine.radii[2:-2:3]
-    for r in between:
-        assert evenly_loaded(usual, r) == pytest.approx(evenly_loaded(fine, r), rel=0.015)
+    """Another mesh has its table at other radii: there the usual one is interpolated."""
+    usual, fine = (coarse(layer=2.5, fineness=Fineness(4, flank, 6)) for flank in (8, 10))
+    for r in fine.radii[2:-2:2]:
+        assert evenly_loaded(usual, r) / evenly_loaded(fine, r) == pytest.approx(1.0, rel=5e-3)
 
 
 @pytest.mark.parametrize("wheel, hold", [(WHEEL, 25e-3), (RING, None)])
@@ -156,10 +155,19 @@ def test_without_lateral_strain_an_even_load_is_that_of_the_plane_section(wheel,
         wheel, hold=hold, elasticity=soft, slices=2, fineness=Fineness(4, 8, 6), layer=2.5
     )
     in_plane = PlaneTeeth(wheel, hold=hold, elasticity=soft)
-    middle = (wheel.form + wheel.tip) / 2
-    for r in (0.5 * (wheel.form + middle), middle, 0.5 * (wheel.tip + middle)):
+    for share in (0.5, 0.75):
+        r = wheel.form + share * (wheel.tip - wheel.form)
         plane = in_plane.matrix(np.zeros(1, int), np.array([r]), in_3d.depth).item()
-        assert evenly_loaded(in_3d, r) == pytest.approx(plane, rel=0.01)
+        assert evenly_loaded(in_3d, r) / plane == pytest.approx(1.0, rel=0.005)
+
+
+@pytest.mark.parametrize("hand", [1, -1])
+def test_readings_of_rigid_motions_are_those_of_the_rows_of_the_rim(hand):
+    teeth = coarse(HELICAL, hand=hand, offset=1e-3, width=16e-3)
+    moved = teeth._readings @ rigid_motions(teeth.mesh.solid.nodes)
+    size = np.array([1, 1, 1, WHEEL.tip, WHEEL.tip, WHEEL.tip])
+    # means of a slice are not quite what its middle does: the normal turns along the helix
+    assert np.abs((moved - teeth._rigid(0)) / size).max() < 1e-3
 
 
 def test_the_port_turns_as_a_disc_in_shear_and_moves_with_rigid_bodies():
@@ -169,15 +177,15 @@ def test_the_port_turns_as_a_disc_in_shear_and_moves_with_rigid_bodies():
     motions = rigid_motions(teeth.mesh.solid.nodes)
     assert np.allclose(loads.T @ motions, gram, rtol=1e-9, atol=1e-9 * np.abs(gram).max())
     area = 2 * pi * teeth.port_radius * WHEEL.face_width / WHEEL.count
-    assert gram[0, 0] == pytest.approx(area, rel=1e-9)
-    assert gram[5, 5] == pytest.approx(area * teeth.port_radius**2, rel=1e-9)
+    assert gram[0, 0] / area == pytest.approx(1.0, rel=1e-9)
+    assert gram[5, 5] / (area * teeth.port_radius**2) == pytest.approx(1.0, rel=1e-9)
     shear = teeth.elasticity.youngs / (2 * (1 + teeth.elasticity.poisson))
     reach = 1 / teeth.hold_radius**2 - 1 / teeth.port_radius**2
     turn = reach / (4 * pi * shear * WHEEL.face_width)
     compliance = teeth.port_compliance
-    assert compliance[5, 5] == pytest.approx(turn, rel=5e-3)
+    assert compliance[5, 5] / turn == pytest.approx(1.0, rel=5e-3)
     assert np.abs(compliance - compliance.T).max() < 1e-10 * compliance.max()
-    assert compliance[0, 0] == pytest.approx(compliance[1, 1], rel=1e-9)
+    assert compliance[0, 0] / compliance[1, 1] == pytest.approx(1.0, rel=1e-9)
 
 
 def test_teeth_alone_hardly_know_where_their_rim_is_held():
@@ -197,7 +205,8 @@ def test_a_free_rim_is_softer_where_it_is_thin_and_not_where_it_is_thick():
     assert np.array_equal(fixed.port_compliance, free.port_compliance)
     assert evenly_loaded(free, 46e-3) > 1.08 * evenly_loaded(fixed, 46e-3)
     thick = [evenly_loaded(coarse(hold=8e-3, free=value), 46e-3) for value in (False, True)]
-    assert thick[1] == pytest.approx(thick[0], rel=2e-3)
+    # waves from 2 on die away towards the axis
+    assert thick[1] / thick[0] == pytest.approx(1.0, rel=5e-3)
 
 
 def test_matrices_are_symmetric_and_positive_definite():
@@ -205,30 +214,38 @@ def test_matrices_are_symmetric_and_positive_definite():
     tooth = np.repeat([-1, 0, 1], teeth.slices)
     r, z = np.repeat([48.5e-3, 46e-3, 44.4e-3], teeth.slices), np.tile(teeth.middles, 3)
     matrix = teeth.matrix(tooth, r, z)
-    assert np.allclose(matrix, matrix.T, rtol=1e-13)
+    assert np.allclose(matrix, matrix.T, rtol=1e-12, atol=0)
     assert np.linalg.eigvalsh(matrix).min() > 0.01 * np.diag(matrix).min()
     # a turn of the wheel by a pitch changes nothing, and neither does the order of the places
     order = np.arange(len(r))[::-1]
     reordered = teeth.matrix(tooth[order] + 7, r[order], z[order])[np.ix_(order, order)]
-    assert np.allclose(reordered, matrix, rtol=1e-12)
+    assert np.allclose(reordered, matrix, rtol=1e-9, atol=0)
 
 
 def test_an_offset_to_the_other_side_is_the_mirror_of_a_spur_wheel():
     ahead, behind = (coarse(width=10e-3, offset=offset) for offset in (4e-3, -4e-3))
     forward = ahead.matrix(*places(ahead, 46e-3))
     back = behind.matrix(*places(behind, 46e-3))
-    assert np.allclose(forward, back[::-1, ::-1], rtol=1e-9)
+    assert np.allclose(forward, back[::-1, ::-1], rtol=1e-9, atol=0)
     # the end of the face is nearer on one side
     assert forward[3, 3] > 1.05 * forward[0, 0]
 
 
-def test_readings_do_not_depend_on_the_depth_beyond_the_closed_form():
-    """Where no slice is shorter than a depth, line loads differ by what plane strain has between."""
+def test_compliances_at_two_depths_differ_by_the_closed_form_between():
     shallow, deep = coarse(), coarse(reading_depth=2e-3)
     difference = evenly_loaded(shallow, 46e-3) - evenly_loaded(deep, 46e-3)
-    steel = shallow.elasticity
-    # an even load has its images: as in plane strain, 2 (1 - nu^2) / (pi E) ln 2
-    assert difference == pytest.approx(2 / (pi * steel.plane) * log(2), rel=0.02)
+    # of an even load with its images as in plane strain: 2 (1 - nu^2) / (pi E) ln 2
+    between = 2 / (pi * shallow.elasticity.plane) * log(2)
+    assert difference / between == pytest.approx(1.0, rel=0.02)
+
+
+def test_depths_that_are_read_do_not_matter(monkeypatch):
+    """A single reading, not continued to the surface, would change by 0.6 %."""
+    options = {"slices": 2, "hold": 25e-3, "layer": 2.5, "fineness": Fineness(4, 8, 6)}
+    usual = evenly_loaded(SolidTeeth(WHEEL, **options), 46.7e-3)
+    monkeypatch.setattr(solid_module, "DEEPEST", 0.8)
+    deeper = evenly_loaded(SolidTeeth(WHEEL, **options), 46.7e-3)
+    assert deeper / usual == pytest.approx(1.0, rel=2e-3)
 
 
 def test_wrong_teeth_and_no_memory_are_refused(monkeypatch):
