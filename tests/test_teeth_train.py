@@ -188,6 +188,55 @@ def test_a_train_takes_the_stiffness_of_its_teeth(train):
     assert np.all(stiff >= usual * (1 - 1e-4)) and stiff.max() > 1.005 * usual.max()
 
 
+def test_the_error_of_a_train_is_along_the_line_of_action(train):
+    """The rows of a mesh are normal to its teeth; the error of the study is an arc on the base
+    cylinder, larger by the helix.
+    """
+    asked = train.with_changes(mesh=train.mesh.with_changes(stiffness="teeth"))
+    orders = np.array(mesh_of_teeth(asked).mesh.transmission_error.orders)
+    carried = Carried.at_rest(with_sections(train), train.point)
+    solved_pair = mesh_contact(carried, carried.train.pairs[0])
+    arcs = np.abs(solved_pair.cycle.orders(5))
+    helix = solved_pair.wheels.base_helix
+    assert orders == pytest.approx(arcs * np.cos(helix), rel=0.02, abs=1e-10)
+
+
+def test_over_a_cycle_a_mean_force_gives_the_loaded_error_back(train):
+    """At rest a spring of the stiffness at each position, with the error that is left, gives way as the
+    teeth do.
+    """
+    asked = train.with_changes(mesh=train.mesh.with_changes(stiffness="teeth"))
+    plain, varying = mesh_of_teeth(asked).mesh, mesh_of_teeth(asked, varies="mesh").mesh
+    assert plain.stiffness_cycle is None
+    cycle = varying.stiffness_cycle
+    angle = np.array(cycle.angle)[:-1] * train.pinion.teeth
+    force = Carried.at_rest(with_sections(train), train.point).state.mesh_force
+
+    def course(mesh):
+        table = mesh.transmission_error
+        waves = zip(table.orders, table.phases)
+        return sum(a * np.cos(n * angle + p) for n, (a, p) in enumerate(waves, start=1))
+
+    loaded = force / np.array(cycle.stiffness)[:-1] + course(varying)
+    loaded = np.fft.rfft(loaded)[1:6]
+    assert loaded == pytest.approx(np.fft.rfft(course(plain))[1:6], abs=1e-3 * abs(loaded[0]))
+
+
+def test_planets_take_the_stiffness_of_their_teeth():
+    train = sg.load_train(GEOMETRY / "reducer.toml")
+    wheel = train.shafts["wheel"]
+    sun = wheel.gears["sun"].with_changes(face_width=12e-3)
+    wheel = wheel.with_changes(gears={**wheel.gears, "sun": sun})
+    stage = train.planetary["stage"]
+    mesh = stage.mesh.with_changes(sun_stiffness="teeth", ring_stiffness="teeth")
+    planetary = {"stage": stage.with_changes(mesh=mesh)}
+    asked = train.with_changes(wheel=wheel).with_changes(planetary=planetary)
+    filled = mesh_of_teeth(asked).planetary["stage"].mesh
+    assert filled.status == "calculated"
+    # per face width, N/(mm um): teeth of two and of nearly two pairs, a ring's thicker at their feet
+    assert 12 < filled.sun_stiffness / 12e-3 / 1e9 < filled.ring_stiffness / 12e-3 / 1e9 < 40
+
+
 def test_a_train_without_a_torque_is_refused(train):
     bare = train.with_changes(operation=())
     with pytest.raises(SolidgearError, match="no torque"):

@@ -18,6 +18,7 @@ from solidgear.show.options import Shown
 from solidgear.show.sheet import Sheet, present
 from solidgear.show.units import units_named
 from solidgear.trains.assembly.assembly import Assembly
+from solidgear.trains.assembly.mesh_stiffness import with_solved_meshes
 from solidgear.trains.assembly.slips import unit_slips
 from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.train import named_pair
@@ -117,6 +118,8 @@ def nonlinear(
     assembly = models.assembly(reduced, train)
     first = tuple(models.by_shaft(assembly.train).values())
     driver = named_pair(assembly.train, mesh)
+    # nonlinear motion sees the stiffness of its own teeth vary
+    assembly = assembly.with_train(with_solved_meshes(assembly.asked_train, driver.name))
     further_mixes = _usual(assembly)
     if against is not None:
         further_mixes = [

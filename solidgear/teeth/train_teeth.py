@@ -8,7 +8,7 @@ the load lies along the face, and for nothing else there.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -16,26 +16,27 @@ from solidgear.core import Scene, SceneError
 from solidgear.core.gears.wheel import Wheel
 from solidgear.teeth.bevel.train import BevelContact, bevel_contact
 from solidgear.teeth.compliance.flank import FlankCompliance
-from solidgear.teeth.compliance.plane import DEPTH, PlaneTeeth
+from solidgear.teeth.compliance.plane import DEPTH, HUB, PlaneTeeth
 from solidgear.teeth.compliance.slices import SPREAD, Slices
 from solidgear.teeth.compliance.solid import SolidTeeth
-from solidgear.teeth.contact.cycle import POSITIONS, MeshCycle, mesh_cycle
+from solidgear.teeth.contact.cycle import POSITIONS, MeshCycle, harmonics, mesh_cycle
 from solidgear.teeth.contact.cylindrical import CylindricalPair
 from solidgear.teeth.contact.frame import Supports
 from solidgear.teeth.contact.local import Elasticity, LineContact
 from solidgear.teeth.mesh_contact import ORDERS, MeshContact
 from solidgear.teeth.supports import Carried, with_sections
-from solidgear.trains.assembly.mesh_stiffness import with_usual_meshes
+from solidgear.trains.assembly.mesh_stiffness import asks_for_teeth, with_usual_meshes
+from solidgear.trains.file.mesh_cycle import StiffnessCycle
 from solidgear.trains.file.mesh_teeth import MeshTeeth, wheels_of
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.pairs import Pair
-from solidgear.trains.file.planetary import PlanetMesh
-from solidgear.trains.file.tables import ErrorTable
+from solidgear.trains.file.planetary import PlanetMesh, PlanetMeshes, Stage
+from solidgear.trains.file.tables import TEETH, ErrorTable, Mesh
 from solidgear.trains.file.train import Train
 from solidgear.trains.load.contact import axes_of
 
 #: bore below which a wheel is solid, of its root radius
-THINNEST = 0.2
+THINNEST = HUB
 
 
 @dataclass(frozen=True)
@@ -185,25 +186,48 @@ def solved_mesh(
     return mesh_contact(carried, mesh, model)
 
 
-def mesh_of_teeth(train: Train) -> Train:
+def mesh_of_teeth(train: Train, varies: str = "") -> Train:
     """Return a train whose meshes with ``stiffness = "teeth"`` have the numbers of their teeth at the
-    first operating point: tangent stiffness, mesh point and line of action, and the orders of the
-    loaded transmission error.
+    first operating point: tangent stiffness, and of pairs mesh point, line of action and the orders of
+    the loaded transmission error.
+
+    Parameters
+    ----------
+    train : Train
+    varies : str
+        Name of a pair whose stiffness is to vary over its mesh cycle, for nonlinear motion; its
+        transmission error is then what is left of the loaded one.
 
     Raises
     ------
     SceneError
         For teeth that the file does not describe, and a train without an operating point.
     """
-    wanted = [mesh.stiffness == "teeth" for mesh in train.meshes]
-    if not any(wanted):
+    if not asks_for_teeth(train):
         return train
-    point = _point(train)
-    carried = Carried.at_rest(with_sections(with_usual_meshes(train)), point)
-    meshes = []
-    for pair, mesh, asked in zip(carried.train.pairs, train.meshes, wanted):
-        meshes.append(_filled(carried, pair, mesh) if asked else mesh)
-    return train.with_changes(meshes=tuple(meshes))
+    carried = Carried.at_rest(with_sections(with_usual_meshes(train)), _point(train))
+    meshes = [
+        _filled(carried, pair, mesh, pair.name == varies) if mesh.stiffness == TEETH else mesh
+        for pair, mesh in zip(carried.train.pairs, train.meshes)
+    ]
+    planetary = {
+        stage.called: train.planetary[stage.called].with_changes(
+            mesh=_of_stage(carried, stage, table)
+        )
+        for stage in carried.train.stages
+        for table in [train.planetary[stage.called].mesh]
+    }
+    return train.with_changes(meshes=tuple(meshes), planetary={**train.planetary, **planetary})
+
+
+def _of_stage(carried: Carried, stage: Stage, table: PlanetMeshes) -> PlanetMeshes:
+    """Return the table of a stage's meshes with the stiffness of the teeth of its first planet."""
+    stiffness = {
+        f"{mesh.mate}_stiffness": float(mesh_contact(carried, mesh).cycle.tangent.mean())
+        for mesh in stage.meshes
+        if mesh.planets == (1,) and getattr(table, f"{mesh.mate}_stiffness") == TEETH
+    }
+    return table.with_changes(**stiffness, status="calculated") if stiffness else table
 
 
 def _point(train: Train) -> OperatingPoint:
@@ -215,28 +239,33 @@ def _point(train: Train) -> OperatingPoint:
     return train.point
 
 
-def _filled(carried: Carried, pair: Pair, mesh):
+def _filled(carried: Carried, pair: Pair, mesh: Mesh, varies: bool) -> Mesh:
     """Return the table of a mesh with the numbers of its teeth."""
     solved = solved_mesh(carried, pair)
     cycle = solved.cycle
-    orders = cycle.orders(ORDERS)
-    changes = {
-        "stiffness": float(cycle.tangent.mean()),
-        "status": solved.status,
-    }
+    changes: dict[str, Any] = {"stiffness": float(cycle.tangent.mean()), "status": solved.status}
     if isinstance(solved, BevelContact) and mesh.gear_position is None:
         changes["gear_position"] = solved.gear_position
-    if mesh.transmission_error is None or mesh.transmission_error_status == "assumed":
-        changes["transmission_error"] = ErrorTable(
-            orders=tuple(float(a) for a in np.abs(orders)),
-            phases=tuple(float(a) for a in np.angle(orders)),
+    error = cycle.line_error
+    if varies:
+        error = cycle.parametric_error
+        angle = np.append(cycle.phases, 1.0) * 2 * np.pi / pair.pinion.teeth
+        stiffness = np.append(cycle.tangent, cycle.tangent[0])
+        changes["stiffness_cycle"] = StiffnessCycle(
+            angle=tuple(angle.tolist()), stiffness=tuple(stiffness.tolist())
         )
-        changes["transmission_error_status"] = "calculated"
+    if mesh.transmission_error is None or mesh.transmission_error_status == "assumed":
+        orders = harmonics(error, ORDERS)
+        changes["transmission_error"] = ErrorTable(
+            orders=tuple(np.abs(orders).tolist()), phases=tuple(np.angle(orders).tolist())
+        )
+        changes["transmission_error_status"] = solved.status
     point, normal = in_pinion_frame(carried, pair, solved)
+    mean = normal.mean(axis=0)
     changes |= {
-        "line_of_action": tuple(normal.mean(axis=0) / np.linalg.norm(normal.mean(axis=0))),
-        "point": tuple(point.mean(axis=0)),
-        "line_of_action_status": "calculated",
+        "line_of_action": tuple((mean / np.linalg.norm(mean)).tolist()),
+        "point": tuple(point.mean(axis=0).tolist()),
+        "line_of_action_status": solved.status,
     }
     return mesh.with_changes(**changes)
 

@@ -93,11 +93,21 @@ class MeshCycle:
         return float(np.ptp(self.error))
 
     def orders(self, count: int) -> np.ndarray:
-        """Return the (count,) complex amplitudes of the loaded transmission error, m: order n at the
-        angle 2 pi phase of a cycle is ``Re(a exp(i n angle))``.
+        """Return the (count,) complex amplitudes of the loaded transmission error, m."""
+        return harmonics(self.error, count)
+
+    @cached_property
+    def line_error(self) -> np.ndarray:
+        """(p,) loaded transmission error along the line of action, m: the rotation times its lever."""
+        return np.array([position.rotation * position.arm for position in self.positions])
+
+    @property
+    def parametric_error(self) -> np.ndarray:
+        """(p,) error along the line of action that a spring of the tangent stiffness must have to give
+        way by the loaded one under this force, m.
         """
-        spectrum = np.fft.rfft(self.error) / len(self.error)
-        return 2 * spectrum[1 : count + 1]
+        forces = np.array([position.total for position in self.positions])
+        return self.line_error - forces / self.tangent
 
     @cached_property
     def face_loads(self) -> np.ndarray:
@@ -149,6 +159,13 @@ class MeshCycle:
             float(position.force[position.cells.at_corner].sum() / position.force.sum())
             for position in self.positions
         )
+
+
+def harmonics(course: np.ndarray, count: int) -> np.ndarray:
+    """Return the (count,) complex amplitudes of a course (p,) over a cycle: order n at the angle
+    2 pi phase is ``Re(a exp(i n angle))``.
+    """
+    return 2 * np.fft.rfft(course)[1 : count + 1] / len(course)
 
 
 def _on_path(position: Loads) -> float:

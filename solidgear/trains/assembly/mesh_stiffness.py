@@ -29,8 +29,10 @@ def asks_for_teeth(train: Train) -> bool:
     )
 
 
-def with_solved_meshes(train: Train) -> Train:
-    """Return a train with the stiffness of its teeth; the usual one while bearings have no stiffness."""
+def with_solved_meshes(train: Train, varies: str = "") -> Train:
+    """Return a train with the stiffness of its teeth, of one pair over its mesh cycle where it is named;
+    the usual one while bearings have no stiffness.
+    """
     if not asks_for_teeth(train):
         return train
     if not _has_settled(train):
