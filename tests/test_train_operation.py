@@ -325,6 +325,11 @@ def test_a_shaft_without_bearings_is_refused():
 
 
 # ----------------------------------------------------------------------- misalignment
+def port_y(train):
+    """The middle of the pinion's face."""
+    return train.pinion.scene.port.y
+
+
 def test_with_one_shaft_rigid_the_misalignment_is_the_slope_of_the_other(helical):
     stiff = [
         b.with_changes(matrix=np.array(b.stiffness) * 1e6) for b in helical.gear.scene.bearings
@@ -339,7 +344,15 @@ def test_with_one_shaft_rigid_the_misalignment_is_the_slope_of_the_other(helical
     told = {m.name: m.value for m in found.misalignment}
     # bearings of the gear give by a millionth of what those of the pinion do
     assert told["in plane"] == pytest.approx(slope @ normal, rel=1e-4)
-    assert told["f_sh"] == pytest.approx(0.040 * told["in plane"], rel=1e-12)
+    wound = told["f_sh"] - told["wind-up"]
+    assert wound == pytest.approx(0.040 * told["in plane"], rel=1e-12)
+    # T b / (2 G J) of the pinion alone, for the gear is rigid, at the transverse lever
+    segment = next(s for s in helical.pinion.scene.segments if s.y0 <= port_y(helical) <= s.y1)
+    shear = segment.material.E / (2 * (1 + segment.material.nu))
+    twist = 100.0 * 0.040 / (2 * shear * np.pi / 2 * segment.outer0**4)
+    vector = assembly.contact.pinion
+    lever = abs(vector.lever) / np.hypot(vector.normal[0], vector.normal[2])
+    assert abs(told["wind-up"]) == pytest.approx(lever * twist, rel=1e-9)
 
 
 def test_misalignment_of_parallel_shafts_is_that_of_both(helical):

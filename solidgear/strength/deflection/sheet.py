@@ -139,17 +139,17 @@ def percent_of(bar: float | None, value: float) -> str | None:
 def meanings(measures: Sequence[Measured], units: Units) -> str:
     """Return the meanings of all numbers, each once for all meshes, with their faces."""
     meanings = {m.name.removesuffix(m.mesh): m.meaning for m in measures}
-    faces: dict[str, list[str]] = {}
+    faces: dict[str, dict[str, None]] = {}
     for m in measures:
         if m.face is not None:
-            faces.setdefault(units.given(m.face, "m"), []).append(m.mesh.strip())
+            faces.setdefault(units.given(m.face, "m"), {})[m.mesh.strip()] = None
     unit = units.unit("m")
     parts = ", ".join(f"{face} {unit} {listed(meshes)}" for face, meshes in faces.items())
     width = (
         f"the face ({parts})" if len(faces) > 1 else "".join(f"{f} {unit} of face" for f in faces)
     )
     each = (f"{name}: {meaning}" for name, meaning in meanings.items())
-    return "; ".join(each).replace("the face", width)
+    return "; ".join(each).replace("the face", width, 1)
 
 
 def over_a_turn(turns: Sequence[StageTurn], units: Units = ENGINEERING) -> list[Table]:
