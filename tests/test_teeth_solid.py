@@ -22,6 +22,8 @@ from solidgear.teeth.compliance.plane import PlaneTeeth
 from solidgear.teeth.compliance.solid import SolidTeeth
 from solidgear.teeth.compliance.solid_mesh import turned
 from solidgear.teeth.contact.local import Elasticity
+from validation.common import read_result
+from validation.tooth_contact import condensed_contact, pair_of
 
 WHEEL = Wheel(23, 4e-3, face_width=20e-3)
 HELICAL = replace(WHEEL, helix_angle=radians(20))
@@ -246,6 +248,15 @@ def test_depths_that_are_read_do_not_matter(monkeypatch):
     monkeypatch.setattr(solid_module, "DEEPEST", 0.8)
     deeper = evenly_loaded(SolidTeeth(WHEEL, **options), 46.7e-3)
     assert deeper / usual == pytest.approx(1.0, rel=2e-3)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("helix", [0, 15])
+def test_contact_turns_a_pinion_as_in_calculix(helix):
+    """Its flanks are flat between nodes, and its elements are of reduced order: 1 %."""
+    row = read_result("tooth_contact")[f"helix {helix}"]
+    torque = condensed_contact(pair_of(radians(helix))).torque
+    assert row["torque_calculix"] / torque == pytest.approx(1.0, rel=0.01)
 
 
 def test_wrong_teeth_and_no_memory_are_refused(monkeypatch):

@@ -141,13 +141,13 @@ class SolidTeeth:
 
     @cached_property
     def ends(self) -> np.ndarray:
-        """(slices + 1,) ends of the slices, from the middle of the shared face, m."""
+        """(slices + 1,) ends of the slices, from the middle of the wheel's face, m."""
         width = self.wheel.face_width if self.width is None else self.width
-        return np.linspace(-width / 2, width / 2, self.slices + 1)
+        return np.linspace(-width / 2, width / 2, self.slices + 1) + self.offset
 
     @property
     def middles(self) -> np.ndarray:
-        """(slices,) middles of the slices, from the middle of the shared face, m."""
+        """(slices,) middles of the slices, from the middle of the wheel's face, m."""
         return (self.ends[1:] + self.ends[:-1]) / 2
 
     @cached_property
@@ -197,7 +197,7 @@ class SolidTeeth:
         cells, local = mesh.inside(below)
         parts = []
         for k, r in enumerate(self.radii):
-            z, weights, numbers = mesh.means(self.ends + self.offset + ahead[k])
+            z, weights, numbers = mesh.means(self.ends + ahead[k])
             _, directions = self.flank(np.full(len(z), r), z - ahead[k])
             cell, place = np.full(len(z), cells[k]), np.tile(local[k], (len(z), 1))
             parts.append(mesh.rows(cell, place, z, directions, weights, numbers))
@@ -264,15 +264,14 @@ class SolidTeeth:
 
     def _rigid(self, tooth: int) -> np.ndarray:
         """Return the (n, 6) motion of the places on a tooth along their normals by a rigid body."""
-        r, z = self._places
-        points, normals = self.flank(r, z + self.offset)
+        points, normals = self.flank(*self._places)
         for part in (points, normals):
             part[:, :2] = turned(part[:, :2], tooth * self.wheel.pitch_angle)
         return np.hstack([normals, np.cross(points, normals)])
 
     @property
     def _places(self) -> tuple[np.ndarray, np.ndarray]:
-        """Radii and z (n,) of the places in the tables, from the middle of the shared face, m."""
+        """Radii and z (n,) of the places in the tables, m."""
         return np.repeat(self.radii, self.slices), np.tile(self.middles, len(self.radii))
 
     def without_rim(self, tooth: int) -> np.ndarray:
@@ -302,7 +301,6 @@ class SolidTeeth:
         """Return the (n, n) motion of a half-space between places on one flank, m/N, at a depth or at
         one (n, 1) by place, by forces there and by their images beyond both ends of the face.
         """
-        z = z + self.offset
         points, _ = self.flank(r, z)
         lean = self.mesh.twist * (r[:, None] + r) / 2
         stretch = np.sqrt(1 + lean**2)
@@ -321,14 +319,14 @@ class SolidTeeth:
         """Return the compliance between places
         (:meth:`solidgear.teeth.compliance.flank.FlankCompliance.matrix`).
         """
-        weights = self._weights(r, z)
         out = np.empty((len(r), len(r)))
         groups = {int(k): np.flatnonzero(tooth == k) for k in np.unique(tooth)}
+        weights = {k: self._weights(r[rows], z[rows]) for k, rows in groups.items()}
         for k, rows in groups.items():
             for j, columns in groups.items():
                 if j > k:
                     continue
-                block = weights[rows] @ self.table(k - j) @ weights[columns].T
+                block = (weights[j] @ (weights[k] @ self.table(k - j)).T).T
                 if j == k:
                     block = block + self._near(r[rows], z[rows], self.depth)
                 out[np.ix_(rows, columns)] = block
