@@ -29,7 +29,6 @@ import scipy.sparse as sp
 from scipy.interpolate import CubicSpline
 
 from solidgear.core.gears.wheel import Wheel
-from solidgear.core.kernel.room import assemblable
 from solidgear.core.models.solid.matrices import _matrices
 from solidgear.core.scene.parts import Material
 from solidgear.teeth.compliance.half_space import between_pieces
@@ -219,12 +218,10 @@ class SolidTeeth:
 
     @cached_property
     def _stiffness(self) -> sp.csr_matrix:
-        mesh = self.mesh
-        assemblable(mesh.layers * len(mesh.plane.cells), 20)
         constants = Material(
             E=self.elasticity.youngs, nu=self.elasticity.poisson, density=ANY_DENSITY
         )
-        return _matrices(mesh.solid, [constants])[0]
+        return _matrices(self.mesh.solid, [constants])[0]
 
     def pitch(self, holds: bool = True) -> CondensedPitch:
         """Return one pitch seen from its sides, its rim held or free: forces on the places of the
