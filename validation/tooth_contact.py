@@ -147,8 +147,8 @@ class Part:
         for face, corners in enumerate(FACES, 1):
             on_flank = np.flatnonzero(flank[self.cells[:, corners]].all(axis=1))
             lines += [f"{k + self.element}, S{face}" for k in on_flank]
-        held = (self.holding + self.node).tolist()
-        return [*lines, f"*NSET, NSET=H{self.number}", *_wrapped(held)]
+        nodes = (self.holding + self.node).tolist()
+        return [*lines, f"*NSET, NSET=H{self.number}", *_wrapped(nodes)]
 
 
 def parts_of(pair: WheelPair) -> tuple[Part, Part]:
