@@ -15,13 +15,14 @@ from solidgear.core.gears.wheel import Wheel
 from solidgear.core.machine.memory import NoRoom
 from solidgear.core.models.solid.block import rigid_motions
 from solidgear.core.solve.factor import factorise
-from solidgear.teeth.compliance import solid as solid_module
 from solidgear.teeth.compliance.half_space import between_pieces
 from solidgear.teeth.compliance.mesh import Fineness
 from solidgear.teeth.compliance.plane import PlaneTeeth
 from solidgear.teeth.compliance.solid import SolidTeeth
 from solidgear.teeth.compliance.solid_mesh import turned
 from solidgear.teeth.contact.local import Elasticity
+from validation.common import read_result
+from validation.tooth_contact import condensed_contact, pair_of
 
 WHEEL = Wheel(23, 4e-3, face_width=20e-3)
 HELICAL = replace(WHEEL, helix_angle=radians(20))
@@ -73,7 +74,7 @@ def test_the_ring_of_all_pitches_solved_at_once_moves_as_the_waves_of_one():
         direct = teeth._readings @ (moved[tooth] @ motion)
         assert np.allclose(teeth.with_rim(tooth), direct, rtol=0, atol=1e-9 * direct.max())
 
-    port = teeth._port
+    port = teeth.port_part
     turns = [rotation(2, -k * teeth.wheel.pitch_angle) for k in range(count)]
     gram = sum(turn @ port.gram @ turn.T for turn in turns)
     spread = sum((port.loads.T @ part).T @ turn.T for part, turn in zip(moved, turns))
@@ -83,13 +84,11 @@ def test_the_ring_of_all_pitches_solved_at_once_moves_as_the_waves_of_one():
     assert np.abs((teeth.port_compliance - direct) / scale).max() < 1e-9
 
 
-def test_sides_of_a_pitch_move_smoothly_enough(monkeypatch):
-    usual = SolidTeeth(WHEEL, **(COARSE | {"layer": 0.5}))
-    few = usual.without_rim(0), usual.without_rim(1)
-    monkeypatch.setattr(solid_module, "LEAST_POWER", 9)
-    more = SolidTeeth(WHEEL, **(COARSE | {"layer": 0.5}))
-    for before, after in zip(few, (more.without_rim(0), more.without_rim(1))):
-        assert np.abs(before - after).max() < 1e-4 * few[0].max()
+def test_sides_of_a_pitch_move_smoothly_enough():
+    usual, free = (coarse(layer=0.5, slices=10, power=power) for power in (0.5, 2.0))
+    for tooth in (0, 1):
+        difference = np.abs(usual.without_rim(tooth) - free.without_rim(tooth)).max()
+        assert 0 < difference < 1e-4 * usual.without_rim(0).max()
 
 
 def test_nodes_of_the_right_side_are_those_of_the_left_one_turned_by_a_pitch():
@@ -173,7 +172,7 @@ def test_readings_of_rigid_motions_are_those_of_the_rows_of_the_rim(hand):
 def test_the_port_turns_as_a_disc_in_shear_and_moves_with_rigid_bodies():
     """A torque spread over a cylinder turns it by T / (4 pi G b) (1 / a^2 - 1 / r^2)."""
     teeth = coarse()
-    loads, gram = teeth._port.loads, teeth._port.gram
+    loads, gram = teeth.port_part.loads, teeth.port_part.gram
     motions = rigid_motions(teeth.mesh.solid.nodes)
     assert np.allclose(loads.T @ motions, gram, rtol=1e-9, atol=1e-9 * np.abs(gram).max())
     area = 2 * pi * teeth.port_radius * WHEEL.face_width / WHEEL.count
@@ -239,13 +238,22 @@ def test_compliances_at_two_depths_differ_by_the_closed_form_between():
     assert difference / between == pytest.approx(1.0, rel=0.02)
 
 
-def test_depths_that_are_read_do_not_matter(monkeypatch):
+def test_depths_that_are_read_do_not_matter():
     """A single reading, not continued to the surface, would change by 0.6 %."""
-    options = {"slices": 2, "hold": 25e-3, "layer": 2.5, "fineness": Fineness(4, 8, 6)}
-    usual = evenly_loaded(SolidTeeth(WHEEL, **options), 46.7e-3)
-    monkeypatch.setattr(solid_module, "DEEPEST", 0.8)
-    deeper = evenly_loaded(SolidTeeth(WHEEL, **options), 46.7e-3)
-    assert deeper / usual == pytest.approx(1.0, rel=2e-3)
+    usual, deeper = (
+        evenly_loaded(coarse(slices=2, layer=2.5, fineness=Fineness(4, 8, 6), deepest=d), 46.7e-3)
+        for d in (0.5, 0.8)
+    )
+    assert 0 < abs(deeper / usual - 1) < 2e-3
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("helix", [0, 15])
+def test_contact_turns_a_pinion_as_in_calculix(helix):
+    """Its flanks are flat between nodes, and its elements are of reduced order: 1 %."""
+    row = read_result("tooth_contact")[f"helix {helix}"]
+    torque = condensed_contact(pair_of(radians(helix))).torque
+    assert row["torque_calculix"] / torque == pytest.approx(1.0, rel=0.01)
 
 
 def test_wrong_teeth_and_no_memory_are_refused(monkeypatch):

@@ -30,7 +30,7 @@ from solidgear.teeth.compliance.mesh import Fineness
 from solidgear.teeth.compliance.solid import SolidTeeth
 from solidgear.teeth.compliance.solid_mesh import SweptPitch, turned
 from solidgear.teeth.contact.cylindrical import CylindricalPair
-from solidgear.teeth.contact.local import LineContact
+from solidgear.teeth.contact.local import Elasticity, LineContact
 from solidgear.teeth.contact.solver import Loads, loads
 from validation.common import kept
 from validation.race.calculix import _nodes, _wrapped, execute
@@ -41,11 +41,15 @@ RIM = 4.0
 #: arc of the first wheel on its base cylinder, m: CalculiX takes the second flank as flat triangles,
 #: which stand back from it by up to 0.2 um
 ARC = 60e-6
-#: pressure by overlap of CalculiX's surfaces, N/m^3: at a tenth of it the torque is 0.7 % less
+#: pressure by overlap of CalculiX's surfaces, N/m^3: they overlap by 0.02 um
 SLOPE = 3e16
-#: mesh of CalculiX: the half-width of contact is more than a cell
-FINE = Fineness(fillet=4, flank=70, across=10)
+STEEL = Elasticity()
+#: mesh of CalculiX, in which the half-width of contact is more than a cell, and ours.  Rims are fine:
+#: a single pitch is a column that bends, singular in the corners at its foot
+FINE, USUAL = Fineness(fillet=4, flank=70, across=10, rim=2.5), Fineness(4, 8, 6, rim=3.0)
 LAYERS = 2
+#: thickness of our layers, modules
+LAYER = 0.25
 #: faces of CalculiX's hexahedra by their corners, in its numbering
 FACES = ((0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 4, 5), (1, 2, 5, 6), (2, 3, 6, 7), (0, 3, 4, 7))
 
@@ -69,11 +73,18 @@ def pair_of(helix: float) -> WheelPair:
     return WheelPair(first, second)
 
 
-def condensed_contact(pair: WheelPair, **options) -> Loads:
+def condensed_contact(pair: WheelPair) -> Loads:
     """Return the loads under which the first wheel turns by the arc."""
     wheels = pair.first, pair.second
     teeth = [
-        OnePitch(wheel, hold=wheel.root - RIM * MODULE, hand=hand, **options)
+        OnePitch(
+            wheel,
+            hold=wheel.root - RIM * MODULE,
+            elasticity=STEEL,
+            hand=hand,
+            fineness=USUAL,
+            layer=LAYER,
+        )
         for wheel, hand in zip(wheels, (1, -1))
     ]
     law = LineContact(tuple(t.elasticity for t in teeth), tuple(t.depth for t in teeth))
@@ -88,68 +99,88 @@ def condensed_contact(pair: WheelPair, **options) -> Loads:
 
 def calculix(pair: WheelPair) -> float:
     """Return the torque on the first wheel by CalculiX, N m."""
+    parts = parts_of(pair)
     with tempfile.TemporaryDirectory(prefix="ccx-") as name:
         folder = Path(name)
-        text, holding = deck(pair)
-        (folder / "teeth.inp").write_text(text)
+        (folder / "teeth.inp").write_text(deck(pair, parts))
         _, printed = execute(folder, "teeth", limit=1800, threads=1)
     rows = re.findall(r"^\s*(\d+)\s+(\S+E\S+)\s+(\S+E\S+)\s+(\S+E\S+)\s*$", printed, re.M)
     table = np.array(rows, float)
-    places = holding[table[:, 0].astype(int) - 1]
+    places = parts[0].places[table[:, 0].astype(int) - 1]
     return float(np.sum(places[:, 1] * table[:, 1] - places[:, 0] * table[:, 2]))
 
 
-def deck(pair: WheelPair) -> tuple[str, np.ndarray]:
-    """Return the input of CalculiX, and the places (n, 3) of all nodes, m."""
-    wheels = pair.first, pair.second
-    pitch_radii = pair.first_radius(pair.pitch_point), pair.second_radius(pair.pitch_point)
-    turns = (
-        -float(wheels[0].half_angle(pitch_radii[0])),
-        np.pi - float(wheels[1].half_angle(pitch_radii[1])),
-    )
-    centres = np.zeros(3), np.array([0.0, pair.distance, 0.0])
-    lines, places, elements = [], [], 0
-    later = []
-    for number, (wheel, turn, centre) in enumerate(zip(wheels, turns, centres), 1):
-        mesh = swept(wheel, 1 if number == 1 else -1)
-        solid = mesh.solid
-        nodes = solid.nodes.T.copy()
-        nodes[:, :2] = turned(nodes[:, :2], turn)
-        first = sum(len(p) for p in places) + 1
-        places.append(nodes + centre)
-        order = node_order(solid.element.doflocs, ELEMENTS["hex20"].vtk)
-        cells = solid.dofs[order].T + first
-        lines += [f"*NODE, NSET=N{number}", *_nodes(places[-1], first)]
-        lines.append(f"*ELEMENT, TYPE=C3D20R, ELSET=E{number}")
-        for k, cell in enumerate(cells, elements + 1):
+@dataclass(frozen=True, eq=False)
+class Part:
+    """Mesh of one wheel in CalculiX's numbering."""
+
+    mesh: SweptPitch
+    places: np.ndarray  #: (n, 3) of the nodes, m
+    number: int  #: of the part
+    node: int  #: of its first node
+    element: int  #: of its first element
+
+    @property
+    def cells(self) -> np.ndarray:
+        """(m, 20) nodes of the elements, in CalculiX's order, from 0."""
+        solid = self.mesh.solid
+        return solid.dofs[node_order(solid.element.doflocs, ELEMENTS["hex20"].vtk)].T
+
+    @property
+    def holding(self) -> np.ndarray:
+        """(k,) nodes of the cylinder that is held, from 0."""
+        return self.mesh.nodes_of(self.mesh.plane.circle)[0]
+
+    def volume(self) -> list[str]:
+        """Return the lines of nodes and elements."""
+        lines = ["*NODE", *_nodes(self.places, self.node)]
+        lines.append(f"*ELEMENT, TYPE=C3D20R, ELSET=E{self.number}")
+        for k, cell in enumerate(self.cells + self.node, self.element):
             lines += _wrapped([k, *cell])
-        flank = np.zeros(len(nodes), bool)
-        flank[mesh.nodes_of(mesh.plane.flank)[0]] = True
-        later.append(f"*SURFACE, NAME=S{number}, TYPE=ELEMENT")
-        on_flank = flank[solid.dofs[order].T]
+        return [*lines, f"*SOLID SECTION, ELSET=E{self.number}, MATERIAL=STEEL"]
+
+    def surface(self) -> list[str]:
+        """Return the lines of the flank and of the cylinder that is held."""
+        flank = np.zeros(len(self.places), bool)
+        flank[self.mesh.nodes_of(self.mesh.plane.flank)[0]] = True
+        lines = [f"*SURFACE, NAME=S{self.number}, TYPE=ELEMENT"]
         for face, corners in enumerate(FACES, 1):
-            chosen = np.flatnonzero(on_flank[:, corners].all(axis=1))
-            later += [f"{k + elements + 1}, S{face}" for k in chosen]
-        holding = mesh.nodes_of(mesh.plane.circle)[0] + first
-        later += [f"*NSET, NSET=H{number}", *_wrapped(holding.tolist())]
-        elements += len(cells)
-    everything = np.concatenate(places)
-    holding_first = swept(pair.first, 1).nodes_of(swept(pair.first, 1).plane.circle)[0]
-    angle = ARC / pair.first.base
+            on_flank = np.flatnonzero(flank[self.cells[:, corners]].all(axis=1))
+            lines += [f"{k + self.element}, S{face}" for k in on_flank]
+        nodes = (self.holding + self.node).tolist()
+        return [*lines, f"*NSET, NSET=H{self.number}", *_wrapped(nodes)]
+
+
+def parts_of(pair: WheelPair) -> tuple[Part, Part]:
+    """Return both wheels where their flanks touch in the pitch point."""
+    place = pair.pitch_point
+    radii = pair.first_radius(place), pair.second_radius(place)
+    lean = [float(w.half_angle(r)) for w, r in zip((pair.first, pair.second), radii)]
+    first, second = swept(pair.first, 1), swept(pair.second, -1)
+    nodes = [mesh.solid.nodes.T.copy() for mesh in (first, second)]
+    for places, angle in zip(nodes, (-lean[0], np.pi - lean[1])):
+        places[:, :2] = turned(places[:, :2], angle)
+    nodes[1][:, 1] += pair.distance
+    node, element = len(nodes[0]) + 1, first.solid.mesh.nelements + 1
+    return Part(first, nodes[0], 1, 1, 1), Part(second, nodes[1], 2, node, element)
+
+
+def deck(pair: WheelPair, parts: tuple[Part, Part]) -> str:
+    """Return the input of CalculiX."""
+    first, second = parts
+    start = first.places[first.holding]
+    moved = turned(start[:, :2], ARC / pair.first.base) - start[:, :2]
     driven = []
-    for node in holding_first:
-        x, y, _ = everything[node]
-        c, s = np.cos(angle), np.sin(angle)
-        moved = (c * x + s * y - x, -s * x + c * y - y, 0.0)
-        driven += [f"{node + 1}, {k + 1}, {k + 1}, {u:.12e}" for k, u in enumerate(moved)]
+    for node, (x, y) in zip(first.holding + first.node, moved):
+        driven += [f"{node}, 1, 1, {x:.12e}", f"{node}, 2, 2, {y:.12e}", f"{node}, 3, 3"]
     text = [
-        *lines,
-        *later,
         "*MATERIAL, NAME=STEEL",
         "*ELASTIC",
-        "2.06e11, 0.3",
-        "*SOLID SECTION, ELSET=E1, MATERIAL=STEEL",
-        "*SOLID SECTION, ELSET=E2, MATERIAL=STEEL",
+        f"{STEEL.youngs}, {STEEL.poisson}",
+        *first.volume(),
+        *second.volume(),
+        *first.surface(),
+        *second.surface(),
         "*SURFACE INTERACTION, NAME=TOUCH",
         "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR",
         f"{SLOPE:.3e}",
@@ -166,7 +197,7 @@ def deck(pair: WheelPair) -> tuple[str, np.ndarray]:
         "RF",
         "*END STEP",
     ]
-    return "\n".join(text) + "\n", everything
+    return "\n".join(text) + "\n"
 
 
 def swept(wheel: Wheel, hand: int) -> SweptPitch:
@@ -186,6 +217,7 @@ def main() -> None:
         by_calculix, by_cells = calculix(pair), condensed_contact(pair)
         row = {
             "helix_deg": helix,
+            "arc_um": 1e6 * ARC,
             "torque_calculix": by_calculix,
             "torque": by_cells.torque,
             "ratio": by_calculix / by_cells.torque,
