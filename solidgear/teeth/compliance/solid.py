@@ -28,7 +28,6 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.interpolate import CubicSpline
 
-from solidgear.core import assemblable
 from solidgear.core.gears.wheel import Wheel
 from solidgear.core.models.solid.matrices import _matrices
 from solidgear.core.scene.parts import Material
