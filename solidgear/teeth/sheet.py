@@ -14,7 +14,6 @@ from solidgear.show.plot import Make
 from solidgear.show.sheet import Sheet, Terminal
 from solidgear.show.table import NUMBER, Cell, Column, Table, numbers, word
 from solidgear.show.units import Units, in_ascii
-from solidgear.show.words import percent
 from solidgear.teeth.bevel.train import BevelContact
 from solidgear.teeth.charts import cycle_chart, face_chart, pattern_chart, torque_chart
 from solidgear.teeth.ladder import ERROR, FACE, STIFFNESS, Ladder, Rung
@@ -208,7 +207,7 @@ def of_models(found: Ladder, units: Units) -> Table:
         if share is None:
             return None
         if rung is found.reference:
-            return f"+- {percent(found.bars[name])}"
+            return f"+- {100 * found.bars[name]:.2g} %"
         look = {WITHIN: "good", BEYOND: "bad"}.get(rung.verdict[name], "")
         return Cell(f"{100 * share:+.2g} %", look)
 

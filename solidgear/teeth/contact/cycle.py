@@ -129,13 +129,8 @@ class MeshCycle:
 
     @cached_property
     def line_load_factor(self) -> float:
-        """Largest line load over the mean line load of its position, largest of the cycle."""
-        return float(
-            max(
-                position.line_load.max() * position.cells.length.sum() / position.force.sum()
-                for position in self.positions
-            )
-        )
+        """Largest line load on the path over the mean line load of its position, largest of the cycle."""
+        return float(max(_over_mean(position) for position in self.positions))
 
     @cached_property
     def pressure(self) -> float:
@@ -159,6 +154,13 @@ class MeshCycle:
             float(position.force[position.cells.at_corner].sum() / position.force.sum())
             for position in self.positions
         )
+
+
+def _over_mean(position: Loads) -> float:
+    """Return the largest line load of the cells on the path over the mean of all."""
+    cells = position.cells
+    largest = position.line_load[~cells.at_corner].max(initial=0.0)
+    return float(largest * cells.length[~cells.at_corner].sum() / position.force.sum())
 
 
 def harmonics(course: np.ndarray, count: int) -> np.ndarray:

@@ -1,0 +1,82 @@
+"""Models of the teeth side by side: which is enough for what, and how sure the finest is."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import solidgear as sg
+from solidgear.core import WITHIN
+from solidgear.teeth.ladder import ERROR, FACE, NORM, SOLID, STIFFNESS, energy_share, ladder
+from solidgear.teeth.supports import Carried, with_sections
+from solidgear.trains.assembly.assembly import Assembly
+
+GEOMETRY = Path(__file__).parent.parent / "geometry"
+
+
+def narrow(train):
+    """The train with a face of 12 mm, on which teeth in 3D are quick."""
+    pinion = train.pinion.with_changes(face_width=12e-3)
+    return train.with_changes(pinion=pinion)
+
+
+@pytest.fixture(scope="module")
+def carried():
+    train = narrow(sg.load_train(GEOMETRY / "gearbox_train.toml"))
+    point = train.point.with_changes(torque=30.0)
+    return Carried.at_rest(with_sections(train), point)
+
+
+@pytest.fixture(scope="module")
+def by_slices(carried):
+    return ladder(carried, carried.train.pairs[0], 0.02, reference="slices")
+
+
+def test_the_norm_has_no_transmission_error_and_the_finest_has_a_bar(by_slices):
+    norm, slices = by_slices.rungs
+    assert norm.model == NORM and norm.numbers.peak_to_peak is None
+    assert norm.off[ERROR] is None and by_slices.cheapest(ERROR) is None
+    assert all(0 < bar < 0.3 for bar in by_slices.bars.values())
+    assert not slices.verdict and slices.off[STIFFNESS] == 0
+    assert "no cheaper model" in by_slices.sentences()[1]
+
+
+def test_stiffness_counts_by_what_it_does_to_the_frequencies(carried, by_slices):
+    """The mode with most strain energy in the teeth, solved again with the stiffness of the norm."""
+    norm, slices = by_slices.rungs
+    ratio = norm.numbers.tangent / slices.numbers.tangent
+    assert by_slices.share == energy_share(carried, carried.train.pairs[0])
+    assembly = carried.assembly
+    mesh = assembly.train.mesh
+    usual = assembly.coupled(assembly.models_by_shaft(["timoshenko"])).modes()
+    limit = assembly.train.ask.max_frequency
+    wanted = (usual.frequency_hz > 0) & (usual.frequency_hz <= limit)
+    share = usual.energy["mesh"][wanted].max()
+    k = int(np.argmax(np.where(wanted, usual.energy["mesh"], 0)))
+    softer = assembly.train.with_changes(mesh=mesh.with_changes(stiffness=mesh.stiffness * 0.999))
+    moved = Assembly(softer).coupled(assembly.models_by_shaft(["timoshenko"])).modes()
+    change = moved.frequency_hz[k] / usual.frequency_hz[k] - 1
+    assert change == pytest.approx(-0.001 * share / 2, rel=0.01)
+    assert norm.off[STIFFNESS] == pytest.approx((ratio - 1) * by_slices.share / 2, rel=1e-12)
+
+
+def test_what_is_within_the_tolerance_with_its_bar_is_enough(by_slices):
+    norm, _ = by_slices.rungs
+    within = abs(norm.off[FACE]) + by_slices.bars[FACE] <= by_slices.tolerance
+    assert (norm.verdict[FACE] == WITHIN) == within
+
+
+@pytest.mark.long
+def test_plane_slices_of_helical_teeth_are_stiffer_than_teeth_in_3d(carried):
+    """By more than the bar: the axial part of their force bends a wheel that is a disc of 12 mm out of
+    its plane, which a plane section does not know.
+    """
+    found = ladder(carried, carried.train.pairs[0], 0.02)
+    norm, slices, solid = found.rungs
+    assert solid.model == SOLID
+    ratio = slices.numbers.tangent / solid.numbers.tangent
+    assert 1.2 < ratio < 1.8
+    assert slices.off[STIFFNESS] == pytest.approx((ratio - 1) * found.share / 2, rel=1e-12)
+    assert found.bars[STIFFNESS] < 0.06 * found.share / 2
+    data = found.as_dict()
+    assert [*data["models"]] == ["ISO 6336-1", "slices", "solid"]
