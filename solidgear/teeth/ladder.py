@@ -98,13 +98,13 @@ class Ladder:
         """Return which model is enough for what."""
         lines = []
         for name in (STIFFNESS, ERROR, FACE):
-            bar = f"its own error bar there is {100 * self.bars[name]:.2g} %"
+            bar = f"whose error bar there is {100 * self.bars[name]:.2g} %"
             cheapest = self.cheapest(name)
             enough = self.reference.model if cheapest is None else cheapest
             state = "no cheaper model was shown to be" if cheapest is None else f"{enough} is"
             lines.append(
                 f"{self.mesh}, {name}: {state} within {100 * self.tolerance:g} % of "
-                f"{self.reference.model}; {bar}."
+                f"{self.reference.model}, {bar}."
             )
         return lines
 

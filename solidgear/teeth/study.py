@@ -54,6 +54,7 @@ class TeethStudy:
 
     title: str
     point: OperatingPoint
+    model: TeethModel  #: of cylindrical teeth; bevel teeth are of slices
     meshes: tuple[SolvedMesh, ...]
     curves: dict[str, tuple[AtTorque, ...]]  #: by mesh, torque ascending; empty without
     stiffness: dict[str, float | None]  #: of each mesh in the file, N/m; None where of teeth
@@ -67,6 +68,7 @@ class TeethStudy:
             {
                 "train": self.title,
                 "point": self.point,
+                "model": self.model.name,
                 "meshes": {mesh.name: mesh.as_dict() for mesh in self.meshes},
                 "curves": {
                     name: [at.as_dict() for at in curve] for name, curve in self.curves.items()
@@ -102,7 +104,7 @@ def teeth_study(
     judge : bool
         Whether other models of the teeth are solved as well, and judged by the finest.
     progress : callable
-        Is told in words what is solved.
+        Called with words on what is solved.
 
     Raises
     ------
@@ -148,6 +150,7 @@ def teeth_study(
     return TeethStudy(
         title=train.title or train.name,
         point=point,
+        model=model,
         meshes=tuple(meshes),
         curves={name: tuple(curve) for name, curve in curves.items()},
         stiffness={mesh.name: stated_stiffness(train, mesh.name) for mesh in teeth},
