@@ -64,14 +64,14 @@ def contact_sheet(study: TeethStudy, units: Units) -> Sheet:
             tables.append(over_torque(curve, units, name, study.point.of))
             charts["torque" + end] = partial(torque_chart, curve, units, name)
             words["torque" + end] = TORQUE_SHOWN
-    tables += [of_models(found, units) for found in study.ladders]
+    tables += [of_models(ladder, units) for ladder in study.ladders]
     tables += [assumptions(mesh) for mesh in meshes]
-    held = f"Teeth by {_teeth_by(study)}, shafts as Timoshenko beams."
+    modelled = f"Teeth by {_teeth_by(study)}, shafts as Timoshenko beams."
     notes = [line for mesh in meshes for line in sentences(mesh, study, units)]
     return Sheet(
         name="contact",
         title=f"{study.title}: contact of teeth",
-        lead=f"At {study.point.label}. {held}",
+        lead=f"At {study.point.label}. {modelled}",
         tables=tables,
         data=study.as_dict(),
         charts=charts,
@@ -79,12 +79,12 @@ def contact_sheet(study: TeethStudy, units: Units) -> Sheet:
             f"cycle_{number}" if several else "cycle": cycle_lines(mesh)
             for number, mesh in enumerate(meshes, start=1)
         },
-        verdict=[line for found in study.ladders for line in found.sentences()],
+        verdict=[line for ladder in study.ladders for line in ladder.sentences()],
         notes=notes,
         cautions=study.cautions,
         words=words,
         terminal=Terminal(
-            heading=[f"{study.title} at {study.point.label}: contact of teeth", held],
+            heading=[f"{study.title} at {study.point.label}: contact of teeth", modelled],
             tables=tables,
             closing=[*map(in_ascii, notes), *map(caution, study.cautions)],
         ),
@@ -234,15 +234,15 @@ def over_torque(curve: Sequence[AtTorque], units: Units, name: str, shaft: str) 
     return Table(title, columns, curve, note)
 
 
-def of_models(found: Ladder, units: Units) -> Table:
+def of_models(ladder: Ladder, units: Units) -> Table:
     """Return models of the teeth side by side."""
 
     def off(name: str, rung: Rung) -> Cell | str | None:
         share = rung.off.get(name)
         if share is None:
             return None
-        if rung is found.reference:
-            return f"+- {percent(found.bars[name], signed=False)}"
+        if rung is ladder.reference:
+            return f"+- {percent(ladder.bars[name], signed=False)}"
         look = {WITHIN: "good", BEYOND: "bad"}.get(rung.verdict[name], "")
         return Cell(f"{100 * share:+.2g} %", look)
 
@@ -259,7 +259,7 @@ def of_models(found: Ladder, units: Units) -> Table:
             off(FACE, rung),
             rung.seconds,
         ]
-        for rung in found.rungs
+        for rung in ladder.rungs
     ]
     columns = [
         word("teeth by"),
@@ -273,9 +273,9 @@ def of_models(found: Ladder, units: Units) -> Table:
     ]
     note = (
         "Off: against the last, whose own error bars stand there; frequency: what the stiffness does to "
-        f"the mode with most strain energy in these teeth, {100 * found.share:.0f} %."
+        f"the mode with most strain energy in these teeth, {100 * ladder.share:.0f} %."
     )
-    return Table(f"Models of the teeth: {found.mesh}", columns, rows, note)
+    return Table(f"Models of the teeth: {ladder.mesh}", columns, rows, note)
 
 
 def assumptions(mesh: SolvedMesh) -> Table:

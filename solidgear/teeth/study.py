@@ -50,15 +50,43 @@ class AtTorque:
 
 @dataclass(frozen=True, eq=False)
 class TeethStudy:
-    """Contact of all meshes of a train."""
+    """Contact of all meshes of a train.
+
+    Attributes
+    ----------
+    title : str
+    point : OperatingPoint
+    model : TeethModel
+        Of cylindrical teeth; bevel teeth are of slices.
+    meshes : tuple of SolvedMesh
+        At the operating point.
+    curves : dict of str to tuple of AtTorque
+        By mesh, torque ascending; empty without.
+    stiffness : dict of str to float or None
+        Of each mesh in the file, N/m; None where it is that of the teeth.
+    ladders : tuple of Ladder
+        Models of the teeth side by side, where asked for.
+    cautions : tuple of str
+    seconds : float
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> train = sg.load_train("geometry/gearbox_train.toml")
+    >>> study = teeth_study(train, model=TeethModel(slices=12, positions=8), factors=())
+    >>> [mesh.name for mesh in study.meshes], study.stiffness
+    (['mesh'], {'mesh': 320000000.0})
+    >>> sorted(study.as_dict()["meshes"]["mesh"])[:3]
+    ['assumed', 'contact_ratio', 'corner_share']
+    """
 
     title: str
     point: OperatingPoint
-    model: TeethModel  #: of cylindrical teeth; bevel teeth are of slices
+    model: TeethModel
     meshes: tuple[SolvedMesh, ...]
-    curves: dict[str, tuple[AtTorque, ...]]  #: by mesh, torque ascending; empty without
-    stiffness: dict[str, float | None]  #: of each mesh in the file, N/m; None where of teeth
-    ladders: tuple[Ladder, ...]  #: models of the teeth side by side, where asked for
+    curves: dict[str, tuple[AtTorque, ...]]
+    stiffness: dict[str, float | None]
+    ladders: tuple[Ladder, ...]
     cautions: tuple[str, ...]
     seconds: float
 
@@ -99,12 +127,17 @@ def teeth_study(
     point : OperatingPoint, optional
         By default the first of the train.
     model : TeethModel, optional
+        By default slices.
     factors : sequence of float
         Torques of the curves, of that of the point; none without curves.
     judge : bool
         Whether other models of the teeth are solved as well, and judged by the finest.
     progress : callable
         Called with words on what is solved.
+
+    Returns
+    -------
+    TeethStudy
 
     Raises
     ------
