@@ -20,6 +20,7 @@ What there is, each with an example in its help:
     studies      sweep, sensitivities, optimise, budget
     bodies       build, Body, Supports
     trains       load_train, Train
+    teeth        teeth_study, TeethStudy, TeethModel, Wheel, WheelPair, Rack
     systems      rubin, craig_bampton, Superelement, System, grounded, mesh_spring, torsion_spring,
                  MeshVector, BearingSpring, RowSpring, RigidBody, Inertia, PortInertia, Placed
     planetary    PlanetaryTeeth, PlanetaryStage, CentralMember, Planet, carrier_turn, FixedSupport,
@@ -87,6 +88,12 @@ _WHERE = {
     "sweep": "solidgear.variants.sweep.file_sweep",
     "sensitivities": "solidgear.variants.sensitivity.run",
     "shaft_stress": "solidgear.strength.stress.shaft",
+    "teeth_study": "solidgear.teeth.study",
+    "TeethStudy": "solidgear.teeth.study",
+    "TeethModel": "solidgear.teeth.train_teeth",
+    "Rack": "solidgear.core.gears.wheel",
+    "Wheel": "solidgear.core.gears.wheel",
+    "WheelPair": "solidgear.core.gears.wheel_pair",
     "turn": "solidgear.show.viewer",
     "SolidgearError": "solidgear.core.errors",
     "SceneError": "solidgear.core.errors",
@@ -113,6 +120,7 @@ __all__ = [
     "PointMass",
     "Port",
     "PortInertia",
+    "Rack",
     "RigidBody",
     "RowSpring",
     "Scene",
@@ -122,7 +130,11 @@ __all__ = [
     "Superelement",
     "Supports",
     "System",
+    "TeethModel",
+    "TeethStudy",
     "Train",
+    "Wheel",
+    "WheelPair",
     "__version__",
     "answer",
     "budget",
@@ -141,6 +153,7 @@ __all__ = [
     "sensitivities",
     "shaft_stress",
     "sweep",
+    "teeth_study",
     "torsion_spring",
     "turn",
 ]
@@ -150,6 +163,8 @@ if TYPE_CHECKING:
     from solidgear.comparison.models import compare
     from solidgear.core.body import Body, Supports
     from solidgear.core.errors import SceneError, SolidgearError
+    from solidgear.core.gears.wheel import Rack, Wheel
+    from solidgear.core.gears.wheel_pair import WheelPair
     from solidgear.core.judge.answer import answer
     from solidgear.core.ladder import build
     from solidgear.core.loading import load
@@ -186,6 +201,8 @@ if TYPE_CHECKING:
     )
     from solidgear.show.viewer import turn
     from solidgear.strength.stress.shaft import shaft_stress
+    from solidgear.teeth.study import TeethStudy, teeth_study
+    from solidgear.teeth.train_teeth import TeethModel
     from solidgear.trains.file.train import Train
     from solidgear.trains.loading import load_train
     from solidgear.trains.system import carrier_turn

@@ -3,6 +3,7 @@
 import importlib.util
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import solidgear as sg
@@ -10,11 +11,11 @@ import solidgear as sg
 FOLDER = Path(__file__).parent.parent / "examples"
 
 
-def run(name):
+def run(name, *arguments):
     spec = importlib.util.spec_from_file_location(name, FOLDER / f"{name}.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
-    return module.main()
+    return module.main(*arguments)
 
 
 @pytest.mark.long
@@ -75,6 +76,22 @@ def test_ovalising():
 @pytest.mark.long
 def test_how_sure():
     assert all(0 < band < 5e-3 for band in run("how_sure").values())  # a tenth of 5 %
+
+
+def test_teeth_in_contact_has_its_least_error_where_relief_makes_up_for_the_load():
+    loads = 1e3 * np.array([100, 200, 300])
+    found = run("teeth_in_contact", (0.0, 10e-6), loads)
+    bare, relieved = found["error"].values()
+    # twice the load, all but twice the error; 10 um of relief are right for 200 N/mm
+    assert bare[1] == pytest.approx(2 * bare[0], rel=0.06)
+    assert relieved.argmin() == 1 and relieved[1] < 0.2 * bare[1]
+
+
+@pytest.mark.long
+def test_teeth_in_contact_has_a_load_for_each_relief():
+    found = run("teeth_in_contact")
+    least = [found["load"][error.argmin()] for error in found["error"].values()]
+    assert least == [25, 200, 400, 600]
 
 
 def test_lumped_model():

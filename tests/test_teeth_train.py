@@ -1,5 +1,6 @@
 """Teeth of trains in contact: where they lie, what carries them, and what must not depend on frames."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -7,6 +8,8 @@ import pytest
 
 import solidgear as sg
 from solidgear.core import SceneError, SolidgearError
+from solidgear.show.units import ENGINEERING
+from solidgear.teeth.sheet import contact_sheet
 from solidgear.teeth.study import teeth_study
 from solidgear.teeth.supports import Carried, with_sections
 from solidgear.teeth.train_teeth import TeethModel, mesh_contact, mesh_of_teeth, teeth_of
@@ -253,3 +256,16 @@ def test_a_train_without_a_torque_is_refused(train):
 def test_bevel_trains_and_missing_faces_are_refused():
     with pytest.raises(SceneError, match="face_width"):
         teeth_study(sg.load_train(GEOMETRY / "reducer.toml"))
+
+
+def test_the_sheet_says_what_teeth_are_made_of_and_reads_loads_per_length(train):
+    study = teeth_study(train, model=TeethModel(slices=8, positions=8), factors=())
+    sheet = contact_sheet(study, ENGINEERING)
+    assert "plane slices" in sheet.lead
+    solid = contact_sheet(replace(study, model=TeethModel("solid")), ENGINEERING)
+    assert "3D finite elements" in solid.lead
+    assert [table.title for table in sheet.tables][-1] == "Assumed: mesh"
+    mean = study.meshes[0].line_load / np.cos(study.meshes[0].wheels.base_helix)
+    (panel,) = sheet.charts["face"](width=600).rows[0]
+    assert panel.y.title == "load per face width, N/mm"
+    assert mean / 1e3 < panel.y.ends[1] < 1.5 * mean / 1e3

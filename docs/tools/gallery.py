@@ -30,6 +30,7 @@ ORDER = (
     "exact_beam",
     "many_bearings",
     "two_gears",
+    "teeth_in_contact",
     "lumped_model",
     "way_back",
     "two_shafts",

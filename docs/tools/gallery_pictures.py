@@ -99,6 +99,19 @@ def scaled_bearings(target: Path) -> None:
     figure.savefig(target, dpi=160)
 
 
+def reliefs(target: Path) -> None:
+    """Transmission error over the load, a curve each amount of tip relief."""
+    found = importlib.import_module("teeth_in_contact").main()
+    figure = Figure(figsize=(5.4, 3.5), layout="constrained")
+    ax = figure.subplots()
+    for amount, error in found["error"].items():
+        ax.plot(found["load"], error, marker="o", ms=4, lw=2, label=f"{1e6 * amount:.0f} µm")
+    ax.set(xlabel="load, N/mm", ylabel="transmission error pp, µm", xlim=(0, None), ylim=(0, None))
+    ax.legend(title="tip relief", frameon=False)
+    ax.grid(alpha=0.3)
+    figure.savefig(target, dpi=160)
+
+
 OVERHUNG = "geometry/pinion_overhung.toml"
 DRAWN: dict[str, Callable[[Path], None]] = {
     "first_answer": partial(rendered, f'{OVERHUNG} -f harmonic --mode "bending 1"'),
@@ -111,6 +124,7 @@ DRAWN: dict[str, Callable[[Path], None]] = {
     "exact_beam": partial(rendered, 'geometry/shaft_stepped.toml -f euler --mode "bending 2"'),
     "many_bearings": scaled_bearings,
     "two_gears": partial(drawn, "intermediate_shaft"),
+    "teeth_in_contact": reliefs,
     "lumped_model": partial(bars, "lumped_model", "error of first bending, %", 100.0),
     "way_back": partial(rendered, f'{OVERHUNG} -f harmonic --mode "bending 2"'),
     "two_shafts": partial(rendered, 'geometry/gear_shaft.toml -f harmonic --mode "bending 1"'),

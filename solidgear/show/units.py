@@ -38,7 +38,8 @@ class Units:
     about: str  #: the choice in a few words
     #: SI unit -> its name here, and how many of it make one of SI; those left out stay as they are.
     #: ``m moved`` is a metre of motion, which is read finer than one of length; ``rad moved`` is
-    #: the like of angles, and ``Pa stressed`` a stress, which is far below a modulus.
+    #: the like of angles, ``Pa stressed`` a stress, which is far below a modulus, and ``N/m along`` a
+    #: force per length of a line, which is no stiffness.
     of: Mapping[str, tuple[str, float]]
     #: whether numbers carry exponents (multiples of three) or all their digits
     exponents: bool = False
@@ -136,6 +137,7 @@ ENGINEERING = Units(
     "N/um, um/kN, N m/rad, mm",
     {
         "N/m": ("N/µm", 1e-6),
+        "N/m along": ("N/mm", 1e-3),
         "N/rad": ("kN/rad", 1e-3),
         "m/N": ("µm/kN", 1e9),
         "rad/N": ("µrad/kN", 1e9),
@@ -152,6 +154,7 @@ SI = Units(
     "si",
     "N/m, m/N, N m/rad; lengths in mm",
     {
+        "N/m along": ("N/m", 1.0),
         "m": ("mm", 1e3),
         "m moved": ("m", 1.0),
         "rad moved": ("rad", 1.0),
@@ -164,6 +167,7 @@ US = Units(
     "lbf/in, uin/lbf, lbf in/rad, in",
     {
         "N/m": ("lbf/in", INCH / POUND),
+        "N/m along": ("lbf/in", INCH / POUND),
         "N/rad": ("lbf/rad", 1 / POUND),
         "N m/rad": ("lbf in/rad", 1 / (POUND * INCH)),
         "m/N": ("µin/lbf", 1e6 * POUND / INCH),

@@ -18,21 +18,22 @@ from solidgear.trains.page.chart import COLOURS
 HEIGHTS, DECADES = 22, 1.3
 #: orders of the error that are drawn over the torque
 DRAWN_ORDERS = 3
+#: courses that may lie on another, and how they are drawn
+COVERING, DASHED = ("tangent, aligned",), {"type": "line", "strokeDash": [5, 4]}
 
 
 def cycle_chart(mesh: SolvedMesh, units: Units, title: str = "", width: float = WIDE) -> Chart:
-    """Chart transmission error and stiffness over two mesh cycles."""
+    """Chart transmission error and stiffness of the teeth over two mesh cycles."""
     cycle = mesh.cycle
     error = _lines(
         {"loaded": cycle.error, "without load": cycle.free_error},
-        cycle.phases, units, "m moved", "transmission error",
+        cycle.phases, units, "m moved", "error",
     )  # fmt: skip
     stiffness = _lines(
         {
             "tangent": cycle.tangent,
             "secant": cycle.secant,
-            "aligned": mesh.aligned.tangent,
-            "with supports": cycle.supported_tangent,
+            "tangent, aligned": mesh.aligned.tangent,
         },
         cycle.phases, units, "N/m", "mesh stiffness",
     )  # fmt: skip
@@ -65,7 +66,7 @@ def _lines(
     )
     for key, course in shown.items():
         course = np.concatenate([course, course, course[:1]])
-        panel.draw("line", curve(twice, course, name=key))
+        panel.draw(DASHED if key in COVERING else "line", curve(twice, course, name=key))
         read = curve(twice, course)
         for row in read:
             at, size = ("at", f"{row['x']:.2f}", "cycles"), (name, f"{row['y']:.4g}", unit)
@@ -94,20 +95,17 @@ def pattern(mesh: SolvedMesh) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 def pattern_chart(mesh: SolvedMesh, units: Units, title: str = "", width: float = WIDE) -> Chart:
     """Chart the contact pattern on the flank of the first wheel."""
     loads, heights, faces = pattern(mesh)
-    length, unit = units.unit("m"), units.unit("N/m")
+    length, unit = units.unit("m"), units.unit("N/m along")
     place, along = units.values(heights, "m"), units.values(faces, "m")
     panel = Panel(
         Axis(f"along the face, {length}", (float(along[0]), float(along[-1]))),
-        Axis(
-            f"along the path of contact or up the tooth, {length}",
-            (float(place[0]), float(place[-1])),
-        ),
+        Axis(f"{mesh.height}, {length}", (float(place[0]), float(place[-1]))),
         260.0,
     )
     top = float(np.nanmax(loads))
     rows = []
     for i, j in zip(*np.nonzero(np.nan_to_num(loads) > 0)):
-        load = float(units.values(loads[i, j], "N/m"))
+        load = float(units.values(loads[i, j], "N/m along"))
         rows.append(
             {
                 "x": float(along[j]),
@@ -118,7 +116,7 @@ def pattern_chart(mesh: SolvedMesh, units: Units, title: str = "", width: float 
                 "readout": readout("line load", ("", f"{load:.4g}", unit)),
             }
         )
-    most = float(units.values(np.array(top), "N/m"))
+    most = float(units.values(np.array(top), "N/m along"))
     low = most * 10**-DECADES
     shade = Shade(
         "load",
@@ -141,8 +139,8 @@ def face_chart(mesh: SolvedMesh, units: Units, title: str = "", width: float = W
     z = units.values((np.arange(slices) + 0.5) * step - mesh.face_width / 2, "m")
     loads = {"under load": mesh.cycle.face_loads / step, "aligned": mesh.aligned.face_loads / step}
     looks = {key: Series(COLOURS[k]) for k, key in enumerate(loads)}
-    shown = {key: units.values(load, "N/m") for key, load in loads.items()}
-    unit, top = units.unit("N/m"), max(float(load.max()) for load in shown.values())
+    shown = {key: units.values(load, "N/m along") for key, load in loads.items()}
+    unit, top = units.unit("N/m along"), max(float(load.max()) for load in shown.values())
     half = float(units.values(np.array(mesh.face_width / 2), "m"))
     panel = Panel(
         Axis(f"along the face, {units.unit('m')}", (-half, half)),
@@ -173,16 +171,23 @@ def torque_chart(
         "tangent": np.array([cycle.tangent.mean() for cycle in cycles]),
         "secant": np.array([cycle.secant.mean() for cycle in cycles]),
     }
+    in_row = 4 if width > NARROW else 2
     panels = [
-        _over(torque, error, units, "m moved", "transmission error"),
-        _over(torque, stiffness, units, "N/m", "mesh stiffness"),
+        _over(torque, error, units, "m moved", "transmission error", in_row),
+        _over(torque, stiffness, units, "N/m", "mesh stiffness", in_row),
     ]
     return Chart(in_columns(panels, 2 if width > NARROW else 1), width, title)
 
 
 def _over(
-    torque: np.ndarray, values: dict[str, np.ndarray], units: Units, si: str, name: str
+    torque: np.ndarray,
+    values: dict[str, np.ndarray],
+    units: Units,
+    si: str,
+    name: str,
+    in_row: int,
 ) -> Panel:
+    """Return the panel of courses over the torque, with so many names in a row of its legend."""
     looks = {key: Series(COLOURS[k % len(COLOURS)]) for k, key in enumerate(values)}
     shown = {key: units.values(course, si) for key, course in values.items()}
     unit, top = units.unit(si), max(float(course.max()) for course in shown.values())
@@ -192,7 +197,7 @@ def _over(
         Axis(f"{name}, {unit}", (0.0, 1.08 * top or 1.0)),
         230.0,
         series=looks,
-        legend=lines_legend(4),
+        legend=lines_legend(in_row),
     )
     for key, course in shown.items():
         rows = curve(torque, course, name=key)

@@ -24,8 +24,8 @@ from solidgear.teeth.norm import NormStiffness, norm_face_load_factor, norm_stif
 
 #: orders of the transmission error that are listed
 ORDERS = 5
-#: share of the load on corners that is told; load of a slice that is none, of the mean; face load
-#: factor from which an end that carries most is told
+#: share of the load on corners that is worth a sentence; load of a slice that is none, of the mean;
+#: face load factor from which an end that carries most is worth one
 CORNER, IDLE, EDGE = 0.02, 1e-3, 1.2
 
 

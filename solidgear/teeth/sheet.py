@@ -25,18 +25,26 @@ ROUNDING = 1e-13
 #: orders of the error in the table
 SHOWN_ORDERS = 3
 CYCLE_SHOWN = (
-    "Transmission error and stiffness over a mesh cycle; the error without load is that of the "
-    "flanks and of shafts under all other loads."
+    "Transmission error and stiffness of the teeth over two mesh cycles. Without load: by the shapes "
+    "of the flanks, on shafts that all other loads bend. Aligned: shafts held as they lie."
 )
-PATTERN_SHOWN = "Contact pattern: the largest line load that every place of the flank carries over a mesh cycle."
-FACE_SHOWN = "Load by face width, mean over a mesh cycle; aligned: with wheels held as they lie."
-TORQUE_SHOWN = "Transmission error, its first orders and stiffness over the torque."
+PATTERN_SHOWN = (
+    "Contact pattern on the first wheel's flank: the largest line load of each place over a mesh "
+    "cycle."
+)
+CORNERS_SHOWN = " Beyond the dashed lines corners of tips touch."
+FACE_SHOWN = (
+    "Load per face width, mean over a mesh cycle. Aligned: with both shafts held as they lie."
+)
+TORQUE_SHOWN = "Transmission error, its first orders and stiffness of the teeth over the torque."
+#: what teeth are made of, by the name of the model
+TEETH_BY = {"slices": "plane slices", "solid": "3D finite elements"}
 
 
 def contact_sheet(study: TeethStudy, units: Units) -> Sheet:
     """Return the sheet of the contact of all meshes."""
     meshes, several = study.meshes, len(study.meshes) > 1
-    tables = [of_mesh(mesh, units, NOTE if mesh is meshes[-1] else "") for mesh in meshes]
+    tables = [of_mesh(mesh, units, legend(meshes) if mesh is meshes[-1] else "") for mesh in meshes]
     charts: dict[str, Make] = {}
     words: dict[str, str] = {}
     for number, mesh in enumerate(meshes, start=1):
@@ -49,16 +57,20 @@ def contact_sheet(study: TeethStudy, units: Units) -> Sheet:
         ):
             charts[stem + end] = partial(chart, mesh, units, name)
             words[stem + end] = shown
+        if mesh.path_ends:
+            words["pattern" + end] += CORNERS_SHOWN
         if curve := study.curves.get(mesh.name):
-            tables.append(over_torque(curve, units, name))
+            tables.append(over_torque(curve, units, name, study.point.of))
             charts["torque" + end] = partial(torque_chart, curve, units, name)
             words["torque" + end] = TORQUE_SHOWN
-    tables += [of_models(found, units) for found in study.ladders]
+    tables += [of_models(ladder, units) for ladder in study.ladders]
+    tables += [assumptions(mesh) for mesh in meshes]
+    modelled = f"Teeth by {_teeth_by(study)}, shafts as Timoshenko beams."
     notes = [line for mesh in meshes for line in sentences(mesh, study, units)]
     return Sheet(
         name="contact",
         title=f"{study.title}: contact of teeth",
-        lead=f"At {study.point.label}; teeth by plane slices, shafts as Timoshenko beams.",
+        lead=f"At {study.point.label}. {modelled}",
         tables=tables,
         data=study.as_dict(),
         charts=charts,
@@ -66,12 +78,12 @@ def contact_sheet(study: TeethStudy, units: Units) -> Sheet:
             f"cycle_{number}" if several else "cycle": cycle_lines(mesh)
             for number, mesh in enumerate(meshes, start=1)
         },
-        verdict=[line for found in study.ladders for line in found.sentences()],
+        verdict=[line for ladder in study.ladders for line in ladder.sentences()],
         notes=notes,
         cautions=study.cautions,
         words=words,
         terminal=Terminal(
-            heading=[f"{study.title} at {study.point.label}: contact of teeth"],
+            heading=[f"{study.title} at {study.point.label}: contact of teeth", modelled],
             tables=tables,
             closing=[*map(in_ascii, notes), *map(caution, study.cautions)],
         ),
@@ -79,16 +91,36 @@ def contact_sheet(study: TeethStudy, units: Units) -> Sheet:
 
 
 NOTE = (
-    "Tangent: about the load, what vibrates; secant: from first touch to the load. ISO 6336-1: with "
-    "CM = 0.8, along the line of action. Askew: how far flanks open from end to end of the face."
+    "Tangent: slope at this load, for vibration; secant: from first touch to the load; aligned: with "
+    "shafts held as they lie. Order n: amplitude at n times the tooth frequency."
 )
+NORM_NOTE = (
+    "ISO 6336-1: method B with CM = 0.8, along the line of action. Misalignment: how far flanks open "
+    "from end to end of the face, f_sh of the norm."
+)
+
+
+def legend(meshes: Sequence[SolvedMesh]) -> str:
+    """Return what the words of the tables mean."""
+    has_norm = any(isinstance(mesh, MeshContact) for mesh in meshes)
+    return f"{NOTE} {NORM_NOTE}" if has_norm else NOTE
+
+
+def _teeth_by(study: TeethStudy) -> str:
+    """Return what the teeth are modelled by, in words; bevel teeth are always of slices."""
+    kinds = {
+        "slices" if isinstance(mesh, BevelContact) else study.model.name for mesh in study.meshes
+    }
+    if len(kinds) > 1:
+        return f"{TEETH_BY[study.model.name]}, of bevel gears by {TEETH_BY['slices']}"
+    return TEETH_BY[kinds.pop()]
 
 
 def of_mesh(mesh: SolvedMesh, units: Units, note: str) -> Table:
     """Return the numbers of a mesh, with their range over the cycle."""
     columns = [
         word(""),
-        Column("mean or all", kind=NUMBER),
+        Column("value or mean", kind=NUMBER),
         Column("least", kind=NUMBER),
         Column("largest", kind=NUMBER),
     ]
@@ -115,15 +147,15 @@ def _stiffnesses(mesh: SolvedMesh, units: Units) -> list[Row]:
     rows = [
         _alone(f"torque on the first wheel, {torque}", units.number(cycle.torque, "N m", 4)),
         _alone(f"force along the line of action, {force}", units.number(cycle.force, "N", 4)),
-        spread("teeth, tangent", cycle.tangent),
-        spread("teeth, secant", cycle.secant),
-        spread("if aligned, tangent", mesh.aligned.tangent),
-        spread("teeth and supports, tangent", cycle.supported_tangent),
+        spread("stiffness, tangent", cycle.tangent),
+        spread("stiffness, secant", cycle.secant),
+        spread("stiffness, tangent, aligned", mesh.aligned.tangent),
+        spread("stiffness with supports, tangent", cycle.supported_tangent),
     ]
     if isinstance(mesh, MeshContact):
         norm = {
-            "ISO 6336-1, one pair of teeth": mesh.norm.single,
-            "ISO 6336-1, mesh": mesh.norm.mesh,
+            "stiffness by ISO 6336-1, one pair": mesh.norm.single,
+            "stiffness by ISO 6336-1, mesh": mesh.norm.mesh,
         }
         rows += [
             _alone(f"{head}, {unit}", units.number(mesh.along_line(c), "N/m", 4))
@@ -144,9 +176,9 @@ def _errors(mesh: SolvedMesh, units: Units) -> list[Row]:
 
     orders = np.abs(cycle.orders(SHOWN_ORDERS))
     return [
-        size("loaded error, peak to peak", cycle.peak_to_peak),
+        size("transmission error, peak to peak", cycle.peak_to_peak),
         *(size(f"its order {n}", float(a)) for n, a in enumerate(orders, start=1)),
-        size("error without load, peak to peak", float(np.ptp(cycle.free_error))),
+        size("the same without load", float(np.ptp(cycle.free_error))),
     ]
 
 
@@ -155,17 +187,17 @@ def _along_the_face(mesh: SolvedMesh, units: Units) -> list[Row]:
     cycle, unit = mesh.cycle, units.unit("m moved")
     pressure = units.number(cycle.pressure, "Pa stressed", 4)
     rows = [
-        _alone("face load factor", f"{cycle.face_load_factor:.2f}"),
+        _alone("face load factor KHb", f"{cycle.face_load_factor:.2f}"),
         _alone("largest line load over its mean", f"{cycle.line_load_factor:.2f}"),
         _alone(f"largest pressure, {units.unit('Pa stressed')}", pressure),
         _alone("lines that carry, mean", f"{cycle.mean_lines:.2f}"),
     ]
     if isinstance(mesh, MeshContact):
         rows[:1] = [
-            _alone(f"askew by bending, {unit}", _size(mesh.skew.bending, units)),
-            _alone(f"askew by wind-up, {unit}", _size(mesh.skew.turning, units)),
+            _alone(f"misalignment by bending, {unit}", _size(mesh.skew.bending, units)),
+            _alone(f"misalignment by wind-up, {unit}", _size(mesh.skew.turning, units)),
             *rows[:1],
-            _alone("face load factor, ISO 6336-1", f"{mesh.norm_face_load_factor:.2f}"),
+            _alone("face load factor by ISO 6336-1", f"{mesh.norm_face_load_factor:.2f}"),
         ]
     return rows
 
@@ -179,8 +211,8 @@ def _ratios(mesh: MeshContact) -> str:
     return f"{mesh.wheels.contact_ratio:.3f}, {mesh.wheels.overlap_ratio:.3f}"
 
 
-def over_torque(curve: Sequence[AtTorque], units: Units, name: str) -> Table:
-    """Return numbers of a mesh over the torque."""
+def over_torque(curve: Sequence[AtTorque], units: Units, name: str, shaft: str) -> Table:
+    """Return numbers of a mesh over the torque of a shaft."""
 
     def size(head: str, si: str, of: Callable[[AtTorque], float], digits: int = 4) -> Column:
         return Column(
@@ -196,18 +228,20 @@ def over_torque(curve: Sequence[AtTorque], units: Units, name: str) -> Table:
         Column("KHb", lambda at: f"{at.contact.cycle.face_load_factor:.2f}", kind=NUMBER),
         size("pressure", "Pa stressed", lambda at: at.contact.cycle.pressure),
     ]
-    return Table(f"Over the torque{f': {name}' if name else ''}", columns, curve)
+    note = "Error pp: transmission error, peak to peak; KHb: face load factor."
+    title = f"Over the torque of the {shaft}{f': {name}' if name else ''}"
+    return Table(title, columns, curve, note)
 
 
-def of_models(found: Ladder, units: Units) -> Table:
+def of_models(ladder: Ladder, units: Units) -> Table:
     """Return models of the teeth side by side."""
 
     def off(name: str, rung: Rung) -> Cell | str | None:
         share = rung.off.get(name)
         if share is None:
             return None
-        if rung is found.reference:
-            return f"+- {100 * found.bars[name]:.2g} %"
+        if rung is ladder.reference:
+            return f"+- {percent(ladder.bars[name], signed=False)}"
         look = {WITHIN: "good", BEYOND: "bad"}.get(rung.verdict[name], "")
         return Cell(f"{100 * share:+.2g} %", look)
 
@@ -224,7 +258,7 @@ def of_models(found: Ladder, units: Units) -> Table:
             off(FACE, rung),
             rung.seconds,
         ]
-        for rung in found.rungs
+        for rung in ladder.rungs
     ]
     columns = [
         word("teeth by"),
@@ -238,9 +272,15 @@ def of_models(found: Ladder, units: Units) -> Table:
     ]
     note = (
         "Off: against the last, whose own error bars stand there; frequency: what the stiffness does to "
-        f"the mode with most strain energy in these teeth, {100 * found.share:.0f} %."
+        f"the mode with most strain energy in these teeth, {100 * ladder.share:.0f} %."
     )
-    return Table(f"Models of the teeth: {found.mesh}", columns, rows, note)
+    return Table(f"Models of the teeth: {ladder.mesh}", columns, rows, note)
+
+
+def assumptions(mesh: SolvedMesh) -> Table:
+    """Return what the file leaves open of a mesh."""
+    rows = [[text] for text in mesh.assumed]
+    return Table(f"Assumed: {mesh.name}", [word("what the file does not say")], rows)
 
 
 def cycle_lines(mesh: SolvedMesh) -> Table:
@@ -267,20 +307,18 @@ def sentences(mesh: SolvedMesh, study: TeethStudy, units: Units) -> list[str]:
     tangent, stated = float(mesh.cycle.tangent.mean()), study.stiffness[mesh.name]
     if stated is not None:
         lines.append(
-            f"{head}the file has a mesh stiffness of {units.text(stated, 'N/m', 4)}; its teeth give "
-            f'{units.text(tangent, "N/m", 4)} about this load: write stiffness = "teeth" to take it.'
+            f"{head}the file has a mesh stiffness of {units.text(stated, 'N/m', 4)}, the teeth give "
+            f'{units.text(tangent, "N/m", 4)} at this load. To take it, write stiffness = "teeth".'
         )
     if isinstance(mesh, BevelContact) and mesh.band is not None:
         low, high = mesh.band.stiffness
         lines.append(
-            f"{head}cutter and mismatch are estimated: over those that are usual the mesh stiffness "
-            f"is {units.number(low, 'N/m', 3)} to {units.text(high, 'N/m', 3)}, a factor of "
+            f"{head}cutter and mismatch are estimated. Over usual ones the mesh stiffness is "
+            f"{units.number(low, 'N/m', 3)} to {units.text(high, 'N/m', 3)}, a factor of "
             f"{high / low:.1f}."
         )
         lines += [f"{head}{reason}" for reason in mesh.band.refused]
     if mesh.edge:
         lines.append(f"{head}{mesh.edge}.")
-    if mesh.assumed:
-        lines.append(f"{head}assumed: {'; '.join(mesh.assumed)}.")
-    lines += [f"{head}{note}" for note in mesh.notes]
-    return lines
+    lines += [f"{head}{note}." for note in mesh.notes]
+    return lines if several else [line[0].upper() + line[1:] for line in lines]

@@ -50,14 +50,43 @@ class AtTorque:
 
 @dataclass(frozen=True, eq=False)
 class TeethStudy:
-    """Contact of all meshes of a train."""
+    """Contact of all meshes of a train.
+
+    Attributes
+    ----------
+    title : str
+    point : OperatingPoint
+    model : TeethModel
+        Of cylindrical teeth; bevel teeth are of slices.
+    meshes : tuple of SolvedMesh
+        At the operating point.
+    curves : dict of str to tuple of AtTorque
+        By mesh, torque ascending; empty without.
+    stiffness : dict of str to float or None
+        Of each mesh in the file, N/m; None where it is that of the teeth.
+    ladders : tuple of Ladder
+        Models of the teeth side by side, where asked for.
+    cautions : tuple of str
+    seconds : float
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> train = sg.load_train("geometry/gearbox_train.toml")
+    >>> study = teeth_study(train, model=TeethModel(slices=12, positions=8), factors=())
+    >>> [mesh.name for mesh in study.meshes], study.stiffness
+    (['mesh'], {'mesh': 320000000.0})
+    >>> sorted(study.as_dict()["meshes"]["mesh"])[:3]
+    ['assumed', 'contact_ratio', 'corner_share']
+    """
 
     title: str
     point: OperatingPoint
+    model: TeethModel
     meshes: tuple[SolvedMesh, ...]
-    curves: dict[str, tuple[AtTorque, ...]]  #: by mesh, torque ascending; empty without
-    stiffness: dict[str, float | None]  #: of each mesh in the file, N/m; None where of teeth
-    ladders: tuple[Ladder, ...]  #: models of the teeth side by side, where asked for
+    curves: dict[str, tuple[AtTorque, ...]]
+    stiffness: dict[str, float | None]
+    ladders: tuple[Ladder, ...]
     cautions: tuple[str, ...]
     seconds: float
 
@@ -67,6 +96,7 @@ class TeethStudy:
             {
                 "train": self.title,
                 "point": self.point,
+                "model": self.model.name,
                 "meshes": {mesh.name: mesh.as_dict() for mesh in self.meshes},
                 "curves": {
                     name: [at.as_dict() for at in curve] for name, curve in self.curves.items()
@@ -97,12 +127,17 @@ def teeth_study(
     point : OperatingPoint, optional
         By default the first of the train.
     model : TeethModel, optional
+        By default slices.
     factors : sequence of float
         Torques of the curves, of that of the point; none without curves.
     judge : bool
         Whether other models of the teeth are solved as well, and judged by the finest.
     progress : callable
-        Is told in words what is solved.
+        Called with words on what is solved.
+
+    Returns
+    -------
+    TeethStudy
 
     Raises
     ------
@@ -148,6 +183,7 @@ def teeth_study(
     return TeethStudy(
         title=train.title or train.name,
         point=point,
+        model=model,
         meshes=tuple(meshes),
         curves={name: tuple(curve) for name, curve in curves.items()},
         stiffness={mesh.name: stated_stiffness(train, mesh.name) for mesh in teeth},

@@ -41,14 +41,34 @@ THINNEST = HUB
 
 @dataclass(frozen=True)
 class TeethModel:
-    """How teeth are modelled."""
+    """How teeth are modelled.
+
+    Attributes
+    ----------
+    name : {"slices", "solid"}
+        Plane strain in slices of the face, or finite elements in 3D.
+    slices, positions : int
+        Of the face, and of a mesh cycle.
+    coarse : bool
+        Whether finite elements are twice as large.
+    depth : float
+        Depth of readings below the flank, modules.
+    spread : float
+        How far a slice moves others along the face, modules; of slices alone.
+
+    Examples
+    --------
+    >>> quick = TeethModel(slices=12, positions=8)
+    >>> quick.name, quick.slices
+    ('slices', 12)
+    """
 
     name: Literal["slices", "solid"] = "slices"
-    slices: int = 24  #: of the face
-    positions: int = POSITIONS  #: of a mesh cycle
-    coarse: bool = False  #: whether finite elements are twice as large
-    depth: float = DEPTH  #: of readings below the flank, modules
-    spread: float = SPREAD  #: along the face, modules; of slices alone
+    slices: int = 24
+    positions: int = POSITIONS
+    coarse: bool = False
+    depth: float = DEPTH
+    spread: float = SPREAD
 
     def compliance(self, wheel: Wheel, body: WheelBody) -> FlankCompliance:
         """Return the compliance of a wheel's teeth."""

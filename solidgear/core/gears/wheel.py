@@ -44,9 +44,23 @@ def involute(angle):
 
 @dataclass(frozen=True)
 class Rack:
-    """The basic rack normal to the teeth (ISO 53), lengths in normal modules."""
+    """The basic rack normal to the teeth, by default that of ISO 53, profile A.
 
-    pressure_angle: float = radians(20)  #: rad
+    Attributes
+    ----------
+    pressure_angle : float
+        rad.
+    addendum, dedendum, root_radius : float
+        In normal modules.
+
+    Examples
+    --------
+    >>> stub = Rack(addendum=0.8)
+    >>> round(1e3 * Wheel(23, 4e-3, rack=stub).tip, 3)
+    49.2
+    """
+
+    pressure_angle: float = radians(20)
     addendum: float = 1.0
     dedendum: float = 1.25
     root_radius: float = 0.38

@@ -376,4 +376,4 @@ def _pitch_angle_notes(
         )
         total = [angle for angle in published if angle is not None]
         sums = f", {degrees(sum(total)):.1f} degrees in all" if len(total) == 2 else ""
-        yield (f"pitch angles of the teeth and the shaft angle, in place of {words}{sums}")
+        yield f"pitch angles follow from teeth and shaft angle, in place of {words}{sums}"

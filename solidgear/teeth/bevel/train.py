@@ -165,7 +165,7 @@ def assumed(blank: BevelBlank, mismatch: Mismatch | None) -> tuple[str, ...]:
     """Return a sentence for each value that is estimated, and for data that were not taken."""
     out = [ESTIMATES[key](blank) for key in blank.estimated]
     if mismatch is None:
-        out.append(f"ease-off {1e6 * USUAL_EASE_OFF:.0f} um by the cutter radius")
+        out.append(f"ease-off {1e6 * USUAL_EASE_OFF:.0f} um, by a larger cutter of the pinion")
     return tuple(out)
 
 
