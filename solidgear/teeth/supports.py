@@ -12,14 +12,16 @@ own load adds, both stand in it.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import scipy.linalg as sla
 
 from solidgear.core import Scene, System
 from solidgear.core.scene.stations import Port
+from solidgear.teeth.contact.cylindrical import CylindricalPair
 from solidgear.teeth.contact.frame import Frame, Stations, Supports
 from solidgear.teeth.mesh_place import MeshPlace, place_of
 from solidgear.trains.assembly.assembly import Assembly
@@ -60,6 +62,8 @@ class Carried:
 
     operating: Operating  #: of a train as of :func:`with_sections`
     state: OperatingState
+    #: wheels whose contact was solved, by mesh, geometry and model of the teeth
+    pairs: dict[Any, CylindricalPair] = field(default_factory=dict, repr=False)
 
     @classmethod
     def at_rest(cls, train: Train, point: OperatingPoint) -> Carried:
@@ -69,7 +73,7 @@ class Carried:
 
     def at(self, point: OperatingPoint) -> Carried:
         """Settle the same train at another point, from this state on."""
-        return Carried(self.operating, self.operating.at(point, self.state))
+        return Carried(self.operating, self.operating.at(point, self.state), self.pairs)
 
     @property
     def train(self) -> Train:
