@@ -64,6 +64,7 @@ class Carried:
     state: OperatingState
     #: wheels whose contact was solved, by mesh, geometry and model of the teeth
     pairs: dict[Any, CylindricalPair] = field(default_factory=dict, repr=False)
+    _supports: dict[Any, Supports] = field(default_factory=dict, init=False, repr=False)
 
     @classmethod
     def at_rest(cls, train: Train, point: OperatingPoint) -> Carried:
@@ -114,6 +115,12 @@ class Carried:
 
     def supports(self, place: MeshPlace, frame: Frame) -> Supports:
         """Return what carries both wheels of a mesh."""
+        key = place.link, *frame.origin.tolist(), *frame.axes.ravel().tolist()
+        if key not in self._supports:
+            self._supports[key] = self._solved_supports(place, frame)
+        return self._supports[key]
+
+    def _solved_supports(self, place: MeshPlace, frame: Frame) -> Supports:
         held = self._held(place)
         stations, rows, motions = [], [], []
         for end in place.ends:
