@@ -21,6 +21,9 @@ from solidgear.teeth.study import teeth_study
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.load.operation import at_point
 from solidgear.trains.modes.modes import train_modes
+from solidgear.variants.optimise.command import designs_chart
+from solidgear.variants.optimise.designs import train_designs
+from solidgear.variants.optimise.wish import limit_of, wish_of
 from solidgear.variants.sweep.design import Design
 from solidgear.variants.sweep.error_chart import error_chart
 from solidgear.variants.sweep.error_curves import error_curves
@@ -182,3 +185,71 @@ def test_long_relief_against_a_contact_program_of_sectors(errors, relief):
 def test_the_torque_of_least_error_grows_with_the_relief(errors):
     least = [LOADS[int(np.argmin(errors[relief]))] for relief in SECTORS]
     assert least == [50e3, 200e3, 400e3, 600e3]
+
+
+# ------------------------------------------------------------------------------------- searches
+RANGE = "pinion.relief.tip+gear.relief.tip=0 um:8 um"
+
+
+def test_a_design_of_a_train_is_solved_at_every_point(rows):
+    """The file as it is, then a relief; goals choose which numbers are solved."""
+    ends = Design((f"{RANGE}:2",))
+    tried = train_designs(GEARBOX, ends, ["transmission error"], None, None, None, True)
+    values, (full, coast) = tried.solve([np.nan])
+    assert values == {"pinion.relief.tip+gear.relief.tip": None}
+    assert (full["torque"], coast["torque"]) == (115.0, -30.0)
+    assert full["transmission_error"] == pytest.approx(rows[1]["transmission_error"], rel=1e-9)
+    values, (eased, _) = tried.solve([4.0])
+    assert values == {"pinion.relief.tip+gear.relief.tip": pytest.approx(4e-6)}
+    assert eased["transmission_error"] < 0.5 * full["transmission_error"]
+    assert tried.solved == (
+        "plane slices of the teeth on Timoshenko shafts, at the worst of 2 operating points"
+    )
+    modes = train_designs(GEARBOX, ends, ["bending 1", "f2"], "euler", None, None, False)
+    assert modes.task.ask == ("system-modes",)
+    assert {*modes.task.models.values()} == {"euler"}
+
+
+@pytest.mark.long
+def test_the_best_relief_is_that_of_a_grid(tmp_path):
+    """Design 0 has no relief in its file, and so no place in the chart over it."""
+    optimum = sg.optimise(GEARBOX, [RANGE], "min transmission error", every_point=True)
+    grid = sg.sweep(
+        GEARBOX,
+        "pinion.relief.tip+gear.relief.tip=1 um:6 um:11",
+        ask=["contact"],
+        every_point=True,
+        out=tmp_path / "rows.csv",
+    )
+    worst = grid["transmission_error"].reshape(11, 2).max(axis=1)
+    assert optimum.best.value <= worst.min()
+    assert optimum.best.value == pytest.approx(worst.min(), rel=0.15)
+    assert optimum.best.value == max(row["transmission_error"] for row in optimum.best.rows)
+    assert "rows of a train have no error bars" in " ".join(optimum.sentences)
+    drawing = designs_chart(optimum, "").svg()
+    assert "design 1&#xA;" in drawing and "design 0&#xA;" not in drawing
+
+
+def test_limits_on_teeth_have_units():
+    assert limit_of("contact_pressure < 1200 MPa").limit == pytest.approx(1.2e9)
+    assert limit_of("contact pressure middle-output < 1.2 GPa").limit == pytest.approx(1.2e9)
+    assert limit_of("transmission_error_order1 < 0.5 um").limit == pytest.approx(5e-7)
+    assert limit_of("face_load_factor < 1.3").limit == 1.3
+    assert limit_of("pinion.A.radial < 2 kN").limit == 2000.0
+    assert limit_of("misalignment_in_plane < 50 urad").limit == pytest.approx(5e-5)
+    with pytest.raises(SolidgearError, match="'kg' is not a unit of a number in m"):
+        limit_of("transmission_error < 1 kg")
+
+
+def test_the_worst_of_several_rows_counts():
+    rows = [{"transmission_error": 1e-6}, {"transmission_error": 2e-6}]
+    least, most = wish_of("min transmission_error"), wish_of("max transmission_error")
+    assert least.value(rows) == (2e-6, None) and most.value(rows) == (1e-6, None)
+    assert limit_of("transmission_error < 1.5 um").missing(rows) == pytest.approx(1 / 3)
+    assert least.value([*rows, {}]) is None
+
+
+def test_one_at_a_time_over_every_point_begins_at_the_first():
+    design = Design(("mesh.stiffness=2e8,3e8",), one_at_a_time=True)
+    task = train_task(GEARBOX, design, ask=["deflect"], every_point=True, **BEAMS)
+    assert task.rows([0])[0]["torque"] == 115.0

@@ -22,6 +22,8 @@ UNITS = dict.fromkeys(("shaft angle", "in plane", "across"), "rad moved")
 STATICS = {"K_zz": "N/m", "K_thx": "N m/rad"}
 #: beginning of the columns of mesh forces
 FORCE = "mesh_force"
+#: and of the numbers of a misalignment
+MISALIGNMENT = "misalignment"
 
 
 def force_of(mesh: str) -> str:
@@ -31,7 +33,7 @@ def force_of(mesh: str) -> str:
 
 def misaligned(name: str) -> str:
     """Return the column of a number of the misalignment."""
-    return f"misalignment_{name.replace(' ', '_')}"
+    return f"{MISALIGNMENT}_{name.replace(' ', '_')}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -173,7 +175,9 @@ def curves_of(
             )
         ],
         misalignment=[
-            line for name in misalignments for line in curve(name, misaligned(name), _unit_of(name))
+            line
+            for name in misalignments
+            for line in curve(name, misaligned(name), misalignment_unit(name))
         ],
         radial=loads(".radial"),
         axial=loads(".axial"),
@@ -183,7 +187,7 @@ def curves_of(
     )
 
 
-def _unit_of(name: str) -> str:
+def misalignment_unit(name: str) -> str:
     """Return the unit of a number of the misalignment, whose name a mesh may follow."""
     return next((unit for kind, unit in UNITS.items() if name.startswith(kind)), "m moved")
 

@@ -377,7 +377,8 @@ class TrainVariants(FileVariants[Train]):
         if not train.operation and self.point is None:
             return None
         if self.entries[-1].label == POINT:
-            return train.operation[int(self.values[index, -1])]
+            place = self.values[index, -1]
+            return train.operation[0 if np.isnan(place) else int(place)]
         return train.operation[0] if self.point is None else named_point(train, self.point)
 
     def beside_flanks(self, index: int) -> tuple[float, ...]:
