@@ -8,10 +8,12 @@ import numpy as np
 import pytest
 
 import solidgear as sg
+from solidgear.comparison.two.two_trains import two_trains
 from solidgear.core.errors import SolidgearError
 from solidgear.core.gears.flank_shape import FlankShape, Relief
 from solidgear.core.gears.wheel import Wheel
 from solidgear.core.gears.wheel_pair import WheelPair
+from solidgear.show.units import ENGINEERING
 from solidgear.teeth.compliance.plane import PlaneTeeth
 from solidgear.teeth.compliance.slices import Slices
 from solidgear.teeth.contact.cycle import mesh_cycle
@@ -19,6 +21,8 @@ from solidgear.teeth.contact.cylindrical import CylindricalPair
 from solidgear.teeth.contact.local import Elasticity, LineContact
 from solidgear.teeth.study import teeth_study
 from solidgear.trains.assembly.assembly import Assembly
+from solidgear.trains.file.operation import OperatingPoint
+from solidgear.trains.judge.tooth_stiffness import tooth_stiffness
 from solidgear.trains.load.operation import at_point
 from solidgear.trains.modes.modes import train_modes
 from solidgear.variants.optimise.command import designs_chart
@@ -253,3 +257,35 @@ def test_one_at_a_time_over_every_point_begins_at_the_first():
     design = Design(("mesh.stiffness=2e8,3e8",), one_at_a_time=True)
     task = train_task(GEARBOX, design, ask=["deflect"], every_point=True, **BEAMS)
     assert task.rows([0])[0]["torque"] == 115.0
+
+
+# ------------------------------------------------------------------------------------- verdicts
+def test_a_verdict_says_where_the_mesh_stiffness_comes_from():
+    """That of the train, and at the other point that of a train settled there."""
+    train = sg.load_train(GEARBOX)
+    teeth = train.meshes[0].with_changes(stiffness="teeth")
+    train = train.with_changes(meshes=(teeth,))
+    assembly = Assembly(at_point(train))
+    (mesh,) = tooth_stiffness(assembly)
+    coast = Assembly(at_point(train, "coast"))
+    assert mesh.stiffness[0] == assembly.contact.stiffness
+    assert mesh.stiffness[1] == pytest.approx(coast.contact.stiffness, rel=1e-4)
+    change = 100 * (coast.contact.stiffness / assembly.contact.stiffness - 1)
+    assert mesh.sentence(ENGINEERING) == (
+        "Mesh stiffness calculated from the teeth at full (115 N m on the pinion, 1500 rpm): "
+        f"{ENGINEERING.text(assembly.contact.stiffness, 'N/m', 3)}, without shafts and bearings. "
+        f"It would be {change:+.0f} % at coast (-30 N m on the pinion, 2200 rpm)."
+    )
+    (alone,) = tooth_stiffness(coast)
+    assert alone.stiffness == (coast.contact.stiffness,)
+    assert tooth_stiffness(Assembly(sg.load_train(GEARBOX))) == ()
+
+
+def test_two_trains_beside_each_other_say_which_has_its_stiffness_from_teeth():
+    train = sg.load_train(AXLE)
+    point = OperatingPoint(torque=300.0)
+    train = train.with_changes(operation=(point,))
+    teeth = train.with_changes(meshes=(train.meshes[0].with_changes(stiffness="teeth"),))
+    both = two_trains([Assembly(teeth), Assembly(train)], ("A", "B"), [], "euler", "euler")
+    (said,) = (text for text in both.told() if "calculated from the teeth" in text)
+    assert said.startswith("A: Mesh stiffness calculated from the teeth at 300 N m on the pinion: ")
