@@ -66,7 +66,10 @@ ADDITIONS = {
         "directions": "guards.data:facing_one_way",
     },
     # numbers of a train that another room computes
-    "mesh stiffness": {"teeth": "teeth.train_teeth:mesh_of_teeth"},
+    "mesh stiffness": {
+        "teeth": "teeth.train_teeth:mesh_of_teeth",
+        "teeth over points": "teeth.over_points:stiffness_over_points",
+    },
     # solvers
     "back end": {"mumps": "petsc.mumps:Mumps"},
     "engine": {"ranks": "petsc.solver:plan_on_ranks"},

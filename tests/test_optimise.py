@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.variants.optimise.optimise import Wish, limit_of, wish_of
+from solidgear.variants.optimise.wish import Wish, limit_of, wish_of
 from tests.command import command
 
 SHAFT = "geometry/shaft_stepped.toml"
@@ -63,7 +63,7 @@ def test_limits_are_kept_and_what_cannot_be_is_told():
     found = sg.optimise(SHAFT, vary, "min mass", ["bending 1 > 800 Hz"], **BEAM)
     assert {one.kept for one in found.path} == {True, False}
     for one in found.path:
-        assert one.kept == (Wish("bending 1", True).value(one.row)[0] >= 800)
+        assert one.kept == (Wish("bending 1", True).value(one.rows)[0] >= 800)
     assert found.best.value == min(one.value for one in found.path if one.kept)
     never = sg.optimise(SHAFT, vary, "min mass", ["C_zz < 0.1 um/kN"], **BEAM)
     assert never.best is None and "No design" in never.sentences[0]

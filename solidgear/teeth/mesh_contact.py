@@ -17,7 +17,8 @@ import numpy as np
 
 from solidgear.core.gears.wheel_pair import WheelPair
 from solidgear.core.plain import plain
-from solidgear.teeth.contact.cycle import MeshCycle
+from solidgear.teeth.contact.cells import ToothedPair
+from solidgear.teeth.contact.cycle import MeshCycle, mesh_cycle
 from solidgear.teeth.contact.cylindrical import CylindricalPair
 from solidgear.teeth.contact.frame import Supports
 from solidgear.teeth.norm import NormStiffness, norm_face_load_factor, norm_stiffness
@@ -50,8 +51,19 @@ class SolvedMesh:
     name: str
     supports: Supports
     cycle: MeshCycle
-    aligned: MeshCycle  #: under the same torque, with wheels that are held as they lie without load
     assumed: tuple[str, ...]  #: what the file leaves open, sentences
+
+    @cached_property
+    def aligned(self) -> MeshCycle:
+        """Cycle under the same torque, with wheels that are held as they lie without load."""
+        cycle = self.cycle
+        count = len(cycle.positions)
+        return mesh_cycle(self.teeth, cycle.torque, cycle.base, cycle.slices, positions=count)
+
+    @property
+    def teeth(self) -> ToothedPair:
+        """Both wheels as their contact needs them."""
+        raise NotImplementedError
 
     @property
     def status(self) -> str:
@@ -131,6 +143,11 @@ class MeshContact(SolvedMesh):
     """
 
     pair: CylindricalPair
+
+    @property
+    def teeth(self) -> ToothedPair:
+        """Both wheels as their contact needs them."""
+        return self.pair
 
     @property
     def face_width(self) -> float:

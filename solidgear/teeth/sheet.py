@@ -241,7 +241,7 @@ def of_models(ladder: Ladder, units: Units) -> Table:
         if share is None:
             return None
         if rung is ladder.reference:
-            return f"+- {percent(ladder.bars[name], signed=False)}"
+            return f"+- {100 * ladder.bars[name]:.2g} %"
         look = {WITHIN: "good", BEYOND: "bad"}.get(rung.verdict[name], "")
         return Cell(f"{100 * share:+.2g} %", look)
 

@@ -12,14 +12,16 @@ own load adds, both stand in it.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import scipy.linalg as sla
 
 from solidgear.core import Scene, System
 from solidgear.core.scene.stations import Port
+from solidgear.teeth.contact.cylindrical import CylindricalPair
 from solidgear.teeth.contact.frame import Frame, Stations, Supports
 from solidgear.teeth.mesh_place import MeshPlace, place_of
 from solidgear.trains.assembly.assembly import Assembly
@@ -60,6 +62,9 @@ class Carried:
 
     operating: Operating  #: of a train as of :func:`with_sections`
     state: OperatingState
+    #: wheels whose contact was solved, by mesh, geometry and model of the teeth
+    pairs: dict[Any, CylindricalPair] = field(default_factory=dict, repr=False)
+    _supports: dict[Any, Supports] = field(default_factory=dict, init=False, repr=False)
 
     @classmethod
     def at_rest(cls, train: Train, point: OperatingPoint) -> Carried:
@@ -69,7 +74,7 @@ class Carried:
 
     def at(self, point: OperatingPoint) -> Carried:
         """Settle the same train at another point, from this state on."""
-        return Carried(self.operating, self.operating.at(point, self.state))
+        return Carried(self.operating, self.operating.at(point, self.state), self.pairs)
 
     @property
     def train(self) -> Train:
@@ -110,6 +115,12 @@ class Carried:
 
     def supports(self, place: MeshPlace, frame: Frame) -> Supports:
         """Return what carries both wheels of a mesh."""
+        key = place.link, *frame.origin.tolist(), *frame.axes.ravel().tolist()
+        if key not in self._supports:
+            self._supports[key] = self._solved_supports(place, frame)
+        return self._supports[key]
+
+    def _solved_supports(self, place: MeshPlace, frame: Frame) -> Supports:
         held = self._held(place)
         stations, rows, motions = [], [], []
         for end in place.ends:

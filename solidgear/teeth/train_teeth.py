@@ -19,9 +19,8 @@ from solidgear.teeth.compliance.flank import FlankCompliance
 from solidgear.teeth.compliance.plane import DEPTH, HUB, PlaneTeeth
 from solidgear.teeth.compliance.slices import SPREAD, Slices
 from solidgear.teeth.compliance.solid import SolidTeeth
-from solidgear.teeth.contact.cycle import POSITIONS, MeshCycle, harmonics, mesh_cycle
+from solidgear.teeth.contact.cycle import POSITIONS, harmonics, mesh_cycle
 from solidgear.teeth.contact.cylindrical import CylindricalPair
-from solidgear.teeth.contact.frame import Supports
 from solidgear.teeth.contact.local import Elasticity, LineContact
 from solidgear.teeth.mesh_contact import ORDERS, MeshContact
 from solidgear.teeth.supports import Carried, with_sections
@@ -172,24 +171,24 @@ def _hold(scene: Scene, wheel: Wheel, rigid: bool) -> float | None:
 def mesh_contact(
     carried: Carried, mesh: Pair | PlanetMesh, model: TeethModel | None = None
 ) -> MeshContact:
-    """Solve the contact of a mesh over its cycle where its train is carried."""
+    """Solve the contact of a mesh over its cycle where its train is carried; the mesh may be that of a
+    train which differs from it in the shapes of flanks alone.
+    """
     model = model or TeethModel()
     teeth = teeth_of(mesh, carried.coast(mesh))
-    contact = toothed(mesh, teeth, model)
+    wheels = mesh.name, teeth.wheels, model
+    if wheels not in carried.pairs:
+        carried.pairs[wheels] = toothed(mesh, teeth, model)
+    contact = carried.pairs[wheels].with_shapes(teeth.shapes)
     place = carried.place(mesh, teeth)
     supports = carried.supports(place, place.frame(teeth))
     torque = carried.force(place) * teeth.wheels.first.base * np.cos(teeth.wheels.base_helix)
     base = teeth.wheels.first.base
-
-    def cycle(supports: Supports | None) -> MeshCycle:
-        return mesh_cycle(contact, torque, base, model.slices, supports, model.positions)
-
     return MeshContact(
         name=mesh.name,
         pair=contact,
         supports=supports,
-        cycle=cycle(supports),
-        aligned=cycle(None),
+        cycle=mesh_cycle(contact, torque, base, model.slices, supports, model.positions),
         assumed=teeth.assumed,
     )
 
@@ -226,15 +225,22 @@ def mesh_of_teeth(train: Train, varies: str = "") -> Train:
     if not asks_for_teeth(train):
         return train
     carried = Carried.at_rest(with_sections(with_usual_meshes(train)), _point(train))
+    return with_teeth(train, carried, varies)
+
+
+def with_teeth(train: Train, carried: Carried, varies: str = "") -> Train:
+    """Return a train whose meshes with ``stiffness = "teeth"`` have the numbers of their teeth where it
+    is carried: the train itself, or one that differs in the shapes of flanks alone.
+    """
     meshes = [
         _filled(carried, pair, mesh, pair.name == varies) if mesh.stiffness == TEETH else mesh
-        for pair, mesh in zip(carried.train.pairs, train.meshes)
+        for pair, mesh in zip(train.pairs, train.meshes)
     ]
     planetary = {
         stage.called: train.planetary[stage.called].with_changes(
             mesh=_of_stage(carried, stage, table)
         )
-        for stage in carried.train.stages
+        for stage in train.stages
         for table in [train.planetary[stage.called].mesh]
     }
     return train.with_changes(meshes=tuple(meshes), planetary={**train.planetary, **planetary})

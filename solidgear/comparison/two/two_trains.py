@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cached_property, partial
 from time import perf_counter
 from typing import Any, ClassVar, NamedTuple
 
@@ -36,6 +36,7 @@ from solidgear.trains.file.layout import PerTurn
 from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.planetary import PlanetMesh
 from solidgear.trains.judge.comparison import train_data
+from solidgear.trains.judge.tooth_stiffness import ToothStiffness, tooth_stiffness
 from solidgear.trains.modes.modes import unpublished_lines
 from solidgear.trains.modes.pairing import (
     BEYOND,
@@ -105,6 +106,11 @@ class OneTrain(Side):
     #: elastic ones, also some above the highest frequency, where partners may lie
     modes: tuple[SeenMode, ...]
     loaded: Deflection | None  #: at its operating point
+
+    @cached_property
+    def tooth_stiffness(self) -> tuple[ToothStiffness, ...]:
+        """Stiffness of the meshes whose teeth give it."""
+        return tooth_stiffness(self.assembly)
 
     @property
     def title(self) -> str:
@@ -189,6 +195,7 @@ class TwoTrains(Beside[OneTrain, SeenMode]):
         return [
             beside.inputs(self.inputs),
             _models(self),
+            *_of_teeth(self, units),
             *_largest_force(self, units),
             *_loudest(self, units),
             *beside.modes(self.modes, "in the other train"),
@@ -409,6 +416,13 @@ def _peak_pairs(
 
 
 # ---------------------------------------------------------------------- sentences
+def _of_teeth(pair: TwoTrains, units: Units) -> Iterator[str]:
+    """Yield sentences on mesh stiffness that teeth give."""
+    for letter, train in pair.by_letter.items():
+        for mesh in train.tooth_stiffness:
+            yield f"{letter.upper()}: {mesh.sentence(units)}"
+
+
 def _models(trains: TwoTrains) -> str:
     titles = {s: LADDER[m].title if m in LADDER.bodies else m for s, m in trains.models.items()}
     words = mix_label(titles)

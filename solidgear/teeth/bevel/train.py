@@ -20,8 +20,9 @@ from solidgear.teeth.bevel.pair import BevelPair
 from solidgear.teeth.bevel.reading import blank_of, mismatch_of
 from solidgear.teeth.compliance.plane import HUB, PlaneTeeth
 from solidgear.teeth.compliance.slices import Slices
-from solidgear.teeth.contact.cycle import POSITIONS, MeshCycle, mesh_cycle
-from solidgear.teeth.contact.frame import Frame, Supports
+from solidgear.teeth.contact.cells import ToothedPair
+from solidgear.teeth.contact.cycle import POSITIONS, mesh_cycle
+from solidgear.teeth.contact.frame import Frame
 from solidgear.teeth.contact.local import Elasticity, LineContact
 from solidgear.teeth.mesh_contact import SolvedMesh
 from solidgear.teeth.mesh_place import place_of_pair
@@ -61,6 +62,11 @@ class BevelContact(SolvedMesh):
 
     pair: BevelPair
     eased: bool  #: whether the mismatch is estimated
+
+    @property
+    def teeth(self) -> ToothedPair:
+        """Both wheels as their contact needs them."""
+        return self.pair
 
     @property
     def estimated(self) -> bool:
@@ -205,15 +211,11 @@ def bevel_contact(
     lever = carried.assembly.contacts[pair.name].pinion.lever
     torque = abs(float(carried.force(place) * lever))
 
-    def cycle(supports: Supports | None) -> MeshCycle:
-        return mesh_cycle(toothed, torque, toothed.base, slices, supports, positions)
-
     return BevelContact(
         name=pair.name,
         pair=toothed,
         supports=supports,
-        cycle=cycle(supports),
-        aligned=cycle(None),
+        cycle=mesh_cycle(toothed, torque, toothed.base, slices, supports, positions),
         assumed=assumed(blank, mismatch),
         eased=mismatch is None,
     )

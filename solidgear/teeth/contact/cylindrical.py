@@ -15,7 +15,8 @@ means nothing.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from math import cos, sin, tan
 
 import numpy as np
@@ -35,6 +36,14 @@ SLIVER = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
+class _Solved:
+    """What a pair has computed that no shape of its flanks changes."""
+
+    lines: dict[float, Cells]  #: of flanks without modification, by position
+    bulks: dict[bytes, np.ndarray]  #: compliances, by the places of the cells
+
+
+@dataclass(frozen=True, eq=False)
 class CylindricalPair:
     """Two cylindrical wheels with their compliance and the shapes of their flanks."""
 
@@ -46,8 +55,29 @@ class CylindricalPair:
     slices: int = 24
     beyond: float = BEYOND  #: pitches; 0 for the path alone
 
+    @cached_property
+    def _solved(self) -> _Solved:
+        return _Solved({}, {})
+
+    def with_shapes(self, shapes: tuple[FlankShape, FlankShape]) -> CylindricalPair:
+        """Return the same wheels with other flanks; cells and compliances that one of both has
+        computed serve the other.
+        """
+        pair = replace(self, shapes=shapes)
+        pair.__dict__["_solved"] = self._solved
+        return pair
+
     def cells(self, phase: float) -> Cells:
         """Return the cells of all contact lines at a position in pitches."""
+        lines = self._solved.lines
+        if phase not in lines:
+            lines[phase] = self._exact_cells(phase)
+        cells = lines[phase]
+        shape = self.shape_gap(np.clip(cells.place, *self.wheels.ends), cells.z)
+        return replace(cells, gap=cells.gap + shape)
+
+    def _exact_cells(self, phase: float) -> Cells:
+        """Return the cells of flanks without modification."""
         wheels, n = self.wheels, self.slices
         step = self.wheels.face_width / n
         z = (np.arange(n) + 0.5) * step - self.wheels.face_width / 2
@@ -81,7 +111,7 @@ class CylindricalPair:
             line=line,
             length=length,
             radius=wheels.curvature_radius(inside),
-            gap=gap + self.shape_gap(inside, along),
+            gap=gap,
             lever=lever,
             point=point,
             normal=np.tile(normal, (n_cells, 1)),
@@ -112,6 +142,13 @@ class CylindricalPair:
 
     def bulk(self, cells: Cells) -> np.ndarray:
         """Return the (n, n) compliance of the teeth of both wheels between cells, m/N."""
+        bulks = self._solved.bulks
+        places = b"".join(array.tobytes() for array in (cells.line, cells.place, cells.z))
+        if places not in bulks:
+            bulks[places] = self._bulk(cells)
+        return bulks[places]
+
+    def _bulk(self, cells: Cells) -> np.ndarray:
         place = np.clip(cells.place, *self.wheels.ends)
         radii = self.wheels.first_radius(place), self.wheels.second_radius(place)
         out = np.zeros((len(place), len(place)))

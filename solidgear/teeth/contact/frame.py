@@ -31,14 +31,11 @@ class Stations:
         """
         points = frame.origin + point @ frame.axes.T
         normals = normal @ frame.axes.T
-        n, m = len(points), len(self.place)
-        out = np.zeros((n, m, 6))
+        levers = points[:, None] - self.points
+        normals = np.broadcast_to(normals[:, None], levers.shape)
+        rows = np.concatenate([normals, np.cross(levers, normals)], axis=2)
         weights = _between(self.place, point[:, 2])
-        for k in range(m):
-            lever = points - self.points[k]
-            row = np.hstack([normals, np.cross(lever, normals)])
-            out[:, k] = weights[:, k, None] * row
-        return out.reshape(n, 6 * m)
+        return (weights[:, :, None] * rows).reshape(len(points), -1)
 
 
 def _between(place: np.ndarray, z: np.ndarray) -> np.ndarray:

@@ -35,7 +35,7 @@ def with_solved_meshes(train: Train, varies: str = "") -> Train:
     """
     if not asks_for_teeth(train):
         return train
-    if not _has_settled(train):
+    if not has_settled(train):
         return with_usual_meshes(train)
     mesh_of_teeth = addition("mesh stiffness", TEETH)
     if mesh_of_teeth is None:
@@ -74,7 +74,8 @@ def with_usual_meshes(train: Train) -> Train:
     return train.with_changes(meshes=tuple(meshes), planetary=planetary)
 
 
-def _has_settled(train: Train) -> bool:
+def has_settled(train: Train) -> bool:
+    """Return True for a train all of whose bearings have a stiffness."""
     bearings = [b for shaft in train.shafts.values() for b in shaft.scene.bearings]
     return all(b.catalogue is None or b.matrix is not None for b in bearings)
 

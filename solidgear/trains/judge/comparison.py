@@ -23,6 +23,7 @@ from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.planetary import Stage
 from solidgear.trains.file.train import Train
 from solidgear.trains.judge.judge import JUDGE, MIXED, Verdict, charted_mixes, judge_train
+from solidgear.trains.judge.tooth_stiffness import ToothStiffness, tooth_stiffness
 from solidgear.trains.modes.modes import TrainModes, train_modes
 from solidgear.trains.modes.pictures import draw_modes, turning_pair
 from solidgear.trains.response.loudest import Loudest, loudest
@@ -61,6 +62,11 @@ class TrainComparison:
         """Largest dynamic mesh force by the judge."""
         assembly = self.assembly
         return loudest(self.judge, self.modes.modes, assembly.train, assembly.scenes)
+
+    @cached_property
+    def tooth_stiffness(self) -> tuple[ToothStiffness, ...]:
+        """Stiffness of the meshes whose teeth give it."""
+        return tooth_stiffness(self.assembly)
 
     @property
     def drawn(self) -> list[TrainResponse]:
@@ -114,6 +120,7 @@ class TrainComparison:
             "train": self.data,
             "verdict": self.verdict.as_dict() | {"sentences": self.verdict.sentences()},
             "loudest": self.top.as_dict(),
+            **({"tooth_stiffness": plain(of_teeth)} if (of_teeth := self.tooth_stiffness) else {}),
             "modes": self.modes.as_dict() | {"notes": self.modes.notes()},
             "peaks": plain(self.judge.peaks),
             "crossings": plain(self.orders.crossings),

@@ -14,7 +14,7 @@ from solidgear.show.run_tables import pairs_of
 from solidgear.show.sheet import Section, Sheet, Terminal
 from solidgear.show.sketch import sketch_svg
 from solidgear.show.table import Column, Table, text
-from solidgear.show.units import GROUP, Units
+from solidgear.show.units import GROUP, Units, in_ascii
 from solidgear.show.viewer import viewer_fragment
 from solidgear.show.words import capital, grouped, percent, seconds, whole
 from solidgear.trains.judge.comparison import Pictures, TrainComparison
@@ -59,7 +59,8 @@ def comparison_sheet(
         data |= {"pictures": pictures.files, "left_out": pictures.left_out}
         sections = _sections(comparison, units, viewer)
     pictures = pictures or Pictures()
-    loudest, conclusions = comparison.top.sentences(), verdict.sentences()
+    of_teeth = [mesh.sentence(units) for mesh in comparison.tooth_stiffness]
+    loudest, conclusions = comparison.top.sentences(), [*verdict.sentences(), *of_teeth]
     return Sheet(
         name="report",
         json_name="results",
@@ -80,7 +81,7 @@ def comparison_sheet(
         terminal=Terminal(
             heading=[f"{verdict.train}, up to {verdict.highest_hz:g} Hz", *loudest],
             tables=[verdict_table(verdict)],
-            results=[*conclusions, *unpublished_lines(verdict.unpublished)],
+            results=[*map(in_ascii, conclusions), *unpublished_lines(verdict.unpublished)],
             closing=[*map(caution, verdict.cautions)],
             lines="whole",
         ),

@@ -21,7 +21,7 @@ from solidgear.variants.optimise.optimise import optimise as optimised
 
 @command
 def optimise(
-    scene: Annotated[Path, typer.Argument(help="Scene file (TOML).")],
+    scene: Annotated[Path, typer.Argument(help="Scene or train file (TOML).")],
     *,
     vary: Annotated[
         list[str] | None,
@@ -30,7 +30,12 @@ def optimise(
         ),
     ] = None,
     goal: Annotated[
-        str, typer.Option("--goal", help='"max NUMBER" or "min NUMBER", such as "max bending 1".')
+        str,
+        typer.Option(
+            "--goal",
+            help='"max NUMBER" or "min NUMBER", such as "max bending 1"; of a train a column of its '
+            'sweep, such as "min transmission_error".',
+        ),
     ],
     keep: Annotated[
         list[str] | None,
@@ -54,6 +59,17 @@ def optimise(
             "--tol", "Bar allowed of every design; a tenth of the scene's tolerance by default."
         ),
     ] = None,
+    point: Annotated[
+        str | None,
+        typer.Option("--point", help="Of a train: operating point, by name or number; the first."),
+    ] = None,
+    every_point: Annotated[
+        bool,
+        typer.Option(
+            "--every-point",
+            help="Of a train: goal and limits hold for the worst of all operating points.",
+        ),
+    ] = False,
     out: Annotated[
         Path | None, typer.Option("--out", "-o", help="Folder for a page, data, table and chart.")
     ] = None,
@@ -69,6 +85,8 @@ def optimise(
                 keep_sum=keep_sum or (),
                 model=None if model == AUTO else str(model),
                 tol=tol,
+                point=point,
+                every_point=every_point,
                 progress=progress,
             )
         ),
@@ -80,13 +98,10 @@ def optimise(
 def optimum_sheet(optimum: Optimum) -> Sheet:
     """Return the sheet of a search."""
     title = f"{optimum.scene}: {optimum.goal}"
-    how = "the cheapest mesh whose bars are within the tolerance"
-    if optimum.model:
-        how = f"the {optimum.model} model, without error bars"
     return Sheet(
         name="optimum",
         title=title,
-        lead=f"Every design solved by {how}.",
+        lead=f"Every design solved by {optimum.solved}.",
         tables=[designs(optimum)],
         data=optimum.results,
         charts={"designs": partial(designs_chart, optimum, title)},
@@ -137,12 +152,13 @@ def _look(optimum: Optimum, design: Design) -> str:
 
 def designs_chart(optimum: Optimum, title: str, width: float = WIDE) -> Chart:
     """Draw the goal over the one entry that varies, or over the number of the design."""
+    labels = list(optimum.path[0].values)
     solved = [
         (design, design.value, design.bar or 0.0)
         for design in optimum.path
-        if design.value is not None
+        # the file as it is may not hold the entry
+        if design.value is not None and (len(labels) > 1 or design.values[labels[0]] is not None)
     ]
-    labels = list(optimum.path[0].values)
     over = labels[0] if len(labels) == 1 else "design"
     x = [d.values[over] if len(labels) == 1 else d.number for d, _, _ in solved]
     low = min(value - bar for _, value, bar in solved)
@@ -165,7 +181,10 @@ def designs_chart(optimum: Optimum, title: str, width: float = WIDE) -> Chart:
     points = []
     for place, (design, value, _) in zip(x, solved):
         numbers = {**design.values, optimum.goal.name: value}
-        facts = [(label, f"{number:.6g}", "") for label, number in numbers.items()]
+        facts = [
+            (label, "as it is" if number is None else f"{number:.6g}", "")
+            for label, number in numbers.items()
+        ]
         words = readout(f"design {design.number}", *facts)
         points.append({"x": place, "y": value, "name": _look(optimum, design), "readout": words})
     panel.draw({"type": "point", "filled": True, "size": 60}, points)

@@ -1,4 +1,4 @@
-"""Search for the entries of a scene that reach a goal best, as far as error bars distinguish designs.
+"""Search for the entries of a file that reach a goal best, as far as error bars distinguish designs.
 
 Every design is read, meshed and solved as a variant of a sweep, its mesh refined until its error bars
 are within the tolerance: it costs seconds, and its small jumps from mesh to mesh would spoil differences.
@@ -17,7 +17,6 @@ from __future__ import annotations
 import itertools
 import math
 import os
-import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -26,15 +25,13 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from solidgear.core import Displayed, SceneError, SolidgearError, nearest, show
+from solidgear.core import Displayed, SolidgearError, is_train, nearest
 from solidgear.core.judge.change import Change
 from solidgear.core.plain import plain
-from solidgear.core.scene.units import quantity, si_factor
+from solidgear.variants.optimise.designs import Designs, scene_designs, train_designs
+from solidgear.variants.optimise.wish import Rows, Wish, limit_of, wish_of
 from solidgear.variants.sweep.design import Design as SweepDesign
-from solidgear.variants.sweep.entries import Entry, amount, assignment, in_si, plain_number
-from solidgear.variants.sweep.file_task import without_bars
-from solidgear.variants.sweep.file_variants import SceneVariants, scene_variants
-from solidgear.variants.sweep.scene_task import MOST_MODES, STATICS, SceneTask
+from solidgear.variants.sweep.entries import Entry, assignment, in_si, plain_number
 
 
 @dataclass(frozen=True)
@@ -48,7 +45,7 @@ class Design:
     bar: float | None
     kept: bool  #: whether every limit is kept with its error bar
     status: str  #: ``ok``, or why it has no numbers
-    row: dict[str, Any]  #: all numbers
+    rows: Rows  #: all numbers; of a train at each operating point
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -64,7 +61,9 @@ class Optimum(Displayed):
     best: Design | None  #: none where no design keeps every limit
     at_end: tuple[str, ...]  #: entries of the best design that are at an end of their range
     how: str = ""  #: the search in words
-    model: str | None = None  #: that was given, and has no error bars
+    #: why values have no error bars; empty where they have
+    unbarred: str = ""
+    solved: str = ""  #: how every design was solved, in words
 
     @property
     def gain(self) -> Change | None:
@@ -90,7 +89,7 @@ class Optimum(Displayed):
             "best": None if self.best is None else self.best.number,
             "at_end": list(self.at_end),
             "search": self.how,
-            "bars": without_bars(self.model) if self.model else "beside each value",
+            "bars": f"none: {self.unbarred}" if self.unbarred else "beside each value",
             "gain": None if self.gain is None else plain(self.gain),
             "designs": [
                 {
@@ -117,7 +116,7 @@ def _sentences(optimum: Optimum) -> Iterator[str]:
         limits = ", ".join(map(str, optimum.keep))
         yield f"No design of {solved} keeps {limits}, error bars included."
         missing = {
-            design.number: max(wish.missing(design.row) for wish in optimum.keep)
+            design.number: max(wish.missing(design.rows) for wish in optimum.keep)
             for design in optimum.path
             if design.status == "ok"
         }
@@ -138,7 +137,7 @@ def _sentences(optimum: Optimum) -> Iterator[str]:
             file += ", which misses a limit"
         percent = f"{100 * (gain.relative or 0.0):+.3g} % from {file}"
         if gain.verdict == "no band":
-            yield f"{percent}; a model that is given has no error bars."
+            yield f"{percent}; {optimum.unbarred}."
         elif gain.verdict == "resolved":
             yield f"{percent}."
         else:
@@ -169,8 +168,6 @@ def _listed_values(design: Design) -> str:
 
 #: of a range: distance of two designs that are the same, and of an optimum at the end from the end
 SAME, AT_END = 1e-6, 1e-6
-#: natural frequencies that a goal may be of
-MODES = 12
 
 
 def optimise(
@@ -182,18 +179,21 @@ def optimise(
     keep_sum: Iterable[str] = (),
     model: str | None = None,
     tol: float | None = None,
+    point: str | None = None,
+    every_point: bool = False,
     progress: Callable[[str], None] = lambda _: None,
 ) -> Optimum:
-    """Vary entries of a scene file to make a number as large or as small as possible.
+    """Vary entries of a scene or train file to make a number as large or as small as possible.
 
     Parameters
     ----------
     scene : path
-        Of the scene file.
+        Of the scene or train file.
     vary : iterable of str
         ``PATH=LOW:HIGH``, such as ``bearing.B.position=180 mm:240 mm``.
     goal : str
-        ``max bending 1``, ``min C_zz``, ``min mass`` ...
+        ``max bending 1``, ``min C_zz``, ``min mass`` ...; of a train a column of its sweep, such as
+        ``min transmission_error``.
     keep : iterable of str
         Limits such as ``C_zz < 5 um/kN``, ``f1 > 600 Hz``, ``mass < 12 kg``; error bars included.
     keep_sum : iterable of str
@@ -204,6 +204,10 @@ def optimise(
     tol : float, optional
         Relative error bar of designs; a tenth of the tolerance of the scene by
         default.
+    point : str, optional
+        Of a train: operating point, by its name or number; the first by default.
+    every_point : bool
+        Of a train: goals and limits hold for the worst of all operating points.
 
     Returns
     -------
@@ -226,14 +230,17 @@ def optimise(
     (True, True, ('bearing.B.position',))
     """
     wanted, limits = wish_of(goal), tuple(map(limit_of, keep))
-    texts = tuple(map(_with_both_ends, vary))
-    design = SweepDesign(texts, one_at_a_time=True, keep_sum=tuple(keep_sum))
-    variants = scene_variants(Path(scene), design, "bearing.B.position=180 mm:240 mm")
-    base = variants.variant(0)  # the file as it is
-    variants.refuse_hopeless()
-    tol = base.ask.tolerance / 10 if tol is None else tol
-    task = SceneTask(variants, model, tol, {}, MODES)
-    return _Search(wanted, limits, task, progress).run(base.title or base.name)
+    texts, sums = tuple(map(_with_both_ends, vary)), tuple(keep_sum)
+    if is_train(Path(scene)):
+        names = [wish.name for wish in (wanted, *limits)]
+        designs = train_designs(
+            Path(scene), SweepDesign(texts, keep_sum=sums), names, model, tol, point, every_point
+        )
+    else:
+        designs = scene_designs(
+            Path(scene), SweepDesign(texts, one_at_a_time=True, keep_sum=sums), model, tol
+        )
+    return _Search(wanted, limits, designs, progress).run()
 
 
 class _Search:
@@ -243,17 +250,15 @@ class _Search:
         self,
         goal: Wish,
         keep: tuple[Wish, ...],
-        task: SceneTask,
+        tried: Designs,
         progress: Callable[[str], None],
     ):
-        self.goal, self.keep, self.task, self.progress = goal, keep, task, progress
-        # the first variant is the design that is solved next
-        self.variants: SceneVariants = task.variants
-        self.entries = task.variants.entries
+        self.goal, self.keep, self.tried, self.progress = goal, keep, tried, progress
+        self.entries = tried.entries
         self.designs: list[Design] = []
         self.places: list[np.ndarray] = []
 
-    def run(self, title: str) -> Optimum:
+    def run(self) -> Optimum:
         """Search from the file as it is, at its place in the ranges as far as it is in them."""
         self._solve(np.full(len(self.entries), math.nan))
         self.places[0] = self._place_of_file()
@@ -268,7 +273,7 @@ class _Search:
         ]
         best = min(sound, key=self._loss, default=None)
         return Optimum(
-            title,
+            self.tried.title,
             goal=self.goal,
             keep=self.keep,
             path=tuple(self.designs),
@@ -279,7 +284,8 @@ class _Search:
                 if min(x, 1 - x) <= AT_END
             ),
             how=how,
-            model=self.task.model,
+            unbarred=self.tried.unbarred,
+            solved=self.tried.solved,
         )
 
     def _loss(self, design: Design) -> float:
@@ -298,7 +304,7 @@ class _Search:
         return self._loss(design) / size
 
     def _shortfall(self, wish: Wish, place: np.ndarray) -> float:
-        return min(wish.missing(self._solve(place).row), 10.0)
+        return min(wish.missing(self._solve(place).rows), 10.0)
 
     def _solve(self, place: np.ndarray) -> Design:
         """Solve a design, or return one that was solved at the same place."""
@@ -306,20 +312,20 @@ class _Search:
             if np.array_equal(place, solved) or np.all(abs(place - solved) < SAME):
                 return design
         number = len(self.designs)
-        self.variants.values[0] = [_between(entry, x) for entry, x in zip(self.entries, place)]
         self.progress(f"design {number}")
-        row = self.task.rows([0])[0]
-        goal = self.goal.value(row)
-        kept = row["status"] == "ok" and all(wish.missing(row) <= 0 for wish in self.keep)
-        if row["status"] == "ok" and goal is None:
-            modes = [str(v) for k, v in row.items() if k.startswith("mode") and k != "model" and v]
-            names = [*map(str, STATICS), "mass", *modes]
+        values = [_between(entry, x) for entry, x in zip(self.entries, place)]
+        varied, rows = self.tried.solve(values)
+        status = next((row["status"] for row in rows if row["status"] != "ok"), "ok")
+        goal = self.goal.value(rows)
+        kept = status == "ok" and all(wish.missing(rows) <= 0 for wish in self.keep)
+        if status == "ok" and goal is None:
+            names = self.tried.names(rows[0])
             raise SolidgearError(
                 f"--goal {self.goal}: a design has no {self.goal.name}"
                 f"{nearest(self.goal.name, names)}; it has {', '.join(names)}"
             )
         value, bar = goal or (None, None)
-        design = Design(number, self.variants.varied(0), value, bar, kept, row["status"], row)
+        design = Design(number, varied, value, bar, kept, status, rows)
         self.designs.append(design)
         self.places.append(place.copy())
         return design
@@ -474,94 +480,3 @@ def _trust_region(
         },
     )
     return np.clip(result.x, 0.0, 1.0)
-
-
-_GOAL = re.compile(r"\s*(?P<sense>max|min)(?:imi[sz]e)?\s+(?P<name>.+?)\s*", re.I)
-_KEEP = re.compile(r"\s*(?P<name>.+?)\s*(?P<sense>[<>])=?\s*(?P<value>.+?)\s*")
-_FIRST = re.compile(r"f(?P<number>[1-9]\d*)")
-
-
-@dataclass(frozen=True)
-class Wish:
-    """A number of a design that should be large or small, or stay beyond a limit."""
-
-    name: str  #: ``mass``, a compliance or stiffness, ``f1``, or a mode such as ``bending 1``
-    upward: bool  #: large is good
-    limit: float | None = None  #: SI; None of a goal
-
-    def value(self, row: dict[str, Any]) -> tuple[float, float | None] | None:
-        """Return the value of a design and its error bar, SI; None where it has no number, or bar."""
-        column = self._column(row)
-        value = row.get(column)
-        if value is None:
-            return None
-        return float(value), row.get(f"{column} bar")
-
-    def _column(self, row: dict[str, Any]) -> str:
-        if first := _FIRST.fullmatch(self.name):
-            return f"f{first['number']}_hz"
-        for k in range(1, MOST_MODES + 1):
-            if row.get(f"mode{k}") == self.name:
-                return f"f{k}_hz"
-        return self.name
-
-    def missing(self, row: dict[str, Any]) -> float:
-        """Compute the distance beyond a limit, error bar included, relative to it; 0 and less is
-        kept.
-        """
-        number = self.value(row)
-        if number is None or self.limit is None:
-            return math.inf
-        value, bar = number[0], number[1] or 0.0
-        short = self.limit - (value - bar) if self.upward else (value + bar) - self.limit
-        return short / abs(self.limit or 1.0)
-
-    def __str__(self) -> str:
-        if self.limit is None:
-            return f"{'max' if self.upward else 'min'} {self.name}"
-        return f"{self.name} {'>' if self.upward else '<'} {self.limit:.6g}"
-
-
-def wish_of(text: str) -> Wish:
-    """Read a goal such as ``max bending 1``."""
-    match = _GOAL.fullmatch(text)
-    if match is None:
-        raise SolidgearError(
-            f'--goal {show(text, 40)}: write "max NUMBER" or "min NUMBER", such as "max bending 1"'
-        )
-    return Wish(match["name"], match["sense"].lower() == "max")
-
-
-def limit_of(text: str) -> Wish:
-    """Read a limit such as ``C_zz < 5 um/kN``."""
-    match = _KEEP.fullmatch(text)
-    if match is None:
-        raise SolidgearError(
-            f'--keep {show(text, 40)}: write NUMBER < VALUE, such as "C_zz < 5 um/kN" or "f1 > 600 Hz"'
-        )
-    try:
-        limit = _limit_in_si(match["name"], match["value"])
-    except SceneError as error:
-        raise SolidgearError(f"--keep {show(text, 40)}: {error}") from None
-    return Wish(match["name"], match["sense"] == ">", limit)
-
-
-def _limit_in_si(name: str, value: str) -> float:
-    if (number := plain_number(value)) is not value:
-        return float(number)
-    static = next((q for q in STATICS if str(q) == name), None)
-    if static is not None:
-        return _static_in_si(value, static.unit)
-    return quantity(value, "mass" if name == "mass" else "frequency")
-
-
-def _static_in_si(value: str, si_unit: str) -> float:
-    """Return a compliance or stiffness in SI, from any unit of its dimension."""
-    match = amount(value)
-    if match is None:
-        raise SceneError(f"{show(value)} is not a number with a unit")
-    number, unit = match.groups()
-    factor, si = si_factor(unit), si_factor(si_unit)
-    if factor is None or si is None or factor[2] != si[2]:
-        raise SceneError(f"{unit!r} is not a unit of a number in {si_unit}")
-    return float(number) * factor[0]

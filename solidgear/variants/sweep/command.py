@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated
 
@@ -17,7 +17,7 @@ from solidgear.core import LADDER, SolidgearError, build, is_train, parse
 from solidgear.guards.check import cautions
 from solidgear.show.command import Group, Progress, command, console
 from solidgear.show.options import AUTO, MODEL, Chosen, Run, options, refuse, relative
-from solidgear.show.plot import FORMATS, check_ending
+from solidgear.show.plot import FORMATS, WIDE, check_ending
 from solidgear.show.sheet import Sheet, present, write_page
 from solidgear.trains.options import Pair, Reduction, of_shafts
 from solidgear.variants.sweep.bearing_task import (
@@ -27,12 +27,11 @@ from solidgear.variants.sweep.bearing_task import (
     settled_for_sweep,
 )
 from solidgear.variants.sweep.bearing_variants import BearingVariants, bearing_variants
-from solidgear.variants.sweep.curves import chartable
 from solidgear.variants.sweep.design import Design
 from solidgear.variants.sweep.file_task import R, Swept, Task, run
 from solidgear.variants.sweep.scene_task import scene_task
-from solidgear.variants.sweep.sheet import bearings_sheet, scene_sheet, sweep_chart, train_sheet
-from solidgear.variants.sweep.train_task import ASKED, shafts_in, train_task
+from solidgear.variants.sweep.sheet import bearings_sheet, scene_sheet, train_sheet
+from solidgear.variants.sweep.train_task import BY_DEFAULT, shafts_in, train_task
 
 #: ending of a chart that is a page
 PAGE = ".html"
@@ -100,7 +99,7 @@ class Rows(Group):
         without curves before the rows.
         """
         if chart is not None:
-            chartable(task.variants)
+            task.refuse_chart()
         with self._counted(silent) as show:
             return run(
                 task,
@@ -167,8 +166,8 @@ class OfTrain(Group):
         list[str] | None,
         typer.Option(
             "--ask",
-            help="Of a train: what rows tell, system-modes, response or deflect; repeatable, all by "
-            "default.",
+            help="Of a train: what rows tell, system-modes, response, deflect or contact; "
+            "repeatable, all but contact by default.",
         ),
     ] = None
     every_point: Annotated[
@@ -246,7 +245,7 @@ def sweep(
             models=mix,
             mesh=train_rows.mesh,
             settings=of_shafts(model.pairs, mix),
-            ask=train_rows.ask or ASKED,
+            ask=train_rows.ask or BY_DEFAULT,
             n=rows.n,
             every_point=train_rows.every_point,
             max_frequency=reduced.max_frequency,
@@ -290,11 +289,14 @@ def sweep(
             )
             swept = rows.run(shafts, run.as_json, chart)
             sheet = scene_sheet(shafts, swept, chart)
-    if chart is not None and swept.curves is not None and sheet.charts:
+    if chart is not None and sheet.charts:
         if chart.suffix.lower() == PAGE:
             write_page(sheet, chart)
         else:
-            sweep_chart(swept.curves, sheet.title).write(chart)
+            (make,) = sheet.charts.values()
+            picture = make(WIDE)
+            assert picture is not None  # sheets of sweeps have no empty charts
+            replace(picture, title=sheet.title).write(chart)
     present(lambda progress: sheet, run)
     if swept.refused == swept.total:
         raise typer.Exit(1)

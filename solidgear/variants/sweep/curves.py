@@ -12,6 +12,7 @@ import numpy as np
 from solidgear.core import SolidgearError, listed
 from solidgear.variants.sweep.entries import Entry, in_si
 from solidgear.variants.sweep.file_variants import POINT, FileVariants
+from solidgear.variants.sweep.tooth_numbers import CHARTED, TOOTH_UNITS, of_mesh
 
 #: rows that curves are made of
 MOST_CURVED = 5000
@@ -21,16 +22,18 @@ UNITS = dict.fromkeys(("shaft angle", "in plane", "across"), "rad moved")
 STATICS = {"K_zz": "N/m", "K_thx": "N m/rad"}
 #: beginning of the columns of mesh forces
 FORCE = "mesh_force"
+#: and of the numbers of a misalignment
+MISALIGNMENT = "misalignment"
 
 
 def force_of(mesh: str) -> str:
     """Return the column of the force of a mesh at rest."""
-    return f"{FORCE}{mesh.removeprefix('mesh').replace(' ', '_')}"
+    return of_mesh(FORCE, mesh)
 
 
 def misaligned(name: str) -> str:
     """Return the column of a number of the misalignment."""
-    return f"misalignment_{name.replace(' ', '_')}"
+    return f"{MISALIGNMENT}_{name.replace(' ', '_')}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,17 +68,20 @@ class Curves:
     #: drives
     peak_hz: list[Curve]
     peak_force: list[Curve]
+    #: numbers of teeth in contact by their names, of every mesh, whose name is empty where it is the
+    #: only one
+    teeth: dict[str, list[Curve]]
 
     @property
     def empty(self) -> bool:
         """True where no variant could be solved."""
-        lists = self.frequencies, self.misalignment, self.radial, self.axial, self.peak_force
-        return not any(lists)
+        at_rest = self.misalignment, self.radial, self.axial, self.teeth
+        return not any((self.frequencies, *at_rest, self.peak_force))
 
     @property
     def on_terminal(self) -> bool:
         """True where the table of the rows has numbers beside the one that varies."""
-        return bool(self.frequencies or self.mesh_force or self.peak_hz)
+        return bool(self.frequencies or self.mesh_force or self.peak_hz or self.teeth)
 
 
 def chartable(variants: FileVariants) -> Entry:
@@ -101,10 +107,11 @@ def curves_of(
     read: Callable[[], Mapping[str, list[Any]]],
     variants: FileVariants,
     misalignments: Sequence[str] = (),
+    meshes: Sequence[str] = (),
 ) -> Curves | None:
     """Return the curves of the columns of all rows, over the torque where operating points vary; None
     of a sweep that has none, whose columns are not read. `misalignments` names the numbers of the
-    misalignment of a train.
+    misalignment of a train, `meshes` those in contact.
     """
     try:
         entry = chartable(variants)
@@ -136,6 +143,16 @@ def curves_of(
             for line in curve(column.removesuffix(ending), column, "N")
         ]
 
+    def teeth(number: str) -> list[Curve]:
+        """Return the curves of a number of the teeth of all meshes."""
+        return [
+            line
+            for mesh in meshes
+            for line in curve(
+                mesh.removeprefix("mesh").strip(), of_mesh(number, mesh), TOOTH_UNITS[number]
+            )
+        ]
+
     modes = [column for column in columns if re.fullmatch(r"f\d+_hz", column)]
     return Curves(
         over=over,
@@ -158,16 +175,19 @@ def curves_of(
             )
         ],
         misalignment=[
-            line for name in misalignments for line in curve(name, misaligned(name), _unit_of(name))
+            line
+            for name in misalignments
+            for line in curve(name, misaligned(name), misalignment_unit(name))
         ],
         radial=loads(".radial"),
         axial=loads(".axial"),
         peak_hz=curve("largest peak", "peak1_hz", "Hz", "peak1_mode"),
         peak_force=curve("largest peak", "peak1_force", "N", "peak1_mode"),
+        teeth={number.replace("_", " "): lines for number in CHARTED if (lines := teeth(number))},
     )
 
 
-def _unit_of(name: str) -> str:
+def misalignment_unit(name: str) -> str:
     """Return the unit of a number of the misalignment, whose name a mesh may follow."""
     return next((unit for kind, unit in UNITS.items() if name.startswith(kind)), "m moved")
 

@@ -16,7 +16,8 @@ from solidgear.core import Displayed, SolidgearError, listed, nearest, pinned
 from solidgear.core.machine.threads import usable_cores
 from solidgear.core.machine.version import VERSION
 from solidgear.core.models.limits import number
-from solidgear.variants.sweep.curves import Curves, curves_of
+from solidgear.variants.sweep.curves import Curves, chartable, curves_of
+from solidgear.variants.sweep.error_curves import ErrorCurves, error_curves
 from solidgear.variants.sweep.file_variants import FileVariants
 from solidgear.variants.sweep.rows import RowFile
 
@@ -54,6 +55,10 @@ class Task(Generic[R]):
     def plan(self) -> dict[str, Any]:
         """Facts that rows depend on beside the entries that vary, as data for JSON."""
         raise NotImplementedError
+
+    def refuse_chart(self) -> None:
+        """Refuse a chart of variants without curves."""
+        chartable(self.variants)
 
     def prepare(self, file: RowFile, progress: Callable[[str], None]) -> None:
         """Solve all that rows share, in this process and before the first of them."""
@@ -110,6 +115,8 @@ class Swept(Displayed):
     columns: dict[str, list[Any]]
     varied: tuple[str, ...]  #: columns of the entries that vary
     curves: Curves | None  #: where one number varies
+    #: transmission error over the torque, where something else varies as well
+    error_curves: tuple[ErrorCurves, ...]
     path: Path  #: file that they were written to; of a sweep from Python without one it is gone
     skipped: int  #: rows that were there before
     seconds: float  #: wall seconds of this run
@@ -164,12 +171,20 @@ class FileTask(Task[Swept]):
         """Names of the numbers of a misalignment."""
         return ()
 
+    @property
+    def meshes_in_contact(self) -> tuple[str, ...]:
+        """Names of the meshes whose teeth have numbers."""
+        return ()
+
     def result(self, file: RowFile, skipped: int, seconds: tuple[float, float]) -> Swept:
         columns = file.by_column()
         return Swept(
             columns,
             varied=tuple(self.variants.columns),
-            curves=curves_of(lambda: columns, self.variants, self.misalignments),
+            curves=curves_of(
+                lambda: columns, self.variants, self.misalignments, self.meshes_in_contact
+            ),
+            error_curves=error_curves(columns, self.variants, self.meshes_in_contact),
             path=file.path,
             skipped=skipped,
             seconds=sum(seconds),

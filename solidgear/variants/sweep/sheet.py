@@ -24,6 +24,8 @@ from solidgear.trains.assembly.shaft import JUDGE, mix_label
 from solidgear.trains.page.chart import COLOURS
 from solidgear.variants.sweep.bearing_task import BearingTask, SweptBearings
 from solidgear.variants.sweep.curves import Curve, Curves
+from solidgear.variants.sweep.error_chart import error_chart, error_table
+from solidgear.variants.sweep.error_curves import ErrorCurves
 from solidgear.variants.sweep.file_task import Swept
 from solidgear.variants.sweep.scene_task import SceneTask
 from solidgear.variants.sweep.train_task import MODES, MOST_MODES, PARTS, TrainTask
@@ -117,6 +119,7 @@ def train_sheet(task: TrainTask, result: Swept, chart: Path | None, counted: boo
         solved=shafts + _solved(result),
         notes=notes,
         chart=chart,
+        errors=result.error_curves,
         cautions=cautions,
         data=plain(result) | {"bodies": made, "cut": cut, "title": title, "cautions": cautions},
     )
@@ -133,6 +136,7 @@ def _sheet(
     cautions: Sequence[str],
     data: Mapping[str, Any],
     chart: Path | None = None,  # file of it
+    errors: Sequence[ErrorCurves] = (),  # of the teeth over the torque
     reached: bool = True,
 ) -> Sheet:
     """Return the sheet of a sweep; a terminal shows few rows, and the sentences on the run."""
@@ -141,6 +145,10 @@ def _sheet(
         title, tables = f"{title}: sweep over {curves.over}", [sweep_table(curves)]
         charts = {"sweep": partial(sweep_chart, curves, "", ENGINEERING)}
     few = curves is not None and len(curves.x) <= FEW and curves.on_terminal
+    if errors:
+        tables = [error_table(mesh) for mesh in errors]
+        charts = {"transmission_error": partial(error_chart, errors, "", ENGINEERING)}
+        few = len(errors[0].torque) <= FEW
     path = str(result.path).encode("utf-8", "backslashreplace").decode()  # bytes that are no text
     new = result.total - result.skipped
     before = f"; {result.skipped} more were there already" if result.skipped else ""
@@ -162,7 +170,10 @@ def _sheet(
             tables=tables if few else [],
             closing=[*run, *refusals(result), *notes, *drawn, *map(caution, cautions)],
         ),
-        words={"sweep": "Natural frequencies and other columns over the number that varies."},
+        words={
+            "sweep": "Natural frequencies and other columns over the number that varies.",
+            "transmission_error": "Loaded transmission error from peak to peak over the torque.",
+        },
     )
 
 
@@ -217,6 +228,7 @@ def sweep_chart(
         _panel(curves, curves.radial, "radial load of bearings", units),
         _panel(curves, curves.axial, "axial load of bearings", units),
     ]
+    others += [_panel(curves, lines, name, units) for name, lines in curves.teeth.items()]
     panels = [panel for panel in others if panel is not None]
     rows = [[first]] if first is not None else []
     return Chart(rows + in_columns(panels, 2 if width > NARROW else 1), width, title)
@@ -233,8 +245,10 @@ def sweep_table(curves: Curves, units: Units = ENGINEERING) -> Table:
     )
     of_train = [*curves.mesh_force, *curves.misalignment]
     modes = _by_name(curves.frequencies)
-    shown = {} if of_train else _moving_most(modes)
+    shown = {} if of_train or curves.teeth else _moving_most(modes)
     numbers = [(c.name, c.values, c.unit) for c in (*of_train, *curves.statics)]
+    for name, lines in curves.teeth.items():
+        numbers += [(f"{name} {c.name}".strip(), c.values, c.unit) for c in lines]
     numbers += [(name, values, "Hz") for name, values in shown.items()]
     numbers += [("peak", c.values, c.unit) for c in (*curves.peak_hz, *curves.peak_force)]
     columns += [_column(head, values, si, units) for head, values, si in numbers]
@@ -289,14 +303,14 @@ def _panel(
         return None
     unit = units.unit(lines[0].unit)
     if len(lines) == 1 and not lines[0].words:
-        title = f"{title} {lines[0].name}"
+        title = f"{title} {lines[0].name}".strip()
     values = [units.values(curve.values, curve.unit) for curve in lines]
     several = len(lines) > 1 and not lines[0].words
     series = {curve.name: Series(COLOURS[k % len(COLOURS)]) for k, curve in enumerate(lines)}
     over = f"{curves.over}, {curves.unit}" if curves.unit else curves.over
     panel = Panel(
         Axis(over, _ends(curves.x, 0.0, curves.log), log=curves.log),
-        Axis(f"{title} in {unit}", _ends(np.concatenate(values), 0.06)),
+        Axis(f"{title} in {unit}" if unit else title, _ends(np.concatenate(values), 0.06)),
         height,
         series=series if several else {},
         legend={"orient": "top", "columns": 4, "symbolType": "stroke", "symbolStrokeWidth": 3},

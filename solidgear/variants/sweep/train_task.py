@@ -17,8 +17,11 @@ from solidgear.core.models.limits import number
 from solidgear.core.scene.file import KEYS
 from solidgear.core.scene.paths import Tables, with_entry
 from solidgear.strength.deflection.misalignment import measured_names, misalignment
+from solidgear.teeth.study import touching
+from solidgear.teeth.train_teeth import with_teeth
 from solidgear.trains.assembly.assembly import KEPT
 from solidgear.trains.assembly.layout import contacts
+from solidgear.trains.assembly.mesh_stiffness import asks_for_teeth, has_settled
 from solidgear.trains.assembly.shaft import JUDGE, LUMPED, checked_model
 from solidgear.trains.assembly.turn import over_a_turn, stages_over_a_turn
 from solidgear.trains.file.flanks import Flanks
@@ -38,12 +41,15 @@ from solidgear.variants.sweep.bench import Bench
 from solidgear.variants.sweep.curves import force_of, misaligned
 from solidgear.variants.sweep.design import Design
 from solidgear.variants.sweep.entries import Entry, Place
+from solidgear.variants.sweep.error_curves import over_torque
 from solidgear.variants.sweep.file_task import BARS, BOUND, FileTask
 from solidgear.variants.sweep.file_variants import MAIN, POINT, FileVariants, tables_for_plan
+from solidgear.variants.sweep.tooth_numbers import TOOTH_UNITS, TeethBench, of_mesh, tooth_numbers
 
 #: kinds of numbers of a row, by the commands that show the same of one train
-MODES, RESPONSE, DEFLECTION = "system-modes", "response", "deflect"
-ASKED = (MODES, RESPONSE, DEFLECTION)
+MODES, RESPONSE, DEFLECTION, CONTACT = "system-modes", "response", "deflect", "contact"
+BY_DEFAULT = (MODES, RESPONSE, DEFLECTION)
+ASKED = (*BY_DEFAULT, CONTACT)
 #: natural frequencies of a row at most, by default and on request
 MOST_MODES = 20
 MOST_SHAPES = 200
@@ -59,6 +65,8 @@ LOADS = ("radial", "axial", "moment")
 OPERATION = "operation"
 #: scenes that are kept
 SCENES = 500
+#: keys of gears on which nothing but the contact of their teeth depends
+FLANK_SHAPES = {"relief", "crowning", "helix_slope", "measured_flank"}
 
 
 @dataclass(frozen=True)
@@ -86,6 +94,11 @@ class TrainTask(FileTask):
         return Bench(self.reduction, self.kept, self.settings, self.tolerance, self.max_frequency)
 
     @cached_property
+    def teeth(self) -> TeethBench:
+        """The train that carries its teeth, kept from row to row."""
+        return TeethBench()
+
+    @cached_property
     def usual(self) -> Train:
         """Train of the first variant that can be read."""
         return self.variants.variant(self.first)
@@ -93,6 +106,14 @@ class TrainTask(FileTask):
     @property
     def misalignments(self) -> tuple[str, ...]:
         return tuple(measured_names(self.usual))
+
+    @property
+    def meshes_in_contact(self) -> tuple[str, ...]:
+        return tuple(mesh.name for mesh in touching(self.usual)) if CONTACT in self.ask else ()
+
+    def refuse_chart(self) -> None:
+        if not (self.meshes_in_contact and over_torque(self.variants)):
+            super().refuse_chart()
 
     @property
     def cautions(self) -> tuple[str, ...]:
@@ -114,6 +135,8 @@ class TrainTask(FileTask):
                     if b.catalogue is not None or np.any(b.stiffness):
                         out |= {f"{side}.{b.name}.{load}": float for load in LOADS}
         if train.operation:
+            for mesh in self.meshes_in_contact:
+                out |= {of_mesh(number, mesh): float for number in TOOTH_UNITS}
             out["unloaded"] = str
         if MODES in self.ask:
             out |= {"rigid_modes": int, "modes": int, BOUND: float}
@@ -179,10 +202,24 @@ class TrainTask(FileTask):
         self, index: int, train: Train, point: OperatingPoint
     ) -> tuple[Train, dict[str, Any]]:
         """Return a train whose bearings have settled at an operating point, and its numbers there."""
-        key, on_shafts = self.variants.beside_operation(index), (SHAFT,) * len(self.models)
-        state = self.bench.operating(key, train, *on_shafts).at(point)
+        key, on_shafts = self.variants.beside_flanks(index), (SHAFT,) * len(self.models)
+        carried, of_teeth = None, dict[str, float]()
+        if CONTACT in self.ask or asks_for_teeth(train):
+            carried = self.teeth.carried(key, train, point)
+        if carried is not None and CONTACT in self.ask:
+            of_teeth = tooth_numbers(carried, train)
+        if carried is not None and asks_for_teeth(train):
+            key = *key, index  # no other row has its mesh stiffness
+            train = with_teeth(train, carried) if has_settled(train) else train
+        if carried is not None and self.ask == (CONTACT,):
+            state = carried.state
+        else:
+            state = self.bench.operating(key, train, *on_shafts).at(point)
         at_rest = with_settled_bearings(train, state)
+        if carried is not None:
+            at_rest = with_teeth(at_rest, carried)
         out: dict[str, Any] = {
+            **of_teeth,
             "torque": point.torque,
             **{force_of(name): force for name, force in state.mesh_forces.items()},
             "unloaded": ", ".join(at_rest.unloaded),
@@ -246,7 +283,7 @@ def train_task(
     gear: str | None = None,
     models: Mapping[str, str] | None = None,
     mesh: str | None = None,
-    ask: Iterable[str] = ASKED,
+    ask: Iterable[str] = BY_DEFAULT,
     n: int | None = None,
     max_frequency: float | None = None,
     point: str | None = None,
@@ -291,6 +328,12 @@ def train_task(
     usual.named_mesh(mesh)
     for side in chosen:
         usual.named_shaft(side)
+    if CONTACT in asked:
+        if variants.operating_point(first, usual) is None:
+            raise SolidgearError(
+                f"--ask {CONTACT}: teeth touch under a load; give [operation] a torque"
+            )
+        touching(usual)
     return TrainTask(
         variants,
         models={side: chosen.get(side, JUDGE) for side in usual.shafts},
@@ -334,13 +377,20 @@ class TrainVariants(FileVariants[Train]):
         if not train.operation and self.point is None:
             return None
         if self.entries[-1].label == POINT:
-            return train.operation[int(self.values[index, -1])]
+            place = self.values[index, -1]
+            return train.operation[0 if np.isnan(place) else int(place)]
         return train.operation[0] if self.point is None else named_point(train, self.point)
 
-    def beside_operation(self, index: int) -> tuple[float, ...]:
-        """Return the values of all entries that are not of an operating point."""
+    def beside_flanks(self, index: int) -> tuple[float, ...]:
+        """Return the values of all entries that are neither of an operating point nor of the shapes of
+        flanks.
+        """
         row = _ranked(self.values[index]).tolist()
-        return tuple(value for entry, value in zip(self.entries, row) if not _of_operation(entry))
+        return tuple(
+            value
+            for entry, value in zip(self.entries, row)
+            if not (_of_operation(entry) or _of_flanks(entry))
+        )
 
     def in_turn(self, numbers: Iterable[int]) -> list[int]:
         """Return variants in an order in which those of the same shafts stand together, and operating
@@ -502,6 +552,11 @@ def _varied_point(tables: Tables, varied: Sequence[Entry]) -> str | None:
 
 def _of_operation(entry: Entry) -> bool:
     return entry.file == MAIN and entry.keys[0] == OPERATION
+
+
+def _of_flanks(entry: Entry) -> bool:
+    """Return True for an entry of the shapes of flanks alone."""
+    return all(FLANK_SHAPES & {*map(str, place.keys)} for place in entry.places)
 
 
 def _ranked(values: np.ndarray) -> np.ndarray:

@@ -1,0 +1,53 @@
+"""Mesh stiffness that comes from teeth in contact: where it holds, and how it changes with the load."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from solidgear.core.registry import addition
+from solidgear.show.units import Units
+from solidgear.trains.assembly.assembly import Assembly
+from solidgear.trains.file.operation import OperatingPoint
+from solidgear.trains.file.tables import TEETH
+
+
+@dataclass(frozen=True)
+class ToothStiffness:
+    """Stiffness of one mesh by its teeth."""
+
+    mesh: str
+    points: tuple[OperatingPoint, ...]  #: that of the train first
+    stiffness: tuple[float, ...]  #: at each point, N/m
+
+    def sentence(self, units: Units) -> str:
+        """Return what it is, at which load, and what it is at the others."""
+        (first, *others), (stiffness, *further) = self.points, self.stiffness
+        mesh = "Mesh stiffness" if self.mesh == "mesh" else f"Stiffness of the {self.mesh}"
+        text = (
+            f"{mesh} calculated from the teeth at {first.label}: {units.text(stiffness, 'N/m', 3)}, "
+            "without shafts and bearings."
+        )
+        if others:
+            changes = [
+                f"{100 * (value / stiffness - 1):+.0f} % at {point.label}"
+                for point, value in zip(others, further)
+            ]
+            text += f" It would be {', '.join(changes)}."
+        return text
+
+
+def tooth_stiffness(assembly: Assembly) -> tuple[ToothStiffness, ...]:
+    """Return the stiffness of every pair whose teeth give it, at all operating points of the train."""
+    asked = assembly.asked_train
+    if all(pair.mesh.stiffness != TEETH for pair in asked.pairs):
+        return ()
+    over_points = addition("mesh stiffness", "teeth over points")
+    further = over_points(asked) if over_points and len(asked.operation) > 1 else {}
+    meshes = []
+    for pair in asked.pairs:
+        if pair.mesh.stiffness != TEETH:
+            continue
+        # the number that the train has, which was solved already
+        values = (assembly.contacts[pair.name].stiffness, *further.get(pair.name, ())[1:])
+        meshes.append(ToothStiffness(pair.name, asked.operation[: len(values)], values))
+    return tuple(meshes)

@@ -1,0 +1,130 @@
+"""Designs of a search: variants of a file that are solved as rows of a sweep."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from solidgear.core import SolidgearError
+from solidgear.variants.optimise.wish import Rows
+from solidgear.variants.sweep.design import Design
+from solidgear.variants.sweep.entries import Entry
+from solidgear.variants.sweep.file_task import FileTask
+from solidgear.variants.sweep.file_variants import POINT, scene_variants
+from solidgear.variants.sweep.scene_task import STATICS, SceneTask
+from solidgear.variants.sweep.train_task import ASKED, CONTACT, MODES, TrainTask, train_task
+
+#: natural frequencies that a goal may be of
+MOST_MODES = 12
+EXAMPLE = "bearing.B.position=180 mm:240 mm"
+
+
+@dataclass(frozen=True)
+class Designs:
+    """The file of a search, with its entries at any values."""
+
+    task: FileTask
+    title: str
+    points: int  #: rows of a design, the first of the task
+    solved: str  #: how every design is solved, in words
+    unbarred: str  #: why its numbers have no error bars; empty where they have
+    names: Callable[[dict[str, Any]], list[str]]  #: numbers of a row that goals may be of
+
+    @property
+    def entries(self) -> tuple[Entry, ...]:
+        """Entries that a search varies."""
+        return tuple(entry for entry in self.task.variants.entries if entry.label != POINT)
+
+    def solve(self, values: Sequence[float]) -> tuple[dict[str, Any], Rows]:
+        """Return a design by the labels of its entries and its rows; not a number leaves an entry as
+        it is in the file.
+        """
+        variants, count = self.task.variants, len(self.entries)
+        variants.values[: self.points, :count] = values
+        varied = variants.varied(0)
+        varied.pop(POINT, None)
+        return varied, self.task.rows(range(self.points))
+
+
+def scene_designs(scene: Path, design: Design, model: str | None, tol: float | None) -> Designs:
+    """Return the designs of a scene: each by the cheapest mesh whose bars are within the tolerance, or
+    by a model that is given.
+    """
+    variants = scene_variants(scene, design, EXAMPLE)
+    base = variants.variant(0)  # the file as it is
+    variants.refuse_hopeless()
+    tol = base.ask.tolerance / 10 if tol is None else tol
+    solved, unbarred = "the cheapest mesh whose bars are within the tolerance", ""
+    if model is not None:
+        solved = f"the {model} model, without error bars"
+        unbarred = "a model that is given has no error bars"
+    task = SceneTask(variants, model, tol, {}, MOST_MODES)
+    return Designs(task, base.title or base.name, 1, solved, unbarred, _numbers_of_scene)
+
+
+def _numbers_of_scene(row: dict[str, Any]) -> list[str]:
+    modes = [str(v) for k, v in row.items() if k.startswith("mode") and k != "model" and v]
+    return [*map(str, STATICS), "mass", *modes]
+
+
+def train_designs(
+    train: Path,
+    design: Design,
+    names: Sequence[str],
+    model: str | None,
+    tol: float | None,
+    point: str | None,
+    every_point: bool,
+) -> Designs:
+    """Return the designs of a train, with the numbers of these names at an operating point or at all;
+    every shaft by the model, the cheapest harmonic solid by default.
+    """
+    task = train_task(
+        train,
+        design,
+        ask=(MODES,),
+        n=MOST_MODES,
+        tolerance=tol,
+        point=point,
+        every_point=every_point,
+    )
+    usual = task.usual
+    models = task.models if model is None else dict.fromkeys(task.models, model)
+    task = replace(task, models=models, ask=_asked(task, names))
+    task.variants.values[0, : len(design.vary)] = math.nan
+    task.variants.variant(0)  # the file as it is
+    task.variants.refuse_hopeless()
+    points = len(usual.operation) if every_point else 1
+    solved = f"the {model} model" if model is not None else "harmonic solids"
+    if task.ask == (CONTACT,):
+        solved = "plane slices of the teeth on Timoshenko shafts"
+    if every_point:
+        solved += f", at the worst of {points} operating points"
+    unbarred = "rows of a train have no error bars"
+    return Designs(task, usual.title or usual.name, points, solved, unbarred, _numbers_of_train)
+
+
+def _asked(task: TrainTask, names: Sequence[str]) -> tuple[str, ...]:
+    """Return the kinds of numbers that names are of; names of no column are those of modes."""
+    kinds = set()
+    for name in names:
+        kind = next((k for k in ASKED if _is_of(replace(task, ask=(k,)), name)), MODES)
+        kinds.add(kind)
+    return tuple(kind for kind in ASKED if kind in kinds)
+
+
+def _is_of(task: TrainTask, name: str) -> bool:
+    try:
+        columns = task.columns
+    except SolidgearError:  # of a train without teeth in mesh
+        return False
+    return bool({name, name.replace(" ", "_")} & {*columns})
+
+
+def _numbers_of_train(row: dict[str, Any]) -> list[str]:
+    modes = [str(v) for k, v in row.items() if k.startswith("mode") and isinstance(v, str)]
+    numbers = [key for key, value in row.items() if isinstance(value, float)]
+    return [*numbers, *modes]
