@@ -1,5 +1,6 @@
 """Models of the teeth side by side: which is enough for what, and how sure the finest is."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -7,8 +8,11 @@ import pytest
 
 import solidgear as sg
 from solidgear.core import WITHIN
+from solidgear.teeth.bars import error_bars, numbers_of
+from solidgear.teeth.contact.cycle import mesh_cycle
 from solidgear.teeth.ladder import ERROR, FACE, NORM, SOLID, STIFFNESS, energy_share, ladder
 from solidgear.teeth.supports import Carried, with_sections
+from solidgear.teeth.train_teeth import TeethModel, mesh_contact, teeth_of, toothed
 from solidgear.trains.assembly.assembly import Assembly
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
@@ -80,3 +84,28 @@ def test_plane_slices_of_helical_teeth_are_stiffer_than_teeth_in_3d(carried):
     assert found.bars[STIFFNESS] < 0.06 * found.share / 2
     data = found.as_dict()
     assert [*data["models"]] == ["ISO 6336-1", "slices", "solid"]
+
+
+def test_error_bars_hold_against_finer_slices_and_cells(carried):
+    """Numbers by four times the slices and twice the cells lie within the bars."""
+    mesh = carried.train.pairs[0]
+    model = TeethModel(slices=16, positions=16)
+    contact = mesh_contact(carried, mesh, model)
+    bars, numbers = error_bars(carried, mesh, model, contact), numbers_of(contact)
+    teeth = teeth_of(mesh, False)
+    finer = toothed(mesh, teeth, replace(model, slices=64))
+    finer = replace(
+        finer,
+        compliances=tuple(
+            replace(c, plane=replace(c.plane, fineness=c.plane.fineness.finer(2)))
+            for c in finer.compliances
+        ),
+    )
+    place = carried.place(mesh, teeth)
+    supports = carried.supports(place, place.frame(teeth))
+    base = teeth.wheels.first.base
+    cycle = mesh_cycle(finer, contact.cycle.torque, base, 64, supports, 16)
+    found = numbers_of(replace(contact, pair=finer, cycle=cycle))
+    for name in ("tangent", "secant", "peak_to_peak", "order 1", "order 2"):
+        assert abs(found[name] - numbers[name]) <= bars[name], name
+        assert bars[name] < 0.25 * abs(numbers[name]) + 5e-9, name

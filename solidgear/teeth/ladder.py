@@ -1,7 +1,7 @@
 r"""Which model of the teeth is enough: the norm, plane slices, teeth in 3D.
 
-The finest model that was solved is the reference, with an error bar by what the numbers move if its
-mesh is coarser, its readings deeper and its slices twice as many.  Each number of a cheaper model is
+The finest model that was solved is the reference, with its error bar
+(:mod:`solidgear.teeth.bars`).  Each number of a cheaper model is
 held against it, and asks for its own share: the transmission error and the face load factor as they
 are, the stiffness by what it does to the train, for a natural frequency moves by half the share of its
 strain energy that is in the teeth, times the relative change of their stiffness (Rayleigh).
@@ -10,7 +10,7 @@ strain energy that is in the teeth, times the relative change of their stiffness
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from time import perf_counter
 from typing import Any, Literal
 
@@ -19,6 +19,7 @@ import numpy as np
 from solidgear.core import WITHIN, gap_verdict
 from solidgear.core.judge.deviations import OPEN
 from solidgear.core.plain import plain
+from solidgear.teeth.bars import error_bars, numbers_of
 from solidgear.teeth.mesh_contact import MeshContact
 from solidgear.teeth.supports import Carried
 from solidgear.teeth.train_teeth import TeethModel, mesh_contact
@@ -154,7 +155,7 @@ def ladder(
     numbers |= {name: (Judged.of(contact), time) for name, (contact, time) in solved.items()}
     judge = Judged.of(finest)
     progress(f"error bars of the {mesh.name}")
-    bars = _bars(carried, mesh, models[reference], judge)
+    bars = _bars(carried, mesh, models[reference], finest)
     share = energy_share(carried, mesh)
     bars[STIFFNESS] *= share / 2
     rungs = []
@@ -174,23 +175,12 @@ def _norm(contact: MeshContact) -> Judged:
 
 
 def _bars(
-    carried: Carried, mesh: Pair | PlanetMesh, model: TeethModel, judge: Judged
+    carried: Carried, mesh: Pair | PlanetMesh, model: TeethModel, contact: MeshContact
 ) -> dict[str, float]:
-    """Return the sum of what numbers move by, relative, with each part of the discretisation: cells twice
-    as large, readings twice as deep, and half the slices of plane teeth, which 3D shares.
-    """
-    bars = dict.fromkeys((STIFFNESS, ERROR, FACE), 0.0)
-    plane = TeethModel(slices=model.slices, positions=model.positions)
-    usual = judge if model == plane else Judged.of(mesh_contact(carried, mesh, plane))
-    for other, beside in (
-        (replace(model, coarse=True), judge),
-        (replace(model, depth=2 * model.depth), judge),
-        (replace(plane, slices=plane.slices // 2), usual),
-    ):
-        moved = Judged.of(mesh_contact(carried, mesh, other)).off(beside)
-        for name, off in moved.items():
-            bars[name] += abs(off or 0.0)
-    return bars
+    """Return the error bars of the judged numbers, relative."""
+    numbers, bars = numbers_of(contact), error_bars(carried, mesh, model, contact)
+    names = {STIFFNESS: "tangent", ERROR: "peak_to_peak", FACE: "face_load_factor"}
+    return {judged: bars[name] / (numbers[name] or np.inf) for judged, name in names.items()}
 
 
 def energy_share(carried: Carried, mesh: Pair | PlanetMesh) -> float:

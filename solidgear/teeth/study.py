@@ -11,8 +11,9 @@ import numpy as np
 
 from solidgear.core import SolidgearError, pinned
 from solidgear.core.plain import plain
+from solidgear.teeth.bars import error_bars
 from solidgear.teeth.ladder import Ladder, ladder
-from solidgear.teeth.mesh_contact import SolvedMesh
+from solidgear.teeth.mesh_contact import MeshContact, SolvedMesh
 from solidgear.teeth.supports import Carried, with_sections
 from solidgear.teeth.train_teeth import TeethModel, solved_mesh
 from solidgear.trains.assembly.mesh_stiffness import with_usual_meshes
@@ -64,6 +65,9 @@ class TeethStudy:
         By mesh, torque ascending; empty without.
     stiffness : dict of str to float or None
         Of each mesh in the file, N/m; None where it is that of the teeth.
+    bars : dict of str to dict of str to float
+        Error bars of the numbers of each mesh, SI, as of :func:`solidgear.teeth.bars.error_bars`; of
+        cylindrical teeth.
     ladders : tuple of Ladder
         Models of the teeth side by side, where asked for.
     cautions : tuple of str
@@ -86,6 +90,7 @@ class TeethStudy:
     meshes: tuple[SolvedMesh, ...]
     curves: dict[str, tuple[AtTorque, ...]]
     stiffness: dict[str, float | None]
+    bars: dict[str, dict[str, float]]
     ladders: tuple[Ladder, ...]
     cautions: tuple[str, ...]
     seconds: float
@@ -101,6 +106,7 @@ class TeethStudy:
                 "curves": {
                     name: [at.as_dict() for at in curve] for name, curve in self.curves.items()
                 },
+                "bars": self.bars,
                 "file_stiffness": self.stiffness,
                 "models": {ladder.mesh: ladder.as_dict() for ladder in self.ladders},
                 "cautions": self.cautions,
@@ -174,6 +180,11 @@ def teeth_study(
         for mesh, solved in zip(teeth, meshes):
             contact = solved if factor == 1 else solved_mesh(at, mesh, model)
             curves[mesh.name].append(AtTorque(torque, contact))
+    bars: dict[str, dict[str, float]] = {}
+    for mesh, solved in zip(teeth, meshes):
+        if isinstance(solved, MeshContact):
+            progress(f"error bars of the {mesh.name}")
+            bars[mesh.name] = error_bars(carried, mesh, model, solved)
     tolerance = train.ask.tolerance
     ladders = [
         ladder(carried, mesh, tolerance, progress=progress)
@@ -187,6 +198,7 @@ def teeth_study(
         meshes=tuple(meshes),
         curves={name: tuple(curve) for name, curve in curves.items()},
         stiffness={mesh.name: stated_stiffness(train, mesh.name) for mesh in teeth},
+        bars=bars,
         ladders=tuple(ladders),
         cautions=tuple(carried.state.notes),
         seconds=perf_counter() - start,
