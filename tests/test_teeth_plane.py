@@ -385,3 +385,11 @@ def test_faces_that_have_no_slices_are_refused():
         Slices(PlaneTeeth(PINION), 20e-3, 8)
     with pytest.raises(SolidgearError, match="at least one"):
         Slices(PlaneTeeth(PINION.thinned(20e-3)), 20e-3, 0)
+
+
+@pytest.mark.parametrize("teeth", [-40, -41, -52, -72, 9, 11])
+def test_wheels_of_few_teeth_and_rings_have_their_motions_read(teeth):
+    """Long cells at a root have their middles far from the places in them."""
+    plane = PlaneTeeth(Wheel(teeth, 4e-3))
+    matrix = plane.matrix(np.zeros(1, int), np.array([plane.wheel.radius]), 1e-3)
+    assert 1e-11 < matrix[0, 0] < 5e-11

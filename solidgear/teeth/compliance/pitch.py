@@ -122,20 +122,36 @@ def motion_rows(
 
 def read_rows(mesh: PitchMesh, points: np.ndarray, directions: np.ndarray) -> sp.csr_matrix:
     """Return rows that read the motion along (m, 2) directions at (m, 2) points inside the mesh."""
-    nodes = mesh.points[mesh.cells]
-    _, near = cKDTree(nodes[:, 8]).query(points, min(NEAREST, len(nodes)))
+    cells = mesh.points[mesh.cells]
+    tree = cKDTree(cells[:, 8])
+    nearest = min(NEAREST, len(cells))
+    cell, place, outside = _cells_of(cells, tree.query(points, nearest)[1], points)
+    # long cells may have their middles far from what lies in them
+    lost = np.flatnonzero(outside > OUTSIDE)
+    if lost.size:
+        every = tree.query(points[lost], len(cells))[1]
+        cell[lost], place[lost], outside[lost] = _cells_of(cells, every, points[lost])
+    if outside.max() > OUTSIDE:
+        raise SolidgearError("teeth: a place at which motion is read is in no tooth or rim")
+    shapes, _ = reference(ElementQuad2(), place.T)
+    return motion_rows(mesh.cells[cell], shapes.T, directions, len(mesh.points))
+
+
+def _cells_of(
+    cells: np.ndarray, near: np.ndarray, points: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the cell (m,) of those near (m, k) that holds each point best, the place (m, 2) in it, and how
+    far outside the point lies there, in cells.
+    """
     place = np.full((*near.shape, 2), 0.5)
     element = ElementQuad2()
     for _ in range(STEPS):
         shapes, slopes = reference(element, place.reshape(-1, 2).T)
         shapes, slopes = shapes.reshape(9, *near.shape), slopes.reshape(9, 2, *near.shape)
-        missing = points[:, None] - np.einsum("bmk,mkbi->mki", shapes, nodes[near])
-        jacobian = np.einsum("bdmk,mkbi->mkid", slopes, nodes[near])
+        missing = points[:, None] - np.einsum("bmk,mkbi->mki", shapes, cells[near])
+        jacobian = np.einsum("bdmk,mkbi->mkid", slopes, cells[near])
         step = np.linalg.solve(jacobian, missing[..., None])[..., 0]
         place = np.clip(place + step, -1.0, 2.0)  # a cell far from the point has it nowhere
     outside = np.abs(place - 0.5).max(axis=2) - 0.5
-    cell = np.arange(len(points)), np.argmin(outside, axis=1)
-    if outside[cell].max() > OUTSIDE:
-        raise SolidgearError("teeth: a place at which motion is read is in no tooth or rim")
-    shapes, _ = reference(element, place[cell].T)
-    return motion_rows(mesh.cells[near[cell]], shapes.T, directions, len(mesh.points))
+    best = np.arange(len(points)), np.argmin(outside, axis=1)
+    return near[best], place[best], outside[best]
