@@ -1,5 +1,6 @@
 """Teeth of trains in contact: where they lie, what carries them, and what must not depend on frames."""
 
+import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -269,3 +270,16 @@ def test_the_sheet_says_what_teeth_are_made_of_and_reads_loads_per_length(train)
     (panel,) = sheet.charts["face"](width=600).rows[0]
     assert panel.y.title == "load per face width, N/mm"
     assert mean / 1e3 < panel.y.ends[1] < 1.5 * mean / 1e3
+
+
+def test_the_command_says_nothing_of_a_stiffness_that_the_file_does_not_have(tmp_path, run):
+    text = (GEOMETRY / "gearbox_train.toml").read_text()
+    for name in ("catalogue", "wheel"):
+        text = text.replace(f"gearbox_{name}.toml", str(GEOMETRY / f"gearbox_{name}.toml"))
+    file = tmp_path / "teeth.toml"
+    file.write_text(text.replace('stiffness = "3.2e8 N/m"', 'stiffness = "teeth"'))
+    command = "contact", file, "--no-curve", "--slices", "8", "--positions", "8"
+    code, printed, _ = run(*command)
+    assert code == 0 and "stiffness, tangent" in printed and "the teeth give" not in printed
+    data = json.loads(run(*command, "--json")[1])
+    assert data["file_stiffness"] == {"mesh": None} and data["model"] == "slices"

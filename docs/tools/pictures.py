@@ -19,7 +19,7 @@ import solidgear as sg
 DOCS = Path(__file__).parent.parent
 PICTURES = DOCS / "pictures"
 #: name of the picture: its widest side, pixels
-WIDTHS = {"section": 900, "mode": 800, "response": 900, "turning": 1000}
+WIDTHS = {"section": 900, "mode": 800, "response": 900, "turning": 1000, "contact": 900}
 #: the state in which the page of mode shapes is taken
 POSE = """<script>addEventListener("load", () => {
 const viewer = document.querySelector(".sg-turn").viewer;
@@ -40,7 +40,7 @@ def small(source: Path, name: str) -> None:
         height = round(picture.height * width / picture.width)
         scaled = picture.convert("RGB").resize((width, height), Image.Resampling.LANCZOS)
         if name != "mode":
-            scaled = scaled.quantize(256 if name == "turning" else 64)
+            scaled = scaled.quantize(256 if name in ("turning", "contact") else 64)
         scaled.save(PICTURES / f"{name}.png", optimize=True)
 
 
@@ -99,6 +99,9 @@ def main() -> int:
     said += run(
         f"solidgear response {train} --gear harmonic --against euler+euler --out out", folder
     )
+    train = ROOT / "geometry" / "gearbox_two_stage.toml"
+    said += run(f"solidgear contact {train} --no-curve --out contact", folder)
+    small(folder / "contact" / "pattern_2.png", "contact")
     pinion = ROOT / "geometry" / "pinion_overhung.toml"
     said += run(f"solidgear compare {pinion} --out report", folder)
     report(folder / "report" / "report.html")

@@ -62,9 +62,7 @@ class Acting(Group):
         meshes may leave; refuse options of the other.
         """
         if is_train(file):
-            kind = f"a shaft, and {file} is a train: give --torque"
-            refuse({"--load": self.load is not None}, kind)
-            train, point = self._at_point(file)
+            train, point = self.read_train(file)
             return Assembly(train, kept=FEW, tol=tol), point
         of_train = {"--torque": self.torque, "--point": self.point, "--weight": self.weight}
         options = {option: value is not None for option, value in of_train.items()}
@@ -73,6 +71,12 @@ class Acting(Group):
         if self.load is not None:
             scene = loaded_by(scene, self.load)
         return Assembly.of(scene, kept=FEW, tol=tol), AT_REST
+
+    def read_train(self, file: Path) -> tuple[Train, OperatingPoint]:
+        """Return a train as its file has it and its operating point; refuse a load on a shaft."""
+        kind = f"a shaft, and {file} is a train: give --torque"
+        refuse({"--load": self.load is not None}, kind)
+        return self._at_point(file)
 
     def _at_point(self, file: Path) -> tuple[Train, OperatingPoint]:
         if self.torque is None:

@@ -69,12 +69,13 @@ def contact(
     ):
         if not least <= value <= most:
             raise SolidgearError(f"{option} {value}: give {least} to {most}")
-    (assembly, point), units = acting.read(train), units_named(run.units)
+    # as the file has it: an assembly would have the teeth solved already
+    (as_written, point), units = acting.read_train(train), units_named(run.units)
 
     def study(progress: Progress) -> Sheet:
         with explained(train):
             solved = teeth_study(
-                assembly.train,
+                as_written,
                 point,
                 model=TeethModel(teeth.value, slices, positions),
                 factors=FACTORS if curve else (),
