@@ -62,7 +62,7 @@ class Carried:
 
     operating: Operating  #: of a train as of :func:`with_sections`
     state: OperatingState
-    #: wheels whose contact was solved, by mesh, geometry and model of the teeth
+    #: wheels whose contact was solved, by their geometry, bodies and model of the teeth
     pairs: dict[Any, CylindricalPair] = field(default_factory=dict, repr=False)
     _supports: dict[Any, Supports] = field(default_factory=dict, init=False, repr=False)
 

@@ -125,6 +125,17 @@ def teeth_of(mesh: Pair | PlanetMesh, coast: bool) -> MeshTeeth:
 def toothed(mesh: Pair | PlanetMesh, teeth: MeshTeeth, model: TeethModel) -> CylindricalPair:
     """Return both wheels with their compliance."""
     wheels = teeth.wheels
+    first, second = wheel_bodies(mesh, teeth)
+    compliances = model.compliance(wheels.first, first), model.compliance(wheels.second, second)
+    law = LineContact(
+        (first.elasticity, second.elasticity), (compliances[0].depth, compliances[1].depth)
+    )
+    return CylindricalPair(wheels, compliances, law, teeth.shapes, model.slices)
+
+
+def wheel_bodies(mesh: Pair | PlanetMesh, teeth: MeshTeeth) -> tuple[WheelBody, WheelBody]:
+    """Return what carries the teeth of both wheels."""
+    wheels = teeth.wheels
     bodies = []
     for wheel, gear, hand, middle in zip(
         (wheels.first, wheels.second), _gears(mesh), (1, -1), wheels.face_middles
@@ -133,12 +144,7 @@ def toothed(mesh: Pair | PlanetMesh, teeth: MeshTeeth, model: TeethModel) -> Cyl
         material = Elasticity() if scene is None else _material(scene)
         hold = None if scene is None else _hold(scene, wheel, rigid)
         bodies.append(WheelBody(material, hold, hand, wheels.face_width, -middle))
-    first, second = bodies
-    compliances = model.compliance(wheels.first, first), model.compliance(wheels.second, second)
-    law = LineContact(
-        (first.elasticity, second.elasticity), (compliances[0].depth, compliances[1].depth)
-    )
-    return CylindricalPair(wheels, compliances, law, teeth.shapes, model.slices)
+    return bodies[0], bodies[1]
 
 
 def _gears(mesh: Pair | PlanetMesh) -> list[tuple[Scene | None, bool]]:
@@ -176,7 +182,7 @@ def mesh_contact(
     """
     model = model or TeethModel()
     teeth = teeth_of(mesh, carried.coast(mesh))
-    wheels = mesh.name, teeth.wheels, model
+    wheels = teeth.wheels, model, wheel_bodies(mesh, teeth)
     if wheels not in carried.pairs:
         carried.pairs[wheels] = toothed(mesh, teeth, model)
     contact = carried.pairs[wheels].with_shapes(teeth.shapes)

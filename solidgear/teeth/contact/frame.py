@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -58,10 +58,15 @@ class Supports:
     stations: tuple[Stations, Stations]
     compliance: np.ndarray  #: (N, N)
     motion: np.ndarray  #: (N,) under all other loads
+    #: rows that were computed, by the points and normals of cells
+    _rows: dict[bytes, np.ndarray] = field(default_factory=dict, init=False, repr=False)
 
     def rows(self, cells: Cells) -> np.ndarray:
         """Return the (n, N) rows by which cells open: the first wheel's motion less the second's."""
-        return self.opening(cells.point, cells.normal)
+        places = cells.point.tobytes() + cells.normal.tobytes()
+        if places not in self._rows:
+            self._rows[places] = self.opening(cells.point, cells.normal)
+        return self._rows[places]
 
     def opening(self, point: np.ndarray, normal: np.ndarray) -> np.ndarray:
         """Return the (n, N) rows by which flanks open at points along normals, both (n, 3) in the frame

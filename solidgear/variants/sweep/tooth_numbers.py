@@ -7,15 +7,19 @@ by; neither changes with the shapes of flanks.  Both are kept while rows have th
 from __future__ import annotations
 
 from collections.abc import Hashable
+from typing import Any
 
 import numpy as np
 
+from solidgear.teeth.contact.cylindrical import CylindricalPair
 from solidgear.teeth.study import touching
-from solidgear.teeth.supports import Carried, with_sections
+from solidgear.teeth.supports import SHAFT, Carried, with_sections
 from solidgear.teeth.train_teeth import solved_mesh
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.mesh_stiffness import with_usual_meshes
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.train import Train
+from solidgear.trains.load.operation import Operating
 
 #: beginnings of columns: transmission error under load from peak to peak and by order of the mesh,
 #: tangent stiffness of the teeth, face load factor, and largest pressure; and their units
@@ -25,8 +29,8 @@ ERROR, STIFFNESS, FACE_LOAD, PRESSURE = (
     "face_load_factor",
     "contact_pressure",
 )
-#: states of a train that are kept
-MOST_STATES = 40
+#: states of a train and pairs of wheels that are kept
+MOST = 40
 #: orders of the transmission error that have a column
 ORDERS = 3
 ERROR_ORDERS = tuple(f"{ERROR}_order{k}" for k in range(1, ORDERS + 1))
@@ -68,6 +72,7 @@ class TeethBench:
     def __init__(self) -> None:
         self._key: Hashable = None
         self._states: list[tuple[OperatingPoint, Carried]] = []
+        self._pairs: dict[Any, CylindricalPair] = {}
         self.settled = 0  #: states that were solved
 
     def carried(self, key: Hashable, train: Train, point: OperatingPoint) -> Carried:
@@ -81,13 +86,15 @@ class TeethBench:
                 return state
         sectioned = with_sections(with_usual_meshes(train))
         if not self._states:
-            carried = Carried.at_rest(sectioned, point)
+            operating = Operating(Assembly(sectioned), SHAFT)
         else:
             _, first = self._states[0]
             operating = first.operating.with_points(sectioned)
-            # not from another state: no row depends on those before it
-            carried = Carried(operating, operating.at(point), first.pairs)
-        del self._states[MOST_STATES:]
+        if len(self._pairs) > MOST:
+            self._pairs.clear()
+        # not from another state: no row depends on those before it
+        carried = Carried(operating, operating.at(point), self._pairs)
+        del self._states[MOST:]
         self._states.append((point, carried))
         self.settled += 1
         return carried

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from pathlib import Path
@@ -34,6 +34,7 @@ from solidgear.trains.load.operation import (
     named_point,
     with_settled_bearings,
 )
+from solidgear.trains.load.state import OperatingState
 from solidgear.trains.modes.modes import refuse_unresolved
 from solidgear.trains.modes.parting import joint_name, parting_frequency, teeth_relief
 from solidgear.trains.response.drive import Drive
@@ -202,28 +203,31 @@ class TrainTask(FileTask):
         self, index: int, train: Train, point: OperatingPoint
     ) -> tuple[Train, dict[str, Any]]:
         """Return a train whose bearings have settled at an operating point, and its numbers there."""
-        key, on_shafts = self.variants.beside_flanks(index), (SHAFT,) * len(self.models)
-        carried, of_teeth = None, dict[str, float]()
-        if CONTACT in self.ask or asks_for_teeth(train):
-            carried = self.teeth.carried(key, train, point)
-        if carried is not None and CONTACT in self.ask:
-            of_teeth = tooth_numbers(carried, train)
-        if carried is not None and asks_for_teeth(train):
+        key = self.variants.beside_flanks(index)
+        if not (CONTACT in self.ask or asks_for_teeth(train)):
+            return self._settled(key, train, point)
+        carried = self.teeth.carried(key, train, point)
+        of_teeth = tooth_numbers(carried, train) if CONTACT in self.ask else {}
+        if self.ask == (CONTACT,):
+            at_rest = carried.assembly.train
+            return at_rest, of_teeth | _loads(carried.state, at_rest)
+        if asks_for_teeth(train):
             key = *key, index  # no other row has its mesh stiffness
-            train = with_teeth(train, carried) if has_settled(train) else train
-        if carried is not None and self.ask == (CONTACT,):
-            state = carried.state
-        else:
-            state = self.bench.operating(key, train, *on_shafts).at(point)
+        if has_settled(train):
+            train = with_teeth(train, carried)
+        at_rest, out = self._settled(key, train, point)
+        return with_teeth(at_rest, carried), of_teeth | out
+
+    def _settled(
+        self, key: Hashable, train: Train, point: OperatingPoint
+    ) -> tuple[Train, dict[str, Any]]:
+        """Return a train whose bearings have settled at an operating point, and its numbers there but
+        for those of teeth.
+        """
+        on_shafts = (SHAFT,) * len(self.models)
+        state = self.bench.operating(key, train, *on_shafts).at(point)
         at_rest = with_settled_bearings(train, state)
-        if carried is not None:
-            at_rest = with_teeth(at_rest, carried)
-        out: dict[str, Any] = {
-            **of_teeth,
-            "torque": point.torque,
-            **{force_of(name): force for name, force in state.mesh_forces.items()},
-            "unloaded": ", ".join(at_rest.unloaded),
-        }
+        out = _loads(state, at_rest)
         if DEFLECTION in self.ask:
             models = tuple(map(statics_of, self.models.values()))
             operating = self.bench.operating(key, train, *models)
@@ -347,6 +351,15 @@ def train_task(
         mesh=mesh,
         first=first,
     )
+
+
+def _loads(state: OperatingState, at_rest: Train) -> dict[str, Any]:
+    """Return torque and mesh forces of a state, and the bearings without load in it."""
+    return {
+        "torque": state.point.torque,
+        **{force_of(name): force for name, force in state.mesh_forces.items()},
+        "unloaded": ", ".join(at_rest.unloaded),
+    }
 
 
 def statics_of(model: str) -> str:
