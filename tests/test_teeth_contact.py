@@ -9,10 +9,10 @@ from math import radians
 import numpy as np
 import pytest
 from scipy.integrate import quad
-from scipy.optimize import minimize
+from scipy.optimize import brentq, minimize
 
 from solidgear.core import SolidgearError
-from solidgear.core.gears.flank_shape import FlankGrid, FlankShape
+from solidgear.core.gears.flank_shape import FlankGrid, FlankShape, Relief
 from solidgear.core.gears.wheel import Rack, Wheel
 from solidgear.core.gears.wheel_pair import WheelPair
 from solidgear.teeth.contact.cycle import mesh_cycle
@@ -89,6 +89,69 @@ def test_tangent_of_the_local_law_is_its_slope(load):
     assert law.compliances(load, 8e-3)[1] == pytest.approx(slope, rel=1e-7)
 
 
+@pytest.mark.parametrize("lean", [0.0, 1e-3, 0.05])
+def test_corner_law_is_that_of_the_pressure_between_half_planes(lean):
+    """The pressure as a discrete problem of two half-planes that touch from an edge on."""
+    load, radius, depth = 2e5, 12e-3, 1e-3
+    law = LineContact((STEEL, STEEL), (depth, depth))
+    cells = 400
+    softness = 2 / (np.pi * STEEL.plane)
+
+    def edge(width):  # pressures on even cells that close the gap up to one approach
+        x = (np.arange(cells) + 0.5) * width / cells
+        half = width / cells / 2
+        apart = np.subtract.outer(x, x)
+        left, right = apart + half, apart - half
+        potential = left * np.log(np.abs(left)) - right * np.log(np.abs(right)) - 2 * half
+        gap = lean * x + x**2 / (2 * radius)
+        matrix = np.block(
+            [[-2 * softness * potential, -np.ones((cells, 1))], [np.full((1, cells), 2 * half), 0]]
+        )
+        solved = np.linalg.solve(matrix, np.append(-gap, load))
+        return solved[:-1], solved[-1]
+
+    half = float(law.half_width(load, radius))
+    width = brentq(lambda b: edge(b)[0][-1], 1e-3 * half, 3 * half)
+    approach = edge(width)[1]
+    # at the depth a half-plane moves as under a line of the same load
+    side = STEEL.poisson / (1 - STEEL.poisson)
+    approach += 2 * softness * load * (np.log(depth) - 0.5 - side / 2)
+    secant, _ = law.compliances(load, radius, np.array([lean]))
+    assert secant[0] > 1.05 * law.compliances(load, radius)[0]
+    assert load * secant[0] == pytest.approx(approach, rel=2e-3)
+
+
+@pytest.mark.parametrize("lean", [0.0, 1e-3, 0.05])
+def test_tangent_of_the_corner_law_is_its_slope(lean):
+    def approach(q):
+        return q * LAW.compliances(q, 8e-3, np.array([lean]))[0]
+
+    slope = (approach(1e5 * 1.0001) - approach(1e5 * 0.9999)) / 20
+    assert LAW.compliances(1e5, 8e-3, np.array([lean]))[1] == pytest.approx(slope, rel=1e-7)
+
+
+def test_relieved_flanks_touch_beside_the_line_of_action():
+    """Points of a relieved flank, turned with its wheel, and their angles from the mate's flank."""
+    relief = Relief(20e-6, 18e-3, 25e-3)
+    pair = pair_of(shapes=(FlankShape(tip=relief), FlankShape()), slices=1)
+    wheels, phase = pair.wheels, 0.3
+    first, second = wheels.first, wheels.second
+    place = np.array([wheels.pitch_point + phase * wheels.pitch])
+    r = np.linspace(first.form, first.tip, 20001)
+    points, normals = first.flank_points(r)
+    points += relief.missing(np.sqrt(r**2 - first.base**2))[:, None] * normals
+    turn = phase * first.pitch_angle - first.half_angle(wheels.first_radius(wheels.pitch_point))
+    c, s = np.cos(turn), np.sin(turn)
+    x, y = (points @ np.array([[c, -s], [s, c]]) - [0, wheels.distance]).T
+    at_mate = second.half_angle(wheels.second_radius(wheels.pitch_point))
+    ahead = np.arctan2(-x, -y) + phase * second.pitch_angle + at_mate
+    # involutes of one base circle are parallel curves
+    least = second.base * (ahead - second.half_angle(np.hypot(x, y))).min()
+    gap = pair.least_gap(place, np.zeros(1), np.zeros(1))[0]
+    assert gap == pytest.approx(least, abs=0.01e-6)
+    assert gap < pair.shape_gap(place, np.zeros(1))[0] - 0.1e-6
+
+
 @pytest.mark.parametrize("helix, phase", [(0.0, 0.1), (radians(15), 0.6)])
 def test_forces_make_the_energy_least(helix, phase):
     """An optimiser with bounds, which knows neither Newton nor active cells, finds no less."""
@@ -99,11 +162,13 @@ def test_forces_make_the_energy_least(helix, phase):
     bulk = pair.bulk(cells) + cells.rows @ supports.compliance @ cells.rows.T
     gap = cells.gap + cells.rows @ supports.motion
 
-    def local(force):  # work of a law q G(t), t going as q^-1/2, by its own quadrature
+    def local(force):  # work of a law q G(t), by its own quadrature
         points, weights = np.polynomial.legendre.leggauss(24)
         s = (points + 1) / 2
         at = np.outer(force, s**2)  # denser near nothing
-        secant = LAW.compliances(at / cells.length[:, None], cells.radius[:, None])[0]
+        secant = LAW.compliances(
+            at / cells.length[:, None], cells.radius[:, None], cells.lean[:, None]
+        )[0]
         return (at * secant / cells.length[:, None] * force[:, None] * 2 * s * weights / 2).sum()
 
     scale = result.force.max()
@@ -139,7 +204,7 @@ def contact_holds(helix, torque, tilt, phase, seed):
     result = loads(pair, torque, phase, supports)
     cells = result.cells
     bulk = pair.bulk(cells) + cells.rows @ supports.compliance @ cells.rows.T
-    secant = LAW.compliances(result.line_load, cells.radius)[0] / cells.length
+    secant = LAW.compliances(result.line_load, cells.radius, cells.lean)[0] / cells.length
     apart = bulk @ result.force + secant * result.force + cells.gap - cells.lever * result.rotation
     size = abs(result.rotation) * cells.lever.mean() + np.ptp(cells.gap)
     assert result.force.min() >= 0

@@ -88,6 +88,7 @@ class BevelPair:
             place=points.lift[0],
             z=points.distance - blank.mean_distance,
             at_corner=(stop - start < 1) | (piece == 0) | (piece == self.slices - 1),
+            lean=np.full(len(row), np.nan),
             lift=points.lift,
         )
 

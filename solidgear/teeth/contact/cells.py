@@ -26,6 +26,7 @@ class Cells:
     place: np.ndarray  #: along the path of contact or the height of the tooth, m
     z: np.ndarray  #: along the face, m
     at_corner: np.ndarray  #: true beyond the path of contact, at the corner of a tip
+    lean: np.ndarray  #: angle between both flanks at the corner of a tip, rad; no number elsewhere
 
     @cached_property
     def rows(self) -> np.ndarray:

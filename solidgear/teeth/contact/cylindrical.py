@@ -7,16 +7,23 @@ for larger w, and v across both.  The first wheel is pushed along ``(-cos beta_b
 Under load teeth bend, and contact begins before and ends after the path, where the corner of a tip
 touches the mate's flank.  How far they stand apart there follows from the geometry: turn both wheels
 back by the distance, each about its centre, and measure by how much the flank misses the corner.  The
-lines run on by `BEYOND` pitches with that gap, and no further than to where the mate's flank ends in
-its fillet; the corner is taken as round as the flank it ends, which it is not, so that its pressure
-means nothing.
+lines run on by `BEYOND` pitches with that gap g, and no further than to where the mate's flank ends in
+its fillet.  Flanks of the relative radius R lean against each other there by ``sqrt(2 g / R)``, and touch
+on one side of the corner only; its pressure has no bound.
+
+Relieved flanks do not touch on the line of action but beside it, where less is missing.  At x along both
+flanks from there, of the relative radius R, they part by
+
+    x^2 / (2 R) + C1(s1(x)) + C2(s2(x)),      s1 = sqrt(s1^2 + 2 rb1 x),  s2 = sqrt(s2^2 - 2 rb2 x),
+
+as arcs of involutes grow with ``s^2 / (2 rb)``; the least of it is the gap, by half of R times the
+squared slope below that at x = 0.  At a corner the lean adds ``x sqrt(2 g / R)``.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import dataclass, field, replace
 from math import cos, sin, tan
 
 import numpy as np
@@ -33,6 +40,8 @@ BEYOND = 0.3
 STEPS = 6
 #: least share of a cell that a line crosses
 SLIVER = 1e-3
+#: places beside the line of action at which relieved flanks are looked at, and along their profiles
+BESIDE, PROFILE = 81, 33
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,17 +63,15 @@ class CylindricalPair:
     shapes: tuple[FlankShape, FlankShape] = (FlankShape(), FlankShape())
     slices: int = 24
     beyond: float = BEYOND  #: pitches; 0 for the path alone
-
-    @cached_property
-    def _solved(self) -> _Solved:
-        return _Solved({}, {})
+    _solved: _Solved = field(default_factory=lambda: _Solved({}, {}), init=False, repr=False)
 
     def with_shapes(self, shapes: tuple[FlankShape, FlankShape]) -> CylindricalPair:
-        """Return the same wheels with other flanks; cells and compliances that one of both has
-        computed serve the other.
+        """Return the same wheels with other flanks, and with the cells and compliances that these have
+        computed.
         """
         pair = replace(self, shapes=shapes)
-        pair.__dict__["_solved"] = self._solved
+        pair._solved.lines.update(self._solved.lines)
+        pair._solved.bulks.update(self._solved.bulks)
         return pair
 
     def cells(self, phase: float) -> Cells:
@@ -73,8 +80,10 @@ class CylindricalPair:
         if phase not in lines:
             lines[phase] = self._exact_cells(phase)
         cells = lines[phase]
-        shape = self.shape_gap(np.clip(cells.place, *self.wheels.ends), cells.z)
-        return replace(cells, gap=cells.gap + shape)
+        if all(shape.is_involute for shape in self.shapes):
+            return cells
+        inside = np.clip(cells.place, *self.wheels.ends)
+        return replace(cells, gap=self.least_gap(inside, cells.z, cells.gap))
 
     def _exact_cells(self, phase: float) -> Cells:
         """Return the cells of flanks without modification."""
@@ -102,7 +111,8 @@ class CylindricalPair:
         flank = np.isfinite(gap)
         line, piece, place, along = line[flank], piece[flank], place[flank], along[flank]
         length, gap = length[flank], gap[flank]
-        inside = np.clip(place, start, stop)
+        inside, beyond = np.clip(place, start, stop), (place < start) | (place > stop)
+        radius = wheels.curvature_radius(inside)
         n_cells = len(line)
         normal = np.array([-cos(wheels.base_helix), 0.0, sin(wheels.base_helix)])
         lever = np.full(n_cells, wheels.first.base * cos(wheels.base_helix))
@@ -110,7 +120,7 @@ class CylindricalPair:
         return Cells(
             line=line,
             length=length,
-            radius=wheels.curvature_radius(inside),
+            radius=radius,
             gap=gap,
             lever=lever,
             point=point,
@@ -118,7 +128,8 @@ class CylindricalPair:
             slice=piece,
             place=place,
             z=along,
-            at_corner=(place < start) | (place > stop),
+            at_corner=beyond,
+            lean=np.where(beyond, np.sqrt(2 * gap / radius), np.nan),
         )
 
     def _lines(self, phase: float, first: float, last: float) -> range:
@@ -139,6 +150,26 @@ class CylindricalPair:
         for shape, length in zip(self.shapes, lengths):
             gap = gap + shape.deviation(length, z)
         return gap
+
+    def least_gap(self, place: np.ndarray, z: np.ndarray, parted: np.ndarray) -> np.ndarray:
+        """Return the least gap beside places of the path, m, where involutes part by so much."""
+        wheels = self.wheels
+        radius = wheels.curvature_radius(place)
+        lengths = place, wheels.second_length(place)
+        profile = np.linspace(*wheels.ends, PROFILE)
+        profiles = profile, wheels.second_length(profile)
+        bases = wheels.first.base, -wheels.second.sign * wheels.second.base
+        spare = np.zeros(len(place))
+        for shape, length, along in zip(self.shapes, lengths, profiles):
+            spare += shape.deviation(length, z) - shape.deviation(along, z[:, None]).min(axis=1)
+        reach = np.sqrt(2 * radius * np.maximum(spare, 0.0))
+        beside = reach[:, None] * np.linspace(-1, 1, BESIDE)
+        lean = np.sqrt(2 * parted / radius)[:, None]
+        gap = parted[:, None] + beside**2 / (2 * radius[:, None]) + lean * np.abs(beside)
+        for shape, length, base in zip(self.shapes, lengths, bases):
+            moved = np.sqrt(np.maximum(length[:, None] ** 2 + 2 * base * beside, 0.0))
+            gap += shape.deviation(moved, z[:, None])
+        return gap.min(axis=1)
 
     def bulk(self, cells: Cells) -> np.ndarray:
         """Return the (n, n) compliance of the teeth of both wheels between cells, m/N."""

@@ -154,7 +154,8 @@ def loads(
     force, rotation, steps = _newton(cells, pair.law, bulk, gap, torque)
     moved = gap + rows @ (carrying.compliance @ (rows.T @ force))
     loaded = np.flatnonzero(force > 0)
-    local = np.diag(pair.law.compliances(force / cells.length, cells.radius)[1] / cells.length)
+    _, tangent = pair.law.compliances(force / cells.length, cells.radius, cells.lean)
+    local = np.diag(tangent / cells.length)
     slopes = [
         _bordered(matrix + local, cells.lever, loaded)(np.zeros(len(loaded)), 1.0)[-1]
         for matrix in (teeth, bulk)
@@ -181,7 +182,7 @@ def _newton(
     force = np.full(len(lever), torque / lever.sum())
     touching = np.ones(len(lever), bool)
     for step in range(1, MOST_STEPS + 1):
-        secant, tangent = law.compliances(force / length, cells.radius)
+        secant, tangent = law.compliances(force / length, cells.radius, cells.lean)
         matrix = bulk + np.diag(tangent / length)
         offset = gap + (secant - tangent) / length * force
         before = force
