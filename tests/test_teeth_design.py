@@ -182,7 +182,7 @@ def errors():
         slope = 1e-6 * relief / single
         out[relief] = (
             1e6 * np.array([cycle.peak_to_peak for cycle in cycles]),
-            (1e6 * float(radii.max()) * slope**2 / 2),
+            (1e6 * max(steep) * slope**2),
         )
     return out
 
