@@ -175,7 +175,7 @@ def errors():
     for relief in SECTORS:
         first = Relief(1e-6 * relief, stop - single, stop)
         ends = wheels.second_length(np.array([start + single, start]))
-        second = Relief(1e-6 * relief, *map(float, ends))
+        second = Relief(1e-6 * relief, float(ends[0]), float(ends[1]))
         shapes = FlankShape(tip=first), FlankShape(tip=second)
         pair = exact.with_shapes(shapes) if relief else exact
         cycles = [mesh_cycle(pair, load * b * base, base, 1) for load in LOADS]

@@ -21,16 +21,16 @@ class ToothStiffness:
 
     def sentence(self, units: Units) -> str:
         """Return what it is, at which load, and what it is at the others."""
-        (first, *others), (stiffness, *further) = self.points, self.stiffness
+        (first, *points), (stiffness, *values) = self.points, self.stiffness
         mesh = "Mesh stiffness" if self.mesh == "mesh" else f"Stiffness of the {self.mesh}"
         text = (
             f"{mesh} calculated from the teeth at {first.label}: {units.text(stiffness, 'N/m', 3)}, "
             "without shafts and bearings."
         )
-        if others:
+        if points:
             changes = [
                 f"{100 * (value / stiffness - 1):+.0f} % at {point.label}"
-                for point, value in zip(others, further)
+                for point, value in zip(points, values)
             ]
             text += f" It would be {', '.join(changes)}."
         return text
@@ -38,16 +38,16 @@ class ToothStiffness:
 
 def tooth_stiffness(assembly: Assembly) -> tuple[ToothStiffness, ...]:
     """Return the stiffness of every pair whose teeth give it, at all operating points of the train."""
-    asked = assembly.asked_train
-    if all(pair.mesh.stiffness != TEETH for pair in asked.pairs):
+    train = assembly.asked_train
+    if all(pair.mesh.stiffness != TEETH for pair in train.pairs):
         return ()
     over_points = addition("mesh stiffness", "teeth over points")
-    further = over_points(asked) if over_points and len(asked.operation) > 1 else {}
+    further = over_points(train) if over_points and len(train.operation) > 1 else {}
     meshes = []
-    for pair in asked.pairs:
+    for pair in train.pairs:
         if pair.mesh.stiffness != TEETH:
             continue
         # the number that the train has, which was solved already
         values = (assembly.contacts[pair.name].stiffness, *further.get(pair.name, ())[1:])
-        meshes.append(ToothStiffness(pair.name, asked.operation[: len(values)], values))
+        meshes.append(ToothStiffness(pair.name, train.operation[: len(values)], values))
     return tuple(meshes)

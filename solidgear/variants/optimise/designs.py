@@ -93,7 +93,7 @@ def train_designs(
     )
     usual = task.usual
     models = task.models if model is None else dict.fromkeys(task.models, model)
-    task = replace(task, models=models, ask=_asked(task, names))
+    task = replace(task, models=models, ask=_kinds(task, names))
     task.variants.values[0, : len(design.vary)] = math.nan
     task.variants.variant(0)  # the file as it is
     task.variants.refuse_hopeless()
@@ -107,7 +107,7 @@ def train_designs(
     return Designs(task, usual.title or usual.name, points, solved, unbarred, _numbers_of_train)
 
 
-def _asked(task: TrainTask, names: Sequence[str]) -> tuple[str, ...]:
+def _kinds(task: TrainTask, names: Sequence[str]) -> tuple[str, ...]:
     """Return the kinds of numbers that names are of; names of no column are those of modes."""
     kinds = set()
     for name in names:

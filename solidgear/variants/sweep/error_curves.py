@@ -43,7 +43,7 @@ class Varied(NamedTuple):
     """The entries of a sweep over the torque."""
 
     torque: int  #: number of the entry that is the torque
-    others: tuple[int, ...]  #: of those that have several values
+    beside: tuple[int, ...]  #: of those that have several values
 
 
 def over_torque(variants: FileVariants) -> Varied | None:
@@ -52,13 +52,13 @@ def over_torque(variants: FileVariants) -> Varied | None:
     """
     several = [k for k, entry in enumerate(variants.entries) if len(entry.values) > 1]
     torques = [k for k in several if _is_torque(variants.entries[k])]
-    others = tuple(k for k in several if k not in torques)
+    beside = tuple(k for k in several if k not in torques)
     counts = [len(variants.entries[k].values) for k in several]
-    if len(torques) != 1 or not others or len(variants) != np.prod(counts):
+    if len(torques) != 1 or not beside or len(variants) != np.prod(counts):
         return None
-    if np.prod([len(variants.entries[k].values) for k in others]) > MOST:
+    if np.prod([len(variants.entries[k].values) for k in beside]) > MOST:
         return None
-    return Varied(torques[0], others)
+    return Varied(torques[0], beside)
 
 
 def error_curves(
@@ -72,11 +72,11 @@ def error_curves(
     of_points = entry.label == POINT
     unit = "N m" if of_points else entry.shown_in
     size = (None if of_points or not unit else in_si(f"1 {unit}")) or 1.0
-    places, labels = variants.values[:, varied.others], []
+    places, labels = variants.values[:, varied.beside], []
     groups = dict.fromkeys(map(tuple, places.tolist()))
     rows = []
     for group in groups:
-        labels.append(_label(variants, varied.others, group))
+        labels.append(_label(variants, varied.beside, group))
         rows.append(np.flatnonzero((places == group).all(axis=1)))
     torque = _numbers(columns[TORQUE if of_points else entry.label])[rows[0]] / size
     order = np.argsort(torque, kind="stable")
@@ -97,10 +97,10 @@ def _is_torque(entry: Entry) -> bool:
     return entry.label == POINT or (entry.keys[0] == "operation" and entry.keys[-1] == TORQUE)
 
 
-def _label(variants: FileVariants, others: Sequence[int], values: Sequence[float]) -> str:
+def _label(variants: FileVariants, beside: Sequence[int], values: Sequence[float]) -> str:
     """Return the words on a curve: the last two keys of each entry, and its value."""
     words = []
-    for k, value in zip(others, values):
+    for k, value in zip(beside, values):
         entry = variants.entries[k]
         name = " and ".join(".".join(place.label.split(".")[-2:]) for place in entry.places[:1])
         words.append(f"{name} {entry.written(value)}")

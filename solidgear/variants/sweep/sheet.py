@@ -28,7 +28,7 @@ from solidgear.variants.sweep.error_chart import error_chart, error_table
 from solidgear.variants.sweep.error_curves import ErrorCurves
 from solidgear.variants.sweep.file_task import Swept
 from solidgear.variants.sweep.scene_task import SceneTask
-from solidgear.variants.sweep.train_task import MODES, MOST_MODES, PARTS, TrainTask
+from solidgear.variants.sweep.train_task import CONTACT, MODES, MOST_MODES, PARTS, TrainTask
 
 #: rows that are printed on the terminal as well
 FEW = 40
@@ -97,6 +97,8 @@ def train_sheet(task: TrainTask, result: Swept, chart: Path | None, counted: boo
     as no other process made any.
     """
     title, models = task.usual.title or task.usual.name, mix_label(task.models)
+    if task.ask == (CONTACT,):
+        models = "teeth by plane slices, on Timoshenko shafts"
     made, cut = task.bench.made if counted else None, task.cut(result.columns)
     notes = []
     if cut > 0:
@@ -109,8 +111,10 @@ def train_sheet(task: TrainTask, result: Swept, chart: Path | None, counted: boo
         if JUDGE in task.models.values():
             meshes = "; what the meshes leave, solidgear system-modes tells of one variant"
         notes.append(f"Column reduction_bound: what the reduction leaves, proven{meshes}.")
+    if CONTACT in task.ask and len(task.ask) > 1:
+        notes.append("Teeth: plane slices, on Timoshenko shafts.")
     cautions = (*result.cautions, *_caution_on_parting(result))
-    shafts = "" if made is None else f"{made} shafts meshed and reduced; "
+    shafts = "" if not made else f"{made} shafts meshed and reduced; "
     return _sheet(
         result,
         title,

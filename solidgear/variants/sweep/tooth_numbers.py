@@ -81,8 +81,8 @@ class TeethBench:
         """
         if key != self._key:
             self._key, self._states = key, []
-        for of, state in self._states:
-            if of == point:
+        for settled_at, state in self._states:
+            if settled_at == point:
                 return state
         sectioned = with_sections(with_usual_meshes(train))
         if not self._states:
