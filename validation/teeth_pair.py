@@ -44,7 +44,7 @@ POSITIONS, ORDERS = 32, 3
 #: load per face width, N/m, and long tip relief of both wheels, m
 CASES = ((1e5, 0.0), (3e5, 0.0), (9e5, 0.0), (3e5, 20e-6), (9e5, 20e-6))
 #: cases and positions in pitches that CalculiX solves
-BY_CALCULIX = ((3e5, 0.0, 0.0), (3e5, 0.0, 0.3), (3e5, 0.0, -0.1875), (3e5, 20e-6, 0.0))
+BY_CALCULIX = ((3e5, 0.0, 0.0), (3e5, 0.0, 0.3), (3e5, 0.0, -0.1875), (3e5, 20e-6, 0.4))
 #: its meshes of teeth that may touch and of others, pressure by overlap, N/m^3, and width, m
 FINENESS = (Fineness(fillet=6, flank=80, across=8), Fineness(fillet=2, flank=2, across=2))
 SLOPE, WIDTH = 3e16, 1e-3
