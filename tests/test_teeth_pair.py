@@ -22,21 +22,23 @@ def whole_gears(case):
 @pytest.mark.parametrize("case", PLAIN, ids=lambda case: case.name)
 def test_transmission_error_is_that_of_whole_gears(case):
     """Meshes leave 0.2 %; corners of tips, which make the orders, are no better known than 1 %."""
-    whole, ours = figures(whole_gears(case)), figures(case.cycle().error)
-    assert ours["mean"] == pytest.approx(whole["mean"], rel=4e-3)
+    reference, teeth = figures(whole_gears(case)), figures(case.cycle().error)
+    assert teeth["mean"] == pytest.approx(reference["mean"], rel=4e-3)
     for name in ("peak to peak", "order 1", "order 2", "order 3"):
-        assert ours[name] == pytest.approx(whole[name], rel=1e-2), name
+        assert teeth[name] == pytest.approx(reference[name], rel=1e-2), name
 
 
 @pytest.mark.parametrize("case", RELIEVED, ids=lambda case: case.name)
 def test_transmission_error_of_relieved_gears_is_that_of_whole_gears(case):
     """Where relief begins, a contact lies on both sides of the kink; ours on one: 3 % of the swing."""
-    whole, ours = figures(whole_gears(case)), figures(case.cycle().error)
-    assert ours["mean"] == pytest.approx(whole["mean"], rel=4e-3)
+    reference, teeth = figures(whole_gears(case)), figures(case.cycle().error)
+    assert teeth["mean"] == pytest.approx(reference["mean"], rel=4e-3)
     for name in ("peak to peak", "order 1"):
-        assert ours[name] == pytest.approx(whole[name], rel=3e-2), name
+        assert teeth[name] == pytest.approx(reference[name], rel=3e-2), name
     for name in ("order 2", "order 3"):
-        assert ours[name] == pytest.approx(whole[name], abs=0.03 * whole["peak to peak"]), name
+        assert teeth[name] == pytest.approx(
+            reference[name], abs=0.03 * reference["peak to peak"]
+        ), name
 
 
 def test_bodies_are_a_constant_part_of_the_error():

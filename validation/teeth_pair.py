@@ -195,14 +195,14 @@ def outside(gear: WholeGear) -> list[tuple[int, int]]:
 def compared(case: Case) -> dict[str, Any]:
     """Return both transmission errors of a case and by how much ours is larger."""
     whole, cycle = case.whole(), case.cycle()
-    theirs, ours = figures(whole), figures(cycle.error)
+    reference, teeth = figures(whole), figures(cycle.error)
     return {
         "load": case.load,
         "relief": case.relief,
         "whole gears": [1e6 * e for e in whole],
-        "figures": theirs,
-        "ours": ours,
-        "excess": {name: ours[name] / theirs[name] - 1 for name in theirs},
+        "figures": reference,
+        "teeth": teeth,
+        "excess": {name: teeth[name] / reference[name] - 1 for name in reference},
         "corners": cycle.corner_share,
     }
 
