@@ -130,11 +130,16 @@ def test_tangent_of_the_corner_law_is_its_slope(lean):
     assert LAW.compliances(1e5, 8e-3, np.array([lean]))[1] == pytest.approx(slope, rel=1e-7)
 
 
-def test_relieved_flanks_touch_beside_the_line_of_action():
-    """Points of a relieved flank, turned with its wheel, and their angles from the mate's flank."""
-    relief = Relief(20e-6, 18e-3, 25e-3)
+@pytest.mark.parametrize("beyond", [None, 2e-3, 4e-3])
+def test_relieved_flanks_touch_beside_the_line_of_action(beyond):
+    """Points of a relieved flank, turned with its wheel, and their angles from the mate's flank: on
+    the path, and so many pitches beyond its end.
+    """
+    wheels = pair_of().wheels
+    relief = Relief(20e-6, 18e-3, wheels.ends[1])
     pair = pair_of(shapes=(FlankShape(tip=relief), FlankShape()), slices=1)
-    wheels, phase = pair.wheels, 0.3
+    end = (wheels.ends[1] - wheels.pitch_point) / wheels.pitch
+    phase = 0.3 if beyond is None else end + beyond
     first, second = wheels.first, wheels.second
     place = np.array([wheels.pitch_point + phase * wheels.pitch])
     r = np.linspace(first.form, first.tip, 20001)
@@ -147,9 +152,10 @@ def test_relieved_flanks_touch_beside_the_line_of_action():
     ahead = np.arctan2(-x, -y) + phase * second.pitch_angle + at_mate
     # involutes of one base circle are parallel curves
     least = second.base * (ahead - second.half_angle(np.hypot(x, y))).min()
-    gap = pair.least_gap(place, np.zeros(1), np.zeros(1))[0]
+    inside, parted = np.minimum(place, wheels.ends[1]), corner_gap(wheels, place)
+    gap = pair.least_gap(inside, np.zeros(1), parted)[0]
     assert gap == pytest.approx(least, abs=0.01e-6)
-    assert gap < pair.shape_gap(place, np.zeros(1))[0] - 0.1e-6
+    assert gap < (pair.shape_gap(inside, np.zeros(1)) + parted)[0] - 0.02e-6
 
 
 @pytest.mark.parametrize("helix, phase", [(0.0, 0.1), (radians(15), 0.6)])

@@ -213,9 +213,9 @@ class WholePair:
 
     def _line(self, k: int, phase: float) -> tuple[np.ndarray, ...]:
         """Return forces on both wheels, lengths and gaps of one pair of teeth by nodes of the first."""
-        one, other = self.gears
-        wheel, mate = one.wheel, other.wheel
-        nodes = one.arcs
+        driver, driven = self.gears
+        wheel, mate = driver.wheel, driven.wheel
+        nodes = driver.arcs
         place, weight = _quadrature(nodes)
         roll = np.sqrt(2 * wheel.base * place)
         r = np.hypot(wheel.base, roll)
@@ -227,14 +227,14 @@ class WholePair:
         ahead = np.arctan2(x, y) - centre - mate.half_angle(np.hypot(x, y))
         parted = mate.base * ((ahead + np.pi) % (2 * np.pi) - np.pi)
         mate_roll = mate_roll - parted
-        gap = parted + one.shape.deviation(roll, 0.0) + other.shape.deviation(mate_roll, 0.0)
+        gap = parted + driver.shape.deviation(roll, 0.0) + driven.shape.deviation(mate_roll, 0.0)
         mate_place = mate_roll**2 / (2 * mate.base)
-        mate_nodes = other.arcs
+        mate_nodes = driven.arcs
         meets = (gap < WIDEST) & (mate_place > mate_nodes[0]) & (mate_place < mate_nodes[-1])
         place, weight, gap, mate_place = (v[meets] for v in (place, weight, gap, mate_place))
         tested = _hats(nodes, place) * weight[:, None]
         forces = []
-        for gear, tooth, at in ((one, k, place), (other, -k, mate_place)):
+        for gear, tooth, at in ((driver, k, place), (driven, -k, mate_place)):
             block = np.zeros((len(nodes), len(gear.flanks), len(gear.arcs)))
             block[:, list(gear.flanks).index(tooth)] = tested.T @ _quadratic(gear.arcs, at)
             forces.append(block.reshape(len(nodes), -1))
