@@ -22,7 +22,7 @@ from solidgear.teeth.contact.local import Elasticity, LineContact
 from solidgear.teeth.study import teeth_study
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.file.operation import OperatingPoint
-from solidgear.trains.judge.tooth_stiffness import tooth_stiffness
+from solidgear.trains.assembly.tooth_stiffness import tooth_stiffness
 from solidgear.trains.load.operation import at_point
 from solidgear.trains.modes.modes import train_modes
 from solidgear.variants.optimise.command import designs_chart

@@ -32,11 +32,11 @@ from solidgear.strength.deflection.at_rest import Deflection, deflection, with_r
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.shaft import JUDGE, LUMPED, mix_label
 from solidgear.trains.assembly.slips import unit_slips
+from solidgear.trains.assembly.tooth_stiffness import ToothStiffness, tooth_stiffness
 from solidgear.trains.file.layout import PerTurn
 from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.planetary import PlanetMesh
 from solidgear.trains.judge.comparison import train_data
-from solidgear.trains.judge.tooth_stiffness import ToothStiffness, tooth_stiffness
 from solidgear.trains.modes.modes import unpublished_lines
 from solidgear.trains.modes.pairing import (
     BEYOND,

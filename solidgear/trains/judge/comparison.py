@@ -19,11 +19,11 @@ from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.housing import housing_hz
 from solidgear.trains.assembly.layout import senses
 from solidgear.trains.assembly.orders import OrderMap, order_map
+from solidgear.trains.assembly.tooth_stiffness import ToothStiffness, tooth_stiffness
 from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.planetary import Stage
 from solidgear.trains.file.train import Train
 from solidgear.trains.judge.judge import JUDGE, MIXED, Verdict, charted_mixes, judge_train
-from solidgear.trains.judge.tooth_stiffness import ToothStiffness, tooth_stiffness
 from solidgear.trains.modes.modes import TrainModes, train_modes
 from solidgear.trains.modes.pictures import draw_modes, turning_pair
 from solidgear.trains.response.loudest import Loudest, loudest

@@ -7,11 +7,12 @@ from collections.abc import Sequence
 from solidgear.show.command import caution
 from solidgear.show.sheet import Sheet, Terminal
 from solidgear.show.table import NUMBER, Column, Table, text, word
-from solidgear.show.units import Units
+from solidgear.show.units import Units, in_ascii
 from solidgear.show.words import whole
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.shaft import mix_label
 from solidgear.trains.assembly.slips import unit_slips
+from solidgear.trains.assembly.tooth_stiffness import of_teeth
 from solidgear.trains.judge.comparison import train_data
 from solidgear.trains.modes.modes import TrainMode, TrainModes
 from solidgear.trains.page.tables import facts
@@ -26,19 +27,20 @@ def modes_sheet(
     """Return the sheet of the modes of a train; `written` are lines on files."""
     slips = unit_slips(assembly)
     cautions = [*slips, *system.cautions]
+    by_teeth = of_teeth(assembly, units)
     return Sheet(
         name="modes",
         title=system.train,
         lead=f"Natural frequencies and mode shapes: {mix_label(system.models)}.",
         tables=[frequencies(system, "Natural frequencies"), facts(train_data(assembly), units)],
         data=system.as_dict() | {"cautions": cautions},
-        notes=system.notes(),
+        notes=[*system.notes(), *by_teeth],
         cautions=cautions,
         viewer=viewer,
         terminal=Terminal(
             heading=[*system.heading(), *map(caution, slips)],
             tables=[numbered(system)],
-            closing=[*system.remarks(), *written],
+            closing=[*system.remarks(), *map(in_ascii, by_teeth), *written],
             lines="whole",
         ),
     )

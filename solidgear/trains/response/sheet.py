@@ -16,11 +16,12 @@ from solidgear.show.command import caution
 from solidgear.show.plot import Make
 from solidgear.show.sheet import Sheet, Terminal
 from solidgear.show.table import Cell, Column, Table, numbers, text
-from solidgear.show.units import Units
+from solidgear.show.units import Units, in_ascii
 from solidgear.show.words import DASH, hertz, whole
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.orders import OrderMap
 from solidgear.trains.assembly.slips import unit_slips
+from solidgear.trains.assembly.tooth_stiffness import of_teeth
 from solidgear.trains.judge.comparison import train_data
 from solidgear.trains.modes.modes import unpublished_lines
 from solidgear.trains.page import tables as train_tables
@@ -131,7 +132,12 @@ def response_sheet(result: Responses, units: Units) -> Sheet:
             ],
             tables=printed,
             results=(),
-            closing=[*notes, *unpublished_lines(unpublished), *map(caution, first.cautions)],
+            closing=[
+                *notes,
+                *map(in_ascii, of_teeth(result.assembly, units)),
+                *unpublished_lines(unpublished),
+                *map(caution, first.cautions),
+            ],
             lines="whole",
         ),
         words={**WORDS, "orders": WORDS["orders"].format(shafts, shaft)},
@@ -186,7 +192,11 @@ def receptance_sheet(
         terminal=Terminal(
             heading=[f"{title}; {first.label}, {damping} losses", *map(caution, slips)],
             tables=_peaks_or_none(first.peaks, "receptance", unit, teeth, units),
-            closing=[*unpublished_lines(unpublished), *map(caution, assembly.cautions)],
+            closing=[
+                *map(in_ascii, of_teeth(assembly, units)),
+                *unpublished_lines(unpublished),
+                *map(caution, assembly.cautions),
+            ],
             lines="whole",
         ),
         words={"receptance": "Amplitude and phase of the receptance of every model."},

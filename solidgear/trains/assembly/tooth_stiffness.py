@@ -18,13 +18,15 @@ class ToothStiffness:
     mesh: str
     points: tuple[OperatingPoint, ...]  #: that of the train first
     stiffness: tuple[float, ...]  #: at each point, N/m
+    #: ``estimated`` where cutter or mismatch of bevel teeth are, else ``calculated``
+    status: str
 
     def sentence(self, units: Units) -> str:
         """Return what it is, at which load, and what it is at the others."""
         (first, *points), (stiffness, *values) = self.points, self.stiffness
         mesh = "Mesh stiffness" if self.mesh == "mesh" else f"Stiffness of the {self.mesh}"
         text = (
-            f"{mesh} calculated from the teeth at {first.label}: {units.text(stiffness, 'N/m', 3)}, "
+            f"{mesh} {self.status} from the teeth at {first.label}: {units.text(stiffness, 'N/m', 3)}, "
             "without shafts and bearings."
         )
         if points:
@@ -36,8 +38,10 @@ class ToothStiffness:
         return text
 
 
-def tooth_stiffness(assembly: Assembly) -> tuple[ToothStiffness, ...]:
-    """Return the stiffness of every pair whose teeth give it, at all operating points of the train."""
+def tooth_stiffness(assembly: Assembly, everywhere: bool = True) -> tuple[ToothStiffness, ...]:
+    """Return the stiffness of every pair whose teeth give it, at all operating points of the train or at
+    the one that it stands at.
+    """
     train = assembly.asked_train
     if all(pair.mesh.stiffness != TEETH for pair in train.pairs):
         return ()
@@ -51,3 +55,8 @@ def tooth_stiffness(assembly: Assembly) -> tuple[ToothStiffness, ...]:
         values = (assembly.contacts[pair.name].stiffness, *further.get(pair.name, ())[1:])
         meshes.append(ToothStiffness(pair.name, train.operation[: len(values)], values))
     return tuple(meshes)
+
+
+def of_teeth(assembly: Assembly, units: Units) -> list[str]:
+    """Return a sentence for every mesh whose teeth give its stiffness, where the train stands."""
+    return [mesh.sentence(units) for mesh in tooth_stiffness(assembly, everywhere=False)]
