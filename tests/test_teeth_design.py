@@ -300,5 +300,5 @@ def test_two_trains_beside_each_other_say_which_has_its_stiffness_from_teeth():
     train = train.with_changes(operation=(point,))
     teeth = train.with_changes(meshes=(train.meshes[0].with_changes(stiffness="teeth"),))
     both = two_trains([Assembly(teeth), Assembly(train)], ("A", "B"), [], "euler", "euler")
-    (said,) = (text for text in both.told() if "calculated from the teeth" in text)
-    assert said.startswith("A: Mesh stiffness calculated from the teeth at 300 N m on the pinion: ")
+    (said,) = (text for text in both.told() if "estimated from the teeth" in text)
+    assert said.startswith("A: Mesh stiffness estimated from the teeth at 300 N m on the pinion: ")

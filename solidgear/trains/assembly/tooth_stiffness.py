@@ -46,14 +46,18 @@ def tooth_stiffness(assembly: Assembly, everywhere: bool = True) -> tuple[ToothS
     if all(pair.mesh.stiffness != TEETH for pair in train.pairs):
         return ()
     over_points = addition("mesh stiffness", "teeth over points")
-    further = over_points(train) if over_points and len(train.operation) > 1 else {}
+    several = everywhere and len(train.operation) > 1
+    further = over_points(train) if over_points and several else {}
     meshes = []
+    statuses = {pair.name: pair.mesh.status for pair in assembly.train.pairs}
     for pair in train.pairs:
         if pair.mesh.stiffness != TEETH:
             continue
         # the number that the train has, which was solved already
         values = (assembly.contacts[pair.name].stiffness, *further.get(pair.name, ())[1:])
-        meshes.append(ToothStiffness(pair.name, train.operation[: len(values)], values))
+        meshes.append(
+            ToothStiffness(pair.name, train.operation[: len(values)], values, statuses[pair.name])
+        )
     return tuple(meshes)
 
 
