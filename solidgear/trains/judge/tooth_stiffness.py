@@ -37,17 +37,33 @@ class ToothStiffness:
 
 
 def tooth_stiffness(assembly: Assembly) -> tuple[ToothStiffness, ...]:
-    """Return the stiffness of every pair whose teeth give it, at all operating points of the train."""
-    train = assembly.asked_train
-    if all(pair.mesh.stiffness != TEETH for pair in train.pairs):
+    """Return the stiffness of every mesh whose teeth give it, at all operating points of the train; of
+    planets those of the first.
+    """
+    train, of_train = assembly.asked_train, _of_train(assembly)
+    if not of_train:
         return ()
     over_points = addition("mesh stiffness", "teeth over points")
     further = over_points(train) if over_points and len(train.operation) > 1 else {}
     meshes = []
-    for pair in train.pairs:
-        if pair.mesh.stiffness != TEETH:
-            continue
-        # the number that the train has, which was solved already
-        values = (assembly.contacts[pair.name].stiffness, *further.get(pair.name, ())[1:])
-        meshes.append(ToothStiffness(pair.name, train.operation[: len(values)], values))
+    for name, stiffness in of_train.items():
+        # that of the train was solved already
+        values = (stiffness, *further.get(name, ())[1:])
+        meshes.append(ToothStiffness(name, train.operation[: len(values)], values))
     return tuple(meshes)
+
+
+def _of_train(assembly: Assembly) -> dict[str, float]:
+    """Return the stiffness that the train has of its teeth, N/m, by mesh."""
+    out = {
+        pair.name: assembly.contacts[pair.name].stiffness
+        for pair in assembly.asked_train.pairs
+        if pair.mesh.stiffness == TEETH
+    }
+    solved = {mesh.name: mesh for stage in assembly.train.stages for mesh in stage.meshes}
+    for stage in assembly.asked_train.stages:
+        for mesh in stage.meshes:
+            asked = getattr(mesh.mesh, f"{mesh.mate}_stiffness")
+            if mesh.planets == (1,) and asked == TEETH:
+                out[mesh.name] = float(solved[mesh.name].stiffness)
+    return out
