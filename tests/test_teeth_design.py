@@ -19,10 +19,10 @@ from solidgear.teeth.compliance.slices import Slices
 from solidgear.teeth.contact.cycle import mesh_cycle
 from solidgear.teeth.contact.cylindrical import CylindricalPair
 from solidgear.teeth.contact.local import Elasticity, LineContact
-from solidgear.teeth.study import teeth_study
+from solidgear.teeth.study import stated_stiffness, teeth_study
 from solidgear.trains.assembly.assembly import Assembly
-from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.assembly.tooth_stiffness import tooth_stiffness
+from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.load.operation import at_point
 from solidgear.trains.modes.modes import train_modes
 from solidgear.variants.optimise.command import designs_chart
@@ -302,3 +302,18 @@ def test_two_trains_beside_each_other_say_which_has_its_stiffness_from_teeth():
     both = two_trains([Assembly(teeth), Assembly(train)], ("A", "B"), [], "euler", "euler")
     (said,) = (text for text in both.told() if "estimated from the teeth" in text)
     assert said.startswith("A: Mesh stiffness estimated from the teeth at 300 N m on the pinion: ")
+
+
+def test_planets_whose_teeth_give_the_stiffness_have_none_in_the_file(tmp_path):
+    """The other mesh of the same stage has its number."""
+    for source in GEOMETRY.glob("*.toml"):
+        (tmp_path / source.name).write_text(source.read_text())
+    text = (GEOMETRY / "reducer.toml").read_text()
+    text = text.replace('module = "1.25 mm"', 'module = "1.25 mm"\nface_width = "12 mm"', 1)
+    text = text.replace('sun_stiffness = "2e8 N/m"', 'sun_stiffness = "teeth"', 1)
+    (tmp_path / "reducer.toml").write_text(text)
+    train = sg.load_train(tmp_path / "reducer.toml")
+    (stage,) = train.stages
+    sun, ring = (mesh.name for mesh in stage.meshes if mesh.planets == (1,))
+    assert stated_stiffness(train, sun) is None
+    assert stated_stiffness(train, ring) == 2.2e8

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
+from solidgear.teeth.study import stated_stiffness, touching
 from solidgear.teeth.supports import Carried, with_sections
 from solidgear.teeth.train_teeth import solved_mesh
-from solidgear.trains.assembly.mesh_stiffness import with_usual_meshes
-from solidgear.trains.file.tables import TEETH
+from solidgear.trains.assembly.mesh_stiffness import asks_for_teeth, with_usual_meshes
 from solidgear.trains.file.train import Train
 
 
 def stiffness_over_points(train: Train) -> dict[str, tuple[float, ...]]:
-    """Return the tangent stiffness of every pair with ``stiffness = "teeth"`` at each operating point
-    of a train, N/m, by mesh.
+    """Return the tangent stiffness of every mesh with ``stiffness = "teeth"`` at each operating point
+    of a train, N/m, by mesh; of planets those of the first.
 
     Examples
     --------
@@ -22,14 +22,13 @@ def stiffness_over_points(train: Train) -> dict[str, tuple[float, ...]]:
     >>> 2e9 > full > coast > 5e8
     True
     """
-    names = [pair.name for pair in train.pairs if pair.mesh.stiffness == TEETH]
-    if not names:
+    if not asks_for_teeth(train):
         return {}
     first, *further = train.operation
     carried = Carried.at_rest(with_sections(with_usual_meshes(train)), first)
     states = [carried, *(carried.at(point) for point in further)]
     return {
-        pair.name: tuple(float(solved_mesh(state, pair).cycle.tangent.mean()) for state in states)
-        for pair in carried.train.pairs
-        if pair.name in names
+        mesh.name: tuple(float(solved_mesh(state, mesh).cycle.tangent.mean()) for state in states)
+        for mesh in touching(carried.train)
+        if stated_stiffness(train, mesh.name) is None
     }

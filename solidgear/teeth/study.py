@@ -20,6 +20,7 @@ from solidgear.trains.assembly.mesh_stiffness import with_usual_meshes
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.planetary import PlanetMesh
+from solidgear.trains.file.tables import TEETH
 from solidgear.trains.file.train import Train
 
 #: torques of a curve, of that of the operating point
@@ -220,5 +221,6 @@ def touching(train: Train) -> list[Pair | PlanetMesh]:
 def stated_stiffness(train: Train, name: str) -> float | None:
     """Return the stiffness that the file gives a mesh, N/m; None where it is that of the teeth."""
     mesh = next(mesh for mesh in train.teeth if mesh.name == name)
-    stiffness = mesh.stiffness if isinstance(mesh, PlanetMesh) else mesh.mesh.stiffness
-    return None if stiffness == "teeth" else stiffness
+    key = f"{mesh.mate}_stiffness" if isinstance(mesh, PlanetMesh) else "stiffness"
+    stiffness = getattr(mesh.mesh, key)
+    return None if stiffness == TEETH else stiffness

@@ -39,26 +39,39 @@ class ToothStiffness:
 
 
 def tooth_stiffness(assembly: Assembly, everywhere: bool = True) -> tuple[ToothStiffness, ...]:
-    """Return the stiffness of every pair whose teeth give it, at all operating points of the train or at
-    the one that it stands at.
+    """Return the stiffness of every mesh whose teeth give it, at all operating points of the train or at
+    the one that it stands at; of planets those of the first.
     """
-    train = assembly.asked_train
-    if all(pair.mesh.stiffness != TEETH for pair in train.pairs):
+    train, of_train = assembly.asked_train, _of_train(assembly)
+    if not of_train:
         return ()
     over_points = addition("mesh stiffness", "teeth over points")
     several = everywhere and len(train.operation) > 1
     further = over_points(train) if over_points and several else {}
     meshes = []
-    statuses = {pair.name: pair.mesh.status for pair in assembly.train.pairs}
-    for pair in train.pairs:
-        if pair.mesh.stiffness != TEETH:
-            continue
-        # the number that the train has, which was solved already
-        values = (assembly.contacts[pair.name].stiffness, *further.get(pair.name, ())[1:])
-        meshes.append(
-            ToothStiffness(pair.name, train.operation[: len(values)], values, statuses[pair.name])
-        )
+    for name, (stiffness, status) in of_train.items():
+        # that of the train was solved already
+        values = (stiffness, *further.get(name, ())[1:])
+        meshes.append(ToothStiffness(name, train.operation[: len(values)], values, status))
     return tuple(meshes)
+
+
+def _of_train(assembly: Assembly) -> dict[str, tuple[float, str]]:
+    """Return the stiffness that the train has of its teeth, N/m, and its status, by mesh."""
+    statuses = {pair.name: pair.mesh.status for pair in assembly.train.pairs}
+    out = {
+        pair.name: (assembly.contacts[pair.name].stiffness, str(statuses[pair.name]))
+        for pair in assembly.asked_train.pairs
+        if pair.mesh.stiffness == TEETH
+    }
+    solved = {mesh.name: mesh for stage in assembly.train.stages for mesh in stage.meshes}
+    for stage in assembly.asked_train.stages:
+        for mesh in stage.meshes:
+            asked = getattr(mesh.mesh, f"{mesh.mate}_stiffness")
+            if mesh.planets == (1,) and asked == TEETH:
+                planets = solved[mesh.name]
+                out[mesh.name] = float(planets.stiffness), str(planets.mesh.status)
+    return out
 
 
 def of_teeth(assembly: Assembly, units: Units) -> list[str]:
