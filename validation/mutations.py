@@ -773,6 +773,31 @@ MUTATIONS = (
         "test_on_both_wheels_the_next_tooth_clockwise_touches_nearer_to_the_tip[concave-left]",
     ),
     Mutation(
+        "corners of tips as wide as flanks with the same load",
+        "solidgear/teeth/contact/local.py",
+        "LineContact._widths",
+        "wide / 2 * np.exp((share - 1) / 2)",
+        "width",
+        "tests/test_teeth_contact.py::"
+        "test_corner_law_is_that_of_the_pressure_between_half_planes[0.001]",
+    ),
+    Mutation(
+        "relieved flanks that do not lean at corners of tips",
+        "solidgear/teeth/contact/cylindrical.py",
+        "CylindricalPair.least_gap",
+        "lean * np.abs(beside)",
+        "0 * np.abs(beside)",
+        "tests/test_teeth_contact.py::test_relieved_flanks_touch_beside_the_line_of_action[0.002]",
+    ),
+    Mutation(
+        "relieved flanks that touch on the line of action alone",
+        "solidgear/teeth/contact/cylindrical.py",
+        "CylindricalPair.least_gap",
+        "gap.min(axis=1)",
+        "gap[:, BESIDE // 2]",
+        "tests/test_teeth_contact.py::test_relieved_flanks_touch_beside_the_line_of_action[None]",
+    ),
+    Mutation(
         "flanks: a helix slope turns with the flank that carries",
         "solidgear/trains/file/mesh_teeth.py",
         "_mesh_teeth",

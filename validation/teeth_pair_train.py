@@ -117,17 +117,14 @@ def dynamic_orders(case: Case) -> tuple[np.ndarray, float]:
     """
     with tempfile.TemporaryDirectory() as name:
         train = mesh_of_teeth(train_of(case, Path(name)))
-        mesh = train.meshes[0]
-        masses = [
-            inertia / wheel.base**2
-            for inertia, wheel in zip(INERTIAS, (case.wheels.first, case.wheels.second))
-        ]
-        resonance = np.sqrt(mesh.stiffness * sum(1 / m for m in masses)) / (2 * np.pi)
         drive = Drive(Assembly(train), "timoshenko", "timoshenko")
+        wheels = case.wheels.first, case.wheels.second
+        lightness = sum(w.base**2 / inertia for w, inertia in zip(wheels, INERTIAS))
+        resonance = float(np.sqrt(drive.stiffness * lightness)) / (2 * np.pi)
         orders = [
             drive.mesh(np.array([n * resonance / PART]), n)[0][0] for n in range(1, CYCLE + 1)
         ]
-    return np.array(orders) * np.exp(1j * np.array(mesh.transmission_error.phases)), resonance
+    return np.array(orders) * np.exp(1j * np.array(drive.error.phases)), resonance
 
 
 def whole_orders(error: np.ndarray) -> np.ndarray:
