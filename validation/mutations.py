@@ -866,9 +866,9 @@ MUTATIONS = (
     Mutation(
         "teeth: relief that opens the flanks less than it is deep",
         "solidgear/teeth/contact/cylindrical.py",
-        "CylindricalPair.cells",
-        "cells.gap + shape",
-        "cells.gap + 0.9 * shape",
+        "CylindricalPair.least_gap",
+        "gap += shape.deviation(moved",
+        "gap += 0.9 * shape.deviation(moved",
         "tests/test_teeth_design.py::test_long_relief_against_a_contact_program_of_sectors[10]",
     ),
     Mutation(
