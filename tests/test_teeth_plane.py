@@ -17,7 +17,7 @@ from solidgear.core.gears.wheel import Rack, Wheel
 from solidgear.core.gears.wheel_pair import WheelPair
 from solidgear.core.kernel.assembly import tabulate
 from solidgear.teeth.compliance.mesh import Fineness, pitch_mesh
-from solidgear.teeth.compliance.pitch import Pitch
+from solidgear.teeth.compliance.pitch import plane_pitch
 from solidgear.teeth.compliance.plane import PlaneTeeth
 from solidgear.teeth.compliance.slices import Slices
 from solidgear.teeth.contact.local import Elasticity, LineContact
@@ -250,7 +250,6 @@ def test_with_the_local_law_teeth_move_as_under_a_resolved_pressure(place):
     teeth = PlaneTeeth(PINION, hold=hold(PINION), body=True)
     r = float(np.sqrt(PINION.form**2 + place * (PINION.tip**2 - PINION.form**2)))
     fine = pitch_mesh(PINION, hold(PINION), Fineness(12, 70, 24, 2.0))
-    pitch = Pitch(fine, Elasticity(), True)
     half, load, radius = 0.25e-3, 1.0, 8e-3
     plane = 2.06e11 / (1 - 0.09)
     t = np.cos(pi * (np.arange(400) + 0.5) / 400)
@@ -258,8 +257,9 @@ def test_with_the_local_law_teeth_move_as_under_a_resolved_pressure(place):
     pressed = edge_rows(PINION, fine, np.hypot(PINION.base, rolled))
     force = sp.csr_matrix((1 - t**2) / np.sum(1 - t**2) @ pressed)
     middle = sp.csr_matrix(edge_rows(PINION, fine, np.array([r])))
-    waves = np.arange(PINION.count // 2 + 1)
-    response = pitch.responses(middle, force, waves, PINION.count)
+    pitch = plane_pitch(fine, Elasticity(), True, force, middle)
+    waves = range(PINION.count // 2 + 1)
+    response = np.array([pitch.response(n, PINION.count) for n in waves])
     resolved = np.fft.irfft(response, n=PINION.count, axis=0)[0].item()
     # deep, where the law's form for any depth is the half-plane's; the width by the load it belongs to
     law = LineContact((Elasticity(), Elasticity()), (2e-3, 2e-3))

@@ -1,15 +1,13 @@
 r"""One pitch of a toothed wheel in plane strain, condensed to its sides.
 
-Under a wave n the right side of a pitch moves as the left one does, turned and times ``exp(2 pi i n /
-z)``.  The interior is condensed to both sides once, in real numbers, in radial and clockwise parts: the
-stiffness K of both sides becomes a small Hermitian matrix of the left one for each wave.
+Sides move in radial and clockwise parts, so that the right one moves under a wave as the left one does,
+but for the wave's factor (:mod:`solidgear.teeth.compliance.ring`).
 """
 
 from __future__ import annotations
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.sparse.linalg import splu
 from scipy.spatial import cKDTree
 from skfem import ElementQuad2
 from skfem.quadrature import get_quadrature
@@ -18,6 +16,7 @@ from skfem.refdom import RefQuad
 from solidgear.core.errors import SolidgearError
 from solidgear.core.kernel.assembly import Pattern, reference, tabulate
 from solidgear.teeth.compliance.mesh import PitchMesh
+from solidgear.teeth.compliance.ring import CondensedPitch, condensed
 from solidgear.teeth.contact.local import Elasticity
 
 #: degree of polynomials that the quadrature of a cell integrates
@@ -28,56 +27,30 @@ NEAREST = 9
 STEPS, OUTSIDE = 12, 1e-9
 
 
-class Pitch:
-    """One pitch, condensed to its sides; the circle that ends the rim is held or free."""
-
-    def __init__(self, mesh: PitchMesh, elasticity: Elasticity, holds: bool):
-        stiffness = _stiffness(mesh, elasticity)
-        fixed = np.zeros(len(mesh.points), bool)
-        fixed[mesh.circle] = holds
-        sides = mesh.sides[:, ~fixed[mesh.sides[0]]]
-        inside = ~fixed
-        inside[sides] = False
-        unknowns = 2 * np.flatnonzero(inside)[:, None] + np.arange(2)
-        #: unknowns inside, and those of both sides, left before right, radial and clockwise
-        self.inside = unknowns.ravel()
-        self.polar = _polar(mesh.points[sides.ravel()])
-        self.edge = (2 * sides.ravel()[:, None] + np.arange(2)).ravel()
-        self.factor = splu(stiffness[self.inside][:, self.inside].tocsc())
-        to_edge = stiffness[self.inside][:, self.edge] @ self.polar.T
-        self.coupling = to_edge.toarray()
-        follow = self.factor.solve(self.coupling)
-        at_edge = self.polar @ stiffness[self.edge][:, self.edge] @ self.polar.T
-        condensed = at_edge.toarray() - self.coupling.T @ follow
-        self.condensed = (condensed + condensed.T) / 2
-
-    def responses(
-        self, readings: sp.csr_matrix, forces: sp.csr_matrix, waves: np.ndarray, count: int
-    ) -> np.ndarray:
-        """Return the (waves, readings, forces) response of a pitch to forces that grow from pitch to
-        pitch as waves do; readings and forces are rows of the unknowns.
-        """
-        inner = forces[:, self.inside].toarray().T
-        solved = self.factor.solve(inner)
-        read = readings[:, self.inside]
-        # what a unit motion of the sides moves, and what forces press on the sides
-        by_edge = -(read @ self.factor.solve(self.coupling))
-        by_edge += (readings[:, self.edge] @ self.polar.T).toarray()
-        pressed = -(self.coupling.T @ solved)
-        pressed += (self.polar @ forces[:, self.edge].T).toarray()
-        grown = np.exp(2j * np.pi * waves / count)
-        by_side = np.split(by_edge, 2, axis=1)
-        on_side = np.split(pressed, 2, axis=0)
-        moved = by_side[0] + grown[:, None, None] * by_side[1]
-        push = on_side[0] + grown.conj()[:, None, None] * on_side[1]
-        return read @ solved + moved @ np.linalg.solve(self._wave_matrices(grown), push)
-
-    def _wave_matrices(self, grown: np.ndarray) -> np.ndarray:
-        """Return the stiffness of the left side under waves with these factors from pitch to pitch."""
-        half = len(self.condensed) // 2
-        ends = self.condensed.reshape(2, half, 2, half).transpose(0, 2, 1, 3)
-        across = grown[:, None, None] * ends[0, 1]
-        return ends[0, 0] + ends[1, 1] + across + across.conj().transpose(0, 2, 1)
+def plane_pitch(
+    mesh: PitchMesh,
+    elasticity: Elasticity,
+    holds: bool,
+    forces: sp.csr_matrix,
+    readings: sp.csr_matrix,
+) -> CondensedPitch:
+    """Condense one pitch to its sides; the circle that ends the rim is held or free.  Forces and readings
+    are rows of the unknowns.
+    """
+    stiffness = _stiffness(mesh, elasticity)
+    fixed = np.zeros(len(mesh.points), bool)
+    fixed[mesh.circle] = holds
+    sides = mesh.sides[:, ~fixed[mesh.sides[0]]]
+    inside = ~fixed
+    inside[sides] = False
+    inner = (2 * np.flatnonzero(inside)[:, None] + np.arange(2)).ravel()
+    # of both sides, left before right, radial and clockwise
+    edge = (2 * sides.ravel()[:, None] + np.arange(2)).ravel()
+    polar = _polar(mesh.points[sides.ravel()])
+    place = sp.csr_matrix(
+        (np.ones(len(edge)), (edge, np.arange(len(edge)))), shape=(stiffness.shape[0], len(edge))
+    )
+    return condensed(stiffness, inner, (place @ polar.T).tocsr(), forces.T.tocsr(), readings)
 
 
 def _polar(points: np.ndarray) -> sp.csr_matrix:

@@ -38,7 +38,7 @@ from solidgear.core.errors import SolidgearError
 from solidgear.core.gears.wheel import Wheel
 from solidgear.teeth.compliance.half_plane import half_plane, near_force
 from solidgear.teeth.compliance.mesh import Fineness, PitchMesh, pitch_mesh
-from solidgear.teeth.compliance.pitch import Pitch, motion_rows, read_rows
+from solidgear.teeth.compliance.pitch import motion_rows, plane_pitch, read_rows
 from solidgear.teeth.contact.local import Elasticity
 
 #: cells of a tooth: those below the flank are small beside the depths of readings
@@ -227,18 +227,23 @@ def _tables(teeth: PlaneTeeth) -> _Tables:
     base = np.minimum(teeth.base * wheel.module, HALF * to_middle)[:, None]
     depths = [k * base for k in (1, 2, 3)]
     readings = [read_rows(mesh, points + depth * normals, normals) for depth in depths]
-    pitches = [Pitch(mesh, teeth.elasticity, holds) for holds in (True, not teeth.free)]
-    waves = np.arange(count // 2 + 1)
-    read = sp.vstack(readings, format="csr")
-    responses = pitches[1].responses(read, forces, waves, count)
-    responses[:2] = pitches[0].responses(read, forces, waves[:2], count)
-    moved = np.fft.irfft(responses, n=count, axis=0).reshape(count, 3, len(nodes), len(nodes))
+    port = _port(mesh, teeth)
+    rows = sp.vstack([*readings, port], format="csr"), sp.vstack([forces, port], format="csr")
+    read, pressed = rows
+    held = plane_pitch(mesh, teeth.elasticity, True, pressed, read)
+    rest = plane_pitch(mesh, teeth.elasticity, False, pressed, read) if teeth.free else held
+    waves = range(count // 2 + 1)
+    # waves 0 and 1 move the wheel as a whole, which is held
+    responses = np.array([(rest if n > 1 else held).response(n, count) for n in waves])
+    of_teeth = responses[:, : 3 * len(nodes), : len(nodes)]
+    moved = np.fft.irfft(of_teeth, n=count, axis=0).reshape(count, 3, len(nodes), len(nodes))
     distances = _distances(points)
     for k, depth in enumerate(depths):
         moved[0, k] -= teeth._half_plane(distances, depth)
     surface = 3 * moved[:, 0] - 3 * moved[:, 1] + moved[:, 2]
 
-    translation, rotation = _port_compliance(mesh, pitches[0], teeth) if not teeth.body else (0, 0)
+    of_port = responses[:2, 3 * len(nodes) :, len(nodes) :]
+    translation, rotation = (0.0, 0.0) if teeth.body else _port_compliance(of_port, teeth)
     moment = points[:, 0] * normals[:, 1] - points[:, 1] * normals[:, 0]
     for table, angle in zip(surface, wheel.pitch_angle * np.arange(count)):
         c, s = np.cos(angle), np.sin(angle)
@@ -257,14 +262,13 @@ def _distances(points: np.ndarray) -> np.ndarray:
     return np.hypot(between[..., 0], between[..., 1])
 
 
-def _port_compliance(mesh: PitchMesh, pitch: Pitch, teeth: PlaneTeeth) -> tuple[float, float]:
-    """Return the compliance of translation and of rotation of the port, per face width, m per N/m and
-    rad per N.
-
-    A force along x on the whole port is a wave 1: in the frame of pitch k it is the real part of
-    ``exp(2 pi i k / z) (1, -i)``.
+def _port(mesh: PitchMesh, teeth: PlaneTeeth) -> sp.csr_matrix:
+    """Return rows of the mean motion of a pitch of the port: aside, ahead and clockwise; none where the
+    body stays in.
     """
     wheel, radius = teeth.wheel, teeth.port_radius
+    if teeth.body:
+        return sp.csr_matrix((0, 2 * len(mesh.points)))
     if wheel.sign * radius >= wheel.sign * wheel.root:
         raise SolidgearError(f"teeth: the port at {1e3 * radius:.6g} mm is not in the rim")
     angles = wheel.pitch_angle * ((np.arange(PORT_POINTS) + 0.5) / PORT_POINTS - 0.5)
@@ -272,8 +276,18 @@ def _port_compliance(mesh: PitchMesh, pitch: Pitch, teeth: PlaneTeeth) -> tuple[
     clockwise = np.column_stack([out[:, 1], -out[:, 0]])
     aside, ahead = np.broadcast_to(np.eye(2)[:, None], (2, PORT_POINTS, 2))
     means = [read_rows(mesh, radius * out, d).mean(axis=0) for d in (aside, ahead, clockwise)]
-    port = sp.csr_matrix(np.vstack(means))
-    still, once = pitch.responses(port, port, np.arange(2), wheel.count)
+    return sp.csr_matrix(np.vstack(means))
+
+
+def _port_compliance(responses: np.ndarray, teeth: PlaneTeeth) -> tuple[float, float]:
+    """Return the compliance of translation and of rotation of the port, per face width, m per N/m and
+    rad per N, from its (2, 3, 3) responses to the waves 0 and 1.
+
+    A force along x on the whole port is a wave 1: in the frame of pitch k it is the real part of
+    ``exp(2 pi i k / z) (1, -i)``.
+    """
+    still, once = responses
+    count, radius = teeth.wheel.count, teeth.port_radius
     along = np.array([1.0, -1j, 0.0])
-    translation = (along.conj() @ once @ along).real / (2 * wheel.count)
-    return float(translation), float(still[2, 2].real / (wheel.count * radius**2))
+    translation = (along.conj() @ once @ along).real / (2 * count)
+    return float(translation), float(still[2, 2].real / (count * radius**2))
