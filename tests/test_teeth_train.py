@@ -16,6 +16,7 @@ from solidgear.teeth.supports import Carried, with_sections
 from solidgear.teeth.train_teeth import TeethModel, mesh_contact, mesh_of_teeth, teeth_of
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.stages import mesh_row
+from solidgear.trains.file.operation import OperatingPoint
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 QUICK = TeethModel(slices=12, positions=8)
@@ -207,6 +208,17 @@ def test_the_error_of_a_train_is_along_the_line_of_action(train):
     arcs = np.abs(solved_pair.cycle.orders(5))
     helix = solved_pair.wheels.base_helix
     assert orders == pytest.approx(arcs * np.cos(helix), rel=0.02, abs=1e-10)
+
+
+@pytest.mark.parametrize("name, torque", [("gearbox_train", -30.0), ("axle_overhung", -200.0)])
+def test_a_train_that_coasts_has_the_line_of_action_of_the_flank_that_carries(name, torque):
+    """The same side of the axis and the same sense as the geometry of its gears gives on coast."""
+    point = OperatingPoint(torque=torque)
+    train = sg.load_train(GEOMETRY / f"{name}.toml", point)
+    mesh = train.mesh.with_changes(stiffness="teeth")
+    by_geometry = Assembly(train).contact.pinion.normal
+    by_teeth = Assembly(train.with_changes(mesh=mesh)).contact.pinion.normal
+    assert by_teeth @ by_geometry > 0.98
 
 
 def test_over_a_cycle_a_mean_force_gives_the_loaded_error_back(train):

@@ -32,7 +32,7 @@ from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.planetary import PlanetMesh, PlanetMeshes, Stage
 from solidgear.trains.file.tables import TEETH, ErrorTable, Mesh
 from solidgear.trains.file.train import Train
-from solidgear.trains.load.contact import axes_of
+from solidgear.trains.load.contact import axes_of, other_flank
 
 #: bore below which a wheel is solid, of its root radius
 THINNEST = HUB
@@ -293,10 +293,13 @@ def _filled(carried: Carried, pair: Pair, mesh: Mesh, varies: bool) -> Mesh:
         )
         changes["transmission_error_status"] = solved.status
     point, normal = in_pinion_frame(carried, pair, solved)
-    mean = normal.mean(axis=0)
+    place, mean = point.mean(axis=0), normal.mean(axis=0)
+    mean = mean / np.linalg.norm(mean)
+    if carried.point.coast:  # a file has the line of the flank that it names
+        mean = other_flank(pair.rolling, mean, place)
     changes |= {
-        "line_of_action": tuple((mean / np.linalg.norm(mean)).tolist()),
-        "point": tuple(point.mean(axis=0).tolist()),
+        "line_of_action": tuple(mean.tolist()),
+        "point": tuple(place.tolist()),
         "line_of_action_status": solved.status,
     }
     return mesh.with_changes(**changes)

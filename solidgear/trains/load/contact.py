@@ -126,7 +126,7 @@ def _contact(pair: Pair, coast: bool | None) -> Contact:
     if coast is None:
         coast = pair.point is not None and pair.point.coast
     if coast:
-        normal = _other_flank(pair, normal, point)
+        normal = other_flank(pair, normal, point)
     origin = _gear_position(pair, point)
     n_gear = to_gear_frame(normal, mesh.shaft_angle)
     r_gear = to_gear_frame(point - origin, mesh.shaft_angle)
@@ -234,7 +234,7 @@ def _gear_against_pinion(pair: Pair) -> Iterator[tuple[str, str, bool]]:
             yield "loaded_side", words, False
 
 
-def _other_flank(pair: Pair, normal: np.ndarray, point: np.ndarray) -> np.ndarray:
+def other_flank(pair: Pair, normal: np.ndarray, point: np.ndarray) -> np.ndarray:
     """Return the line of action of the other flank of the same tooth, in the pinion's frame:
     mirrored at the normal of the pitch cone where they touch.
     """
