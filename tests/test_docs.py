@@ -325,8 +325,9 @@ def test_the_site_builds_without_a_warning_and_without_a_broken_link(tmp_path):
 
 
 def test_pages_and_pictures_stay_small():
-    size = sum(p.stat().st_size for p in DOCS.rglob("*") if p.is_file())
-    assert size < 3e6
+    written = DOCS / "validation" / "written"  # by other tests and by whoever runs a validation
+    files = [p for p in DOCS.rglob("*") if p.is_file() and written not in p.parents]
+    assert sum(p.stat().st_size for p in files) < 3e6
 
 
 def test_pages_are_within_their_limits():

@@ -78,7 +78,7 @@ def test_how_sure():
     assert all(0 < band < 5e-3 for band in run("how_sure").values())  # a tenth of 5 %
 
 
-def test_teeth_in_contact_has_its_least_error_where_relief_makes_up_for_the_load():
+def test_teeth_in_contact():
     loads = 1e3 * np.array([100, 200, 300])
     found = run("teeth_in_contact", (0.0, 10e-6), loads)
     bare, relieved = found["error"].values()

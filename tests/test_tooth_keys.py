@@ -5,7 +5,6 @@ from math import cos, hypot, pi, radians, sin
 from pathlib import Path
 
 import pytest
-from command import numbers
 
 import solidgear as sg
 from solidgear.core import SolidgearError
@@ -18,9 +17,6 @@ from solidgear.trains.assembly.mesh_stiffness import USUAL, asks_for_teeth
 from solidgear.trains.file.tooth_fit import fit_cautions, fit_line, path_cuts
 from solidgear.trains.judge.check import _facts
 from solidgear.trains.load.operation import at_point
-from solidgear.variants.sweep.design import Design
-from solidgear.variants.sweep.file_task import run
-from solidgear.variants.sweep.train_task import train_task
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 TEXT = (GEOMETRY / "gearbox_train.toml").read_text()
@@ -318,38 +314,3 @@ def test_settings_of_no_cutter_are_refused(table, key, value):
     axle = sg.load_train(GEOMETRY / "axle_overhung.toml")
     with pytest.raises(SceneError, match=key):
         axle.with_changes(**{table: getattr(axle, table).with_changes(**{key: value})})
-
-
-def by_relief_and_torque(train):
-    """Put a stiffness in the place of "teeth" that the relief and the torque of the train decide."""
-    tip, torque = train.pinion.relief.tip, train.point.torque
-    solved_at.append((tip, torque))
-    mesh = train.mesh.with_changes(stiffness=2e8 + 1e13 * tip + 1e6 * torque)
-    return train.with_changes(mesh=mesh)
-
-
-@pytest.fixture
-def solving_rows(solving):
-    register("mesh stiffness", "teeth", f"{__name__}:by_relief_and_torque")
-    return solving
-
-
-def test_a_sweep_solves_the_teeth_of_every_row(tmp_path, solving_rows):
-    """Over relief and torque: each row has the frequencies of its stiffness typed into the file."""
-    text = with_teeth(with_lines('relief = {tip = "5 um"}'))
-    vary = ("pinion.relief.tip=5 um:15 um:2", "operation.full.torque=60 N*m:115 N*m:2")
-    light = {"pinion": "euler", "gear": "euler", "max_frequency": 1500.0, "ask": ["system-modes"]}
-    task = train_task(written(tmp_path, text), Design(vary), **light)
-    out = tmp_path / "rows.csv"
-    run(task, out)
-    rows = numbers(out)
-    assert len(rows) == 4 and len(set(solving_rows)) == 4
-    for (tip, torque), row in zip(solving_rows, rows):
-        stiffness = 2e8 + 1e13 * tip + 1e6 * torque
-        typed = TEXT.replace("3.2e8 N/m", f"{stiffness} N/m", 1).replace(
-            "115 N*m", f"{torque} N*m", 1
-        )
-        train = sg.load_train(written(tmp_path, typed))
-        modes = Assembly(train).system("euler").modes(4).frequency_hz
-        for k in (1, 2, 3):
-            assert row[f"f{k}_hz"] == pytest.approx(modes[k], rel=1e-6)

@@ -407,6 +407,9 @@ def test_bars_hold_what_a_finer_mesh_changes(helical):
     pairs = [*zip(here.misalignment, there.misalignment)]
     pairs += zip(here.displacement["pinion"][:4], there.displacement["pinion"][:4])
     for mine, fine in pairs:
+        if mine.name == "wind-up":  # by the force, which no mesh moves
+            assert mine.value == pytest.approx(fine.value, rel=1e-9)
+            continue
         assert 0 < abs(mine.value - fine.value) <= mine.bar + fine.bar, mine.name
         assert fine.bar < mine.bar < 0.05 * abs(mine.value), mine.name
 

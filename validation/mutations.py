@@ -867,8 +867,8 @@ MUTATIONS = (
         "teeth: relief that opens the flanks less than it is deep",
         "solidgear/teeth/contact/cylindrical.py",
         "CylindricalPair.least_gap",
-        "gap += shape.deviation(moved",
-        "gap += 0.9 * shape.deviation(moved",
+        "shape.deviation(moved, z[:, None])",
+        "0.9 * shape.deviation(moved, z[:, None])",
         "tests/test_teeth_design.py::test_long_relief_against_a_contact_program_of_sectors[10]",
     ),
     Mutation(
@@ -1095,7 +1095,7 @@ MUTATIONS = (
     Mutation(
         "operating point: a coasting torque pulls at the driving flank",
         "solidgear/trains/load/contact.py",
-        "_other_flank",
+        "other_flank",
         "2 * (normal @ across) * across - normal",
         "-normal",
         "tests/test_train_operation.py::test_a_negative_torque_is_carried_by_the_other_flank",

@@ -12,7 +12,7 @@ from solidgear.core import SolidgearError
 from solidgear.variants.optimise.wish import Rows
 from solidgear.variants.sweep.design import Design
 from solidgear.variants.sweep.entries import Entry
-from solidgear.variants.sweep.file_task import FileTask
+from solidgear.variants.sweep.file_task import FileTask, without_bars
 from solidgear.variants.sweep.file_variants import POINT, scene_variants
 from solidgear.variants.sweep.scene_task import STATICS, SceneTask
 from solidgear.variants.sweep.train_task import ASKED, CONTACT, MODES, TrainTask, train_task
@@ -60,7 +60,7 @@ def scene_designs(scene: Path, design: Design, model: str | None, tol: float | N
     solved, unbarred = "the cheapest mesh whose bars are within the tolerance", ""
     if model is not None:
         solved = f"the {model} model, without error bars"
-        unbarred = "a model that is given has no error bars"
+        unbarred = without_bars(model)
     task = SceneTask(variants, model, tol, {}, MOST_MODES)
     return Designs(task, base.title or base.name, 1, solved, unbarred, _numbers_of_scene)
 
@@ -103,7 +103,7 @@ def train_designs(
         solved = "plane slices of the teeth on Timoshenko shafts"
     if every_point:
         solved += f", at the worst of {points} operating points"
-    unbarred = "rows of a train have no error bars"
+    unbarred = "none: rows of a train have no error bars"
     return Designs(task, usual.title or usual.name, points, solved, unbarred, _numbers_of_train)
 
 

@@ -89,7 +89,7 @@ class Optimum(Displayed):
             "best": None if self.best is None else self.best.number,
             "at_end": list(self.at_end),
             "search": self.how,
-            "bars": f"none: {self.unbarred}" if self.unbarred else "beside each value",
+            "bars": self.unbarred or "beside each value",
             "gain": None if self.gain is None else plain(self.gain),
             "designs": [
                 {
@@ -137,7 +137,7 @@ def _sentences(optimum: Optimum) -> Iterator[str]:
             file += ", which misses a limit"
         percent = f"{100 * (gain.relative or 0.0):+.3g} % from {file}"
         if gain.verdict == "no band":
-            yield f"{percent}; {optimum.unbarred}."
+            yield f"{percent}; it has no error bars ({optimum.unbarred.removeprefix('none: ')})."
         elif gain.verdict == "resolved":
             yield f"{percent}."
         else:
