@@ -261,6 +261,8 @@ def test_a_train_without_a_torque_is_refused(train):
     bare = train.with_changes(operation=())
     with pytest.raises(SolidgearError, match="no torque"):
         teeth_study(bare)
+    with pytest.raises(SolidgearError, match="0 N m presses no teeth"):
+        teeth_study(bare, OperatingPoint(torque=0.0))
     mesh = bare.mesh.with_changes(stiffness="teeth")
     with pytest.raises(SceneError, match="under a load"):
         mesh_of_teeth(bare.with_changes(mesh=mesh))

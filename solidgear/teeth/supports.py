@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 import scipy.linalg as sla
 
-from solidgear.core import Scene, System
+from solidgear.core import Scene, SolidgearError, System
 from solidgear.core.scene.stations import Port
 from solidgear.teeth.contact.cylindrical import CylindricalPair
 from solidgear.teeth.contact.frame import Frame, Stations, Supports
@@ -68,7 +68,9 @@ class Carried:
 
     @classmethod
     def at_rest(cls, train: Train, point: OperatingPoint) -> Carried:
-        """Settle a train of :func:`with_sections` at an operating point."""
+        """Settle a train of :func:`with_sections` at an operating point; refused without a torque."""
+        if point.torque == 0:
+            raise SolidgearError("a torque of 0 N m presses no teeth together; give another one")
         operating = Operating(Assembly(train), SHAFT)
         return cls(operating, operating.at(point))
 
