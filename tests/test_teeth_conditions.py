@@ -95,7 +95,7 @@ def test_conditions_hold_at_random():
     assert max(steps) < 20
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_conditions_hold_at_many_random_positions():
     steps = [conditions_hold(number) for number in range(1002)]
     assert np.median(steps) < 8

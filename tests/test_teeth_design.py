@@ -227,7 +227,7 @@ def test_a_design_of_a_train_is_solved_at_every_point(rows):
     assert {*modes.task.models.values()} == {"euler"}
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_the_best_relief_is_that_of_a_grid(tmp_path):
     """Design 0 has no relief in its file, and so no place in the chart over it."""
     optimum = sg.optimise(GEARBOX, [RANGE], "min transmission error", every_point=True)

@@ -70,7 +70,7 @@ def test_what_is_within_the_tolerance_with_its_bar_is_enough(by_slices):
     assert (norm.verdict[FACE] == WITHIN) == within
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_plane_slices_of_helical_teeth_are_stiffer_than_teeth_in_3d(carried):
     """By more than the bar: the axial part of their force bends a wheel that is a disc of 12 mm out of
     its plane, which a plane section does not know.

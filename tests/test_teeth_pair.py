@@ -66,7 +66,7 @@ def test_calculix_has_the_torque_of_the_whole_gears():
         assert row["second"] == pytest.approx(1, abs=3e-3)
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_whole_gears_are_solved_as_kept():
     case = PLAIN[1]
     pair = WholePair.of(case.wheels, HOLDS, case.shapes, (FINE, COARSE))

@@ -247,7 +247,7 @@ def test_depths_that_are_read_do_not_matter():
     assert 0 < abs(deeper / usual - 1) < 2e-3
 
 
-@pytest.mark.long
+@pytest.mark.slow
 @pytest.mark.parametrize("helix", [0, 15])
 def test_contact_turns_a_pinion_as_in_calculix(helix):
     """Its flanks are flat between nodes, and its elements are of reduced order: 1 %."""
