@@ -55,6 +55,16 @@ DEEPER = 1.5
 PORT_POINTS = 40
 
 
+def usual_hold(wheel: Wheel) -> float:
+    """Return the radius that ends the rim of a solid wheel, or of a ring two modules thick, m."""
+    return HUB * wheel.root if wheel.teeth > 0 else wheel.root + RIM * wheel.module
+
+
+def usual_port(wheel: Wheel) -> float:
+    """Return the radius just below the roots at which the body's model knows the motion, m."""
+    return wheel.root - wheel.sign * PORT * wheel.module
+
+
 @dataclass(frozen=True)
 class PlaneTeeth:
     """Compliance of the teeth of a wheel in plane strain, in its transverse section.
@@ -105,17 +115,12 @@ class PlaneTeeth:
     @property
     def hold_radius(self) -> float:
         """Radius of the circle that ends the rim, m."""
-        if self.hold is not None:
-            return self.hold
-        wheel = self.wheel
-        return HUB * wheel.root if wheel.teeth > 0 else wheel.root + RIM * wheel.module
+        return usual_hold(self.wheel) if self.hold is None else self.hold
 
     @property
     def port_radius(self) -> float:
         """Radius of the circle whose mean motion the body's model knows, m."""
-        if self.port is not None:
-            return self.port
-        return self.wheel.root - self.wheel.sign * PORT * self.wheel.module
+        return usual_port(self.wheel) if self.port is None else self.port
 
     def matrix(self, tooth: np.ndarray, r: np.ndarray, depth: float) -> np.ndarray:
         """Return the motion of places on the right flanks at a depth along their normals, per normal

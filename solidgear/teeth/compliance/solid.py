@@ -33,7 +33,7 @@ from solidgear.core.models.solid.matrices import _matrices
 from solidgear.core.scene.parts import Material
 from solidgear.teeth.compliance.half_space import between_pieces
 from solidgear.teeth.compliance.mesh import Fineness, pitch_mesh
-from solidgear.teeth.compliance.plane import DEPTH, HUB, PORT, RIM
+from solidgear.teeth.compliance.plane import DEPTH, usual_hold, usual_port
 from solidgear.teeth.compliance.port import Port, port_of
 from solidgear.teeth.compliance.ring import CondensedPitch, at_pitch, condensed
 from solidgear.teeth.compliance.solid_mesh import SweptPitch, turned
@@ -122,16 +122,12 @@ class SolidTeeth:
     @property
     def hold_radius(self) -> float:
         """Radius of the cylinder that ends the rim, m."""
-        wheel = self.wheel
-        if self.hold is not None:
-            return self.hold
-        return HUB * wheel.root if wheel.teeth > 0 else wheel.root + RIM * wheel.module
+        return usual_hold(self.wheel) if self.hold is None else self.hold
 
     @property
     def port_radius(self) -> float:
         """Radius of the cylinder whose mean motion the body's model knows, m."""
-        wheel = self.wheel
-        return wheel.root - wheel.sign * PORT * wheel.module if self.port is None else self.port
+        return usual_port(self.wheel) if self.port is None else self.port
 
     @property
     def depth(self) -> float:

@@ -11,7 +11,6 @@ line load of any cell over the mean line load at its position.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -123,11 +122,6 @@ class MeshCycle:
         return float(self.face_loads.max() / self.face_loads.mean())
 
     @cached_property
-    def largest_line_load(self) -> float:
-        """Largest force per length of contact line at any position, N/m."""
-        return float(max(position.line_load.max() for position in self.positions))
-
-    @cached_property
     def line_load_factor(self) -> float:
         """Largest line load on the path over the mean line load of its position, largest of the cycle."""
         return float(max(_over_mean(position) for position in self.positions))
@@ -183,14 +177,9 @@ def mesh_cycle(
     slices: int,
     supports: Carrying | None = None,
     positions: int = POSITIONS,
-    progress: Callable[[int, int], None] | None = None,
 ) -> MeshCycle:
     """Solve the contact at evenly spread positions of one pitch; arguments as of
     :func:`solidgear.teeth.contact.solver.loads`.
     """
-    solved = []
-    for k in range(positions):
-        solved.append(loads(pair, torque, k / positions, supports))
-        if progress is not None:
-            progress(k + 1, positions)
-    return MeshCycle(tuple(solved), base, slices)
+    solved = tuple(loads(pair, torque, k / positions, supports) for k in range(positions))
+    return MeshCycle(solved, base, slices)
