@@ -31,8 +31,7 @@ helical teeth stiff.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import cos
 
 import numpy as np
@@ -139,16 +138,6 @@ class Slices:
         total += reflected(np.add.outer(high, high)) - reflected(np.add.outer(low, high))
         total += reflected(np.add.outer(low, low)) - reflected(np.add.outer(high, low))
         return total / self.step**2
-
-    @property
-    def variants(self) -> Iterator[Slices]:
-        """The same teeth on a coarser mesh, read at other depths, and with the spread as short and as
-        long as single wheels have it: what they change is how sure the usual one is.
-        """
-        yield replace(self, plane=self.plane.coarser)
-        yield replace(self, plane=self.plane.deeper)
-        for off in (-SPREAD_OFF, SPREAD_OFF):
-            yield replace(self, spread=self.spread + off)
 
 
 def _ratio(s: np.ndarray, width: float, length: float) -> np.ndarray:
