@@ -44,10 +44,10 @@ if TYPE_CHECKING:
     from solidgear.core.reduction.rubin import rubin
     from solidgear.core.scene import Bearing, Port, Scene
     from solidgear.core.scene.coned import coned
+    from solidgear.core.scene.document import Source, document_of, is_train
     from solidgear.core.scene.limits import MOST_MODES, TOUCH
     from solidgear.core.scene.outline import Outline
     from solidgear.core.scene.shaft import without_axis
-    from solidgear.core.scene.toml_file import is_train, parse
     from solidgear.core.scene.typed import Model
     from solidgear.core.scene.units import DIMENSIONS, Length, PositiveLength, SignedAngle
     from solidgear.core.solve.condensed import Condensed
@@ -92,6 +92,7 @@ __all__ = [
     "SignedAngle",
     "SolidgearError",
     "Solution",
+    "Source",
     "Supports",
     "Surface",
     "System",
@@ -105,6 +106,7 @@ __all__ = [
     "build",
     "change",
     "coned",
+    "document_of",
     "explained",
     "flexibility",
     "gap_verdict",
@@ -114,7 +116,6 @@ __all__ = [
     "modes",
     "near",
     "nearest",
-    "parse",
     "pinned",
     "rotation",
     "rubin",
@@ -185,8 +186,9 @@ _WHERE = {
     "TOUCH": "solidgear.core.scene.limits",
     "MOST_MODES": "solidgear.core.scene.limits",
     "without_axis": "solidgear.core.scene.shaft",
-    "is_train": "solidgear.core.scene.toml_file",
-    "parse": "solidgear.core.scene.toml_file",
+    "Source": "solidgear.core.scene.document",
+    "document_of": "solidgear.core.scene.document",
+    "is_train": "solidgear.core.scene.document",
     "Model": "solidgear.core.scene.typed",
     "DIMENSIONS": "solidgear.core.scene.units",
     "Length": "solidgear.core.scene.units",

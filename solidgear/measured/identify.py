@@ -12,7 +12,6 @@ unknowns (Rayleigh and Ritz; the static deflections are the residual attachment 
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
@@ -25,13 +24,15 @@ from solidgear.core import (
     Displayed,
     Scene,
     SolidgearError,
+    Source,
     Supports,
     as_supports,
+    document_of,
     flexibility,
-    parse,
     pinned,
 )
 from solidgear.core.loading import scene_of
+from solidgear.core.scene.document import Document
 from solidgear.core.scene.paths import Tables, replace_entry
 from solidgear.measured.computed import Computed, computed_like, computed_up_to
 from solidgear.measured.correlate import DEVIATIONS, SURE, placed_in
@@ -221,7 +222,7 @@ WIDER = 1.15
 
 @pinned
 def identify(
-    scene: str | os.PathLike,
+    scene: Source,
     measured: Measured,
     vary: Iterable[str],
     *,
@@ -245,7 +246,7 @@ def identify(
     the highest measured resonance are predicted. Refused are a path that names no positive number,
     entries that the data do not determine, with the direction, and fewer resonances than entries.
     """
-    search = _Search(os.fspath(scene), measured, tuple(vary), tol, progress, priors)
+    search = _Search(document_of(scene), measured, tuple(vary), tol, progress, priors)
     return search.identification(predict)
 
 
@@ -254,16 +255,16 @@ class _Search:
 
     def __init__(
         self,
-        path: str,
+        document: Document,
         measured: Measured,
         vary: Sequence[str],
         tol: float,
         progress: Progress,
         priors: bool,
     ):
-        self.path, self.measured, self.tol, self.progress = path, measured, tol, progress
-        tables = parse(path)
-        ranges = scene_of(tables, path).uncertain if priors else None
+        self.path, self.measured, self.tol, self.progress = document.path, measured, tol, progress
+        tables = document.tables
+        ranges = scene_of(tables, document.path).uncertain if priors else None
         # results may lie outside the ranges that the file states
         self.tables: Tables = {key: table for key, table in tables.items() if key != "uncertain"}
         self.varied = varied_of(vary, self.tables, ranges)

@@ -9,7 +9,7 @@ from typing import Annotated, Any
 
 import typer
 
-from solidgear.core import LADDER, SceneError, SolidgearError, listed, parse, show
+from solidgear.core import LADDER, SceneError, SolidgearError, Source, document_of, listed, show
 from solidgear.show.command import Group
 from solidgear.show.options import MODEL, options_by_name, relative
 from solidgear.trains.assembly.assembly import Assembly
@@ -97,7 +97,7 @@ class Reduced(Reduction):
 
     def assembly(
         self,
-        path: Path,
+        source: Source | Train,
         settings: Mapping[str | tuple[str, str], Mapping] | None = None,
         solves_teeth: bool = True,
     ) -> Assembly:
@@ -105,7 +105,7 @@ class Reduced(Reduction):
         side and model.
         """
         self.checked()
-        loaded = load_train(path)
+        loaded = load_train(source)
         if self.point is not None:
             loaded = at_point(loaded, self.point)
         if self.harmonics:
@@ -124,8 +124,9 @@ class Reduced(Reduction):
                 solves_teeth=solves_teeth,
             )
         except SceneError as error:  # what the mesh of a sound file cannot be
-            raw = parse(str(path))
-            raise as_written(error, raw).located(raw, where=str(path)) from None
+            document = document_of(source)
+            raw = document.tables
+            raise as_written(error, raw).located(raw, where=document.path) from None
 
 
 @dataclass(frozen=True)
@@ -179,9 +180,9 @@ class Mix(Pair):
         ),
     ] = None
 
-    def assembly(self, reduced: Reduced, path: Path) -> Assembly:
+    def assembly(self, reduced: Reduced, source: Source | Train) -> Assembly:
         """Return the assembly of a train with these builder options."""
-        assembly = reduced.assembly(path)
+        assembly = reduced.assembly(source)
         assembly.settings = of_shafts(self.settings, self.by_shaft(assembly.train))
         return assembly
 
