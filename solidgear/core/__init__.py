@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from solidgear.core.body import Block, Body, Supports, as_supports
     from solidgear.core.body.mode_names import ModeName
     from solidgear.core.body.surface import Surface
-    from solidgear.core.display import Displayed
+    from solidgear.core.display import Displayed, Sheeted
     from solidgear.core.elements import ELEMENTS
     from solidgear.core.errors import SceneError, SolidgearError, listed, near, nearest, show
     from solidgear.core.frames import DOF_NAMES, rotation
@@ -89,6 +89,7 @@ __all__ = [
     "Scene",
     "SceneError",
     "Settled",
+    "Sheeted",
     "SignedAngle",
     "SolidgearError",
     "Solution",
@@ -137,6 +138,7 @@ _WHERE = {
     "ModeName": "solidgear.core.body.mode_names",
     "Surface": "solidgear.core.body.surface",
     "Displayed": "solidgear.core.display",
+    "Sheeted": "solidgear.core.display",
     "ELEMENTS": "solidgear.core.elements",
     "SceneError": "solidgear.core.errors",
     "SolidgearError": "solidgear.core.errors",

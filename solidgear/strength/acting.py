@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
 import typer
 
@@ -29,6 +29,12 @@ from solidgear.trains.loading import load_train
 
 #: modes kept of a shaft, whose deflection needs none
 FEW = 6
+#: torque as a text with a unit or a number in N m; None where it is not given
+Given: TypeAlias = str | float | None
+if TYPE_CHECKING:
+    Torque: TypeAlias = Given
+else:
+    Torque = str | None
 AtRestFile = Annotated[
     Path, typer.Argument(help="Train or scene file (TOML), such as geometry/axle_overhung.toml.")
 ]
@@ -39,7 +45,7 @@ class Acting(Group):
     """An operating point of a train, or a load of a shaft."""
 
     torque: Annotated[
-        str | None,
+        Torque,
         typer.Option(
             help='Torque on a train, such as "115 N*m"; by default its first operating point.'
         ),
@@ -85,9 +91,13 @@ class Acting(Group):
 
     def read_train(self, source: Source | Train) -> tuple[Train, OperatingPoint]:
         """Return a train as its file has it and its operating point; refuse a load on a shaft."""
-        kind = f"a shaft, and {name_of_source(source)} is a train: give --torque"
-        refuse({"--load": self.load is not None}, kind)
+        self.refuse_load(source)
         return self._at_point(source)
+
+    def refuse_load(self, train: Source | Train) -> None:
+        """Refuse a load on a shaft."""
+        kind = f"a shaft, and {name_of_source(train)} is a train: give --torque"
+        refuse({"--load": self.load is not None}, kind)
 
     def _at_point(self, source: Source | Train) -> tuple[Train, OperatingPoint]:
         if self.torque is None:

@@ -19,7 +19,7 @@ from solidgear.show.command import Group, Progress, command, console
 from solidgear.show.options import AUTO, MODEL, Chosen, Run, options, refuse, relative
 from solidgear.show.plot import FORMATS, WIDE, check_ending
 from solidgear.show.sheet import Sheet, present, write_page
-from solidgear.trains.options import Pair, Reduction, of_shafts
+from solidgear.trains.options import Pair, Reduction, models_of, of_shafts
 from solidgear.variants.sweep.bearing_task import (
     SweptBearings,
     bars_of_rows,
@@ -239,7 +239,7 @@ def sweep(
         models = "its models are those of --pinion and --gear"
         refuse(of_shaft, f"one shaft, and {scene} is a train: {models}")
         reduced.checked()
-        mix = pair.of([*shafts_in(document.tables)], scene.stem)
+        mix = models_of([*shafts_in(document.tables)], scene.stem, pair.models)
         train = train_task(
             document,
             rows.design(vary or ()),
