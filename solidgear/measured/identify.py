@@ -279,7 +279,9 @@ def identify(
     >>> bool(abs(modulus.value / 207e9 - 0.99) < 0.01)
     True
     """
-    search = _Search(document_of(scene), load_measured(measured), tuple(vary), tol, progress, priors)
+    search = _Search(
+        document_of(scene), load_measured(measured), tuple(vary), tol, progress, priors
+    )
     return search.identification(predict)
 
 

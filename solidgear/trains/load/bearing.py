@@ -23,8 +23,8 @@ from solidgear.core import (
     is_train,
     shaft,
 )
-from solidgear.core.scene.toml_file import name_of
 from solidgear.core.scene.document import name_of_source
+from solidgear.core.scene.toml_file import name_of
 from solidgear.show.options import speed_of
 from solidgear.show.sheet import Sheet
 from solidgear.show.units import Units

@@ -151,12 +151,6 @@ class Swept(Displayed):
         """Number of variants that have no numbers."""
         return sum(self.whys.values())
 
-    def to_dataframe(self) -> Any:
-        """All columns as a data frame of pandas, which must be installed."""
-        import pandas
-
-        return pandas.DataFrame(self.columns)
-
 
 class FileTask(Task[Swept]):
     """Turns variants of files, each solved by itself, into rows."""
