@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from solidgear.core.body import Block, Body, Supports, as_supports
     from solidgear.core.body.mode_names import ModeName
     from solidgear.core.body.surface import Surface
-    from solidgear.core.display import Displayed
+    from solidgear.core.display import Displayed, Sheeted
     from solidgear.core.elements import ELEMENTS
     from solidgear.core.errors import SceneError, SolidgearError, listed, near, nearest, show
     from solidgear.core.frames import DOF_NAMES, rotation
@@ -44,10 +44,10 @@ if TYPE_CHECKING:
     from solidgear.core.reduction.rubin import rubin
     from solidgear.core.scene import Bearing, Port, Scene
     from solidgear.core.scene.coned import coned
+    from solidgear.core.scene.document import Source, document_of, is_train
     from solidgear.core.scene.limits import MOST_MODES, TOUCH
     from solidgear.core.scene.outline import Outline
     from solidgear.core.scene.shaft import without_axis
-    from solidgear.core.scene.toml_file import is_train, parse
     from solidgear.core.scene.typed import Model
     from solidgear.core.scene.units import DIMENSIONS, Length, PositiveLength, SignedAngle
     from solidgear.core.solve.condensed import Condensed
@@ -89,9 +89,11 @@ __all__ = [
     "Scene",
     "SceneError",
     "Settled",
+    "Sheeted",
     "SignedAngle",
     "SolidgearError",
     "Solution",
+    "Source",
     "Supports",
     "Surface",
     "System",
@@ -105,6 +107,7 @@ __all__ = [
     "build",
     "change",
     "coned",
+    "document_of",
     "explained",
     "flexibility",
     "gap_verdict",
@@ -114,7 +117,6 @@ __all__ = [
     "modes",
     "near",
     "nearest",
-    "parse",
     "pinned",
     "rotation",
     "rubin",
@@ -136,6 +138,7 @@ _WHERE = {
     "ModeName": "solidgear.core.body.mode_names",
     "Surface": "solidgear.core.body.surface",
     "Displayed": "solidgear.core.display",
+    "Sheeted": "solidgear.core.display",
     "ELEMENTS": "solidgear.core.elements",
     "SceneError": "solidgear.core.errors",
     "SolidgearError": "solidgear.core.errors",
@@ -185,8 +188,9 @@ _WHERE = {
     "TOUCH": "solidgear.core.scene.limits",
     "MOST_MODES": "solidgear.core.scene.limits",
     "without_axis": "solidgear.core.scene.shaft",
-    "is_train": "solidgear.core.scene.toml_file",
-    "parse": "solidgear.core.scene.toml_file",
+    "Source": "solidgear.core.scene.document",
+    "document_of": "solidgear.core.scene.document",
+    "is_train": "solidgear.core.scene.document",
     "Model": "solidgear.core.scene.typed",
     "DIMENSIONS": "solidgear.core.scene.units",
     "Length": "solidgear.core.scene.units",

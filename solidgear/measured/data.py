@@ -30,7 +30,7 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import AfterValidator, BeforeValidator, Field, PrivateAttr, model_validator
 
-from solidgear.core import Model, SceneError, Surface, explained, parse, show
+from solidgear.core import Model, SceneError, Source, Surface, document_of, explained, show
 from solidgear.core.scene.units import Frequency, quantity
 from solidgear.measured.alignment import BANDWIDTH
 from solidgear.measured.modal_fit import ResponseFit
@@ -207,12 +207,14 @@ class Measured(Model):
         )
 
 
-def load_measured(path: str | os.PathLike) -> Measured:
+def load_measured(source: Source | Measured) -> Measured:
     """Return measured resonances of a ``.toml`` or ``.csv`` file, or of a universal file ``.unv``,
-    ``.uff`` of mode shapes, or of frequency responses, in which resonances are then found; an error
-    names the file, the entry, its value and the right form.
+    ``.uff`` of mode shapes, or of frequency responses, in which resonances are then found; or those
+    of the tables of a TOML file. An error names the file, the entry, its value and the right form.
     """
-    name = os.fspath(path)
+    if isinstance(source, Measured):
+        return source
+    name = os.fspath(source) if isinstance(source, str | os.PathLike) else "measured data"
     if name.lower().endswith(ENDINGS):
         content = read_universal(name)
         if isinstance(content, Responses):
@@ -221,9 +223,9 @@ def load_measured(path: str | os.PathLike) -> Measured:
     tables: Mapping[str, Any] | Responses
     if name.lower().endswith(".csv"):
         with explained(name, {}):
-            tables = read_csv(Path(path), tuple(MeasuredMode.model_fields))
+            tables = read_csv(Path(name), tuple(MeasuredMode.model_fields))
     else:
-        tables = parse(name)
+        tables = document_of(source).tables
     if isinstance(tables, Responses):
         return measured_from_responses(tables, name)
     try:

@@ -14,7 +14,7 @@ from math import isclose
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from solidgear.core import DIMENSIONS, SceneError, parse, show
+from solidgear.core import DIMENSIONS, SceneError, document_of, show
 from solidgear.core.scene import file
 from solidgear.core.scene.toml_file import describes_train
 from solidgear.core.scene.units import quantity
@@ -96,7 +96,7 @@ class _Tables:
 
     def __init__(self, files: tuple[str, str] | None = None, prefix: str = ""):
         self.files, self.prefix = files, prefix
-        self.raw = [parse(path) for path in files or ()]
+        self.raw = [dict(document_of(path).tables) for path in files or ()]
         for raw in self.raw:
             for key in ONE_OR_MORE:
                 if isinstance(raw.get(key), Mapping):

@@ -14,10 +14,10 @@ from typing import Any
 
 from pydantic import model_validator
 
-from solidgear.core import Model, Scene, SceneError, near, parse
+from solidgear.core import Model, Scene, SceneError, near
 from solidgear.core.scene.file import load
 from solidgear.core.scene.housing_matrices import ARRAYS, read_matrices
-from solidgear.core.scene.toml_file import name_of, with_table_paths
+from solidgear.core.scene.toml_file import name_of, parse, with_table_paths
 from solidgear.core.scene.typed import Problems
 from solidgear.trains.file.columns import CELL_COLUMNS, read_cells, read_flank
 from solidgear.trains.file.gears import Member, Shaft
