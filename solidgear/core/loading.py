@@ -74,16 +74,30 @@ def as_written(source: Source) -> Scene:
     return scene_of(document.tables, document.path, alone=False)
 
 
-def scene_of(tables: Mapping[str, Any], path: str | os.PathLike, alone: bool = True) -> Scene:
+def scene_of(
+    tables: Mapping[str, Any], path: str | os.PathLike, alone: bool = True, where: str = ""
+) -> Scene:
     """Return the scene that tables of a file describe, with names of files relative to its path;
-    errors as of :func:`load`. Catalogue bearings settle at the load of the scene where it is
-    `alone`, and not with a train.
+    errors as of :func:`load`, with `where` in place of the path. Catalogue bearings settle at the
+    load of the scene where it is `alone`, and not with a train.
     """
-    scene = file.scene_of(dict(tables), os.fspath(path), part_of)
-    if not alone or all(bearing.catalogue is None for bearing in scene.bearings):
+    scene = file.scene_of(dict(tables), os.fspath(path), part_of, where)
+    if not alone or not is_unsettled(scene) or file.says_unsettled(tables):
         return scene
-    with explained(path, tables):
-        return addition("settling", "solved")(scene, shaft(scene)).scene
+    with explained(where or path, tables):
+        return settled(scene)
+
+
+def is_unsettled(scene: Scene) -> bool:
+    """Return True where a catalogue bearing waits for its stiffness."""
+    return any(bearing.matrix is None for bearing in scene.bearings)
+
+
+def settled(scene: Scene) -> Scene:
+    """Return a scene with a stiffness for every bearing: that of catalogue data at their load."""
+    if not is_unsettled(scene):
+        return scene
+    return addition("settling", "solved")(scene, shaft(scene)).scene
 
 
 def part_of(table: Any, folder: Path) -> Any:

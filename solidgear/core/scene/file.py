@@ -42,6 +42,7 @@ from solidgear.core.scene.toml_file import (
 )
 from solidgear.core.scene.typed import Holds, Model, Problems
 from solidgear.core.scene.uncertain import with_ranges
+from solidgear.core.scene.writing import digest_of_scene
 
 PAIRING, PARTS = pairing(), parts()
 if TYPE_CHECKING:
@@ -73,6 +74,7 @@ class SceneFile(Model):
     """A scene file; tables of stations and features are read later, once the shaft is known."""
 
     title: str = ""
+    name: str | None = None  #: by default that of the file
     source: str = ""
     attachment: Attachment = "average"
     material: Annotated[Material, BeforeValidator(by_name)]
@@ -124,13 +126,18 @@ def load(path: str | os.PathLike, part_of: Reader = PARTS.refuse_parts) -> Scene
     return scene_of(parse(file_path), file_path, part_of)
 
 
-def scene_of(raw: Table, file_path: str, part_of: Reader = PARTS.refuse_parts) -> Scene:
-    """Resolve the tables of a scene file; files that it names lie relative to `file_path`."""
+def scene_of(
+    raw: Table, file_path: str, part_of: Reader = PARTS.refuse_parts, where: str = ""
+) -> Scene:
+    """Resolve the tables of a scene file; files that it names lie relative to `file_path`, which
+    errors name unless `where` is given.
+    """
+    where = where or place_of(file_path)
     if describes_train(raw):
         raise SceneError(
             "describes a train, not one shaft; run solidgear compare, check, system-modes, "
             "response or receptance on it, or read it with solidgear.load_train"
-        ).located(raw, where=place_of(file_path))
+        ).located(raw, where=where)
     try:
         return _Reading(dict(raw), file_path, part_of).scene()
     except SceneError as error:
@@ -138,13 +145,38 @@ def scene_of(raw: Table, file_path: str, part_of: Reader = PARTS.refuse_parts) -
         problems = {(p.path, p.reason): p for p in with_table_paths(error, raw).problems}
         order = FileOrder(raw)
         ordered = sorted(problems.values(), key=lambda problem: order.positions(problem.path))
-        raise SceneError.of(ordered).located(raw, where=place_of(file_path)) from None
+        raise SceneError.of(ordered).located(raw, where=where) from None
 
 
 def _drop_tag(path: tuple) -> tuple:
     """Return a path without the kind of a segment, which pydantic puts in and no file has."""
     tagged = path[:1] == ("segment",) and path[2:3] and path[2] in SHAPES
     return (*path[:2], *path[3:]) if tagged else path
+
+
+def says_unsettled(tables: Mapping[str, Any]) -> bool:
+    """Return True for tables of a scene whose catalogue bearings wait for their stiffness."""
+    bearings = tables.get("bearing") or ()
+    return any(isinstance(t, Mapping) and t.get("settled") is False for t in bearings)
+
+
+def with_settled(scene: Scene, tables: Sequence[Table]) -> Scene:
+    """Return a scene with the stiffness that catalogue bearings have in their tables, where it was
+    solved for this scene and no other.
+    """
+    settled = {
+        k: t["settled"] for k, t in enumerate(tables) if isinstance(t.get("settled"), Mapping)
+    }
+    if not settled:
+        return scene
+    digest = digest_of_scene(scene)
+    bearings = tuple(
+        bearing.with_changes(stiffness=settled[k]["stiffness"])
+        if k in settled and settled[k]["under"] == digest
+        else bearing
+        for k, bearing in enumerate(scene.bearings)
+    )
+    return scene.unjudged(bearings=bearings)
 
 
 class _Row(NamedTuple):
@@ -214,7 +246,7 @@ class _Reading:
             further_ports=tuple(further),
             **things,
             title=file.title,
-            name=name_of(self.where),
+            name=name_of(self.where) if file.name is None else file.name,
             source=file.source,
             body=PARTS.with_seats(self.part, stations, self.segments) if self.part else None,
             housing_axial=housing if isinstance(housing, float) else None,
@@ -223,7 +255,7 @@ class _Reading:
             lubrication=file.lubrication,
             ask=Ask(**{key: getattr(file.ask, key) for key in Ask.model_fields}),
         )
-        return with_ranges(scene, file.uncertain, file.bearing)
+        return with_settled(with_ranges(scene, file.uncertain, file.bearing), file.bearing)
 
     def _tables(self) -> tuple[SceneFile, set[str]]:
         """Return the file without spoilt keys, and these keys."""
