@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from solidgear.core.judge.settle import Settled, bars_of_modes, settle
     from solidgear.core.judge.solution import Solution
     from solidgear.core.judge.ties import SCENE
-    from solidgear.core.kernel.room import assemblable
     from solidgear.core.ladder import build
     from solidgear.core.ladder.meshes import HARMONIC
     from solidgear.core.ladder.model import BEAM
@@ -44,13 +43,12 @@ if TYPE_CHECKING:
     from solidgear.core.reduction.rubin import rubin
     from solidgear.core.scene import Bearing, Port, Scene
     from solidgear.core.scene.coned import coned
-    from solidgear.core.scene.document import Source, document_of, is_train
+    from solidgear.core.scene.document import Source, document_of, is_train, name_of_source
     from solidgear.core.scene.limits import MOST_MODES, TOUCH
     from solidgear.core.scene.outline import Outline
     from solidgear.core.scene.shaft import without_axis
     from solidgear.core.scene.typed import Model
     from solidgear.core.scene.units import DIMENSIONS, Length, PositiveLength, SignedAngle
-    from solidgear.core.solve.condensed import Condensed
     from solidgear.core.solve.modes import Mode, ModeSet, modes
     from solidgear.core.solve.statics import flexibility
     from solidgear.core.system.system import System
@@ -63,7 +61,6 @@ __all__ = [
     "Body",
     "COMPLIANCE",
     "C_ZZ",
-    "Condensed",
     "DIMENSIONS",
     "DOF_NAMES",
     "Displayed",
@@ -102,7 +99,6 @@ __all__ = [
     "WhereRecord",
     "as_supports",
     "as_written",
-    "assemblable",
     "bars_of_modes",
     "build",
     "change",
@@ -115,6 +111,7 @@ __all__ = [
     "listed",
     "load",
     "modes",
+    "name_of_source",
     "near",
     "nearest",
     "pinned",
@@ -161,7 +158,6 @@ _WHERE = {
     "settle": "solidgear.core.judge.settle",
     "Solution": "solidgear.core.judge.solution",
     "SCENE": "solidgear.core.judge.ties",
-    "assemblable": "solidgear.core.kernel.room",
     "build": "solidgear.core.ladder",
     "HARMONIC": "solidgear.core.ladder.meshes",
     "BEAM": "solidgear.core.ladder.model",
@@ -191,12 +187,12 @@ _WHERE = {
     "Source": "solidgear.core.scene.document",
     "document_of": "solidgear.core.scene.document",
     "is_train": "solidgear.core.scene.document",
+    "name_of_source": "solidgear.core.scene.document",
     "Model": "solidgear.core.scene.typed",
     "DIMENSIONS": "solidgear.core.scene.units",
     "Length": "solidgear.core.scene.units",
     "PositiveLength": "solidgear.core.scene.units",
     "SignedAngle": "solidgear.core.scene.units",
-    "Condensed": "solidgear.core.solve.condensed",
     "Mode": "solidgear.core.solve.modes",
     "ModeSet": "solidgear.core.solve.modes",
     "modes": "solidgear.core.solve.modes",
