@@ -58,6 +58,8 @@ ADDITIONS = {
         "read scene": "core.loading:scene_of",
         "write scene": "core.scene.writing:tables_of",
         "settle scene": "core.loading:settled",
+        "read train": "trains.loading:load_train",
+        "write train": "trains.file.writing:tables_of",
     },
     "settling": {
         "solved": "bearings.solved:solved",

@@ -75,17 +75,15 @@ def as_written(source: Source) -> Scene:
     return scene_of(document.tables, document.path, alone=False)
 
 
-def scene_of(
-    tables: Mapping[str, Any], path: str | os.PathLike, alone: bool = True, where: str = ""
-) -> Scene:
+def scene_of(tables: Mapping[str, Any], path: str | os.PathLike, alone: bool = True) -> Scene:
     """Return the scene that tables of a file describe, with names of files relative to its path;
-    errors as of :func:`load`, with `where` in place of the path. Catalogue bearings settle at the
-    load of the scene where it is `alone`, and not with a train.
+    errors as of :func:`load`. Catalogue bearings settle at the load of the scene where it is
+    `alone`, and not with a train.
     """
-    scene = file.scene_of(dict(tables), os.fspath(path), part_of, where)
+    scene = file.scene_of(dict(tables), os.fspath(path), part_of)
     if not alone or not is_unsettled(scene) or file.says_unsettled(tables):
         return scene
-    with explained(where or path, tables):
+    with explained(path, tables):
         return settled(scene)
 
 

@@ -17,10 +17,10 @@ from pydantic import BeforeValidator, Field, model_validator
 from solidgear.core import Model, PositiveLength, SceneError, listed
 from solidgear.core.scene.file_materials import FileMaterial
 from solidgear.core.scene.materials import by_name
+from solidgear.core.scene.model_table import table_of
 from solidgear.core.scene.outline import Torus
 from solidgear.core.scene.parts import Material
 from solidgear.core.scene.patches import Patch, Triple, refuse_elsewhere
-from solidgear.core.scene.plain import table_of
 from solidgear.core.scene.units import Mass, quantity
 
 #: units of length of a file, m

@@ -126,18 +126,13 @@ def load(path: str | os.PathLike, part_of: Reader = PARTS.refuse_parts) -> Scene
     return scene_of(parse(file_path), file_path, part_of)
 
 
-def scene_of(
-    raw: Table, file_path: str, part_of: Reader = PARTS.refuse_parts, where: str = ""
-) -> Scene:
-    """Resolve the tables of a scene file; files that it names lie relative to `file_path`, which
-    errors name unless `where` is given.
-    """
-    where = where or place_of(file_path)
+def scene_of(raw: Table, file_path: str, part_of: Reader = PARTS.refuse_parts) -> Scene:
+    """Resolve the tables of a scene file; files that it names lie relative to `file_path`."""
     if describes_train(raw):
         raise SceneError(
             "describes a train, not one shaft; run solidgear compare, check, system-modes, "
             "response or receptance on it, or read it with solidgear.load_train"
-        ).located(raw, where=where)
+        ).located(raw, where=place_of(file_path))
     try:
         return _Reading(dict(raw), file_path, part_of).scene()
     except SceneError as error:
@@ -145,7 +140,7 @@ def scene_of(
         problems = {(p.path, p.reason): p for p in with_table_paths(error, raw).problems}
         order = FileOrder(raw)
         ordered = sorted(problems.values(), key=lambda problem: order.positions(problem.path))
-        raise SceneError.of(ordered).located(raw, where=where) from None
+        raise SceneError.of(ordered).located(raw, where=place_of(file_path)) from None
 
 
 def _drop_tag(path: tuple) -> tuple:

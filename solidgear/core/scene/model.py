@@ -225,8 +225,8 @@ class Scene(Displayed, Model):
         >>> scene.length, sg.Scene.from_dict(scene.to_dict()) == scene
         (0.3, True)
         """
-        read = addition("document", "read scene")
-        return read(tables, os.path.join(folder, name), where=name)
+        path = os.path.normpath(os.path.join(folder, name))
+        return addition("document", "read scene")(tables, path)
 
     def to_dict(self) -> dict[str, Any]:
         """Tables of a file that describes the scene, as plain data in SI; `from_dict` reads them back

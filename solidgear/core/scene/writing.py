@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from solidgear.core.scene.bearing_stiffness import stiffness_entries
-from solidgear.core.scene.plain import plain, table_of
+from solidgear.core.scene.model_table import entry_of, table_of
 from solidgear.core.scene.tables import parts
 from solidgear.core.scene.uncertain import written_range
 
@@ -75,8 +75,8 @@ def _unsettled_tables(scene: Scene) -> Table:
         "feature": [_feature(feature) for feature in scene.features],
         "housing": _housing(scene),
         "port": [_port(scene, port) for port in scene.ports if not _is_usual(scene, port)],
-        "load": plain(scene.load),
-        "lubrication": plain(scene.lubrication),
+        "load": entry_of(scene.load),
+        "lubrication": entry_of(scene.lubrication),
         "uncertain": {entry.path: written_range(scene, entry) for entry in scene.uncertain},
         "ask": table_of(scene.ask),
     }

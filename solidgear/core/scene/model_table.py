@@ -1,4 +1,4 @@
-"""Plain data of models: tables as a file has them, with numbers in SI."""
+"""Tables of models as a file has them, with numbers in SI."""
 
 from __future__ import annotations
 
@@ -9,21 +9,21 @@ from typing import Any
 from solidgear.core.scene.typed import Model
 
 
-def plain(value: Any) -> Any:
+def entry_of(value: Any) -> Any:
     """Return a value as `tomllib` would give it: a model as a table, a sequence as a list.
 
     Examples
     --------
     >>> from solidgear.core.scene import BearingLoad
-    >>> plain((BearingLoad(z="2 kN"), 1))
+    >>> entry_of((BearingLoad(z="2 kN"), 1))
     [{'z': 2000.0}, 1]
     """
     if isinstance(value, Model):
         return table_of(value)
     if isinstance(value, Mapping):
-        return {str(key): plain(entry) for key, entry in value.items()}
+        return {str(key): entry_of(entry) for key, entry in value.items()}
     if isinstance(value, (list, tuple)):
-        return [plain(entry) for entry in value]
+        return [entry_of(entry) for entry in value]
     if value is None or isinstance(value, bool):
         return value
     if isinstance(value, Integral):
@@ -42,5 +42,5 @@ def table_of(
         value = getattr(model, name)
         usual = name not in write and value == field.get_default()
         if value is not None and not usual and name not in leave_out:
-            table[field.alias or name] = plain(value)
+            table[field.alias or name] = entry_of(value)
     return table
