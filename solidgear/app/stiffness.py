@@ -9,14 +9,23 @@ from typing import Annotated
 import numpy as np
 import typer
 
-from solidgear.core import COMPLIANCE, DOF_NAMES, STIFFNESS, Port, Quantity, Scene, SolidgearError
+from solidgear.core import (
+    COMPLIANCE,
+    DOF_NAMES,
+    STIFFNESS,
+    Condensed,
+    Port,
+    Quantity,
+    Scene,
+    SolidgearError,
+)
 from solidgear.core.body import as_supports
 from solidgear.core.errors import NoBounds
 from solidgear.core.judge.bounded import static_bars
 from solidgear.core.machine.memory import NoRoom
 from solidgear.core.plain import plain
 from solidgear.core.scene.rules import no_such_point
-from solidgear.core.solve.condensed import Condensed, Coupled
+from solidgear.core.solve.condensed import Coupled
 from solidgear.core.solve.statics import condense
 from solidgear.show.command import Progress, caution, command
 from solidgear.show.open_words import table as open_table

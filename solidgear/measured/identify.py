@@ -22,6 +22,7 @@ from scipy.optimize import linear_sum_assignment
 
 from solidgear.core import (
     Displayed,
+    Document,
     Scene,
     SolidgearError,
     Source,
@@ -32,7 +33,6 @@ from solidgear.core import (
     pinned,
 )
 from solidgear.core.loading import scene_of
-from solidgear.core.scene.document import Document
 from solidgear.core.scene.paths import Tables, replace_entry
 from solidgear.measured.computed import Computed, computed_like, computed_up_to
 from solidgear.measured.correlate import DEVIATIONS, SURE, placed_in
