@@ -11,13 +11,13 @@ from solidgear.core.scene import Chamfer
 FILE = """
 material = "42CrMo4"
 segment = [
-    { kind = "cylinder", name = "left", length = "60 mm", diameter = "30 mm", material = "steel" },
+    { kind = "cylinder", name = "left", length = "60 mm", diameter = "30 mm" },
     { kind = "cylinder", name = "middle", length = "120 mm", diameter = "50 mm", bore = "10 mm" },
-    { kind = "cone", name = "right", length = "60 mm", start_diameter = 0.03, end_diameter = 0.025 },
+    { kind = "cone", name = "tip", length = 0.06, start_diameter = 0.03, end_diameter = 0.025 },
 ]
 bearing = [
     { name = "A", position = "30 mm", seat_width = "16 mm", catalogue = { designation = "6206" } },
-    { name = "B", on = "right", stiffness = { kxx = 1e8, kzz = "1e8 N/m" } },
+    { name = "B", on = "tip", stiffness = { kxx = 1e8, kzz = "1e8 N/m" } },
 ]
 mass = [
     { name = "disc", mass = "2 kg", position = "-10 mm", from = "middle.end", seat_width = "8 mm" },
@@ -36,16 +36,16 @@ load = { z = "2 kN" }
 def parts():
     """Segments and all else of the file, in Python."""
     segments = [
-        sg.Segment.cylinder("left", length="60 mm", diameter="30 mm", material="steel"),
+        sg.Segment.cylinder("left", length="60 mm", diameter="30 mm"),
         sg.Segment.cylinder("middle", length="120 mm", diameter="50 mm", bore="10 mm"),
-        sg.Segment.cone("right", length="60 mm", start_diameter="3 cm", end_diameter="25 mm"),
+        sg.Segment.cone("tip", length="60 mm", start_diameter="3 cm", end_diameter="25 mm"),
     ]
     seat = {"position": "-10 mm", "from": "middle.end", "seat_width": "8 mm"}
     hub = {"position": "5 mm", "from": "bearing.A", "span": ["40 mm", "50 mm"]}
     return segments, {
         "bearings": [
             sg.Bearing(name="A", position="30 mm", seat_width="16 mm", designation="6206"),
-            sg.Bearing(name="B", on="right", stiffness={"kxx": 1e8, "kzz": "1e8 N/m"}),
+            sg.Bearing(name="B", on="tip", stiffness={"kxx": 1e8, "kzz": "1e8 N/m"}),
         ],
         "masses": [sg.PointMass(name="disc", mass="2 kg", **seat)],
         "blends": [Chamfer(name="edge", at="middle.start", length="1 mm")],
@@ -139,8 +139,8 @@ def test_errors_from_python_speak_of_its_arguments(make, error):
 
 def test_a_thing_that_waits_for_its_shaft_keeps_its_words():
     gear = sg.Port(at="rod.end", attach_to="rod")
-    assert gear.waits and "at='rod.end'" in repr(gear)
+    assert gear.words and "at='rod.end'" in repr(gear)
     renamed = gear.with_changes(name="gear")
     scene = scene_with(port=renamed)
-    assert (scene.port.y, scene.port.name, scene.port.waits) == (0.3, "gear", False)
+    assert (scene.port.y, scene.port.name, scene.port.words) == (0.3, "gear", None)
     assert math.isclose(scene.with_port(y=0.1).port.y, 0.1)

@@ -389,7 +389,9 @@ def _name_and_value(path: tuple, data: Any) -> tuple[str, Any, bool]:
 
 
 def _child(data: Any, key: Any) -> tuple[bool, Any]:
-    if isinstance(data, Mapping):
+    words = getattr(data, "words", None)  # of what has no place yet
+    if isinstance(data, Mapping) or isinstance(words, Mapping):
+        data = words or data
         return (True, data[key]) if key in data else (False, None)
     if isinstance(key, int):
         inside = isinstance(data, Sequence) and not isinstance(data, str) and key < len(data)

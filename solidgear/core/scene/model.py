@@ -161,7 +161,7 @@ class Scene(Displayed, Model):
         kinds = ("bearings", "masses", "features", "blends", "further_ports")
         things: dict[str, Any] = {key: getattr(self, key) for key in (*kinds, "port", "housing")}
         things = {key: value for key, value in things.items() if value is not None}
-        if not any(thing.waits for value in things.values() for thing in _several(value)):
+        if all(t.words is None for value in things.values() for t in _several(value)):
             return
         places, problems = places_on(self.segments, self.body), Problems()
         for key, value in things.items():

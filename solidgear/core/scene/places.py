@@ -222,9 +222,9 @@ class Placed(Model):
         return data
 
     @property
-    def waits(self) -> bool:
-        """True for a thing made by words that need a shaft, until a scene puts it on one."""
-        return self._table is not None
+    def words(self) -> Mapping[str, Any] | None:
+        """Words that need a shaft, until a scene puts the thing on one; None once it has a place."""
+        return self._table
 
     def placed_on(self: _Thing, places: Places, path: tuple) -> _Thing:
         """Return the thing at its place on a shaft; errors are under a path."""
