@@ -20,11 +20,12 @@ What there is, each with an example in its help:
                  STEEL, Ask
     questions    answer, compare, condense, modes, check, bearing, deflect, stress, turn
     studies      sweep, sensitivities, optimise, budget
-    measured     correlate, identify
+    measured     correlate, identify, overlay, load_measured, Measured, Responses, SurfacePoints
     bodies       build, Body, Supports
     trains       load_train, Train, system_modes, response, receptance, judge, nonlinear
-    teeth        contact, TeethStudy, TeethModel, Wheel, WheelPair, Rack
-    systems      rubin, craig_bampton, Superelement, System, grounded, mesh_spring, torsion_spring,
+    teeth        contact, pair_contact, TeethStudy, TeethModel, Wheel, WheelPair, Rack
+    systems      rubin, craig_bampton, synthesise, line_of_action, mesh_point, to_gear_frame,
+                 Superelement, System, grounded, mesh_spring, torsion_spring,
                  MeshVector, BearingSpring, RowSpring, RigidBody, Inertia, PortInertia, Placed
     planetary    PlanetaryTeeth, PlanetaryStage, CentralMember, Planet, carrier_turn, FixedSupport,
                  PlanetError, elastic_ring

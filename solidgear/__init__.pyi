@@ -14,6 +14,7 @@ from solidgear.core.judge.answer import answer as answer
 from solidgear.core.ladder import build as build
 from solidgear.core.loading import load as load
 from solidgear.core.reduction.craig_bampton import craig_bampton as craig_bampton
+from solidgear.core.reduction.effective_mass import synthesise as synthesise
 from solidgear.core.reduction.rubin import rubin as rubin
 from solidgear.core.reduction.superelement import Superelement as Superelement
 from solidgear.core.scene import (
@@ -84,11 +85,26 @@ from solidgear.core.system import (
 from solidgear.core.system import (
     torsion_spring as torsion_spring,
 )
+from solidgear.core.system.gear_mesh import (
+    line_of_action as line_of_action,
+)
+from solidgear.core.system.gear_mesh import (
+    mesh_point as mesh_point,
+)
+from solidgear.core.system.gear_mesh import (
+    to_gear_frame as to_gear_frame,
+)
 from solidgear.measured.correlate import correlate as correlate
+from solidgear.measured.data import Measured as Measured
+from solidgear.measured.data import load_measured as load_measured
 from solidgear.measured.identify import identify as identify
+from solidgear.measured.overlay import overlay as overlay
+from solidgear.measured.shapes import SurfacePoints as SurfacePoints
+from solidgear.measured.universal import Responses as Responses
 from solidgear.show.viewer import turn as turn
 from solidgear.strength.deflection.study import deflect as deflect
 from solidgear.strength.stress.study import stress as stress
+from solidgear.teeth.pair_contact import pair_contact as pair_contact
 from solidgear.teeth.study import TeethStudy as TeethStudy
 from solidgear.teeth.study import contact as contact
 from solidgear.teeth.train_teeth import TeethModel as TeethModel

@@ -37,7 +37,8 @@ def load(source: Source) -> Scene:
         A TOML file; ``geometry/pinion_overhung.toml`` describes the format, and
         ``geometry/gearbox_catalogue.toml`` that of catalogue bearings. Or the tables of one, as
         ``tomllib`` gives them, with names of files relative to the folder of work. A Scene is
-        returned as it is. A train is refused: read it with :func:`solidgear.load_train`.
+        returned with its catalogue bearings settled. A train is refused: read it with
+        :func:`solidgear.load_train`.
 
     Returns
     -------

@@ -13,9 +13,8 @@ from math import isclose
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from solidgear.core import DIMENSIONS, SceneError, Source, document_of, show
+from solidgear.core import DIMENSIONS, Document, SceneError, Source, document_of, show
 from solidgear.core.scene import file
-from solidgear.core.scene.document import Document
 from solidgear.core.scene.toml_file import describes_train
 from solidgear.core.scene.units import quantity
 from solidgear.trains.file import reading as train_file

@@ -7,7 +7,7 @@ nor infinity. Quantities are called as in :data:`solidgear.core.quantity.QUANTIT
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 from pydantic import (
     BaseModel,
@@ -21,6 +21,7 @@ from pydantic import (
 from pydantic_core import PydanticUseDefault
 
 from solidgear.core.body.mode_names import ModeName, meant
+from solidgear.core.display import Displayed
 from solidgear.core.judge.ties import SCENE, SECTION
 from solidgear.core.ladder.model import BEAM
 from solidgear.core.plain import plain
@@ -108,12 +109,14 @@ class OpenRecord(Part):
         return {path: parts[path] / total for path in ordered} if total else {}
 
 
-class OpenNumbers(Part):
+class OpenNumbers(Displayed, Part):
     """Open inputs of a scene, and the numbers that they leave open.
 
     ``lost`` names bearings that carry nothing somewhere in the ranges, ``refused`` says why points
     could not be solved, ``left_out`` why nothing was worked out.
     """
+
+    shown: ClassVar[str] = "show.open_words:budget"
 
     model: str = ""
     title: str = ""

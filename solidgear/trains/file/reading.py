@@ -14,9 +14,8 @@ from typing import Any
 
 from pydantic import model_validator
 
-from solidgear.core import Model, Scene, SceneError, near
+from solidgear.core import Document, Model, Scene, SceneError, near
 from solidgear.core import as_written as scene_as_written
-from solidgear.core.scene.document import Document
 from solidgear.core.scene.housing_matrices import ARRAYS, read_matrices
 from solidgear.core.scene.toml_file import name_of, parse, with_table_paths
 from solidgear.core.scene.typed import Problems

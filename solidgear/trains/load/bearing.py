@@ -21,9 +21,9 @@ from solidgear.core import (
     as_written,
     explained,
     is_train,
+    name_of_source,
     shaft,
 )
-from solidgear.core.scene.document import name_of_source
 from solidgear.core.scene.toml_file import name_of
 from solidgear.show.options import speed_of
 from solidgear.show.sheet import Sheet

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from solidgear.core import (
     Quantity,
     Scene,
     SceneError,
+    Sheeted,
     SolidgearError,
     Source,
     as_supports,
@@ -108,9 +109,11 @@ class OfNumber:
         return by_path[path]
 
 
-@dataclass(frozen=True)
-class Sensitivities:
+@dataclass(frozen=True, repr=False)
+class Sensitivities(Sheeted):
     """Derivatives of some numbers by entries of a scene file."""
+
+    sheeted: ClassVar[str] = "variants.sensitivity.command:sensitivities_sheet"
 
     plain_names = ("title", "model", "of", "without", "bars", "notes")
     bars = BARS
