@@ -214,7 +214,10 @@ class Train(Model):
         True
         """
         path = os.path.normpath(os.path.join(folder, name))
-        return addition("document", "read train")(Document(tables, path))
+        try:
+            return addition("document", "read train")(Document(tables, path))
+        except SceneError as error:
+            raise error.of_dict() from None
 
     def to_dict(self) -> dict[str, Any]:
         """Tables of a file that describes the train with its shafts, as plain data in SI; `from_dict`
