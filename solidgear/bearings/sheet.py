@@ -145,7 +145,7 @@ def _life(bearing: BearingLife) -> Iterator[str | Table]:
     if bearing.life.without:
         yield f"No modified life: {bearing.life.without}."
     if not to_hours:
-        yield "No hours: no speed is given; write --speed, or speed in [lubrication]."
+        yield "No hours: no speed is given; write --speed, or speed of its lubrication."
     yield from (caution(f"bearing {bearing.name!r}: {note}") for note in bearing.life.notes)
 
 

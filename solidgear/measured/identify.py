@@ -21,8 +21,9 @@ import scipy.linalg as sla
 from scipy.optimize import linear_sum_assignment
 
 from solidgear.core import (
-    Displayed,
+    Document,
     Scene,
+    Sheeted,
     SolidgearError,
     Source,
     Supports,
@@ -32,7 +33,6 @@ from solidgear.core import (
     pinned,
 )
 from solidgear.core.loading import scene_of
-from solidgear.core.scene.document import Document
 from solidgear.core.scene.paths import Tables, replace_entry
 from solidgear.measured.computed import Computed, computed_like, computed_up_to
 from solidgear.measured.correlate import DEVIATIONS, SURE, placed_in
@@ -98,10 +98,11 @@ class Predicted:
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Identification(Displayed):
+class Identification(Sheeted):
     """Entries identified from measured resonances."""
 
     shown: ClassVar[str] = "measured.command:entries"
+    sheeted: ClassVar[str] = "measured.command:identification_sheet"
     plain_names = (
         "kind",
         "scene",
@@ -272,7 +273,7 @@ def identify(
     Examples
     --------
     >>> import solidgear as sg
-    >>> rod = {"material": "steel", "port": {"attach_to": "rod"},
+    >>> rod = {"material": "steel", "port": {"attach_to": "rod", "at": "rod.middle"},
     ...     "segment": [{"kind": "cylinder", "name": "rod", "length": 0.6, "diameter": 0.02}]}
     >>> tap = {"uncertainty": "0.1 %", "mode": [{"frequency": 251.95}, {"frequency": 690.85}]}
     >>> (modulus,) = sg.identify(rod, tap, ["material.E"]).entries

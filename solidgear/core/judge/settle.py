@@ -134,8 +134,7 @@ def settle(
     if without_axis(scene):
         if ask != "modes" and scene.port.patch is None:
             raise SolidgearError(
-                f"{scene.name} has no lumped point: give it a [[port]] with a patch, or ask for "
-                "modes"
+                f"{scene.name} has no lumped point: give it a port with a patch, or ask for modes"
             )
         return _settled_body(scene, tol, ask, (scene.port.name, *points), progress)
     wanted = tuple(q for q in QUANTITIES if q.kind in QUESTIONS[ask])

@@ -7,14 +7,16 @@ everywhere in the order (x, y, z, thx, thy, thz); y runs along the shaft from it
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
+import os
+from collections.abc import Iterable, Iterator, Mapping
+from functools import cached_property, partial
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, TypeAlias
 
-from pydantic import model_validator
+from pydantic import BeforeValidator, model_validator
 
 from solidgear.core.display import Displayed
 from solidgear.core.errors import SceneError
+from solidgear.core.registry import addition
 from solidgear.core.scene import rules
 from solidgear.core.scene.ask import Ask
 from solidgear.core.scene.bearing_stiffness import stiffness_entries
@@ -25,20 +27,37 @@ from solidgear.core.scene.feature_rules import Feature
 from solidgear.core.scene.housing import ONE_HOUSING, Housing
 from solidgear.core.scene.load import BearingLoad
 from solidgear.core.scene.lubrication import Lubrication
+from solidgear.core.scene.materials import by_name
 from solidgear.core.scene.open_range import Uncertain
 from solidgear.core.scene.outline import Outline
 from solidgear.core.scene.parts import STEEL, Material, Segment
 from solidgear.core.scene.patches import off_patches
 from solidgear.core.scene.point_mass import PointMass
+from solidgear.core.scene.shapes import places_on
 from solidgear.core.scene.stations import Bearing, Port
 from solidgear.core.scene.tables import parts
-from solidgear.core.scene.typed import Model
+from solidgear.core.scene.typed import Model, Problems
 from solidgear.core.scene.units import AxialSpring
 
 if TYPE_CHECKING:
     BodyFile: TypeAlias = Any
 else:
     BodyFile = parts().Body
+
+
+def _several(value: Any) -> tuple:
+    """Return the things of a field of one or of several."""
+    return value if isinstance(value, tuple) else (value,)
+
+
+def _end_to_end(segments: Iterable[Segment], material: Material | str) -> Iterator[Segment]:
+    """Yield segments at their places, those without one behind each other, and with a material."""
+    y = 0.0
+    for segment in segments:
+        segment = segment.beginning_at(y)
+        y = segment.y1
+        has_material = "material" in segment.model_fields_set
+        yield segment if has_material else segment.with_changes(material=material)
 
 
 class Scene(Displayed, Model):
@@ -98,7 +117,7 @@ class Scene(Displayed, Model):
     name: str = "scene"
     source: str = ""
     segments: tuple[Segment, ...]
-    material: Material = STEEL
+    material: Annotated[Material, BeforeValidator(by_name)] = STEEL
     bearings: tuple[Bearing, ...] = ()
     masses: tuple[PointMass, ...] = ()
     features: tuple[Feature, ...] = ()
@@ -117,6 +136,7 @@ class Scene(Displayed, Model):
     def _hangs_together(self) -> Scene:
         problems = rules.shaft_problems(self.segments)
         if not problems:  # a station can be judged only on a shaft that is sound
+            self._place()
             for name in ("bearings", "masses", "further_ports"):
                 object.__setattr__(self, name, snap_seats(getattr(self, name), self.segments))
             object.__setattr__(self, "port", snap_seats([self.port], self.segments)[0])
@@ -136,11 +156,31 @@ class Scene(Displayed, Model):
             raise SceneError.of(problems)
         return self
 
+    def _place(self) -> None:
+        """Put things made by words of a file on the shaft, bearings first, which others refer to."""
+        kinds = ("bearings", "masses", "features", "blends", "further_ports")
+        things: dict[str, Any] = {key: getattr(self, key) for key in (*kinds, "port", "housing")}
+        things = {key: value for key, value in things.items() if value is not None}
+        if all(t.words is None for value in things.values() for t in _several(value)):
+            return
+        places, problems = places_on(self.segments, self.body), Problems()
+        for key, value in things.items():
+            several = isinstance(value, tuple)
+            placed = []
+            for k, thing in enumerate(_several(value)):
+                path = (key, k) if several else (key,)
+                placed.append(problems.read(partial(thing.placed_on, places, path)))
+                if key == "bearings" and placed[-1] is not None:
+                    places.add(f"bearing.{thing.name}", placed[-1].y)
+            if None not in placed:
+                object.__setattr__(self, key, tuple(placed) if several else placed[0])
+        problems.raise_any()
+
     @classmethod
     def from_parts(
         cls,
         segments: Iterable[Segment],
-        material: Material = STEEL,
+        material: Material | str = STEEL,
         bearings: Iterable[Bearing] = (),
         port: Port | None = None,
         **rest: Any,
@@ -150,14 +190,17 @@ class Scene(Displayed, Model):
         Parameters
         ----------
         segments : iterable of Segment
-            End to end from y = 0. One made without a material takes `material`.
-        material : Material
+            End to end from y = 0. One made without a material takes `material`, and one without a
+            place begins where the one before it ends.
+        material : Material or str
+            Constants, or the name of a material.
         bearings : iterable of Bearing
+            Bearings of catalogue data settle when their stiffness is first asked for.
         port : Port, optional
             Without it, the middle of the longest segment, attached to all of that segment's outer
             surface.
         **rest
-            title, name, source, housing_axial, housing, further_ports, ask.
+            Other fields, such as title, name, masses, features, further_ports, load, ask.
 
         Returns
         -------
@@ -170,21 +213,87 @@ class Scene(Displayed, Model):
 
         Examples
         --------
-        >>> from solidgear import Scene, Segment
+        >>> from solidgear import Port, Scene, Segment
         >>> rod = Segment.cylinder("rod", length=0.3, diameter=0.06)
         >>> scene = Scene.from_parts([rod])
         >>> scene.length, scene.port.y
         (0.3, 0.15)
+        >>> seat = Segment.cylinder("seat", length="40 mm", diameter="50 mm")
+        >>> gear = Port(name="gear", at="rod.middle", attach_to="rod")
+        >>> scene = Scene.from_parts([seat, rod], "42CrMo4", port=gear)
+        >>> scene.segments[1].y0, scene.port.y
+        (0.04, 0.19)
         """
-        segments = tuple(
-            s if "material" in s.model_fields_set else s.with_changes(material=material)
-            for s in segments
-        )
-        if port is None and segments:
+        segments = tuple(_end_to_end(segments, material))
+        if not segments:
+            raise SceneError("a scene needs at least one segment", path=("segments",))
+        if port is None:
             longest = max(segments, key=lambda s: s.length)
             port = Port(y=(longest.y0 + longest.y1) / 2, lo=longest.y0, hi=longest.y1)
         main: dict[str, Any] = {} if port is None else {"port": port}
         return cls(segments=segments, material=material, bearings=tuple(bearings), **main, **rest)
+
+    @classmethod
+    def from_dict(
+        cls, tables: Mapping[str, Any], folder: str | os.PathLike = ".", name: str = "scene"
+    ) -> Scene:
+        """A scene from the tables of a file, as `tomllib` gives them.
+
+        Parameters
+        ----------
+        tables : mapping
+            By the keys of a file; numbers in SI, or texts with units.
+        folder : str or path
+            Names of files in the tables are relative to it.
+        name : str
+            Of the scene where the tables have none, and in messages.
+
+        Returns
+        -------
+        Scene
+            As `solidgear.load` gives it.
+
+        Raises
+        ------
+        SceneError
+            Every problem of the tables, by their keys.
+
+        Examples
+        --------
+        >>> import solidgear as sg
+        >>> tables = {
+        ...     "material": "steel",
+        ...     "segment": [{"kind": "cylinder", "name": "rod", "length": "300 mm", "diameter": 0.06}],
+        ...     "port": {"at": "rod.middle", "attach_to": "rod"},
+        ... }
+        >>> scene = sg.Scene.from_dict(tables, name="rod")
+        >>> scene.length, sg.Scene.from_dict(scene.to_dict()) == scene
+        (0.3, True)
+        """
+        path = os.path.normpath(os.path.join(folder, name))
+        try:
+            return addition("document", "read scene")(tables, path)
+        except SceneError as error:
+            raise error.of_dict() from None
+
+    def to_dict(self) -> dict[str, Any]:
+        """Tables of a file that describes the scene, as plain data in SI; `from_dict` reads them back
+        equal.
+
+        Returns
+        -------
+        dict
+            By the keys of a file. Names of files are full paths; the stiffness that catalogue data
+            have at the load of the scene stands beside them as `settled`.
+
+        Examples
+        --------
+        >>> import solidgear as sg
+        >>> tables = sg.load("geometry/shaft_stepped.toml").to_dict()
+        >>> tables["segment"][0]
+        {'kind': 'cylinder', 'name': 'left', 'length': 0.12, 'diameter': 0.05}
+        """
+        return addition("document", "write scene")(self)
 
     @property
     def length(self) -> float:
@@ -210,6 +319,24 @@ class Scene(Displayed, Model):
         if not self.features and self.body is None:
             return self
         return self.with_changes(features=(), body=None, **off_patches(self))
+
+    @property
+    def settled(self) -> Scene:
+        """The same scene with a stiffness for every bearing, that of catalogue data at their load."""
+        waits = any(bearing.matrix is None for bearing in self.bearings)
+        return self._at_load if waits else self
+
+    @cached_property
+    def _at_load(self) -> Scene:
+        try:
+            return addition("document", "settle scene")(self)
+        except SceneError as error:
+            raise SceneError.of(
+                problem.located(self, path=("bearings", *problem.path[1:]))
+                if problem.path[:1] == ("bearing",)
+                else problem
+                for problem in error.problems
+            ) from None
 
     @cached_property
     def outline(self) -> Outline[Segment]:
@@ -270,15 +397,13 @@ class Scene(Displayed, Model):
         SceneError
             An unknown attachment, or two rigid surfaces that overlap.
         """
-        changes = {
-            key: tuple(
-                station.with_changes(attachment=attachment) for station in getattr(self, key)
-            )
-            for key in ("masses", "further_ports")
-        }
-        changes["bearings"] = tuple(b.attached(attachment) for b in self.bearings)
-        port = self.port.with_changes(attachment=attachment)
-        return self.with_changes(port=port, **changes)
+        port, *further = (p.with_changes(attachment=attachment) for p in self.ports)
+        return self.with_changes(
+            port=port,
+            further_ports=tuple(further),
+            bearings=tuple(b.attached(attachment) for b in self.bearings),
+            masses=tuple(m.attached(attachment) for m in self.masses),
+        )
 
     def with_seat_width(self, width: float | str) -> Scene:
         """The same scene with every bearing seat of one width.
@@ -350,7 +475,8 @@ class Scene(Displayed, Model):
         SceneError
             A factor that is not above zero.
         """
-        return self.with_changes(bearings=tuple(b.scaled(factor) for b in self.bearings))
+        bearings = self.settled.bearings
+        return self.with_changes(bearings=tuple(b.scaled(factor) for b in bearings))
 
     def with_port(self, **changes: Any) -> Scene:
         """The same scene with fields of the port replaced.
@@ -405,6 +531,8 @@ class Scene(Displayed, Model):
 
     def as_dict(self) -> dict[str, Any]:
         """Return everything resolved, in SI, as plain data that JSON can hold."""
+        if self.settled is not self:
+            return self.settled.as_dict()
         data = self.model_dump(mode="json")
         for key in ("masses", "features", "blends", "further_ports", "uncertain"):
             if not data[key]:

@@ -4,31 +4,46 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Annotated, ClassVar, Literal, NamedTuple, TypeAlias
+from dataclasses import dataclass
+from typing import Annotated, Any, ClassVar, Literal, NamedTuple, TypeAlias
 
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from solidgear.core.errors import SceneError
 from solidgear.core.scene.materials import by_name
-from solidgear.core.scene.parts import Material, Segment
-from solidgear.core.scene.places import Places, plain_name
-from solidgear.core.scene.typed import Model
-from solidgear.core.scene.units import Angle, Density, Modulus, Poisson, PositiveLength, Thickness
+from solidgear.core.scene.parts import Material, Segment, Strength
+from solidgear.core.scene.places import Places, Seat, plain_name
+from solidgear.core.scene.typed import Model, Problems
+from solidgear.core.scene.units import (
+    Angle,
+    Density,
+    Modulus,
+    Poisson,
+    PositiveLength,
+    Thickness,
+    quantity,
+)
 
 NANOMETRE = 1e-9
 _WORDS = ("start", "end", "bearing")  # first words of datums, so no segment may be called that
+#: ends the name of the cylinder behind a bevel head
+BEHIND = ".backcone"
 
 
 def _segment_name(name: str) -> str:
     if name in _WORDS:
         raise SceneError("this name is kept for datums; choose another")
-    return plain_name(name)
+    plain_name(name.removesuffix(BEHIND))
+    return name
+
+
+Part = Literal["shaft", "frustum", "backcone"]
 
 
 class Frustum(NamedTuple):
     """A part of a shape, by the radii at both ends, m."""
 
-    part: Literal["shaft", "frustum", "backcone"]
+    part: Part
     length: float
     outer0: float
     outer1: float
@@ -44,7 +59,19 @@ class OtherMaterial(Model):
     E: Modulus | None = None
     nu: Poisson | None = None
     density: Density | None = None
+    strength: Strength | Literal[False] | None = None  #: False for none, whatever the scene has
     name: str | None = None
+
+    def in_scene_of(self, usual: Material) -> Material:
+        """Return the material of a segment in a scene with a usual material."""
+        changes = {
+            key: value
+            for key in type(self).model_fields
+            if (value := getattr(self, key)) is not None
+        }
+        if self.strength is False:
+            changes["strength"] = None
+        return usual.with_changes(**changes)
 
 
 class _Shape(Model):
@@ -57,6 +84,17 @@ class _Shape(Model):
     name: Annotated[str, AfterValidator(_segment_name)]
     bore: Thickness = 0.0
     material: Annotated[OtherMaterial, BeforeValidator(by_name)] = OtherMaterial()
+
+    @model_validator(mode="after")
+    def _behind_a_head(self):
+        if self.name.endswith(BEHIND) and getattr(self, "part", "") != "backcone":
+            raise SceneError("a name is a short text without a dot", path=("name",))
+        return self
+
+    @property
+    def bores(self) -> tuple[float, float]:
+        """Diameters of the bore at both ends, m."""
+        return self.bore, self.bore
 
     def _check_bore(self, *keys: str) -> None:
         for key in keys:
@@ -82,6 +120,7 @@ class Cylinder(_Shape):
     kind: Literal["cylinder"]
     length: PositiveLength
     diameter: PositiveLength
+    part: Part = "shaft"  #: of a bevel head that is written as its two pieces
 
     @model_validator(mode="after")
     def _wall(self) -> Cylinder:
@@ -89,7 +128,7 @@ class Cylinder(_Shape):
         return self
 
     def frusta(self) -> list[Frustum]:
-        return [Frustum("shaft", self.length, self.diameter / 2, self.diameter / 2)]
+        return [Frustum(self.part, self.length, self.diameter / 2, self.diameter / 2)]
 
 
 class Cone(_Shape):
@@ -101,14 +140,36 @@ class Cone(_Shape):
     length: PositiveLength
     start_diameter: PositiveLength
     end_diameter: PositiveLength
+    #: of a bore that is a cone as well, in place of `bore`
+    start_bore: Thickness | None = None
+    end_bore: Thickness | None = None
+    part: Part = "shaft"  #: as of :class:`Cylinder`
 
     @model_validator(mode="after")
     def _wall(self) -> Cone:
         self._check_bore("start_diameter", "end_diameter")
+        ends = {"start_bore": self.start_bore, "end_bore": self.end_bore}
+        keys = [key for key, bore in ends.items() if bore is not None]
+        if len(keys) == 1:
+            missing = next(key for key in ends if key not in keys)
+            raise SceneError("start_bore and end_bore go together; give both", path=(missing,))
+        if keys and self.bore:
+            raise SceneError("give either bore, or start_bore and end_bore", path=("bore",))
+        outer = {"start_bore": "start_diameter", "end_bore": "end_diameter"}
+        for key in keys:
+            if ends[key] >= (widest := getattr(self, outer[key])):
+                reason = f"must be smaller than {outer[key]} ({widest:.6g} m)"
+                raise SceneError(reason, path=(key,))
         return self
 
+    @property
+    def bores(self) -> tuple[float, float]:
+        if self.start_bore is None or self.end_bore is None:
+            return super().bores
+        return self.start_bore, self.end_bore
+
     def frusta(self) -> list[Frustum]:
-        return [Frustum("shaft", self.length, self.start_diameter / 2, self.end_diameter / 2)]
+        return [Frustum(self.part, self.length, self.start_diameter / 2, self.end_diameter / 2)]
 
 
 class BevelHead(_Shape):
@@ -182,10 +243,10 @@ def lay_out(shapes: Sequence[Shape], usual: Material, places: Places) -> Laid:
     places.datums["start"] = 0.0
     for index, shape in enumerate(shapes):
         start = y
-        material = usual.with_changes(**shape.material.model_dump(exclude_none=True))
+        material = shape.material.in_scene_of(usual)
         for frustum in shape.frusta():
             try:
-                segment = _segment(shape, frustum, y, material)
+                segment = _segment(shape, frustum, y, {"y0": y, "material": material})
             except SceneError as error:
                 problems += [
                     problem.located(None, path=("segment", index, shape.key_of(problem.path[0])))
@@ -195,30 +256,83 @@ def lay_out(shapes: Sequence[Shape], usual: Material, places: Places) -> Laid:
             laid.segments.append(segment)
             laid.shapes.append((index, shape))
             y = segment.y1
-            if frustum.part != "backcone":
+            if frustum.part != "backcone" or shape.name.endswith(BEHIND):
                 places.surface[shape.name] = (segment.y0, y)
-        lo, hi = places.surface.get(shape.name, (start, y))
-        datums = {"start": start, "end": y, "middle": (start + y) / 2, "mid_face": (lo + hi) / 2}
-        places.datums |= {f"{shape.name}.{datum}": datums[datum] for datum in shape.datums}
+        places.enter(shape.name, (start, y), shape.datums)
     places.datums["end"] = y
     if problems:
         raise SceneError.of(problems)
     return laid
 
 
-def _segment(shape: Shape, frustum: Frustum, y: float, material: Material) -> Segment:
+def segment_of(
+    kind: str, words: Mapping[str, Any], y0: Any = None, material: Any = None
+) -> Segment:
+    """Return the segment of a cylinder or cone by the words of a file, which begins at `y0` (m), or
+    where a scene puts it, and is of a material of its own or of that of the scene.
+    """
+    shape = SHAPES[kind](**{"kind": kind, **words})
+    (frustum,) = shape.frusta()
+    fields = {"y0": y0, "material": material}
+    problems = Problems()
+    start = 0.0 if y0 is None else problems.read(lambda: quantity(y0, "length"), ("y0",))
+    problems.raise_any()
+    try:
+        return _segment(
+            shape, frustum, start or 0.0, {key: v for key, v in fields.items() if v is not None}
+        )
+    except SceneError as error:
+        raise SceneError.of(
+            problem.located(
+                {**words, **fields}, path=(shape.key_of(problem.path[0]), *problem.path[1:])
+            )
+            for problem in error.problems
+        ) from None
+
+
+def _segment(shape: Any, frustum: Frustum, y: float, fields: Mapping[str, Any]) -> Segment:
+    behind = frustum.part == "backcone" and not shape.name.endswith(BEHIND)
+    start_bore, end_bore = shape.bores
     if frustum.length <= NANOMETRE:
         key = "backcone" if frustum.part == "backcone" else "y1"
         reason = "is less than a nanometre along the shaft: probably wrong units"
         raise SceneError(reason, path=(key,))
     return Segment(
-        name=f"{shape.name}.backcone" if frustum.part == "backcone" else shape.name,
-        y0=y,
+        name=shape.name + BEHIND * behind,
         y1=y + frustum.length,
         outer0=frustum.outer0,
         outer1=frustum.outer1,
-        inner0=shape.bore / 2,
-        inner1=shape.bore / 2,
-        material=material,
+        inner0=start_bore / 2,
+        inner1=end_bore / 2,
         part=frustum.part,
+        **fields,
     )
+
+
+@dataclass
+class Patches:
+    """A part of a scene, which gives places on its faces."""
+
+    body: Any
+
+    def span(self, seat: Seat) -> tuple[float, float]:
+        """Refuse a seat by diameter."""
+        reason = "a seat by diameter is looked for where a file is read: give its place and width"
+        raise SceneError(reason, path=("diameter",))
+
+
+def places_on(segments: Sequence[Segment], body: Any = None) -> Places:
+    """Return the places on segments end to end, as those of the shapes of a file."""
+    part = None if body is None else Patches(body)
+    places = Places("average", of_body=body is not None, part=part)
+    places.datums |= {"start": segments[0].y0, "end": segments[-1].y1}
+    names = {segment.name.removesuffix(BEHIND): segment for segment in segments}
+    for name in names:
+        pieces = [s for s in segments if s.name in (name, name + BEHIND)]
+        head = next((s for s in pieces if s.name == name), pieces[0])
+        places.surface[name] = (head.y0, head.y1)
+        kind = BevelHead if head.part == "frustum" else Cylinder
+        places.enter(name, (pieces[0].y0, pieces[-1].y1), kind.datums)
+        places.segments.append(name)
+    places.names = [*places.datums]
+    return places

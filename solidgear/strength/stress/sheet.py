@@ -17,7 +17,7 @@ from solidgear.show.scales import Axis
 from solidgear.show.sheet import Sheet, Terminal
 from solidgear.show.table import Cell, Column, Table, exact, quantity, text, word
 from solidgear.show.units import ENGINEERING, Units, plain
-from solidgear.show.words import percent
+from solidgear.show.words import DASH, percent
 from solidgear.strength.load import LoadAtPort
 from solidgear.strength.stress.at_rest import StressAtRest, StressedShaft
 from solidgear.strength.stress.din743 import LOADS, Load

@@ -16,6 +16,7 @@ from solidgear.show.plot import WIDE, Chart
 from solidgear.show.scales import Axis
 from solidgear.show.sheet import Sheet, Terminal, present
 from solidgear.show.table import NUMBER, Column, Table, text
+from solidgear.show.units import ENGINEERING, Units
 from solidgear.variants.optimise.optimise import Design, Optimum
 from solidgear.variants.optimise.optimise import optimise as optimised
 
@@ -77,27 +78,25 @@ def optimise(
     run: Run,
 ) -> None:
     present(
-        lambda progress: optimum_sheet(
-            optimised(
-                scene,
-                vary or (),
-                goal,
-                keep or (),
-                keep_sum=keep_sum or (),
-                model=None if model == AUTO else str(model),
-                tol=tol,
-                point=point,
-                every_point=every_point,
-                progress=progress,
-            )
-        ),
+        lambda progress: optimised(
+            scene,
+            vary or (),
+            goal,
+            keep or (),
+            keep_sum=keep_sum or (),
+            model=None if model == AUTO else str(model),
+            tol=tol,
+            point=point,
+            every_point=every_point,
+            progress=progress,
+        ).sheet(),
         run,
         out,
     )
 
 
-def optimum_sheet(optimum: Optimum) -> Sheet:
-    """Return the sheet of a search."""
+def optimum_sheet(optimum: Optimum, units: Units = ENGINEERING) -> Sheet:
+    """Return the sheet of a search, whose numbers are in SI as those of the file are."""
     title = f"{optimum.scene}: {optimum.goal}"
     return Sheet(
         name="optimum",

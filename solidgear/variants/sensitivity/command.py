@@ -9,14 +9,14 @@ from typing import Annotated
 
 import typer
 
-from solidgear.show.command import Progress, command
+from solidgear.show.command import command
 from solidgear.show.options import Fixed, SceneFile, Shown, options
 from solidgear.show.panel import Panel, Series, readout, wrapped
 from solidgear.show.plot import NARROW, WIDE, Chart
 from solidgear.show.scales import Axis, in_percent
 from solidgear.show.sheet import Sheet, Terminal, present
 from solidgear.show.table import Cell, Column, Table, text
-from solidgear.show.units import Units, units_named
+from solidgear.show.units import Units
 from solidgear.show.words import percent
 from solidgear.variants.sensitivity.run import Derivative, OfNumber, Sensitivities
 from solidgear.variants.sensitivity.run import sensitivities as derive
@@ -50,12 +50,13 @@ def sensitivities(
     run: Shown,
 ) -> None:
     builder_options = options(fixed.settings)
-
-    def study(progress: Progress) -> Sheet:
-        result = derive(scene, fixed.name, of, by, progress=progress, **builder_options)
-        return sensitivities_sheet(result, units_named(run.units))
-
-    present(study, run, out)
+    present(
+        lambda progress: derive(
+            scene, fixed.name, of, by, progress=progress, **builder_options
+        ).sheet(run.units),
+        run,
+        out,
+    )
 
 
 def sensitivities_sheet(result: Sensitivities, units: Units) -> Sheet:

@@ -114,6 +114,7 @@ class Sensitivities(Sheeted):
     """Derivatives of some numbers by entries of a scene file."""
 
     sheeted: ClassVar[str] = "variants.sensitivity.command:sensitivities_sheet"
+
     plain_names = ("title", "model", "of", "without", "bars", "notes")
     bars = BARS
 
