@@ -50,7 +50,7 @@ class Displayed:
             raise TypeError(f"a {type(self).__name__} has no picture; table() shows its numbers")
         return draw(self, *args, **kwargs)
 
-    def tables(self) -> dict[str, Table]:
+    def framed_tables(self) -> dict[str, Table]:
         """Return all tables of numbers by name, the main one first."""
         more = _shown(f"{self.shown}_tables")
         return {"": self.table()} if more is None else more(self)
@@ -61,7 +61,7 @@ class Displayed:
         Parameters
         ----------
         name : str
-            As :meth:`tables` has it; by default the first.
+            As :meth:`framed_tables` has it; by default the first.
 
         Returns
         -------
@@ -73,7 +73,7 @@ class Displayed:
         SolidgearError
             For another name, and where pandas is not installed.
         """
-        return _frames().chosen(self.tables(), name).to_dataframe()
+        return _frames().chosen(self.framed_tables(), name).to_dataframe()
 
     def to_xarray(self, name: str = "") -> Any:
         """Return a table of numbers over its axes as a data set of xarray, in SI.
@@ -81,7 +81,7 @@ class Displayed:
         Parameters
         ----------
         name : str
-            As :meth:`tables` has it; by default the first that has an axis.
+            As :meth:`framed_tables` has it; by default the first that has an axis.
 
         Returns
         -------
@@ -93,7 +93,7 @@ class Displayed:
         SolidgearError
             For another name, for a result without axes, and where xarray is not installed.
         """
-        return _frames().chosen(self.tables(), name, over_axes=True).to_xarray()
+        return _frames().chosen(self.framed_tables(), name, over_axes=True).to_xarray()
 
     def __repr__(self) -> str:
         return repr(self.table())
@@ -145,7 +145,7 @@ class Sheeted(Displayed):
             return super().table(*args, **kwargs)
         return _sheets().main_table(self.sheet())
 
-    def tables(self) -> dict[str, Table]:
+    def framed_tables(self) -> dict[str, Table]:
         """Return all tables of numbers by name, the main one first, then those of its files."""
         return _sheets().tables_of(self.sheet())
 

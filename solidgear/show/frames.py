@@ -7,13 +7,10 @@ quantities; units stand in ``attrs``.  A data set has its columns over those tha
 from __future__ import annotations
 
 import re
-from collections.abc import Container, Mapping
-from typing import TYPE_CHECKING, Any
+from collections.abc import Container, Mapping, Sequence
+from typing import Any, Protocol
 
 from solidgear.core import SolidgearError, listed, nearest
-
-if TYPE_CHECKING:
-    from solidgear.show.table import Column, Table
 
 #: a head with its unit: in brackets, or behind a comma
 IN_BRACKETS = re.compile(r"(?P<name>.*?) ?\[(?P<unit>[^\]]*)\]")
@@ -22,7 +19,17 @@ BEHIND = re.compile(r"(?P<name>.+),\s(?P<unit>[^\s,]+(?: m)?)")
 ALONE = {"Hz": ("frequency", "Hz"), "s": ("time", "s")}
 
 
-def dataframe(table: Table) -> Any:
+class Framed(Protocol):
+    """A table, as :class:`solidgear.show.table.Table` is one."""
+
+    title: str
+
+    @property
+    def framed(self) -> tuple[Sequence[Any], list[list[Any]]]:
+        """Columns and values."""
+
+
+def dataframe(table: Framed) -> Any:
     """Return the values of a table as a data frame."""
     try:
         import pandas
@@ -35,7 +42,7 @@ def dataframe(table: Table) -> Any:
     return frame
 
 
-def dataset(table: Table) -> Any:
+def dataset(table: Framed) -> Any:
     """Return the columns of a table over those that are axes, as a data set."""
     try:
         import xarray
@@ -61,7 +68,7 @@ def dataset(table: Table) -> Any:
     return result
 
 
-def chosen(tables: Mapping[str, Table], name: str, over_axes: bool = False) -> Table:
+def chosen(tables: Mapping[str, Framed], name: str, over_axes: bool = False) -> Framed:
     """Return a table by its name; by default the first, or the first that has an axis."""
     fit = {
         key: table
@@ -71,11 +78,11 @@ def chosen(tables: Mapping[str, Table], name: str, over_axes: bool = False) -> T
     if not fit:
         raise SolidgearError("this result has no axes: to_dataframe() has its numbers")
     if name and name not in fit:
-        raise SolidgearError(f"there is no table {name!r}{nearest(name, fit)}; use {listed(fit)}")
+        raise SolidgearError(f"there is no table {name!r}{nearest(name, fit)} There are {listed(fit)}")
     return fit[name] if name else next(iter(fit.values()))
 
 
-def quantities(table: Table) -> dict[str, str]:
+def quantities(table: Framed) -> dict[str, str]:
     """Return the names of quantities of the columns, each once, with their units; empty where there
     is none.
     """
@@ -87,7 +94,7 @@ def quantities(table: Table) -> dict[str, str]:
     return names
 
 
-def units(table: Table) -> dict[str, str]:
+def units(table: Framed) -> dict[str, str]:
     """Return the units of columns that have one, by the names of their quantities."""
     return {name: unit for name, unit in quantities(table).items() if unit}
 
@@ -97,7 +104,7 @@ def missing(library: str, what: str) -> SolidgearError:
     return SolidgearError(f"{what} needs {library}: pip install 'solidgear[tables]'")
 
 
-def _quantity(column: Column) -> tuple[str, str]:
+def _quantity(column: Any) -> tuple[str, str]:
     """Return the name of a column and the unit of its values."""
     head = column.head.replace("\n", ", ")
     for pattern in (IN_BRACKETS, BEHIND):
