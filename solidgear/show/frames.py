@@ -78,7 +78,9 @@ def chosen(tables: Mapping[str, Framed], name: str, over_axes: bool = False) -> 
     if not fit:
         raise SolidgearError("this result has no axes: to_dataframe() has its numbers")
     if name and name not in fit:
-        raise SolidgearError(f"there is no table {name!r}{nearest(name, fit)} There are {listed(fit)}")
+        raise SolidgearError(
+            f"there is no table {name!r}{nearest(name, fit)} There are {listed(fit)}"
+        )
     return fit[name] if name else next(iter(fit.values()))
 
 

@@ -185,7 +185,7 @@ def condensed_tables(statics: Condensed | Coupled) -> dict[str, Table]:
     ]
     columns = [Column(head, axis=True) for head in ("row", "column")]
     columns += [*map(Column, BLOCK_UNITS), *(Column(f"unit of {kind}") for kind in BLOCK_UNITS)]
-    shown = {kind: statics.table(kind) for kind in BLOCK_UNITS}
+    shown: dict[str, Any] = {kind: statics.table(kind) for kind in BLOCK_UNITS}
     return {**shown, "entries": Table("entries", columns, rows)}
 
 

@@ -23,7 +23,7 @@ from solidgear.variants.sweep.rows import RowFile
 
 #: columns of rows: the largest relative error that a reduction leaves in natural frequencies, and
 #: words on all other error bars
-BOUND, BARS = "reduction_bound", "bars"
+BOUND, BARS = "reduction_bound", "about_bars"
 
 #: called with the number of rows that are there, of rows in all, and the present step
 Progress = Callable[[int, int, str], None]
@@ -108,7 +108,7 @@ class Swept(Displayed):
     """
 
     shown: ClassVar[str] = "swept"
-    plain_names = ("path", "total", "skipped", "refused", "whys", "seconds")
+    plain_names = (("file", "path"), "total", "skipped", "refused", "whys", "seconds")
 
     #: values of all rows by the names of columns, SI; None where a row has none. Bars stand beside
     #: numbers as ``f1_hz bar``, in the same unit.
