@@ -173,9 +173,7 @@ def _usual(assembly: Assembly) -> list[tuple[str, ...]]:
     return [(model,) * len(assembly.train.shafts) for model in usual]
 
 
-def _with_teeth(
-    assembly: Assembly, driver: Pair, backlash: Quantity, error: Quantity
-) -> Assembly:
+def _with_teeth(assembly: Assembly, driver: Pair, backlash: Quantity, error: Quantity) -> Assembly:
     """Return the same train with the given teeth of one mesh."""
     width, size = _read("--backlash", backlash, "length"), _read("--error", error, "length")
     if width is None and size is None:

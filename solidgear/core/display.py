@@ -91,7 +91,9 @@ class Sheeted(Displayed):
         SolidgearError
             If the folder cannot be written, or units are unknown.
         """
-        return _sheets().write_result(self, folder, units, _shown(self.sheeted), _filed(self.filed))
+        return _sheets().write_result(
+            self, folder, units, _shown(self.filed) if self.filed else None
+        )
 
     def table(self, *args: Any, **kwargs: Any) -> Table:
         """Return a table of the main numbers."""
@@ -106,11 +108,6 @@ class Sheeted(Displayed):
 
     def _repr_html_(self) -> str:
         return super()._repr_html_() if self.shown else _sheets().as_html(self.sheet())
-
-
-def _filed(name: str) -> Any:
-    """Return the function that makes the sheet of a folder; None where there is none."""
-    return _shown(name) if name else None
 
 
 def _sheets() -> Any:

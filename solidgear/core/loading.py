@@ -37,7 +37,8 @@ def load(source: Source) -> Scene:
         A TOML file; ``geometry/pinion_overhung.toml`` describes the format, and
         ``geometry/gearbox_catalogue.toml`` that of catalogue bearings. Or the tables of one, as
         ``tomllib`` gives them, with names of files relative to the folder of work. A Scene is
-        returned as it is. A train is refused: read it with :func:`solidgear.load_train`.
+        returned with its catalogue bearings settled. A train is refused: read it with
+        :func:`solidgear.load_train`.
 
     Returns
     -------
@@ -59,7 +60,7 @@ def load(source: Source) -> Scene:
     (['1', '2'], 'pinion')
     """
     if isinstance(source, Scene):
-        return source
+        return source.settled
     document = document_of(source)
     return scene_of(document.tables, document.path)
 
@@ -80,10 +81,22 @@ def scene_of(tables: Mapping[str, Any], path: str | os.PathLike, alone: bool = T
     `alone`, and not with a train.
     """
     scene = file.scene_of(dict(tables), os.fspath(path), part_of)
-    if not alone or all(bearing.catalogue is None for bearing in scene.bearings):
+    if not alone or not is_unsettled(scene) or file.says_unsettled(tables):
         return scene
     with explained(path, tables):
-        return addition("settling", "solved")(scene, shaft(scene)).scene
+        return settled(scene)
+
+
+def is_unsettled(scene: Scene) -> bool:
+    """Return True where a catalogue bearing waits for its stiffness."""
+    return any(bearing.matrix is None for bearing in scene.bearings)
+
+
+def settled(scene: Scene) -> Scene:
+    """Return a scene with a stiffness for every bearing: that of catalogue data at their load."""
+    if not is_unsettled(scene):
+        return scene
+    return addition("settling", "solved")(scene, shaft(scene)).scene
 
 
 def part_of(table: Any, folder: Path) -> Any:

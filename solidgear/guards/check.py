@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from solidgear.core import (
-    Sheeted,
     BEAM,
     LADDER,
     Body,
     Outline,
+    Sheeted,
     SolidgearError,
     Solution,
     listed,

@@ -22,6 +22,7 @@ from scipy.optimize import linear_sum_assignment
 
 from solidgear.core import (
     Displayed,
+    Document,
     Scene,
     SolidgearError,
     Source,
@@ -32,7 +33,6 @@ from solidgear.core import (
     pinned,
 )
 from solidgear.core.loading import scene_of
-from solidgear.core.scene.document import Document
 from solidgear.core.scene.paths import Tables, replace_entry
 from solidgear.measured.computed import Computed, computed_like, computed_up_to
 from solidgear.measured.correlate import DEVIATIONS, SURE, placed_in
@@ -272,14 +272,16 @@ def identify(
     Examples
     --------
     >>> import solidgear as sg
-    >>> rod = {"material": "steel", "port": {"attach_to": "rod"},
+    >>> rod = {"material": "steel", "port": {"attach_to": "rod", "at": "rod.middle"},
     ...     "segment": [{"kind": "cylinder", "name": "rod", "length": 0.6, "diameter": 0.02}]}
     >>> tap = {"uncertainty": "0.1 %", "mode": [{"frequency": 251.95}, {"frequency": 690.85}]}
     >>> (modulus,) = sg.identify(rod, tap, ["material.E"]).entries
     >>> bool(abs(modulus.value / 207e9 - 0.99) < 0.01)
     True
     """
-    search = _Search(document_of(scene), load_measured(measured), tuple(vary), tol, progress, priors)
+    search = _Search(
+        document_of(scene), load_measured(measured), tuple(vary), tol, progress, priors
+    )
     return search.identification(predict)
 
 

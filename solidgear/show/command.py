@@ -29,9 +29,7 @@ def console(stderr: bool = False) -> Console:
     return Console(highlight=False, markup=False, emoji=False, stderr=stderr)
 
 
-def say(
-    *blocks: RenderableType, soft_wrap: bool = True, printer: Console | None = None
-) -> None:
+def say(*blocks: RenderableType, soft_wrap: bool = True, printer: Console | None = None) -> None:
     """Print tables, and texts as they stand: a line of any length each, or broken at the width of
     the terminal without `soft_wrap`; on a printer in place of the terminal, where one is given.
     """

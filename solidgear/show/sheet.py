@@ -135,7 +135,7 @@ def as_printed(sheet: Sheet) -> str:
     lines = io.StringIO()
     plain = Console(file=lines, width=PRINTED, highlight=False, markup=False, emoji=False)
     print_sheet(sheet, plain)
-    return lines.getvalue().rstrip("\n")
+    return "\n".join(map(str.rstrip, lines.getvalue().rstrip("\n").split("\n")))
 
 
 def as_html(sheet: Sheet) -> str:
@@ -153,14 +153,13 @@ def write_result(
     result: Any,
     folder: str | os.PathLike,
     units: str | Units,
-    make: Callable[[Any, Units], Sheet],
     make_for_folder: Callable[[Any, Units, Path], Sheet] | None = None,
 ) -> list[Path]:
     """Write the sheet of a result into a folder that no other run holds, and return the files."""
     chosen = units_named(units)
     with held(folder) as place:
         if make_for_folder is None:
-            return write_folder(make(result, chosen), place)
+            return write_folder(result.sheet(chosen), place)
         return write_folder(make_for_folder(result, chosen, place), place)
 
 

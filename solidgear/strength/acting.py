@@ -15,9 +15,9 @@ from solidgear.core import (
     Source,
     as_written,
     is_train,
+    name_of_source,
     show,
 )
-from solidgear.core.scene.document import name_of_source
 from solidgear.show.command import Group
 from solidgear.show.options import refuse
 from solidgear.strength.load import AT_REST

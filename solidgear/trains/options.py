@@ -119,7 +119,14 @@ class Reduced(Reduction):
     @property
     def words(self) -> Reducing:
         """These options as the words of a study."""
-        return Reducing(**vars(self))
+        return Reducing(
+            max_frequency=self.max_frequency,
+            reduction=self.reduction,
+            kept=self.kept,
+            local_harmonics=self.local_harmonics,
+            point=self.point,
+            tol=self.tol,
+        )
 
     def assembly(
         self,

@@ -30,7 +30,7 @@ class Document:
     --------
     >>> document = document_of("geometry/shaft_stepped.toml")
     >>> document.describes_train, [*document.tables][:2]
-    (False, ['title', 'attachment'])
+    (False, ['title', 'source'])
     """
 
     tables: Tables

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from solidgear.core import Source, SolidgearError, explained
-from solidgear.core.scene.document import name_of_source
+from solidgear.core import SolidgearError, Source, explained, name_of_source
 from solidgear.core.scene.units import quantity
 from solidgear.strength.acting import Acting, Given
 from solidgear.strength.stress.at_rest import StressAtRest, StressSettings, stress_at_rest

@@ -5,8 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from solidgear.core import HARMONIC, LADDER, SolidgearError, Source, build, is_train, load
-from solidgear.core.scene.document import name_of_source
+from solidgear.core import (
+    HARMONIC,
+    LADDER,
+    SolidgearError,
+    Source,
+    build,
+    is_train,
+    load,
+    name_of_source,
+)
 from solidgear.guards.check import Check, check_scene
 from solidgear.show.options import MODEL
 from solidgear.trains.file.train import Train

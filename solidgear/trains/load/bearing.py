@@ -21,10 +21,10 @@ from solidgear.core import (
     as_written,
     explained,
     is_train,
+    name_of_source,
     shaft,
 )
 from solidgear.core.scene.toml_file import name_of
-from solidgear.core.scene.document import name_of_source
 from solidgear.show.options import speed_of
 from solidgear.show.sheet import Sheet
 from solidgear.show.units import Units
@@ -44,14 +44,20 @@ class SolvedBearings(Sheeted):
     body: Body | None = field(default=None, repr=False)  #: on which its bearings settle
 
     def __getitem__(self, name: str) -> BearingFacts | LivesOverPoints:
-        return next(bearing for bearing in (*self.facts, *self.lives) if bearing.name == name)
+        by_name: dict[str, BearingFacts | LivesOverPoints] = {
+            **{fact.name: fact for fact in self.facts},
+            **{life.name: life for life in self.lives},
+        }
+        return by_name[name]
 
     def draw(self, path: str | Path) -> None:
         """Write a chart of stiffness over load, a file that ends in ``.png`` or ``.svg``; of a shaft
         alone.
         """
         if self.scene is None:
-            raise SolidgearError(f"{self.name}: a train has no chart of stiffness over load")
+            raise SolidgearError(
+                "--out belongs to a scene; for a train give torque and speed in [operation]"
+            )
         with explained(self.scene):
             curves = over_load(self.scene, self.body)
         draw_bearings(Path(path), self.facts, curves)

@@ -201,7 +201,9 @@ def scene_variants(scene: Source, design: Design, example: str) -> SceneVariants
     document = document_of(scene)
     files = {MAIN: document.tables}
     points = design.points(files, lambda within: (MAIN, within), example=example)
-    return SceneVariants(Path(document.path), files, points.entries, points.values, points.sums, design)
+    return SceneVariants(
+        Path(document.path), files, points.entries, points.values, points.sums, design
+    )
 
 
 def data_of_other_designations(
