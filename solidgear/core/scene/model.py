@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, TypeAlias
 
-from pydantic import BeforeValidator, model_validator
+from pydantic import BeforeValidator, PrivateAttr, model_validator
 
 from solidgear.core.display import Displayed
 from solidgear.core.errors import SceneError
@@ -22,6 +22,7 @@ from solidgear.core.scene.ask import Ask
 from solidgear.core.scene.bearing_stiffness import stiffness_entries
 from solidgear.core.scene.blends import Blend
 from solidgear.core.scene.corner import Corner
+from solidgear.core.scene.document import Origin
 from solidgear.core.scene.ends import seat_masses, snap_seats
 from solidgear.core.scene.feature_rules import Feature
 from solidgear.core.scene.housing import ONE_HOUSING, Housing
@@ -131,6 +132,7 @@ class Scene(Displayed, Model):
     lubrication: Lubrication | None = None
     uncertain: tuple[Uncertain, ...] = ()
     ask: Ask = Ask()
+    _origin: Origin = PrivateAttr(Origin())
 
     @model_validator(mode="after")
     def _hangs_together(self) -> Scene:
@@ -295,6 +297,51 @@ class Scene(Displayed, Model):
         """
         return addition("document", "write scene")(self)
 
+    def to_toml(self, path: str | os.PathLike | None = None) -> str:
+        """The file of the scene: that which it was read from with its words and comments, where entries
+        that have changed since are written anew.
+
+        Parameters
+        ----------
+        path : str or path, optional
+            File to write, whole or not at all. Its name is that of the scene, unless the scene has
+            another.
+
+        Returns
+        -------
+        str
+            Text that `solidgear.load` reads back equal.
+
+        Raises
+        ------
+        SolidgearError
+            A file that cannot be written.
+
+        Examples
+        --------
+        >>> import solidgear as sg
+        >>> scene = sg.load("geometry/shaft_stepped.toml")
+        >>> bearing = scene.bearings[0].with_changes(seat_width="22 mm")
+        >>> changed = scene.with_changes(bearings=(bearing, *scene.bearings[1:]))
+        >>> before, after = (s.to_toml().splitlines() for s in (scene, changed))
+        >>> [line for line in after if line not in before]
+        []
+        """
+        return addition("document", "text of scene")(self, path)
+
+    @property
+    def document(self) -> Any:
+        """Document that the scene was read from, whatever has been changed since; None of one made in
+        Python.
+        """
+        return self._origin.document
+
+    def read_from(self, document: Any) -> Scene:
+        """Return the same scene with the document that it was read from."""
+        out = self.unjudged()
+        out._origin = Origin(document)
+        return out
+
     @property
     def length(self) -> float:
         """Length of the shaft in m."""
@@ -379,7 +426,9 @@ class Scene(Displayed, Model):
             )
         if changes.get("load", self.load) != self.load and "bearings" not in changes:
             changes["bearings"] = tuple(b.unsettled for b in self.bearings)
-        return super().with_changes(**changes)
+        out = super().with_changes(**changes)
+        out._origin = self._origin
+        return out
 
     def with_attachment(self, attachment: str) -> Scene:
         """The same scene with ports, bearings and masses attached in one way; faces stay sections.
