@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from solidgear.core import whole
 from solidgear.core.machine.whole_file import write_page as write_whole
 from solidgear.show.command import NOT_REACHED, Progress, caution, filled, say
+from solidgear.show.file_stems import file_stems
 from solidgear.show.folder import begun, held
 from solidgear.show.page_parts import Contents, template
 from solidgear.show.plot import WIDE, Make, page_svg
@@ -198,19 +199,19 @@ def _written(sheet: Sheet, folder: Path) -> list[Path]:
     folder.mkdir(parents=True, exist_ok=True)
     charts = {**sheet.charts}
     for s in sheet.sections:
-        charts |= {stem: make for stem, make in s.charts.items() if _is_filed(s, stem)}
-    data = sheet.data
+        charts |= {name: make for name, make in s.charts.items() if _is_filed(s, name)}
+    data, stems = sheet.data, file_stems([*sheet.lines, *charts])
     if sheet.json_name:
-        names = [f"{sheet.name}.html", *(f"{stem}.csv" for stem in sheet.lines)]
-        names += [f"{stem}.{kind}" for stem in charts for kind in KINDS]
+        names = [f"{sheet.name}.html", *(f"{stems[name]}.csv" for name in sheet.lines)]
+        names += [f"{stems[name]}.{kind}" for name in charts for kind in KINDS]
         names += sheet.pictures
         data = {**data, "files": names}
     json_file = folder / f"{sheet.json_name or sheet.name}.json"
     write_json(json_file, data)  # numbers first: whatever happens to charts, they are there
-    files = [table.write(folder / f"{stem}.csv") for stem, table in sheet.lines.items()]
+    files = [table.write(folder / f"{stems[name]}.csv") for name, table in sheet.lines.items()]
     files.append(json_file)
-    for stem, make in charts.items():
-        files += write_charts(folder / stem, make)
+    for name, make in charts.items():
+        files += write_charts(folder / stems[name], make)
     page = write_page(sheet, folder / f"{sheet.name}.html")
     return [page, *files]
 
