@@ -25,7 +25,6 @@ ROD = {
     "port": {"attach_to": "rod", "at": "rod.middle"},
     "segment": [{"kind": "cylinder", "name": "rod", "length": 0.6, "diameter": 0.02}],
 }
-TAP = {"uncertainty": "0.1 %", "mode": [{"frequency": 251.95}, {"frequency": 690.85}]}
 
 
 def sources(path):
@@ -41,9 +40,11 @@ def sources(path):
 OF_SHAFT = {
     "answer": lambda s: sg.answer(s, "5 %", ["C_zz"])["C_zz"],
     "sweep": lambda s: sg.sweep(s, DIAMETER, model="timoshenko", n=1)["f1_hz"],
-    "optimise": lambda s: sg.optimise(
-        s, ["segment.3.diameter=40 mm:41 mm"], "min C_zz", model="timoshenko"
-    ).best.value,
+    "optimise": lambda s: (
+        sg.optimise(
+            s, ["segment.3.diameter=40 mm:41 mm"], "min C_zz", model="timoshenko"
+        ).best.value
+    ),
     "sensitivities": lambda s: [
         d.elasticity
         for d in sg.sensitivities(s, "timoshenko", ["bending 1"], ["material.E"]).of[0].derivatives
@@ -58,20 +59,30 @@ OF_TRAIN = {
         s, "mesh.stiffness=3e8,3.2e8", models=BEAMS, ask=["system-modes"], n=3, max_frequency=900.0
     )["f3_hz"],
     "a shaft of it": lambda s: sg.sweep(
-        s, "pinion.material.E=200 GPa,210 GPa", models=BEAMS, ask=["system-modes"], n=1, max_frequency=300.0
+        s,
+        "pinion.material.E=200 GPa,210 GPa",
+        models=BEAMS,
+        ask=["system-modes"],
+        n=1,
+        max_frequency=300.0,
     )["f1_hz"],
     "system_modes": lambda s: sg.system_modes(s, BEAMS, max_frequency=900.0).frequency_hz,
     "response": lambda s: sg.response(s, "euler", max_frequency=300.0).responses[0].force,
-    "receptance": lambda s: sg.receptance(
-        s, "gear.wheel:z", "pinion.pinion:z", "euler", max_frequency=300.0
-    ).receptances[0].value,
+    "receptance": lambda s: (
+        sg.receptance(s, "gear.wheel:z", "pinion.pinion:z", "euler", max_frequency=300.0)
+        .receptances[0]
+        .value
+    ),
     "deflect": lambda s: [m.value for m in sg.deflect(s, "euler").judge.misalignment],
     "bearing": lambda s: [life.name for life in sg.bearing(s).lives],
 }
 
 
 #: a second and more each
-DEAR = {"sweep of a train", "answer", "optimise", "compare", "stress", "deflect", "response", "bearing of a train"}
+DEAR = {
+    *("answer", "optimise", "compare", "stress", "deflect", "response", "receptance"),
+    *("sweep of a train", "a shaft of it", "bearing of a train"),
+}
 
 
 def named(studies, kind=""):
@@ -102,18 +113,11 @@ def test_a_study_of_a_train_takes_a_path_tables_or_a_train(study):
 
 
 def test_studies_leave_tables_as_they_are():
-    tables = sources(TRAIN)["tables"]
+    tables = sg.load_train(GEOMETRY / "gearbox_two_stage.toml").to_dict()
     before = copy.deepcopy(tables)
-    OF_TRAIN["system_modes"](tables)
-    train_variants(tables, Design(("mesh.stiffness=3e8,3.2e8",)))
+    train_variants(tables, Design(("input.material.E=200 GPa,210 GPa",)))
     sg.compare(ROD, {**ROD, "title": "another"})
     assert tables == before
-
-
-def test_measured_data_are_tables_as_well():
-    (modulus,) = sg.identify(ROD, TAP, ["material.E"]).entries
-    assert modulus.value == pytest.approx(0.99 * 207e9, rel=0.005)
-    assert [pair.computed.name for pair in sg.correlate(ROD, TAP).pairs] == ["bending 1", "bending 2"]
 
 
 def test_rows_are_solved_in_another_process():
@@ -125,7 +129,7 @@ def test_rows_are_solved_in_another_process():
     assert there == task.rows([0, 1]) and there[0]["status"] == "ok"
     # a database of rows tells one sweep from another by the tables
     others = copy.deepcopy(tables)
-    others["shaft"]["gear"]["scene"]["material"]["nu"] = 0.29
+    others["shaft"]["gear"]["scene"]["material"]["nu"] = 0.25
     assert train_task(others, design, **how).plan != task.plan
 
 
@@ -150,7 +154,16 @@ def test_results_print_and_write_what_their_commands_do(tmp_path):
 
 
 def test_every_study_says_that_it_takes_a_path_a_dict_or_an_object():
-    studies = {*OF_SHAFT, *OF_TRAIN, "correlate", "identify", "check", "judge", "nonlinear", "contact"}
+    studies = {
+        *OF_SHAFT,
+        *OF_TRAIN,
+        "correlate",
+        "identify",
+        "check",
+        "judge",
+        "nonlinear",
+        "contact",
+    }
     for name in (studies & {*sg.__all__}) - {"receptance", "response", "nonlinear"}:
         first = inspect.getdoc(getattr(sg, name)).partition("Parameters\n----------\n")[2]
         assert re.match(r"\w+(, [\w*]+)* : path, dict( or|,) |train, models", first), name
