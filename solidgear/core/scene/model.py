@@ -51,6 +51,11 @@ def _several(value: Any) -> tuple:
     return value if isinstance(value, tuple) else (value,)
 
 
+def _paths_of(bearings: Iterable[str]) -> tuple[str, ...]:
+    """Return how paths of entries of bearings begin."""
+    return tuple(f"bearing.{name}." for name in bearings)
+
+
 def _end_to_end(segments: Iterable[Segment], material: Material | str) -> Iterator[Segment]:
     """Yield segments at their places, those without one behind each other, and with a material."""
     y = 0.0
@@ -325,7 +330,7 @@ class Scene(Displayed, Model):
         >>> changed = scene.with_changes(bearings=(bearing, *scene.bearings[1:]))
         >>> before, after = (s.to_toml().splitlines() for s in (scene, changed))
         >>> [line for line in after if line not in before]
-        []
+        ['seat_width = "22 mm"']
         """
         return addition("document", "text of scene")(self, path)
 
@@ -431,6 +436,11 @@ class Scene(Displayed, Model):
             )
         if changes.get("load", self.load) != self.load and "bearings" not in changes:
             changes["bearings"] = tuple(b.unsettled for b in self.bearings)
+        if "bearings" in changes:
+            changes["bearings"] = tuple(changes["bearings"])
+            removed = {b.name for b in self.bearings} - {b.name for b in changes["bearings"]}
+            ranges = [u for u in self.uncertain if not u.path.startswith(_paths_of(removed))]
+            changes.setdefault("uncertain", tuple(ranges))
         out = super().with_changes(**changes)
         out._origin = self._origin
         return out

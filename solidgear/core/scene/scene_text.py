@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import tomllib
-from collections.abc import Mapping
 from typing import Any
 
 from solidgear.core.errors import SceneError
@@ -12,28 +11,37 @@ from solidgear.core.loading import part_of, scene_of
 from solidgear.core.machine.whole_file import write_page
 from solidgear.core.scene import file
 from solidgear.core.scene.model import Scene
-from solidgear.core.scene.rewriting import Form, rewritten, written_anew
+from solidgear.core.scene.rewriting import Canonical, rewritten, written_anew
 from solidgear.core.scene.writing import tables_of, unsettled_tables
 
 
 def toml_of(scene: Scene, path: str | os.PathLike | None = None) -> str:
     """Return the text of the file of a scene, and write it to a path if one is given."""
     document = scene.document
-    where = os.fspath(path or (document.path if document is not None else scene.name))
+    place = os.fspath(path or (document.path if document is not None else scene.name))
     target = unsettled_tables(scene)
     if document is not None and document.text:
-        text = rewritten(document, where, Form(_canonical), target)
+        text = rewritten(document, place, _canonical(), target)
     else:
         text = written_anew(target)
     if any(bearing.catalogue is not None for bearing in scene.bearings):
-        text = _settled(text, where, scene)
+        text = _settled(text, place, scene)
     if path is not None:
         write_page(path, text)
     return text
 
 
-def _canonical(tables: Mapping[str, Any], path: str) -> dict[str, Any]:
-    return unsettled_tables(file.scene_of(dict(tables), path, part_of))
+def _canonical() -> Canonical:
+    """Return the reader of canonical tables, which reads the part of a scene once."""
+    parts: dict[tuple[str, str], Any] = {}
+
+    def part(table: Any, folder: Any) -> Any:
+        key = (repr(table), str(folder))
+        if key not in parts:
+            parts[key] = part_of(table, folder)
+        return parts[key]
+
+    return lambda tables, path: unsettled_tables(file.scene_of(dict(tables), path, part))
 
 
 def _settled(text: str, path: str, scene: Scene) -> str:
