@@ -25,6 +25,7 @@ What there is, each with an example in its help:
                  MeshVector, BearingSpring, RowSpring, RigidBody, Inertia, PortInertia, Placed
     planetary    PlanetaryTeeth, PlanetaryStage, CentralMember, Planet, carrier_turn, FixedSupport,
                  PlanetError, elastic_ring
+    exchange     export, port_matrices, read_matrices, PortMatrices
     errors       SolidgearError, SceneError
 
 Names are imported when first used, so that importing the package stays cheap.
@@ -79,6 +80,10 @@ _WHERE = {
     "grounded": "solidgear.core.system",
     "mesh_spring": "solidgear.core.system",
     "torsion_spring": "solidgear.core.system",
+    "PortMatrices": "solidgear.core.reduction.port_matrices",
+    "export": "solidgear.exchange.matrices.source",
+    "port_matrices": "solidgear.exchange.matrices.source",
+    "read_matrices": "solidgear.exchange.matrices.formats",
     "condense": "solidgear.core.solve.statics",
     "modes": "solidgear.core.solve.modes",
     "answer": "solidgear.core.judge.answer",
@@ -120,6 +125,7 @@ __all__ = [
     "PointMass",
     "Port",
     "PortInertia",
+    "PortMatrices",
     "Rack",
     "RigidBody",
     "RowSpring",
@@ -143,12 +149,15 @@ __all__ = [
     "condense",
     "craig_bampton",
     "elastic_ring",
+    "export",
     "grounded",
     "load",
     "load_train",
     "mesh_spring",
     "modes",
     "optimise",
+    "port_matrices",
+    "read_matrices",
     "rubin",
     "sensitivities",
     "shaft_stress",
@@ -169,6 +178,7 @@ if TYPE_CHECKING:
     from solidgear.core.ladder import build
     from solidgear.core.loading import load
     from solidgear.core.reduction.craig_bampton import craig_bampton
+    from solidgear.core.reduction.port_matrices import PortMatrices
     from solidgear.core.reduction.rubin import rubin
     from solidgear.core.reduction.superelement import Superelement
     from solidgear.core.scene import (
@@ -199,6 +209,8 @@ if TYPE_CHECKING:
         mesh_spring,
         torsion_spring,
     )
+    from solidgear.exchange.matrices.formats import read_matrices
+    from solidgear.exchange.matrices.source import export, port_matrices
     from solidgear.show.viewer import turn
     from solidgear.strength.stress.shaft import shaft_stress
     from solidgear.teeth.study import TeethStudy, teeth_study

@@ -11,9 +11,8 @@ from typing import Annotated, Any
 import typer
 
 from solidgear.app.starts import STARTS, start
-from solidgear.core import LADDER, SolidgearError, nearest, show
+from solidgear.core import LADDER, SolidgearError, nearest, show, whole_or_refused
 from solidgear.core.ladder.model import Model
-from solidgear.core.machine.whole_file import whole_or_refused
 from solidgear.core.models.options import Option, limits
 from solidgear.show.command import command, say
 from solidgear.show.table import Table, text, word

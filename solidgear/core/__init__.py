@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from solidgear.core.ladder.registry import LADDER
     from solidgear.core.loading import as_written, explained, load, shaft
     from solidgear.core.machine.threads import pinned
-    from solidgear.core.machine.whole_file import whole
+    from solidgear.core.machine.whole_file import whole, whole_or_refused
     from solidgear.core.quantity import (
         C_ZZ,
         COMPLIANCE,
@@ -124,6 +124,7 @@ __all__ = [
     "size",
     "synthesise",
     "whole",
+    "whole_or_refused",
     "without_axis",
 ]
 
@@ -169,6 +170,7 @@ _WHERE = {
     "shaft": "solidgear.core.loading",
     "pinned": "solidgear.core.machine.threads",
     "whole": "solidgear.core.machine.whole_file",
+    "whole_or_refused": "solidgear.core.machine.whole_file",
     "COMPLIANCE": "solidgear.core.quantity",
     "C_ZZ": "solidgear.core.quantity",
     "FIRST_BENDING": "solidgear.core.quantity",
