@@ -13,6 +13,7 @@ from solidgear.core import LADDER, SceneError, SolidgearError, listed, parse, sh
 from solidgear.show.command import Group
 from solidgear.show.options import MODEL, options_by_name, relative
 from solidgear.trains.assembly.assembly import Assembly
+from solidgear.trains.assembly.matrices_body import MATRICES
 from solidgear.trains.assembly.shaft import checked_model
 from solidgear.trains.file.reading import as_written
 from solidgear.trains.file.tables import FIRST_HARMONIC, LAST_HARMONIC
@@ -24,7 +25,7 @@ TrainFile = Annotated[
     Path, typer.Argument(help="Train file (TOML), such as geometry/axle_overhung.toml.")
 ]
 MODELS = (
-    f"{', '.join(LADDER.bodies)}, rigid, lumped, lumped-bending, lumped-matched, "
+    f"{', '.join(LADDER.bodies)}, matrices (those of the file), rigid, lumped, lumped-bending, lumped-matched, "
     "lumped-old; a lumped one may name its body, lumped/euler."
 )
 MOST_KEPT = 200
@@ -147,11 +148,14 @@ class Pair(Group):
 
     def by_shaft(self, train: Train) -> dict[str, str]:
         """Return models of the shafts of a train."""
-        return self.of(train.shafts, train.name)
+        with_matrices = (side for side, s in train.shafts.items() if s.matrices is not None)
+        return self.of(train.shafts, train.name, dict.fromkeys(with_matrices, MATRICES))
 
-    def of(self, shafts: Collection[str], name: str) -> dict[str, str]:
-        """Return models of shafts by the name of each; refuse a shaft that the train does not
-        have.
+    def of(
+        self, shafts: Collection[str], name: str, usual: Mapping[str, str] | None = None
+    ) -> dict[str, str]:
+        """Return models of shafts by the name of each, those without an option by a usual one;
+        refuse a shaft that the train does not have.
         """
         models = {s: m for s, m in (("pinion", self.pinion), ("gear", self.gear)) if m != MODEL}
         for text in self.shafts or []:
@@ -163,7 +167,8 @@ class Pair(Group):
             if side not in shafts:
                 names = listed(shafts)
                 raise SolidgearError(f"{name} has no shaft {show(side, 40)}; it has {names}")
-        return {side: models.get(side, MODEL) for side in shafts}
+        usual = usual or {}
+        return {side: models.get(side, usual.get(side, MODEL)) for side in shafts}
 
 
 @dataclass(frozen=True)

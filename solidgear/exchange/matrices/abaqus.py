@@ -13,6 +13,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
+import scipy.sparse as sp
 
 from solidgear.core.reduction.matrix_units import MatrixUnits
 from solidgear.core.reduction.port_matrices import PortMatrices
@@ -76,7 +77,10 @@ def _read_into(out: NodeMatrices, path: Path, alone: str) -> None:
     comments: list[str] = []
     keyword, options, name = "", {}, alone
     element = _Element()
-    for number, raw in enumerate(path.read_text("utf-8", errors="replace").splitlines(), start=1):
+    lines = path.read_text("utf-8", errors="replace").splitlines()
+    if lines and lines[0].startswith("%%MatrixMarket"):
+        raise out.wrong("is a Matrix Market file; name the .json beside it, which has the points")
+    for number, raw in enumerate(lines, start=1):
         line = raw.strip()
         if line.startswith("**"):
             comments.append(line)
@@ -189,11 +193,14 @@ def _stored(path: Path, out: NodeMatrices) -> NodeMatrices:
             raise out.wrong(f"{file.name} is missing beside it; CalculiX writes all three")
     texts = labels.read_text("utf-8").split()
     rows = [(int(node), int(direction)) for node, direction in (t.split(".") for t in texts)]
+    tables = {}
     for name, file in files.items():
         try:
-            table = np.loadtxt(file, ndmin=2)
-            for row, column, value in table:
-                out.add(name, rows[int(row) - 1], rows[int(column) - 1], float(value), True)
-        except (ValueError, IndexError):
+            row, column, value = np.loadtxt(file, ndmin=2).T
+            at = row.astype(int) - 1, column.astype(int) - 1
+            half = sp.csr_matrix((value, at), shape=(len(rows), len(rows)))
+        except ValueError:
             raise out.wrong(f"{file.name} has other lines than row, column and value") from None
+        tables[name] = half + sp.triu(half, 1).T + sp.tril(half, -1).T
+    out.stored = rows, {name: table.tocsr() for name, table in tables.items()}
     return out

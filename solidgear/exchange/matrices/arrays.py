@@ -55,9 +55,12 @@ def read_npz(path: Path, source: str) -> Mapping[str, Any]:
 
 def read_mat(path: Path, source: str) -> Mapping[str, Any]:
     """Return the arrays of a ``.mat`` file."""
-    from scipy.io import loadmat  # start-up: for this format alone
+    from scipy.io import loadmat, matlab  # start-up: for this format alone
 
-    store = loadmat(path, squeeze_me=True)
+    try:
+        store = loadmat(path, squeeze_me=True)
+    except matlab.MatReadError as error:
+        raise ValueError(str(error)) from None
     positions = np.atleast_2d(store["positions"]) if "positions" in store else None
     return store if positions is None else {**store, "positions": positions}
 

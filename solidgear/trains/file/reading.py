@@ -248,6 +248,8 @@ def _with_scene(
         reason = 'names the file of the shaft, such as "gear_shaft.toml"'
         raise SceneError(reason, path=(*path, "scene"))
     fields = {**table, "scene": shaft(path[-1], folder / name, alone)}
+    if "matrices" in table:
+        fields = _matrices_read(fields, folder, path)
     return _with_flanks(fields, folder, path)
 
 
