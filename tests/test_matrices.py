@@ -15,6 +15,8 @@ from solidgear.exchange.matrices.formats import FORMATS
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.options import Pair
 from tests.command import command
+from validation.matrices_elsewhere import block_from_calculix, shaft_in_calculix
+from validation.race.installed import present
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 GEAR = GEOMETRY / "gear_shaft.toml"
@@ -247,6 +249,65 @@ def test_files_that_are_no_matrices_are_refused_in_a_sentence(tmp_path, name, te
     (tmp_path / name).write_text(text)
     with pytest.raises(sg.SceneError, match=said):
         sg.read_matrices(tmp_path / name)
+
+
+# by other programs
+
+
+@pytest.mark.long
+@pytest.mark.skipif(not present("CalculiX"), reason="CalculiX is not installed")
+@pytest.mark.parametrize("units", ["m-kg-N", "mm-t-N"])
+def test_calculix_finds_the_frequencies_of_what_is_written(tmp_path, units):
+    theirs, ours = shaft_in_calculix(tmp_path, units)
+    # printed with seven figures
+    assert theirs == pytest.approx(ours, rel=1e-6)
+
+
+@pytest.mark.long
+@pytest.mark.skipif(not present("CalculiX"), reason="CalculiX is not installed")
+def test_what_calculix_stores_has_its_frequencies(tmp_path):
+    theirs, ours = block_from_calculix(tmp_path)
+    assert ours == pytest.approx(theirs, rel=1e-5)
+
+
+def test_a_deck_of_masses_springs_and_equations_has_the_motions_of_the_points(matrices, tmp_path):
+    """Its springs and equations, read here: the receptance of its modes is that of the matrices."""
+    (file,) = matrices.write(tmp_path / "part.inp", "calculix", "mm-t-N")
+    shares, square = np.zeros((6 * 3, matrices.size)), np.zeros(matrices.size)
+    lines = file.read_text().splitlines()
+    for k, line in enumerate(lines):
+        if line.startswith("*ELEMENT, TYPE=SPRING1"):
+            node, direction = int(lines[k + 1].split(",")[1]), int(lines[k + 3])
+            square[3 * (node - 7) + direction - 1] = float(lines[k + 4])
+        elif line == "*EQUATION":
+            terms, at = [], k + 2
+            while len(terms) < 3 * int(lines[k + 1]):
+                terms += [float(word) for word in lines[at].split(",")]
+                at += 1
+            row = 3 * (int(terms[0]) - 1) + int(terms[1]) - 1
+            for node, direction, share in zip(terms[3::3], terms[4::3], terms[5::3]):
+                shares[row, 3 * (int(node) - 7) + int(direction) - 1] = -share
+    got = np.array([shares / (square - (2 * pi * f) ** 2) @ shares.T for f in HERTZ])
+    size = np.tile(np.repeat([1e-3, 1.0], 3), 3)
+    # mm and rad by N and N mm
+    got = got * np.outer(size, size) / 1e-3
+    assert apart(receptance(matrices), got) < 1e-10
+
+
+def test_a_rotor_file_for_ross_has_the_point_in_its_axes(tmp_path):
+    sg.export(GEAR, tmp_path / "gear.py", "ross")
+    text = (tmp_path / "gear.py").read_text()
+    compile(text, "gear.py", "exec")
+    names: dict = {}
+    condensed = text[text.index("def condensed") : text.index("if __name__")]
+    exec(condensed, {"PointElement": lambda n, k, m, tag: (n, k, m, tag)}, names)
+    node, stiffness, mass, tag = names["condensed"](3)
+    point = sg.port_matrices(GEAR, ports=["gear"], bearings=True)
+    assert (node, tag) == (3, "gear")
+    # along the axis, which is y here and z there, the shaft is as stiff
+    assert stiffness[2][2] == point.stiffness[1, 1] and mass[5][5] == point.mass[4, 4]
+    assert stiffness[0][4] == point.stiffness[2, 3] and stiffness[1][3] == point.stiffness[0, 5]
+    assert text.count("rs.ShaftElement(") > 20 and text.count("tag='3'") == 1
 
 
 # in trains

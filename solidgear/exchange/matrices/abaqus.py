@@ -18,7 +18,7 @@ import scipy.sparse as sp
 from solidgear.core.reduction.matrix_units import MatrixUnits
 from solidgear.core.reduction.port_matrices import PortMatrices
 from solidgear.exchange.matrices.header import header, stated
-from solidgear.exchange.matrices.nodes import Label, NodeMatrices, node_of
+from solidgear.exchange.matrices.nodes import Label, NodeMatrices, node_of, real
 
 #: keywords of ``*MATRIX ASSEMBLE``, of matrices that Abaqus takes
 KEYS = {"stiffness": "STIFFNESS", "mass": "MASS", "damping": "STRUCTURAL DAMPING"}
@@ -33,7 +33,7 @@ def write(matrices: PortMatrices, path: Path, units: MatrixUnits) -> dict[Path, 
     lines = [f"** {line}" for line in header(matrices, units)]
     lines.append("*NODE, NSET=POINTS")
     for k, place in enumerate(matrices.positions.values(), start=1):
-        x, y, z = (repr(float(v / units.length)) for v in place)
+        x, y, z = (real(v / units.length) for v in place)
         lines.append(f"{k}, {x}, {y}, {z}")
     if matrices.modes:
         lines.append("*NODE, NSET=MODES")
@@ -44,7 +44,7 @@ def write(matrices: PortMatrices, path: Path, units: MatrixUnits) -> dict[Path, 
         kept = matrix if name == SQUARE else np.tril(matrix)
         for row, column in np.argwhere(kept):
             (node, direction), (to, to_direction) = node_of(row, points), node_of(column, points)
-            lines.append(f"{node}, {direction}, {to}, {to_direction}, {float(kept[row, column])!r}")
+            lines.append(f"{node}, {direction}, {to}, {to_direction}, {real(kept[row, column])}")
     taken = [f"{key}={name.upper()}" for name, key in KEYS.items() if name in matrices.matrices]
     lines.append(f"*MATRIX ASSEMBLE, {', '.join(taken)}")
     return {path: ("\n".join(lines) + "\n").encode()}

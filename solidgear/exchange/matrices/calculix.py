@@ -17,6 +17,7 @@ from solidgear.core import SolidgearError
 from solidgear.core.reduction.matrix_units import MatrixUnits
 from solidgear.core.reduction.port_matrices import PortMatrices, not_free
 from solidgear.exchange.matrices.header import header
+from solidgear.exchange.matrices.nodes import real
 
 #: share of the largest motion of a point that is rounding, and of stiffness that is a free motion
 TRIFLE, FREE = 1e-13, 1e-12
@@ -39,7 +40,7 @@ def write(matrices: PortMatrices, path: Path, units: MatrixUnits) -> dict[Path, 
     lines.append("** a node of a mode has up to three of them, along its directions")
     lines.append("*NODE, NSET=POINTS")
     for k, place in enumerate(matrices.positions.values()):
-        x, y, z = (repr(float(v / units.length)) for v in place)
+        x, y, z = (real(v / units.length) for v in place)
         lines += [f"{2 * k + node}, {x}, {y}, {z}" for node in (1, 2)]
     first, nodes = 2 * count + 1, -(-modes // 3)
     lines.append("*NODE, NSET=MODES")
@@ -53,7 +54,7 @@ def write(matrices: PortMatrices, path: Path, units: MatrixUnits) -> dict[Path, 
             element += 1
             lines.append(f"*ELEMENT, TYPE=SPRING1, ELSET=S{k + 1}")
             lines.append(f"{element}, {first + k // 3}")
-            lines += [f"*SPRING, ELSET=S{k + 1}", f"{k % 3 + 1}", f"{float(square)!r}"]
+            lines += [f"*SPRING, ELSET=S{k + 1}", f"{k % 3 + 1}", f"{real(square)}"]
     spare = range(modes, 3 * nodes)
     if spare:
         lines.append("*BOUNDARY")
@@ -83,6 +84,6 @@ def _equation(row: int, shares: np.ndarray, first: int) -> list[str]:
     node, direction = 2 * (row // 6) + (row % 6) // 3 + 1, row % 3 + 1
     terms = [f"{node}, {direction}, 1."]
     for k in np.flatnonzero(np.abs(shares) > TRIFLE * np.abs(shares).max(initial=0.0)):
-        terms.append(f"{first + k // 3}, {k % 3 + 1}, {float(-shares[k])!r}")
+        terms.append(f"{first + k // 3}, {k % 3 + 1}, {real(-shares[k])}")
     lines = [", ".join(terms[k : k + 4]) for k in range(0, len(terms), 4)]
     return ["*EQUATION", str(len(terms)), *lines]
