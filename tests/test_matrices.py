@@ -77,9 +77,7 @@ def test_free_interface_modes_are_kept_whole(body):
 
 def test_a_point_has_the_stiffness_of_the_shaft_on_its_bearings(body):
     scene = sg.load(GEAR)
-    point = sg.port_matrices(
-        scene, model="euler", elements=12, ports=["gear"], bearings=True
-    )
+    point = sg.port_matrices(scene, model="euler", elements=12, ports=["gear"], bearings=True)
     stiffness = np.array(sg.condense(body, scene, "gear").stiffness)
     # it turns freely
     size = np.sqrt(np.where(stiffness.diagonal(), stiffness.diagonal(), stiffness[3, 3]))
@@ -89,9 +87,7 @@ def test_a_point_has_the_stiffness_of_the_shaft_on_its_bearings(body):
 def test_a_train_keeps_its_frequencies_and_its_losses():
     train = sg.load_train(GEOMETRY / "axle_overhung.toml")
     ports = ["pinion.pinion", "gear.gear", "gear.3"]
-    matrices = sg.port_matrices(
-        train, model="euler", modes=4, method="free-interface", ports=ports
-    )
+    matrices = sg.port_matrices(train, model="euler", modes=4, method="free-interface", ports=ports)
     assembly = Assembly(train, kept=4)
     system = assembly.system("euler", "euler")
     exact = (2 * pi * system.modes(20).frequency_hz) ** 2
@@ -106,7 +102,9 @@ def test_a_train_keeps_its_frequencies_and_its_losses():
     omega = 2 * pi * 650.0
     dynamic = matrices.stiffness + 1j * matrices.damping - omega**2 * matrices.mass
     got = np.kron(np.eye(2), turn).T @ np.linalg.solve(dynamic, push)[6:12]
-    motion = system.response([650.0], system.load({"gear.gear": load}), loss=assembly.loss_factors())
+    motion = system.response(
+        [650.0], system.load({"gear.gear": load}), loss=assembly.loss_factors()
+    )
     assert got == pytest.approx(system.motion("gear.gear") @ motion[0], rel=1e-6)
 
 
@@ -121,7 +119,9 @@ def test_spin_turns_the_momentum_of_the_whole_shaft(body):
     assert moment[3:, 3:] == pytest.approx(wanted[3:, 3:], rel=1e-6, abs=1e-9 * momentum)
 
 
-@pytest.mark.parametrize("value", [1e-300, 0.0, -1.23456789012e-20, 0.1, -np.pi, 1e9 / 7, -4e15 / 3])
+@pytest.mark.parametrize(
+    "value", [1e-300, 0.0, -1.23456789012e-20, 0.1, -np.pi, 1e9 / 7, -4e15 / 3]
+)
 def test_sixteen_figures_hold_twelve_digits(value):
     text = real(value)
     assert len(text) <= 16 and "." in text
@@ -130,11 +130,14 @@ def test_sixteen_figures_hold_twelve_digits(value):
 
 # what other programs write
 
+
 def bar():
     """Stiffness and mass of a uniform bar between two points, SI, 12 by 12, and the points."""
     rod = sg.Segment.cylinder("rod", length=1.0, diameter=0.1)
     ends = [
-        sg.Bearing(name=name, y=y, seat_width=0.02, attachment="section", stiffness=np.zeros((6, 6)))
+        sg.Bearing(
+            name=name, y=y, seat_width=0.02, attachment="section", stiffness=np.zeros((6, 6))
+        )
         for name, y in (("a", 0.05), ("b", 0.95))
     ]
     return sg.port_matrices(sg.Scene.from_parts([rod], bearings=ends), ports=["a", "b"])
@@ -172,7 +175,10 @@ def test_a_user_element_of_a_substructure_is_read(tmp_path):
             values = [f"{value!r}" for value in table[row, : row + 1].tolist()]
             lines += [", ".join(values[k : k + 4]) + "," for k in range(0, row + 1, 4)]
     (tmp_path / "bar.mtx").write_text("\n".join(lines))
-    points = {"a": {"node": 7, "position": [0, 0.05, 0]}, "b": {"node": 9, "position": [0, "950 mm", 0]}}
+    points = {
+        "a": {"node": 7, "position": [0, 0.05, 0]},
+        "b": {"node": 9, "position": [0, "950 mm", 0]},
+    }
     again = sg.read_matrices(tmp_path / "bar.mtx", points)
     assert again.stiffness == pytest.approx(bar_matrices.stiffness, rel=1e-14)
 
@@ -183,7 +189,9 @@ def test_stored_matrices_are_condensed_to_points_of_two_nodes(tmp_path, matrices
     labels += [(30 + k, 1) for k in range(matrices.modes)]
     (tmp_path / "part.dof").write_text("\n".join(f"{node}.{d}" for node, d in labels))
     for ending, table in ((".sti", matrices.stiffness), (".mas", matrices.mass)):
-        rows = [f"{j + 1} {i + 1} {table[i, j]:.17e}" for i in range(len(table)) for j in range(i + 1)]
+        rows = [
+            f"{j + 1} {i + 1} {table[i, j]:.17e}" for i in range(len(table)) for j in range(i + 1)
+        ]
         (tmp_path / f"part{ending}").write_text("\n".join(rows))
     # two of three points: what is left out moves under rigid motions
     points = {
@@ -211,7 +219,10 @@ def spoilt(**changes):
     ("changes", "said"),
     [
         ({"stiffness": lambda k: k * np.where(np.eye(12), 1, 1.1)}, "leaves more than six|resists"),
-        ({"stiffness": lambda k: k + np.triu(np.ones((12, 12))) * 1e9}, "stiffness is not symmetric"),
+        (
+            {"stiffness": lambda k: k + np.triu(np.ones((12, 12))) * 1e9},
+            "stiffness is not symmetric",
+        ),
         ({"mass": lambda m: -m}, "mass is not positive definite"),
         ({"positions": lambda p: 1e3 * p}, r"positions 0\.001 times as large"),
         ({"positions": lambda p: p[:1]}, r"2 points and positions \(1, 3\) do not fit"),
@@ -233,7 +244,11 @@ def test_what_is_no_free_body_is_refused_in_a_sentence(tmp_path, changes, said):
         ("x.bdf", "GRID,1,,0.,0.,0.", "has no DMIG entries"),
         ("x.bdf", "GRID,1,5,0.,0.,0.", "coordinate system 5"),
         ("x.inp", "*HEADING\nnothing", "no \\*MATRIX INPUT"),
-        ("x.inp", "*MATRIX INPUT, NAME=K\n1, 1, 1, one, 2.", "line 2: '1, 1, 1, one, 2.' is no row"),
+        (
+            "x.inp",
+            "*MATRIX INPUT, NAME=K\n1, 1, 1, one, 2.",
+            "line 2: '1, 1, 1, one, 2.' is no row",
+        ),
         ("x.inp", "*MATRIX INPUT, NAME=STIF\n1, 1, 1, 1, 2.", "has a stiffness alone"),
         ("x.mtx", "%%MatrixMarket matrix", "name the .json"),
         ("x.json", "{", "is no JSON"),

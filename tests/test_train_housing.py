@@ -239,7 +239,7 @@ def test_points_of_a_deck_are_named_by_nodes_and_doubtful_units_are_told(tmp_pat
     box.write(tmp_path / "box.bdf", units="mm-t-N")
     deck = tmp_path / "box.bdf"
     # as another program leaves it: no names, no units
-    deck.write_text("\n".join(l for l in deck.read_text().splitlines() if l[0] != "$"))
+    deck.write_text("\n".join(s for s in deck.read_text().splitlines() if s[0] != "$"))
     nodes = ", ".join(f'"{name}" = {k}' for k, name in enumerate(box.positions, start=1))
     points = f'matrices = "box.bdf"\npoints = {{{nodes}}}\n'
     text = path.read_text()

@@ -113,11 +113,20 @@ def block_from_calculix(folder: Path) -> tuple[np.ndarray, np.ndarray]:
     ends = {"A": (first, first + 1, 0), "B": (first + 2, first + 3, CELLS[1])}
     points = {}
     for name, (node, turned, at) in ends.items():
-        place = [EDGES[0] / 2, EDGES[1] * at / CELLS[1], EDGES[2] / 2]
-        lines += [", ".join(map(str, [k, *place])) for k in (node, turned)]
-        points[name] = {"node": [node, turned], "position": place}
+        centre = [EDGES[0] / 2, EDGES[1] * at / CELLS[1], EDGES[2] / 2]
+        lines += [", ".join(map(str, [k, *centre])) for k in (node, turned)]
+        points[name] = {"node": [node, turned], "position": centre}
     lines.append("*ELEMENT, TYPE=C3D8, ELSET=BLOCK")
-    corners = ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1))
+    corners = (
+        (0, 0, 0),
+        (1, 0, 0),
+        (1, 1, 0),
+        (0, 1, 0),
+        (0, 0, 1),
+        (1, 0, 1),
+        (1, 1, 1),
+        (0, 1, 1),
+    )
     for k, cell in enumerate(product(*map(range, CELLS)), start=1):
         names = [nodes[tuple(np.add(cell, corner))] for corner in corners]
         lines.append(", ".join(map(str, [k, *names])))
@@ -147,7 +156,10 @@ def rotor_in_ross(folder: Path) -> list[tuple[np.ndarray, np.ndarray]]:
     gear = sg.export(GEOMETRY / "gear_shaft.toml", folder / "gear_file.py", "ross")[0]
     done = subprocess.run(
         [interpreter("ross"), "-c", SCRIPT, str(file.parent)],
-        capture_output=True, text=True, check=True, timeout=600,
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=600,
     )
     rows = [
         np.array([float(word) for word in line.split()[1:]])
@@ -159,7 +171,7 @@ def rotor_in_ross(folder: Path) -> list[tuple[np.ndarray, np.ndarray]]:
 
 
 #: run where ROSS is
-SCRIPT = '''
+SCRIPT = """
 import sys
 sys.path.insert(0, sys.argv[1])
 import numpy as np
@@ -175,7 +187,7 @@ tell(rotor_file.rotor())
 steel = rs.Material("steel", rho=7850.0, E=2.07e11, Poisson=0.3)
 shaft = [rs.ShaftElement(0.01, 0.0, 0.06, material=steel) for _ in range(50)]
 tell(rs.Rotor(shaft, disk_elements=[gear_file.condensed(20)]))
-'''
+"""
 
 
 def _on_full_bearings():
@@ -213,7 +225,9 @@ def _carrying() -> np.ndarray:
 
 def _line(what: str, theirs: np.ndarray, ours: np.ndarray) -> str:
     worst = np.abs(theirs / ours - 1)
-    return f"{what}: {len(ours)} frequencies, {worst.max():.1e} apart ({worst[:5].max():.1e} in five)"
+    return (
+        f"{what}: {len(ours)} frequencies, {worst.max():.1e} apart ({worst[:5].max():.1e} in five)"
+    )
 
 
 def main() -> None:

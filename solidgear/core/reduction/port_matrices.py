@@ -6,6 +6,7 @@ point (Craig and Bampton 1968).  SI units; all points have the axes of the body.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -69,7 +70,26 @@ class PortMatrices:
     positions: dict[str, np.ndarray]
     damping: np.ndarray | None = None
     gyroscopic: np.ndarray | None = None
-    notes: tuple[str, ...] = field(default=())
+    notes: tuple[str, ...] = ()
+    #: keys of a file beside ``matrices`` that they were read by: points and units
+    keys: Mapping[str, Any] = field(default_factory=dict)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, PortMatrices):
+            return NotImplemented
+        same = self.matrices.keys() == other.matrices.keys()
+        places = [(name, *place) for name, place in self.positions.items()]
+        return (
+            same
+            and places == [(name, *place) for name, place in other.positions.items()]
+            and all(np.array_equal(m, other.matrices[n]) for n, m in self.matrices.items())
+        )
+
+    __hash__ = object.__hash__
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the keys of a train file that read them: matrices, points and units."""
+        return {"matrices": os.path.abspath(self.source), **self.keys}
 
     @classmethod
     def read(cls, path: Any, points: Mapping[str, Any] | None = None, units: str = "") -> Any:

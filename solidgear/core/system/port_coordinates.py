@@ -80,9 +80,7 @@ def port_coordinates(
     # static shapes strain no mode that holds the ports
     p = len(moved)
     stiffness[:p, p:] = stiffness[p:, :p] = 0.0
-    return PortMatrices(
-        source, mass, stiffness, places, damping, gyroscopic, tuple(notes)
-    )
+    return PortMatrices(source, mass, stiffness, places, damping, gyroscopic, tuple(notes))
 
 
 def _shapes(moved: np.ndarray, strain: np.ndarray, names: list[str], modes: int | None):

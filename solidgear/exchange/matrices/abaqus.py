@@ -75,7 +75,8 @@ def read(path: Path, source: str) -> NodeMatrices:
 def _read_into(out: NodeMatrices, path: Path, alone: str) -> None:
     """Read one file; lines of a matrix without a keyword are of the matrix ``alone``."""
     comments: list[str] = []
-    keyword, options, name = "", {}, alone
+    keyword, name = "", alone
+    options: dict[str, str] = {}
     element = _Element()
     lines = path.read_text("utf-8", errors="replace").splitlines()
     if lines and lines[0].startswith("%%MatrixMarket"):

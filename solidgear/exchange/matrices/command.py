@@ -8,12 +8,12 @@ from typing import Annotated
 import numpy as np
 import typer
 
-from solidgear.core import LADDER, DOF_NAMES, SolidgearError, is_train
+from solidgear.core import DOF_NAMES, LADDER, SolidgearError, is_train
 from solidgear.core.reduction.matrix_units import MATRIX_UNITS, SI, matrix_units
 from solidgear.core.reduction.port_matrices import PortMatrices, not_free
 from solidgear.exchange.matrices.formats import FORMATS, format_of, write_matrices
 from solidgear.exchange.matrices.ross import write_ross
-from solidgear.exchange.matrices.source import CRAIG_BAMPTON, METHODS, MODEL, port_matrices
+from solidgear.exchange.matrices.source import CRAIG_BAMPTON, MODEL, port_matrices
 from solidgear.show.command import Progress, command
 from solidgear.show.options import BY_MODEL, Run, Settings, options, speed_of
 from solidgear.show.sheet import Sheet, present
@@ -116,15 +116,8 @@ def _written(files: list[Path]) -> Sheet:
 
 def _sheet(matrices: PortMatrices, files: list[Path], units: str) -> Sheet:
     """Return what was written: coordinates, mass and frequencies."""
-    points = list(matrices.positions.items())
-    table = Table(
-        "",
-        [
-            text("point", lambda point: point[0]),
-            *(Column(f"{a} (mm)", lambda p, k=k: 1e3 * p[1][k]) for k, a in enumerate("xyz")),
-        ],
-        points,
-    )
+    points = [(name, *(1e3 * place)) for name, place in matrices.positions.items()]
+    table = Table("", [text("point"), *(Column(f"{axis} (mm)") for axis in "xyz")], points)
     free = not_free(matrices) is None
     facts = [f"{matrices.size} coordinates: {' '.join(DOF_NAMES)} of each point"]
     if matrices.modes:
@@ -137,7 +130,7 @@ def _sheet(matrices: PortMatrices, files: list[Path], units: str) -> Sheet:
         "source": matrices.source,
         "notes": [*matrices.notes],
         "coordinates": matrices.coordinates,
-        "positions": {name: place.tolist() for name, place in points},
+        "positions": {name: place.tolist() for name, place in matrices.positions.items()},
         "units": units,
         "mass": mass,
         "free": free,

@@ -100,7 +100,7 @@ def _label(row: int, points: int) -> str:
 def read(path: Path, source: str) -> NodeMatrices:
     """Read DMIG and GRID of a deck, in small or large fields or with commas."""
     text = path.read_text(encoding="utf-8", errors="replace")
-    out = NodeMatrices(source, head=stated(l for l in text.splitlines() if l.startswith("$")))
+    out = NodeMatrices(source, head=stated(s for s in text.splitlines() if s[:1] == "$"))
     symmetric: dict[str, bool] = {}
     names: dict[str, str] = {}
     for card in _cards(text):

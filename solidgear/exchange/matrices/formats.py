@@ -93,7 +93,9 @@ def read_matrices(
     """Read matrices of any format; see :meth:`PortMatrices.read`."""
     source = os.fspath(path)
     file = Path(path)
-    chosen = next((f for f in FORMATS.values() if f.read and file.suffix.lower() in f.endings), None)
+    chosen = next(
+        (f for f in FORMATS.values() if f.read and file.suffix.lower() in f.endings), None
+    )
     if chosen is None or chosen.read is None:
         raise SceneError(
             f"matrices are read from files that end in {listed(READABLE)}", where=source

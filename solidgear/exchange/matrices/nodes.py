@@ -110,7 +110,7 @@ class NodeMatrices:
             return named or {str(k): (k, k) for k in alone}
         out: dict[str, tuple[int, int]] = {}
         for name, entry in points.items():
-            node = entry.get("node") if isinstance(entry, Mapping) else entry
+            node: Any = entry.get("node") if isinstance(entry, Mapping) else entry
             pair = node if isinstance(node, (list, tuple)) else [node, node]
             for number in pair:
                 if len(pair) != 2 or not isinstance(number, int) or number not in nodes:

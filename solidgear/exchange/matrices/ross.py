@@ -17,10 +17,10 @@ import numpy as np
 from solidgear.core import Scene, SolidgearError, as_supports, build
 from solidgear.core.body import Supports
 from solidgear.core.reduction.matrix_units import SI
-from solidgear.exchange.matrices.formats import write_whole
-from solidgear.exchange.matrices.header import header
 from solidgear.core.reduction.port_matrices import PortMatrices
 from solidgear.core.system.links import grounded
+from solidgear.exchange.matrices.formats import write_whole
+from solidgear.exchange.matrices.header import header
 from solidgear.exchange.matrices.source import SHAFT, port_matrices, read_shaft
 
 #: places of x y z thx thy thz of ROSS among those of here
@@ -73,7 +73,12 @@ def write_ross(source: Any, path: str | os.PathLike, units: str, **wanted: Any) 
         lines.append("the housing that couples the bearings is in the condensed point alone")
     lines += ['"""', "", HEAD, "", *_rotor(scene, supports), "", ""]
     lines += [*_condensed(condensed, ports[0])]
-    lines += ["", "", 'if __name__ == "__main__":', "    modal = rotor().run_modal(0.0, sparse=False)"]
+    lines += [
+        "",
+        "",
+        'if __name__ == "__main__":',
+        "    modal = rotor().run_modal(0.0, sparse=False)",
+    ]
     lines.append("    print(np.unique((modal.wn / (2 * np.pi)).round(2))[:12], 'Hz')")
     return write_whole({Path(path): ("\n".join(lines) + "\n").encode()})
 
@@ -93,11 +98,19 @@ def _rotor(scene: Scene, supports: Supports) -> Iterator[str]:
         number = materials.setdefault(steel, len(materials))
         values = ", ".join(map(repr, [right - left, *diameters]))
         rows.append(f"        rs.ShaftElement({values}, material=materials[{number}]),")
-    yield from ["def rotor():", '    """Return the rotor of all its elements."""', "    materials = ["]
+    yield from [
+        "def rotor():",
+        '    """Return the rotor of all its elements."""',
+        "    materials = [",
+    ]
     for young, poisson, density in materials:
         name = f"material{materials[young, poisson, density]}"
         yield f"        rs.Material({name!r}, rho={density!r}, E={young!r}, Poisson={poisson!r}),"
-    yield from ["    ]", "    # length, then inner and outer diameter, left and right", "    shaft = ["]
+    yield from [
+        "    ]",
+        "    # length, then inner and outer diameter, left and right",
+        "    shaft = [",
+    ]
     yield from [*rows, "    ]", "    points = ["]
     places = {station.name: station.y for station in scene.stations}
     for k, name in enumerate(supports.ports):

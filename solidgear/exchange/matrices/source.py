@@ -104,7 +104,7 @@ def port_matrices(
 
     Parameters
     ----------
-    source : path, dict, Scene, Train, Body, Superelement or System
+    source : path, Scene, Train, Body, Superelement or System
     model : str or mapping, optional
         Model of the shaft, timoshenko by default; of a train by shaft.
     modes : int
@@ -152,7 +152,7 @@ def port_matrices(
         return _of_system(System({"body": source}), _all_ports("body", source), wanted, None)
     if isinstance(source, System):
         return _of_system(source, {}, wanted, modes)
-    if isinstance(source, (str, os.PathLike, Mapping)):
+    if isinstance(source, (str, os.PathLike)):
         loaded = load_train(source) if is_train(source) else load(source)
         with explained(source):
             return _of_object(loaded, wanted, options)
@@ -166,7 +166,7 @@ def export(
 
     Parameters
     ----------
-    source : path, dict, Scene, Train, Body, Superelement, System or PortMatrices
+    source : path, Scene, Train, Body, Superelement, System or PortMatrices
     path : str or path
     to : str, optional
         ``npz``, ``mat``, ``matrix-market``, ``nastran``, ``abaqus``, ``calculix``, ``ross`` or
@@ -208,7 +208,7 @@ def export(
 
 def read_shaft(source: Any) -> Scene | None:
     """Return the scene of one shaft; None for anything else."""
-    if isinstance(source, (str, os.PathLike, Mapping)):
+    if isinstance(source, (str, os.PathLike)):
         return None if is_train(source) else load(source)
     return source if isinstance(source, Scene) else None
 
@@ -220,7 +220,9 @@ def _of_object(source: Any, wanted: Wanted, options: dict) -> PortMatrices:
     if isinstance(source, Scene):
         model = wanted.model or MODEL
         if not isinstance(model, str):
-            raise SolidgearError("a shaft has one model, such as timoshenko; several are for trains")
+            raise SolidgearError(
+                "a shaft has one model, such as timoshenko; several are for trains"
+            )
         free = source.with_changes(bearings=(), housing=None, housing_axial=None)
         supports = as_supports(source if wanted.bearings else free)
         return _of_shaft(build(source, model, **options), supports, wanted, source.name)
@@ -250,13 +252,14 @@ def _of_shaft(body: Body, supports: Supports, wanted: Wanted, name: str) -> Port
     if supports.inertia is not None:
         notes.append("rigid masses on it are included")
     losses = {SHAFT: wanted.loss} if wanted.loss else None
-    swirl = None
+    swirl: np.ndarray | None = None
     if wanted.speed is not None:
         if not any(block.swirl is not None for block in body.blocks):
             raise SolidgearError(
                 f"the {body.fidelity} model gives no gyroscopic matrix; use timoshenko or harmonic"
             )
         coupling = couplings(body, supports, _unit_shapes(part))
+        assert coupling is not None
         # d/dt of the kinetic energy counts the coupling twice
         swirl = 2 * wanted.speed * coupling
         notes.append(f"gyroscopic at {wanted.speed:.6g} rad/s about y")
@@ -286,7 +289,9 @@ def _of_train(train: Train, wanted: Wanted, options: dict) -> PortMatrices:
         if isinstance(models, str)
         else {side: models.get(side, MODEL) for side in train.shafts}
     )
-    settings = {model: LADDER[model].checked(options) for model in {*by_shaft.values()} if options}
+    settings: dict[str | tuple[str, str], dict[str, Any]] = {
+        model: LADDER[model].checked(options) for model in {*by_shaft.values()} if options
+    }
     assembly = Assembly(train, reduction, kept, settings)
     system = assembly.system(*by_shaft.values(), bearings=wanted.bearings is not False)
     ends = {

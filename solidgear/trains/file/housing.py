@@ -12,8 +12,8 @@ import numpy as np
 from pydantic import BeforeValidator, Field, InstanceOf, model_validator
 
 from solidgear.core import Model, SceneError, listed, nearest
-from solidgear.core.scene.bearing_stiffness import Matrix
 from solidgear.core.reduction.port_matrices import CENTRE, PortMatrices
+from solidgear.core.scene.bearing_stiffness import Matrix
 from solidgear.core.scene.stations import Status
 from solidgear.core.scene.units import TYPED, Loss, Mass, quantity
 from solidgear.trains.file.mesh_cycle import Vector

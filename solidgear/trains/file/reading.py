@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -16,8 +17,8 @@ from pydantic import model_validator
 
 from solidgear.core import Model, Scene, SceneError, listed, near, parse
 from solidgear.core.reduction.matrix_units import MATRIX_UNITS
-from solidgear.core.scene.file import load
 from solidgear.core.reduction.port_matrices import PortMatrices
+from solidgear.core.scene.file import load
 from solidgear.core.scene.toml_file import name_of, with_table_paths
 from solidgear.core.scene.typed import Problems
 from solidgear.trains.file.columns import CELL_COLUMNS, read_cells, read_flank
@@ -320,5 +321,6 @@ def _matrices_read(table: Mapping[str, Any], folder: Path, path: tuple) -> dict[
         raise SceneError(reason, path=(*path, "points"))
     if not isinstance(units, str) or (units and units not in MATRIX_UNITS):
         raise SceneError(f"use one of {listed(MATRIX_UNITS)}", path=(*path, "units"))
-    fields["matrices"] = PortMatrices.read(folder / name, points, units)
+    keys = {key: table[key] for key in ("points", "units") if key in table}
+    fields["matrices"] = replace(PortMatrices.read(folder / name, points, units), keys=keys)
     return fields
