@@ -81,7 +81,7 @@ _WHERE = {
     "mesh_spring": "solidgear.core.system",
     "torsion_spring": "solidgear.core.system",
     "PortMatrices": "solidgear.core.reduction.port_matrices",
-    "export": "solidgear.exchange.matrices.source",
+    "export": "solidgear.exchange.matrices.export",
     "port_matrices": "solidgear.exchange.matrices.source",
     "read_matrices": "solidgear.exchange.matrices.formats",
     "condense": "solidgear.core.solve.statics",
@@ -209,8 +209,9 @@ if TYPE_CHECKING:
         mesh_spring,
         torsion_spring,
     )
+    from solidgear.exchange.matrices.export import export
     from solidgear.exchange.matrices.formats import read_matrices
-    from solidgear.exchange.matrices.source import export, port_matrices
+    from solidgear.exchange.matrices.source import port_matrices
     from solidgear.show.viewer import turn
     from solidgear.strength.stress.shaft import shaft_stress
     from solidgear.teeth.study import TeethStudy, teeth_study

@@ -7,7 +7,7 @@ point (Craig and Bampton 1968).  SI units; all points have the axes of the body.
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -91,33 +91,8 @@ class PortMatrices:
         """Return the keys of a train file that read them: matrices, points and units."""
         return {"matrices": os.path.abspath(self.source), **self.keys}
 
-    @classmethod
-    def read(cls, path: Any, points: Mapping[str, Any] | None = None, units: str = "") -> Any:
-        """Read matrices from a file that another program or :meth:`write` wrote.
-
-        Parameters
-        ----------
-        path : str or path
-            ``.npz``, ``.mat``, ``.json`` of Matrix Market files, ``.bdf`` with DMIG, ``.inp``,
-            ``.mtx`` or ``.sti`` of Abaqus or CalculiX, ``.txt``.
-        points : mapping of str to int or dict, optional
-            Names of points by the node, or by a table of ``node`` and ``position``.
-        units : str, optional
-            ``m-kg-N``, ``mm-t-N`` or ``in-lbf-s``; by default those that the file states, or SI.
-
-        Returns
-        -------
-        PortMatrices
-
-        Raises
-        ------
-        SceneError
-            The file, and what is wrong with it.
-        """
-        return addition("matrices", "read")(path, points, units)
-
     def write(self, path: Any, to: str = "", units: str = SI.name) -> list[Path]:
-        """Write the matrices for another program.
+        """Write the matrices for another program, as :func:`solidgear.export`.
 
         Parameters
         ----------
@@ -195,9 +170,9 @@ class PortMatrices:
 
     def rigid(self, about: np.ndarray | None = None) -> np.ndarray:
         """Return the (n, 6) coordinates of rigid motions about a point, the origin by default."""
-        about = np.zeros(3) if about is None else about
-        moved = [shift(place - about) for place in self.positions.values()]
-        return np.pad(np.vstack(moved), ((0, self.size - 6 * len(moved)), (0, 0)))
+        origin = np.zeros(3) if about is None else about
+        moved = rigid_motions(place - origin for place in self.positions.values())
+        return np.pad(moved, ((0, self.modes), (0, 0)))
 
     @cached_property
     def centre(self) -> np.ndarray:
@@ -309,6 +284,11 @@ class PortMatrices:
                 f"the mass of {mass:.3g} kg in tonnes, or the stiffness in other units?"
             )
         return tuple(out)
+
+
+def rigid_motions(places: Iterable[np.ndarray]) -> np.ndarray:
+    """Return the (6 p, 6) motions of places (3,) by unit rigid motions about the origin."""
+    return np.vstack([shift(place) for place in places])
 
 
 def _usual(span: float, mass: float) -> bool:

@@ -90,7 +90,40 @@ def write_whole(files: Mapping[Path, bytes]) -> list[Path]:
 def read_matrices(
     path: str | os.PathLike, points: Mapping[str, Any] | None = None, units: str = ""
 ) -> PortMatrices:
-    """Read matrices of any format; see :meth:`PortMatrices.read`."""
+    """Read mass and stiffness of a body from a file of another program or of :func:`export`.
+
+    Parameters
+    ----------
+    path : str or path
+        ``.npz``, ``.mat``, ``.json`` with Matrix Market files, ``.bdf`` and others with DMIG,
+        ``.inp``, ``.mtx``, ``.sti`` of Abaqus or CalculiX, ``.txt``.
+    points : mapping of str to int or dict, optional
+        Nodes by the names of points, or for each a table of ``node`` and ``position``; of CalculiX
+        ``node = [REF NODE, ROT NODE]``. By default as the file has them.
+    units : str, optional
+        ``m-kg-N``, ``mm-t-N`` or ``in-lbf-s``; by default those that the file states, or SI.
+
+    Returns
+    -------
+    PortMatrices
+        In SI. Unknowns beside points that are no modes are condensed.
+
+    Raises
+    ------
+    SceneError
+        The file, and what is wrong with it.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> import solidgear as sg
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     files = sg.export("geometry/gear_shaft.toml", Path(folder) / "gear.npz", modes=4)
+    ...     gear = sg.read_matrices(files[0])
+    >>> gear.modes, gear.rigid_share < 1e-6
+    (3, True)
+    """
     source = os.fspath(path)
     file = Path(path)
     chosen = next(

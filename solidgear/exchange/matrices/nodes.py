@@ -18,9 +18,13 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as ssl
 
 from solidgear.core import SceneError, listed, nearest, show
-from solidgear.core.frames import shift
 from solidgear.core.reduction.matrix_units import MatrixUnits, matrix_units
-from solidgear.core.reduction.port_matrices import MOST, PortMatrices, checked_matrices
+from solidgear.core.reduction.port_matrices import (
+    MOST,
+    PortMatrices,
+    checked_matrices,
+    rigid_motions,
+)
 from solidgear.core.scene.units import quantity
 from solidgear.exchange.matrices.header import Stated
 
@@ -30,8 +34,8 @@ Label = tuple[int, int]
 KEPT = 40
 #: unknowns up to which all modes are computed
 DENSE = 600
-#: mass of a field that is not in the modes, over the largest
-NEW = 1e-8
+#: part of a field that is not in the modes and no rounding
+NEW = 1e-6
 #: strain energy of rigid motions, over that of the entries, that rounding leaves
 STRAINED = 1e-6
 
@@ -155,7 +159,7 @@ class NodeMatrices:
         if not places or stiffness is None or "mass" not in tables:
             return {name: table.toarray() for name, table in tables.items()}, ()
         n = stiffness.shape[0]
-        rigid = np.vstack([shift(place) for place in places.values()])
+        rigid = rigid_motions(places.values())
         strained = stiffness[:, :p] @ rigid
         size = abs(stiffness[:, :p]) @ abs(rigid)
         others = np.abs(strained[p:]).max(initial=0.0)
@@ -194,12 +198,12 @@ class NodeMatrices:
 
 def _with_fields(stiffness, mass, modes: np.ndarray, fields: np.ndarray) -> np.ndarray:
     """Return the Ritz vectors of modes of unit mass and of further fields, of unit mass too."""
-    for _ in range(2):
-        fields = fields - modes @ (modes.T @ (mass @ fields))
     size = np.sqrt(np.abs(np.einsum("ij,ij->j", fields, mass @ fields)))
     fields = fields / np.where(size > 0, size, 1.0)
+    for _ in range(2):
+        fields = fields - modes @ (modes.T @ (mass @ fields))
     share, mix = np.linalg.eigh(fields.T @ (mass @ fields))
-    kept = share > NEW * max(share.max(initial=0.0), 1.0)
+    kept = share > NEW**2
     both = np.hstack([modes, fields @ (mix[:, kept] / np.sqrt(share[kept]))])
     gram, energy = both.T @ (mass @ both), both.T @ (stiffness @ both)
     return both @ sla.eigh((energy + energy.T) / 2, (gram + gram.T) / 2)[1]

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -28,13 +27,11 @@ from solidgear.core import (
 )
 from solidgear.core.body import Supports
 from solidgear.core.reduction.craig_bampton import craig_bampton
-from solidgear.core.reduction.matrix_units import SI
 from solidgear.core.reduction.port_matrices import PortMatrices
 from solidgear.core.reduction.superelement import Superelement
 from solidgear.core.solve.spin import couplings
 from solidgear.core.system.links import grounded
 from solidgear.core.system.port_coordinates import port_coordinates
-from solidgear.exchange.matrices.formats import format_of, write_matrices
 from solidgear.trains.assembly.assembly import KEPT, Assembly
 from solidgear.trains.file.train import Train
 from solidgear.trains.loading import load_train
@@ -157,53 +154,6 @@ def port_matrices(
         with explained(source):
             return _of_object(loaded, wanted, options)
     return _of_object(source, wanted, options)
-
-
-def export(
-    source: Any, path: str | os.PathLike, to: str = "", *, units: str = SI.name, **wanted: Any
-) -> list[Path]:
-    """Write the matrices of a body for another program.
-
-    Parameters
-    ----------
-    source : path, Scene, Train, Body, Superelement, System or PortMatrices
-    path : str or path
-    to : str, optional
-        ``npz``, ``mat``, ``matrix-market``, ``nastran``, ``abaqus``, ``calculix``, ``ross`` or
-        ``text``; by default that of the ending.
-    units : str
-        ``m-kg-N``, ``mm-t-N`` or ``in-lbf-s``.
-    **wanted
-        As of :func:`port_matrices`.
-
-    Returns
-    -------
-    list of Path
-        Files, whole ones or none.
-
-    Raises
-    ------
-    SolidgearError
-        As of :func:`port_matrices`, for an unknown format, or a file that cannot be written.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> from pathlib import Path
-    >>> import solidgear as sg
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     files = sg.export("geometry/gear_shaft.toml", Path(folder) / "gear.bdf", modes=6)
-    ...     again = sg.read_matrices(files[0])
-    >>> again.size, [*again.positions]
-    (24, ['gear', '3', '4'])
-    """
-    if to == "ross":
-        # start-up: for this format alone
-        from solidgear.exchange.matrices.ross import write_ross
-
-        return write_ross(source, path, units, **wanted)
-    format_of(path, to)
-    return write_matrices(port_matrices(source, **wanted), path, to, units)
 
 
 def read_shaft(source: Any) -> Scene | None:

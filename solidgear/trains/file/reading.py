@@ -17,7 +17,7 @@ from pydantic import model_validator
 
 from solidgear.core import Model, Scene, SceneError, listed, near, parse
 from solidgear.core.reduction.matrix_units import MATRIX_UNITS
-from solidgear.core.reduction.port_matrices import PortMatrices
+from solidgear.core.registry import addition
 from solidgear.core.scene.file import load
 from solidgear.core.scene.toml_file import name_of, with_table_paths
 from solidgear.core.scene.typed import Problems
@@ -313,6 +313,10 @@ def _matrices_read(table: Mapping[str, Any], folder: Path, path: tuple) -> dict[
     """Return a table with the file of matrices that it names read, points and units by its keys."""
     fields = {key: value for key, value in table.items() if key not in ("points", "units")}
     name, points, units = table["matrices"], table.get("points"), table.get("units", "")
+    read = addition("matrices", "read")
+    if read is None:
+        reason = "is read by a part of solidgear that is not installed"
+        raise SceneError(reason, path=(*path, "matrices"))
     if not isinstance(name, str):
         reason = 'names a file of mass and stiffness, such as "box.npz" or "box.bdf"'
         raise SceneError(reason, path=(*path, "matrices"))
@@ -322,5 +326,5 @@ def _matrices_read(table: Mapping[str, Any], folder: Path, path: tuple) -> dict[
     if not isinstance(units, str) or (units and units not in MATRIX_UNITS):
         raise SceneError(f"use one of {listed(MATRIX_UNITS)}", path=(*path, "units"))
     keys = {key: table[key] for key in ("points", "units") if key in table}
-    fields["matrices"] = replace(PortMatrices.read(folder / name, points, units), keys=keys)
+    fields["matrices"] = replace(read(folder / name, points, units), keys=keys)
     return fields
