@@ -18,9 +18,8 @@ class MatrixUnits:
 
     Examples
     --------
-    >>> import numpy as np
-    >>> MATRIX_UNITS["mm-t-N"].matrix(1, 0) @ np.ones(6)  # an N/mm is a thousand N/m
-    array([1.e+03, 1.e+03, 1.e+03, 1.e+00, 1.e+00, 1.e+00])
+    >>> MATRIX_UNITS["mm-t-N"].matrix(1, 0).diagonal()  # an N/mm is a thousand N/m
+    array([1.e+03, 1.e+03, 1.e+03, 1.e-03, 1.e-03, 1.e-03])
     """
 
     name: str

@@ -119,7 +119,7 @@ def read_matrices(
     >>> from pathlib import Path
     >>> import solidgear as sg
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     files = sg.export("geometry/gear_shaft.toml", Path(folder) / "gear.npz", modes=4)
+    ...     files = sg.export("geometry/gear_shaft.toml", Path(folder) / "gear.npz", modes=3)
     ...     gear = sg.read_matrices(files[0])
     >>> gear.modes, gear.rigid_share < 1e-6
     (3, True)

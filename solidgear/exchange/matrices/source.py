@@ -105,7 +105,8 @@ def port_matrices(
     model : str or mapping, optional
         Model of the shaft, timoshenko by default; of a train by shaft.
     modes : int
-        Modes beside the ports; with none, the stiffness is exact and the mass that of static shapes.
+        Modes beside the ports, no half of a pair; with none, the stiffness is exact and the mass
+        that of static shapes.
     method : str
         ``craig-bampton``: modes with all ports held. ``free-interface``: modes of the free body (of
         a train: of every shaft) with residual fields, by :func:`solidgear.rubin`.
