@@ -243,6 +243,14 @@ class PortMatrices:
             )
         return omega, strain
 
+    @property
+    def sentence(self) -> str:
+        """How free the body is, and its first elastic mode."""
+        return (
+            f"free to {max(self.rigid_share, 1e-16):.0e} of its first mode at "
+            f"{self.elastic[0][0] / (2 * np.pi):.1f} Hz"
+        )
+
     def _hint(self) -> str:
         """Return the units of positions with which the body would be free."""
         if np.linalg.norm(self._span) == 0:

@@ -43,7 +43,9 @@ def export(
             "SHAFT=MODEL, repeatable.",
         ),
     ] = None,
-    modes: Annotated[int, typer.Option(help="Modes beside the six motions of a port, no half pair.")] = 0,
+    modes: Annotated[
+        int, typer.Option(help="Modes beside the six motions of a port, no half pair.")
+    ] = 0,
     method: Annotated[
         str,
         typer.Option(

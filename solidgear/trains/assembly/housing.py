@@ -149,8 +149,7 @@ def housing_facts(train: Train) -> Iterator[str]:
     frequencies = ", ".join(f"{hz:.1f}" for hz in housing_hz(housing))
     kind = "a rigid housing"
     if (matrices := housing.matrices) is not None:
-        first = matrices.elastic[0][0] / (2 * np.pi)
-        kind = f"an elastic housing (free, its first mode is at {first:.1f} Hz)"
+        kind = f"an elastic housing ({matrices.sentence})"
     yield (
         f"{kind} of {housing.mass:.4g} kg carries the bearings of {', '.join(train.housed)} on "
         f"{len(housing.mounts)} mounts; alone on them it has modes at {frequencies} Hz"

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 import scipy.sparse as sp
 
 from solidgear.core import Body, Scene, SceneError, listed, nearest
 from solidgear.core.body import Block, Port
 from solidgear.core.reduction.port_matrices import PortMatrices
+from solidgear.trains.file.train import Train
 
 #: model of a shaft by the matrices that its table names
 MATRICES = "matrices"
@@ -46,9 +49,20 @@ def matrices_body(matrices: PortMatrices, scene: Scene) -> Body:
     return Body(MATRICES, (block,), ports, scale, scene.length)
 
 
+def matrices_facts(train: Train) -> Iterator[str]:
+    """Yield a sentence on each shaft with matrices."""
+    for side, shaft in train.shafts.items():
+        if (matrices := shaft.matrices) is not None:
+            yield (
+                f"the {side} has matrices of {matrices.rigid_mass[0, 0]:.4g} kg "
+                f"({matrices.sentence}), which the model {MATRICES} takes"
+            )
+
+
 def matrices_cautions(side: str, matrices: PortMatrices, scene: Scene) -> list[str]:
     """Return sentences on units of a shaft's matrices, and on points away from their stations."""
-    out = [f"matrices of the {side}: {doubt}" for doubt in matrices.doubts]
+    out = [f"matrices of the {side} count in the model {MATRICES} alone"]
+    out += [f"matrices of the {side}: {doubt}" for doubt in matrices.doubts]
     for station in scene.stations:
         place = matrices.positions.get(station.name)
         distance = 0.0 if place is None else np.linalg.norm(place - [0.0, station.y, 0.0])
