@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import scipy.linalg as sla
+from scipy.io import loadmat
 
 import solidgear as sg
 from solidgear.core.reduction.matrix_units import MATRIX_UNITS
@@ -66,8 +67,18 @@ def test_a_superelement_written_and_read_has_the_same_receptance(
     assert [*again.positions] == [*part.ports] and again.size == part.size
     # numbers of sixteen figures have 13 digits, and springs and masses cancel to some 1e-12
     assert apart(receptance(part), receptance(again)) < 1e-10
+    # a mode of unit mass is one in every system
+    assert matrices.in_units(MATRIX_UNITS[units])["mass"][-1, -1] == pytest.approx(1.0, rel=1e-12)
     for name, place in again.positions.items():
         assert place == pytest.approx(part.ports[name].point, abs=1e-12)
+
+
+def test_matlab_finds_the_same_arrays(matrices, tmp_path):
+    (file,) = matrices.write(tmp_path / "part.mat")
+    arrays = loadmat(file, squeeze_me=True)
+    assert np.array_equal(arrays["stiffness"], matrices.stiffness)
+    assert [*arrays["points"]] == [*matrices.positions] and arrays["units"] == "m-kg-N"
+    assert "coordinates: x y z thx thy thz of every point" in " ".join(arrays["about"])
 
 
 def test_free_interface_modes_are_kept_whole(body):
@@ -239,6 +250,23 @@ def test_what_is_no_free_body_is_refused_in_a_sentence(tmp_path, changes, said):
 
 
 @pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("2 2 2\n1 1 2.\n3 1 1.", "an entry lies outside 2 by 2"),
+        ("2 2 3\n1 1 2.", "3 entries of 2 by 2 were announced"),
+        ("2 2 1\n1 1 two", "could not convert"),
+    ],
+)
+def test_a_damaged_matrix_market_file_is_refused_in_a_sentence(tmp_path, text, said):
+    """SciPy's reader ends the program on a row out of range."""
+    (tmp_path / "x.json").write_text('{"files": {"mass": "m.mtx"}}')
+    head = "%%MatrixMarket matrix coordinate real symmetric\n"
+    (tmp_path / "m.mtx").write_text(head + text)
+    with pytest.raises(sg.SceneError, match=f"x.json: m.mtx is no Matrix Market file: .*{said}"):
+        sg.read_matrices(tmp_path / "x.json")
+
+
+@pytest.mark.parametrize(
     ("name", "text", "said"),
     [
         ("x.bdf", "GRID,1,,0.,0.,0.", "has no DMIG entries"),
@@ -254,7 +282,13 @@ def test_what_is_no_free_body_is_refused_in_a_sentence(tmp_path, changes, said):
         ("x.json", "{", "is no JSON"),
         ("x.json", '{"files": {"mass": "gone.mtx"}}', "the file gone.mtx of its mass is missing"),
         ("x.npz", "PK", "not a file of NumPy"),
-        ("x.mat", "PK", "not a file of MATLAB"),
+        ("x.mat", "PK", "files that end in .npz"),
+        ("x.npz", "PK\x03\x04" + 60 * "x", "not a file of NumPy"),
+        (
+            "x.json",
+            '{"files": {}, "mass": 1, "stiffness": 1, "points": ["a"], "positions": [[0], "b"]}',
+            "positions must be three numbers",
+        ),
         ("x.sti", "1 1 2.", "x.dof is missing"),
         ("x.txt", "1 2", "line 1: '1 2' is no row"),
         ("x.dxf", "", "files that end in .npz"),

@@ -34,7 +34,9 @@ def write_npz(matrices: PortMatrices, path: Path, units: MatrixUnits) -> dict[Pa
 
 
 def write_mat(matrices: PortMatrices, path: Path, units: MatrixUnits) -> dict[Path, bytes]:
-    """Return a ``.mat`` file of level 5, lists of words as cells."""
+    """Return a ``.mat`` file of level 5, lists of words as cells; none is read, for the reader of SciPy
+    1.17 ends the program on damaged ones.
+    """
     from scipy.io import savemat  # start-up: for this format alone
 
     arrays = arrays_of(matrices, units)
@@ -53,18 +55,6 @@ def read_npz(path: Path, source: str) -> Mapping[str, Any]:
         return {name: store[name] for name in store}
 
 
-def read_mat(path: Path, source: str) -> Mapping[str, Any]:
-    """Return the arrays of a ``.mat`` file."""
-    from scipy.io import loadmat, matlab  # start-up: for this format alone
-
-    try:
-        store = loadmat(path, squeeze_me=True)
-    except matlab.MatReadError as error:
-        raise ValueError(str(error)) from None
-    positions = np.atleast_2d(store["positions"]) if "positions" in store else None
-    return store if positions is None else {**store, "positions": positions}
-
-
 def from_arrays(arrays: Mapping[str, Any], source: str, units: str) -> PortMatrices:
     """Return the matrices of named arrays."""
     missing = [name for name in ARRAYS if name not in arrays]
@@ -73,7 +63,10 @@ def from_arrays(arrays: Mapping[str, Any], source: str, units: str) -> PortMatri
         raise SceneError(reason, where=source)
     names = [str(name) for name in np.ravel(arrays["points"])]
     named_once(names, source)
-    positions = np.asarray(arrays["positions"])
+    try:
+        positions = np.array(arrays["positions"], float)
+    except (ValueError, TypeError):
+        raise SceneError("positions must be three numbers a point", where=source) from None
     if positions.shape != (len(names), 3):
         raise SceneError(
             f"{len(names)} points and positions {positions.shape} do not fit; of p points, these "

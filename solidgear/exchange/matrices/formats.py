@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import os
+import zlib
 from collections.abc import Callable, Mapping
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, NamedTuple
+from zipfile import BadZipFile
 
 from solidgear.core import SceneError, SolidgearError, listed, nearest, show, whole_or_refused
 from solidgear.core.reduction.matrix_units import SI, MatrixUnits, matrix_units
@@ -21,6 +23,11 @@ from solidgear.exchange.matrices import (
 )
 from solidgear.exchange.matrices.nodes import NodeMatrices
 
+#: what readers raise on a file that is damaged
+BROKEN = (
+    *(OSError, EOFError, ValueError, TypeError, LookupError, AttributeError, ArithmeticError),
+    *(NotImplementedError, BadZipFile, zlib.error),
+)
 Writer = Callable[[PortMatrices, Path, MatrixUnits], dict[Path, bytes]]
 #: returns arrays by name, or matrices by nodes
 Reader = Callable[[Path, str], "Mapping[str, Any] | NodeMatrices"]
@@ -37,7 +44,7 @@ class Format(NamedTuple):
 
 FORMATS = {
     "npz": Format("NumPy", (".npz",), arrays.write_npz, arrays.read_npz),
-    "mat": Format("MATLAB", (".mat",), arrays.write_mat, arrays.read_mat),
+    "mat": Format("MATLAB", (".mat",), arrays.write_mat),
     "matrix-market": Format(
         "Matrix Market with a sidecar", (".json",), matrix_market.write, matrix_market.read
     ),
@@ -95,7 +102,7 @@ def read_matrices(
     Parameters
     ----------
     path : str or path
-        ``.npz``, ``.mat``, ``.json`` with Matrix Market files, ``.bdf`` and others with DMIG,
+        ``.npz``, ``.json`` with Matrix Market files, ``.bdf`` and others with DMIG,
         ``.inp``, ``.mtx``, ``.sti`` of Abaqus or CalculiX, ``.txt``.
     points : mapping of str to int or dict, optional
         Nodes by the names of points, or for each a table of ``node`` and ``position``; of CalculiX
@@ -135,7 +142,7 @@ def read_matrices(
         )
     try:
         content = chosen.read(file, source)
-    except (OSError, ValueError, TypeError, KeyError, AttributeError, NotImplementedError) as error:
+    except BROKEN as error:
         if isinstance(error, SceneError):
             raise
         cause = getattr(error, "strerror", None) or f"not a file of {chosen.about}"

@@ -12,7 +12,7 @@ import numpy as np
 
 from solidgear.core import SceneError
 from solidgear.core.reduction.matrix_units import MatrixUnits
-from solidgear.core.reduction.port_matrices import PortMatrices
+from solidgear.core.reduction.port_matrices import MOST, PortMatrices
 from solidgear.exchange.matrices.arrays import arrays_of
 from solidgear.exchange.matrices.header import header
 
@@ -42,9 +42,6 @@ def write(matrices: PortMatrices, path: Path, units: MatrixUnits) -> dict[Path, 
 
 def read(path: Path, source: str) -> Mapping[str, Any]:
     """Return the arrays of a sidecar and of the files that it names."""
-    from scipy.io import mmread  # start-up: for this format alone
-    from scipy.sparse import issparse
-
     try:
         facts = json.loads(path.read_text("utf-8"))
     except json.JSONDecodeError as error:
@@ -57,8 +54,32 @@ def read(path: Path, source: str) -> Mapping[str, Any]:
         if not (path.parent / str(file)).is_file():
             raise SceneError(f"the file {file} of its {name} is missing", where=source)
         try:
-            matrix = mmread(path.parent / str(file))
+            arrays[name] = _matrix(path.parent / str(file))
         except ValueError as error:
             raise SceneError(f"{file} is no Matrix Market file: {error}", where=source) from None
-        arrays[name] = matrix.toarray() if issparse(matrix) else np.asarray(matrix)
     return arrays
+
+
+def _matrix(path: Path) -> np.ndarray:
+    """Read a real matrix of coordinates; the reader of SciPy 1.17 ends the program where a row is out
+    of range.
+    """
+    with path.open(encoding="utf-8", errors="replace") as file:
+        words = file.readline().lower().split()
+        if words[:3] != ["%%matrixmarket", "matrix", "coordinate"] or len(words) != 5:
+            raise ValueError("its first line is not %%MatrixMarket matrix coordinate real ...")
+        size = next((line for line in file if line.strip() and line[0] != "%"), "").split()
+        rows, columns, count = (int(word) for word in size)
+        table = np.loadtxt(file, comments="%", ndmin=2)
+    if rows != columns or not 0 < rows <= MOST or table.shape != (count, 3):
+        raise ValueError(f"{count} entries of {rows} by {columns} were announced")
+    at = table[:, :2].astype(int) - 1
+    if (at < 0).any() or (at >= rows).any():
+        raise ValueError(f"an entry lies outside {rows} by {columns}")
+    out = np.zeros((rows, rows))
+    out[at[:, 0], at[:, 1]] = table[:, 2]
+    below = np.tril(out, -1).T
+    mirrored = {"symmetric": below, "skew-symmetric": -below, "general": 0.0}
+    if words[4] not in mirrored:
+        raise ValueError(f"a {words[4]} matrix is not read")
+    return out + mirrored[words[4]]
