@@ -124,10 +124,10 @@ def _sheet(matrices: PortMatrices, files: list[Path], units: str) -> Sheet:
     facts = [f"{matrices.size} coordinates: {' '.join(DOF_NAMES)} of each point"]
     if matrices.modes:
         facts[0] += f", then {matrices.modes} modes"
-    mass = float(matrices.rigid_mass[0, 0])
-    facts.append(f"mass {mass:.6g} kg")
+    mass = float(matrices.rigid_mass[0, 0]) if free else None
     if free:
-        facts.append(f"first free mode {matrices.elastic[0][0] / (2 * np.pi):.6g} Hz")
+        first = matrices.elastic[0][0] / (2 * np.pi)
+        facts.append(f"mass {mass:.6g} kg; first free mode {first:.6g} Hz")
     data = {
         "source": matrices.source,
         "notes": [*matrices.notes],

@@ -34,10 +34,11 @@ def real(value: float) -> str:
     """
     texts = []
     exponent = int(np.floor(np.log10(abs(value)))) if value else 0
-    for shift in {0, exponent, *range(-9, 10)}:
+    # without an exponent there are 14 digits, with one of a single figure 12
+    for shift in (0,) if -2 < exponent < 13 else (exponent, 9, -9):
         tail = f"{shift:+d}" if shift else ""
         mantissa = value / 10.0**shift
-        if not 1e-3 < abs(mantissa) < 1e14:
+        if not 1e-4 < abs(mantissa) < 1e14:
             continue
         whole = len(f"{abs(mantissa):.0f}") + (value < 0) + 1
         text = f"{mantissa:.{max(WIDTH - len(tail) - whole, 0)}f}"

@@ -139,7 +139,10 @@ class NodeMatrices:
         for name, (node, _) in named.items():
             entry = (points or {}).get(name)
             if isinstance(entry, Mapping) and "position" in entry:
-                place = [quantity(value, "length") for value in entry["position"]]
+                position = entry["position"]
+                if not isinstance(position, (list, tuple)) or len(position) != 3:
+                    raise self.wrong(f"position of point {name!r} is no three lengths")
+                place = [quantity(value, "length") for value in position]
                 out[name] = np.array(place) / units.length
             elif node in self.places:
                 out[name] = self.places[node]

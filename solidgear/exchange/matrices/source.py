@@ -106,7 +106,7 @@ def port_matrices(
         Model of the shaft, timoshenko by default; of a train by shaft.
     modes : int
         Modes beside the ports, no half of a pair; with none, the stiffness is exact and the mass
-        that of static shapes.
+        that of static shapes. A superelement keeps all its coordinates unless modes are given.
     method : str
         ``craig-bampton``: modes with all ports held. ``free-interface``: modes of the free body (of
         a train: of every shaft) with residual fields, by :func:`solidgear.rubin`.
@@ -146,10 +146,15 @@ def port_matrices(
     wanted = Wanted(model, modes, method, tuple(ports), bearings, speed, loss)
     if isinstance(source, PortMatrices):
         return source
-    if isinstance(source, Superelement):
-        return _of_system(System({"body": source}), _all_ports("body", source), wanted, None)
-    if isinstance(source, System):
-        return _of_system(source, {}, wanted, modes)
+    if isinstance(source, (Superelement, System)):
+        if model or bearings is not None or speed is not None or loss or options:
+            raise SolidgearError(
+                f"a {type(source).__name__} takes modes and ports alone; it has a model already"
+            )
+        if isinstance(source, System):
+            return _of_system(source, {}, wanted, modes)
+        ports_of = _all_ports("body", source)
+        return _of_system(System({"body": source}), ports_of, wanted, modes or None)
     if isinstance(source, (str, os.PathLike)):
         loaded = load_train(source) if is_train(source) else load(source)
         with explained(source):
