@@ -14,7 +14,7 @@ from solidgear.core.reduction.matrix_units import MATRIX_UNITS
 from solidgear.exchange.matrices.dmig import number, real
 from solidgear.exchange.matrices.formats import FORMATS
 from solidgear.trains.assembly.assembly import Assembly
-from solidgear.trains.options import Pair
+from solidgear.trains.options import models_of
 from tests.command import command
 from validation.matrices_elsewhere import block_from_calculix, shaft_in_calculix
 from validation.race.installed import present
@@ -375,7 +375,12 @@ def test_a_shaft_of_a_train_by_matrices_of_nastran(tmp_path):
     got = assembly.system("euler", "matrices").modes(12).frequency_hz
     exact = assembly.system("euler", "euler").modes(12).frequency_hz
     assert got[1:] == pytest.approx(exact[1:], rel=1e-8)
-    assert Pair().by_shaft(assembly.train) == {"pinion": "harmonic", "gear": "matrices"}
+    models = models_of(assembly.train.shafts, "axle", {"pinion": "euler"})
+    assert models == {"pinion": "euler", "gear": "matrices"}
+    # the tables of the train name the file; those of its shaft give the same body
+    again = sg.load_train(assembly.train.to_dict()).shafts["gear"]
+    assert again.matrices == assembly.train.shafts["gear"].matrices
+    assert sg.port_matrices(again.scene.to_dict(), **wanted).size == again.matrices.size
     sg.export(GEAR, tmp_path / "gear.bdf", ports=["gear", "3"], modes=3)
     with pytest.raises(sg.SceneError, match="has no point '4'"):
         Assembly(sg.load_train(tmp_path / "axle.toml")).system("euler", "matrices")

@@ -8,7 +8,7 @@ from typing import Annotated
 import numpy as np
 import typer
 
-from solidgear.core import DOF_NAMES, LADDER, SolidgearError, is_train
+from solidgear.core import DOF_NAMES, LADDER, SolidgearError
 from solidgear.core.reduction.matrix_units import MATRIX_UNITS, SI, matrix_units
 from solidgear.core.reduction.port_matrices import PortMatrices, not_free
 from solidgear.exchange.matrices.formats import FORMATS, format_of, write_matrices
@@ -92,8 +92,6 @@ def export(
 
     def study(_: Progress) -> Sheet:
         if to == "ross":
-            if is_train(file):
-                raise SolidgearError(f"--to ross makes a rotor of one shaft, and {file} is a train")
             return _written(write_ross(file, out, system, **wanted))
         format_of(out, to or "")
         matrices = port_matrices(file, **wanted)

@@ -19,7 +19,7 @@ def export(
 
     Parameters
     ----------
-    source : path, Scene, Train, Body, Superelement, System or PortMatrices
+    source : path, dict, Scene, Train, Body, Superelement, System or PortMatrices
     path : str or path
     to : str, optional
         ``npz``, ``mat``, ``matrix-market``, ``nastran``, ``abaqus``, ``calculix``, ``ross`` or

@@ -58,8 +58,6 @@ def write_ross(source: Any, path: str | os.PathLike, units: str, **wanted: Any) 
     if wanted.get("modes"):
         raise SolidgearError("an element of ROSS at one node has no modes; leave modes out")
     scene = read_shaft(source)
-    if scene is None:
-        raise SolidgearError("a rotor of ROSS is made of one shaft; give a scene")
     ports = [*wanted.pop("ports", ())] or [scene.port.name]
     if len(ports) > 1:
         raise SolidgearError(f"an element of ROSS is at one node, not at {', '.join(ports)}")

@@ -12,6 +12,7 @@ import numpy as np
 from solidgear.core import (
     LADDER,
     Body,
+    Document,
     Scene,
     SolidgearError,
     System,
@@ -101,7 +102,7 @@ def port_matrices(
 
     Parameters
     ----------
-    source : path, Scene, Train, Body, Superelement or System
+    source : path, dict, Scene, Train, Body, Superelement or System
     model : str or mapping, optional
         Model of the shaft, timoshenko by default; of a train by shaft.
     modes : int
@@ -155,39 +156,45 @@ def port_matrices(
             return _of_system(source, {}, wanted, modes)
         ports_of = _all_ports("body", source)
         return _of_system(System({"body": source}), ports_of, wanted, modes or None)
-    if isinstance(source, (str, os.PathLike)):
-        loaded = load_train(source) if is_train(source) else load(source)
-        with explained(source):
-            return _of_object(loaded, wanted, options)
-    return _of_object(source, wanted, options)
-
-
-def read_shaft(source: Any) -> Scene | None:
-    """Return the scene of one shaft; None for anything else."""
-    if isinstance(source, (str, os.PathLike)):
-        return None if is_train(source) else load(source)
-    return source if isinstance(source, Scene) else None
-
-
-def _of_object(source: Any, wanted: Wanted, options: dict) -> PortMatrices:
-    """Return the matrices of a scene, a train or a body."""
-    if isinstance(source, Train):
-        return _of_train(source, wanted, options)
-    if isinstance(source, Scene):
-        model = wanted.model or MODEL
-        if not isinstance(model, str):
-            raise SolidgearError(
-                "a shaft has one model, such as timoshenko; several are for trains"
-            )
-        free = source.with_changes(bearings=(), housing=None, housing_axial=None)
-        supports = as_supports(source if wanted.bearings else free)
-        return _of_shaft(build(source, model, **options), supports, wanted, source.name)
     if isinstance(source, Body):
         return _of_shaft(source, Supports((), np.zeros((0, 0))), wanted, "body")
+    loaded = _loaded(source)
+    with explained(source):
+        if isinstance(loaded, Train):
+            return _of_train(loaded, wanted, options)
+        return _of_scene(loaded, wanted, options)
+
+
+def _loaded(source: Any) -> Scene | Train:
+    """Return the scene or the train of a path, tables or an object, bearings settled."""
+    if isinstance(source, Train):
+        return load_train(source)
+    if isinstance(source, Scene):
+        return load(source)
+    if isinstance(source, (str, os.PathLike, Mapping, Document)):
+        return load_train(source) if is_train(source) else load(source)
     raise SolidgearError(
-        f"{type(source).__name__} has no matrices; give a file, a scene, a train, a superelement "
-        "or a system"
+        f"{type(source).__name__} has no matrices; give a file, its tables, a scene, a train, a "
+        "superelement or a system"
     )
+
+
+def read_shaft(source: Any) -> Scene:
+    """Return the scene of one shaft; refuse a train."""
+    loaded = _loaded(source)
+    if isinstance(loaded, Train):
+        raise SolidgearError(f"{loaded.name} is a train; this is for one shaft")
+    return loaded
+
+
+def _of_scene(scene: Scene, wanted: Wanted, options: dict) -> PortMatrices:
+    """Return the matrices of a shaft by one model."""
+    model = wanted.model or MODEL
+    if not isinstance(model, str):
+        raise SolidgearError("a shaft has one model, such as timoshenko; several are for trains")
+    free = scene.with_changes(bearings=(), housing=None, housing_axial=None)
+    supports = as_supports(scene if wanted.bearings else free)
+    return _of_shaft(build(scene, model, **options), supports, wanted, scene.name)
 
 
 def _of_shaft(body: Body, supports: Supports, wanted: Wanted, name: str) -> PortMatrices:
