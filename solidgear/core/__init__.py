@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from solidgear.core.ladder.registry import LADDER
     from solidgear.core.loading import as_written, explained, load, shaft
     from solidgear.core.machine.threads import pinned
-    from solidgear.core.machine.whole_file import whole, whole_or_refused
+    from solidgear.core.machine.whole_file import whole
     from solidgear.core.quantity import (
         COMPLIANCE,
         FIRST_BENDING,
@@ -128,7 +128,6 @@ __all__ = [
     "size",
     "synthesise",
     "whole",
-    "whole_or_refused",
     "without_axis",
 ]
 
@@ -173,7 +172,6 @@ _WHERE = {
     "shaft": "solidgear.core.loading",
     "pinned": "solidgear.core.machine.threads",
     "whole": "solidgear.core.machine.whole_file",
-    "whole_or_refused": "solidgear.core.machine.whole_file",
     "COMPLIANCE": "solidgear.core.quantity",
     "FIRST_BENDING": "solidgear.core.quantity",
     "QUANTITIES": "solidgear.core.quantity",

@@ -13,7 +13,8 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from solidgear.core import SolidgearError, whole_or_refused
+from solidgear.core import SolidgearError
+from solidgear.core.machine.whole_file import whole_or_refused
 from solidgear.show.panel import LETTER, Panel, wrapped
 from solidgear.show.paper import Paper
 from solidgear.show.pen import LEAD, Pen

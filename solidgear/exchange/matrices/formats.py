@@ -5,12 +5,12 @@ from __future__ import annotations
 import os
 import zlib
 from collections.abc import Callable, Mapping
-from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, NamedTuple
 from zipfile import BadZipFile
 
-from solidgear.core import SceneError, SolidgearError, listed, nearest, show, whole_or_refused
+from solidgear.core import SceneError, SolidgearError, listed, nearest, show
+from solidgear.core.machine.whole_file import write_files
 from solidgear.core.reduction.matrix_units import SI, MatrixUnits, matrix_units
 from solidgear.core.reduction.port_matrices import PortMatrices, named_once
 from solidgear.exchange.matrices import (
@@ -64,7 +64,7 @@ def write_matrices(
     matrices: PortMatrices, path: str | os.PathLike, to: str = "", units: str = SI.name
 ) -> list[Path]:
     """Write the files of a format, all whole or none; see :meth:`PortMatrices.write`."""
-    return write_whole(format_of(path, to).write(matrices, Path(path), matrix_units(units)))
+    return write_files(format_of(path, to).write(matrices, Path(path), matrix_units(units)))
 
 
 def format_of(path: str | os.PathLike, to: str = "") -> Format:
@@ -82,16 +82,6 @@ def format_of(path: str | os.PathLike, to: str = "") -> Format:
             f"format {show(to, 30)} is unknown{nearest(to, FORMATS)}; use {listed(FORMATS)}"
         )
     return FORMATS[to]
-
-
-def write_whole(files: Mapping[Path, bytes]) -> list[Path]:
-    """Write files, and the folders above them, all of them whole or none."""
-    with ExitStack() as stack:
-        for path, content in files.items():
-            partial = stack.enter_context(whole_or_refused(path))
-            path.parent.mkdir(parents=True, exist_ok=True)
-            partial.write_bytes(content)
-    return [*files]
 
 
 def read_matrices(

@@ -79,7 +79,7 @@ def _matrix(path: Path) -> np.ndarray:
     out = np.zeros((rows, rows))
     out[at[:, 0], at[:, 1]] = table[:, 2]
     below = np.tril(out, -1).T
-    mirrored = {"symmetric": below, "skew-symmetric": -below, "general": 0.0}
+    mirrored = {"symmetric": below, "skew-symmetric": -below, "general": 0 * below}
     if words[4] not in mirrored:
         raise ValueError(f"a {words[4]} matrix is not read")
     return out + mirrored[words[4]]

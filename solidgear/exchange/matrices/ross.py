@@ -16,10 +16,10 @@ import numpy as np
 
 from solidgear.core import Scene, SolidgearError, as_supports, build
 from solidgear.core.body import Supports
+from solidgear.core.machine.whole_file import write_files
 from solidgear.core.reduction.matrix_units import SI
 from solidgear.core.reduction.port_matrices import PortMatrices
 from solidgear.core.system.links import grounded
-from solidgear.exchange.matrices.formats import write_whole
 from solidgear.exchange.matrices.header import header
 from solidgear.exchange.matrices.source import SHAFT, port_matrices, read_shaft
 
@@ -78,7 +78,7 @@ def write_ross(source: Any, path: str | os.PathLike, units: str, **wanted: Any) 
         "    modal = rotor().run_modal(0.0, sparse=False)",
     ]
     lines.append("    print(np.unique((modal.wn / (2 * np.pi)).round(2))[:12], 'Hz')")
-    return write_whole({Path(path): ("\n".join(lines) + "\n").encode()})
+    return write_files({Path(path): ("\n".join(lines) + "\n").encode()})
 
 
 def _rotor(scene: Scene, supports: Supports) -> Iterator[str]:
