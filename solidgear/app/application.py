@@ -43,6 +43,10 @@ GROUPS = {
             "Say which models hold for a scene or train, which do not, and why; solves light "
             "meshes only.",
         ),
+        "export": Entry(
+            "exchange.matrices.command",
+            "Mass and stiffness of a shaft or a train at its ports, for other programs.",
+        ),
         "options": Entry(
             "app.files",
             "List what --set takes: every builder option with default, limits and meaning.",
