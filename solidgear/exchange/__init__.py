@@ -1,1 +1,1 @@
-"""Exchange with other programs."""
+"""Files of other programs, in and out."""

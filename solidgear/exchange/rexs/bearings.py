@@ -10,7 +10,6 @@ import numpy as np
 from solidgear.bearings.designation import Boundary, boundary
 from solidgear.core import SceneError
 from solidgear.core.scene.bearing_stiffness import stiffness_entries
-from solidgear.core.scene.support import HELD, HELD_TURN
 from solidgear.core.scene.units import TYPED
 from solidgear.exchange.rexs.commented import Sourced, deg, mm, said
 from solidgear.exchange.rexs.document import Component, Document
@@ -18,8 +17,10 @@ from solidgear.exchange.rexs.notes import Notes
 from solidgear.exchange.rexs.shafts import Shaft
 from solidgear.exchange.rexs.units import MOTIONS
 
-#: N/m: what is stiffer is meant as rigid. E d of a steel shaft of half a metre is 1e11 N/m
-RIGID = 1e15
+#: N/m, N m/rad: what is stiffer is meant as rigid, and written so. E d and E d^3 of a steel shaft of
+#: 0.1 m are 2e10 N/m and 2e8 N m/rad; with 1e22, as rigid bearings of one scene have, forces of
+#: catalogue bearings beside them drown in rounding
+RIGID, RIGID_TURN = 1e15, 1e12
 ROLLING = ("rolling_bearing_with_catalog_geometry", "rolling_bearing_with_detailed_geometry")
 KINDS = {
     "radial_grooved_ball_bearing": "deep_groove",
@@ -33,6 +34,7 @@ KINDS = {
 #: kinds that hold the shaft one way, and those that carry nothing along it
 ONE_WAY, FLOATING = ("angular_contact", "tapered", "thrust_ball"), ("cylindrical", "needle")
 BALLS = ("deep_groove", "angular_contact", "thrust_ball")
+BOTH_WAYS = "holds the shaft both ways along its axis, where the file says one way"
 #: width over bore of a bearing whose width nothing says: of ISO 15, series 02, 0.6 at 25 mm and 0.34
 #: at 100 mm
 USUAL_WIDTH = 0.4
@@ -55,17 +57,16 @@ def bearing_table(
         return _given(bearing, radial, notes)
     catalogue = _catalogue(document, bearing, shaft, y, notes)
     if catalogue is None:
-        notes.assume(
-            bearing,
-            "is rigid in what it absorbs: its designation and sizes are not known here, and no "
-            "stiffness is given",
+        notes.ask(
+            f"sizes and inside of {bearing.title}, whose designation is not known here: until then it "
+            "is rigid"
         )
         return _given(bearing, radial, notes)
     if radial is not None and radial >= RIGID:
         notes.doubt(
             bearing,
-            f"radial_stiffness {radial:.3g} N/m stands for a rigid bearing; its catalogue data give "
-            "the stiffness",
+            f"radial_stiffness {radial:.3g} N/m, which stands for rigid, beside catalogue data: these "
+            "give the stiffness",
         )
     table: dict[str, Any] = {}
     if (
@@ -86,7 +87,7 @@ def width_of(bearing: Component, shaft: Shaft, y: float, notes: Notes) -> tuple[
         return standard.width, f"width of {designation}"
     seat = shaft.seat(y, TYPED * shaft.length)
     width = USUAL_WIDTH * shaft.mean_outer(*(seat or (0.0, shaft.length)))
-    notes.assume(bearing, f"is {1e3 * width:.3g} mm wide, {USUAL_WIDTH:g} of the shaft's diameter")
+    notes.assume(bearing, f"as wide as {USUAL_WIDTH:g} of the shaft's diameter")
     return width, f"assumed: {USUAL_WIDTH:g} of the diameter"
 
 
@@ -120,25 +121,23 @@ def _given(bearing: Component, radial: float | None, notes: Notes) -> dict[str, 
     absorbs = bearing.text("axial_force_absorption") or "both_directions"
     rigid = []
     if bearing.flag("radial_force_absorption") is not False:
-        stiffness = HELD if radial is None else min(radial, HELD)
-        rigid += ["radially"] * (stiffness >= RIGID)
+        stiffness = RIGID if radial is None else min(radial, RIGID)
+        rigid += ["across"] * (stiffness >= RIGID)
         if stiffness:
             entries["kxx"] = entries["kzz"] = said(stiffness, "N/m")
     axial = bearing.number("axial_stiffness")
     if absorbs != "no_direction":
         # 0 beside an absorbed direction is no spring, and a rigid bearing elsewhere in such files
-        stiffness = min(axial, HELD) if axial else HELD
-        rigid += ["axially"] * (stiffness >= RIGID)
+        stiffness = min(axial, RIGID) if axial else RIGID
+        rigid += ["along"] * (stiffness >= RIGID)
         entries["kyy"] = said(stiffness, "N/m")
         if absorbs in ("positive", "negative"):
-            notes.assume(
-                bearing, f"holds the shaft both ways along its axis; the file says {absorbs} alone"
-            )
-    tilting = min(bearing.number("bending_stiffness") or 0.0, HELD_TURN)
+            notes.assume(bearing, BOTH_WAYS)
+    tilting = min(bearing.number("bending_stiffness") or 0.0, RIGID_TURN)
     if tilting:
         entries["kthx"] = entries["kthz"] = said(tilting, "N*m/rad")
     if rigid:
-        notes.assume(bearing, f"is rigid {' and '.join(rigid)}, as it is or as none is given")
+        notes.assume(bearing, f"rigid {' and '.join(rigid)} the shaft: {RIGID:g} N/m")
     if not entries:
         notes.doubt(bearing, "absorbs nothing; it is kept as a station without stiffness")
     source = f"{bearing.label}: radial_stiffness, axial_stiffness, bending_stiffness"
@@ -204,10 +203,9 @@ def _catalogue(
     if kind in ONE_WAY:
         table |= _one_way(bearing, shaft, y, notes)
     elif kind in FLOATING and bearing.text("axial_force_absorption") not in ("", "no_direction"):
-        notes.assume(bearing, "carries nothing along the shaft: ribs of rollers are not modelled")
+        notes.assume(bearing, "carries nothing along the shaft, where the file says it does: ribs are not modelled")
     elif bearing.text("axial_force_absorption") in ("positive", "negative"):
-        way = bearing.text("axial_force_absorption")
-        notes.assume(bearing, f"holds the shaft both ways along its axis; the file says {way} alone")
+        notes.assume(bearing, BOTH_WAYS)
     return table
 
 
@@ -271,7 +269,7 @@ def _one_way(bearing: Component, shaft: Shaft, y: float, notes: Notes) -> dict[s
         out["arrangement"] = Sourced("back_to_back", f"{bearing.label}: two rows")
         if distance := bearing.number("distance_between_bearing_rows"):
             out["row_distance"] = Sourced(mm(distance), f"{bearing.label}: distance of rows")
-        notes.assume(bearing, "its two rows stand back to back")
+        notes.assume(bearing, "two rows, back to back")
     elif word in ("positive", "negative"):
         towards = "+y" if (word == "positive") == (shaft.sign > 0) else "-y"
         out["holds"] = Sourced(towards, f"{bearing.label}: axial_force_absorption {word}")

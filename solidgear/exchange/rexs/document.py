@@ -55,6 +55,11 @@ class Component:
         name = f" {show(self.name, 60)}" if self.name else ""
         return f"{self.type} {self.id}{name}"
 
+    @property
+    def title(self) -> str:
+        """Name in a line about several: that of the file, or type and number."""
+        return show(self.name, 60).strip('"') if self.name.strip() else f"{self.type} {self.id}"
+
     def attribute(self, name: str) -> Attribute | None:
         """Return an attribute by its name of 1.4, or those of other versions; None where it is not
         there, or empty.

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from solidgear.exchange.rexs.commented import plain, toml_of, wrapped
-from solidgear.exchange.rexs.document import Component, Document, RexsError
+from solidgear.exchange.rexs.document import Component, Document
 from solidgear.exchange.rexs.gearbox import Gearbox, couplings_of, gearbox_of
 from solidgear.exchange.rexs.gears import gear_table, mesh_table
 from solidgear.exchange.rexs.notes import Notes, unread
@@ -22,7 +22,7 @@ from solidgear.exchange.rexs.running import (
     turns_from,
 )
 from solidgear.exchange.rexs.scenes import scene_table
-from solidgear.exchange.rexs.shafts import Shaft
+from solidgear.exchange.rexs.shafts import Shaft, plain_name
 
 
 @dataclass(frozen=True)
@@ -33,6 +33,7 @@ class Imported:
     tables: dict[str, Any]
     notes: Notes
     facts: tuple[str, ...]
+    has_train: bool = True
 
 
 def imported(document: Document, name: str) -> Imported:
@@ -59,13 +60,13 @@ def imported(document: Document, name: str) -> Imported:
     files: dict[str, Any] = {}
     loads: dict[int, str] = {}
     for shaft in shafts or list(gearbox.shafts.values()):
-        tables, ports, _ = scene_table(gearbox, shaft, cases)
+        tables, ports = scene_table(gearbox, shaft, cases, drive)
         loads |= ports
         files[f"{shaft.name}.toml"] = tables
     head = [f"Made from REXS {document.version} of {document.header.get('applicationId', '?')}."]
     if not shafts:
         texts = {file: toml_of(tables, head) for file, tables in files.items()}
-        return Imported(texts, files, notes, ("no stage: shafts alone",))
+        return Imported(texts, files, notes, ("no stage: shafts alone",), False)
     flanks = ordered(gearbox, drive)
     train: dict[str, Any] = {"title": name, "source": head[0]}
     train["shaft"] = _shaft_tables(gearbox, shafts, flanks)
@@ -77,7 +78,7 @@ def imported(document: Document, name: str) -> Imported:
             for stage in gearbox.planetary
         }
     if drive is not None:
-        train |= rotor_tables(gearbox, drive, cases)
+        train |= rotor_tables(gearbox, drive, cases, loads)
         train["operation"] = operation_tables(gearbox, drive, cases, loads)
     notes.ask(
         "the transmission_error of every mesh, which response needs: no file of REXS has it"
@@ -172,15 +173,7 @@ def _facts(gearbox: Gearbox, shafts: Collection[Shaft]) -> tuple[str, ...]:
 
 def name_of(path: Path) -> str:
     """Return the name of a train from the name of a file."""
-    from solidgear.exchange.rexs.shafts import plain_name
-
     name = path.name
     for suffix in (".zip", ".rexsz", ".rexsj", ".rexs", ".xml", ".json"):
         name = name.removesuffix(suffix)
     return plain_name(name, (), "gearbox")
-
-
-def refuse(path: Path, error: RexsError) -> RexsError:
-    """Return an error with the file in front."""
-    text = str(error)
-    return error if text.startswith(str(path)) else RexsError(f"{path}: {text}")

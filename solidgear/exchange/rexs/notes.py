@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from solidgear.exchange.rexs.document import Component, Document
+from solidgear.exchange.rexs.units import OTHER_NAMES
 
 #: attributes that are read, by type; what is where is said by the others of :mod:`units`
 READ = {
@@ -78,12 +79,11 @@ READ["ring_gear"] = READ["cylindrical_gear"]
 READ["switchable_coupling"] = READ["coupling"]
 READ["rolling_bearing_with_catalog_geometry"] = (
     READ["concept_bearing"]
-    + " catalogue_designation name bearing_type manufacturer radial_dynamic_load_rating "
-    "dynamic_capacity radial_static_load_rating static_capacity fatigue_limit_load "
-    "axial_dynamic_load_rating axial_static_load_rating radial_clearance_class clearance_class "
-    "radial_bearing_clearance radial_backlash number_of_bearing_rows distance_between_bearing_rows "
-    "contamination_factor_iso_281_2007 contamination_factor_according_to_iso_281_2007 "
-    "contamination_factor_according_to_din_26281 preload_force preload_distance"
+    + " catalogue_designation bearing_type manufacturer radial_dynamic_load_rating "
+    "radial_static_load_rating fatigue_limit_load axial_dynamic_load_rating "
+    "axial_static_load_rating radial_clearance_class radial_bearing_clearance "
+    "mounted_radial_bearing_clearance number_of_bearing_rows distance_between_bearing_rows "
+    "contamination_factor_iso_281_2007 preload_force preload_distance"
 )
 READ["rolling_bearing_with_detailed_geometry"] = READ["rolling_bearing_with_catalog_geometry"]
 #: stiffness at an operating point, of bearings
@@ -92,29 +92,29 @@ _OPERATING = "operating_point_stiffness"
 
 @dataclass
 class Notes:
-    """What an import leaves out, assumes or doubts."""
+    """What an import leaves out, assumes or doubts: for each reason the components that it is about."""
 
-    dropped: dict[str, None] = field(default_factory=dict)
-    assumed: dict[str, None] = field(default_factory=dict)
-    contradictory: dict[str, None] = field(default_factory=dict)
+    dropped: dict[str, list[str]] = field(default_factory=dict)
+    assumed: dict[str, list[str]] = field(default_factory=dict)
+    contradictory: dict[str, list[str]] = field(default_factory=dict)
     #: what no file of REXS says, and only the user knows
-    unknown: dict[str, None] = field(default_factory=dict)
+    unknown: dict[str, list[str]] = field(default_factory=dict)
 
     def drop(self, component: Component | str, reason: str) -> None:
         """Note what is left out."""
-        self.dropped[_line(component, reason)] = None
+        _add(self.dropped, component, reason)
 
     def assume(self, component: Component | str, reason: str) -> None:
         """Note what is assumed."""
-        self.assumed[_line(component, reason)] = None
+        _add(self.assumed, component, reason)
 
     def doubt(self, component: Component | str, reason: str) -> None:
         """Note a contradiction, and what is taken."""
-        self.contradictory[_line(component, reason)] = None
+        _add(self.contradictory, component, reason)
 
     def ask(self, reason: str) -> None:
         """Note what only the user knows."""
-        self.unknown[reason] = None
+        self.unknown[reason] = []
 
     @property
     def groups(self) -> list[tuple[str, list[str]]]:
@@ -125,12 +125,19 @@ class Notes:
             ("Left out", self.dropped),
             ("Only you know", self.unknown),
         )
-        return [(heading, list(lines)) for heading, lines in groups if lines]
+        return [(heading, [*map(_line, rows.items())]) for heading, rows in groups if rows]
 
 
-def _line(component: Component | str, reason: str) -> str:
-    label = component if isinstance(component, str) else component.label
-    return f"{label}: {reason}"
+def _add(rows: dict[str, list[str]], component: Component | str, reason: str) -> None:
+    label = component if isinstance(component, str) else component.title
+    labels = rows.setdefault(reason, [])
+    if label not in labels:
+        labels.append(label)
+
+
+def _line(row: tuple[str, list[str]]) -> str:
+    reason, labels = row
+    return f"{'; '.join(labels)}: {reason}" if labels else reason
 
 
 def unread(document: Document) -> Iterator[tuple[str, str]]:
@@ -140,12 +147,13 @@ def unread(document: Document) -> Iterator[tuple[str, str]]:
     for component in [*document.components.values(), *spectra]:
         kind = document.components[component.id].kind
         if kind not in READ:
-            yield component.label, "no train here has such a part"
+            yield f"{component.title} ({kind})", "no train here has such a part"
             continue
-        known = READ[kind].split()
+        words = READ[kind].split()
+        known = {*words, *(other for word in words for other in OTHER_NAMES.get(word, ()))}
         for name, attribute in component.attributes.items():
             used = name in known or name.startswith(_OPERATING)
             if not used and attribute.value not in ("", ()):
                 names.setdefault(kind, {})[name] = None
     for kind, attributes in names.items():
-        yield f"attributes of every {kind}", f"{', '.join(attributes)}"
+        yield f"attributes of {kind}", ", ".join(attributes)

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.core.scene.support import HELD
+from solidgear.exchange.rexs.bearings import RIGID
 from solidgear.exchange.rexs.commented import Sourced, deg, mm, said
 from solidgear.exchange.rexs.document import Component, RexsError
 from solidgear.exchange.rexs.frames import frame_of
@@ -192,10 +192,10 @@ def _pin(gearbox: Gearbox, stage: PlanetStage) -> dict[str, Any]:
         side = "outer" if sides[1] == planet.shaft.component else "inner"
         u = bearing.number(f"u_coordinate_on_shaft_{side}_side")
         arms.append((planet.shaft.place(u) if u is not None else planet.y) - planet.y)
-        stiffness = bearing.number("radial_stiffness") or HELD
-        compliance.append(1 / min(stiffness, HELD))
+        stiffness = bearing.number("radial_stiffness") or RIGID
+        compliance.append(1 / min(stiffness, RIGID))
         if bearing.text("axial_force_absorption") != "no_direction":
-            axial += min(bearing.number("axial_stiffness") or HELD, HELD)
+            axial += min(bearing.number("axial_stiffness") or RIGID, RIGID)
     matrix = np.diag(compliance)
     source = ", ".join(b.label for b in bearings)
     pin = _pin_of(gearbox, stage, bearings)

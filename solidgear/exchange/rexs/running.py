@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from solidgear.core.scene.units import TYPED
-from solidgear.exchange.rexs.commented import Sourced, mm, said
+from solidgear.exchange.rexs.commented import Sourced, said
 from solidgear.exchange.rexs.document import Component
 from solidgear.exchange.rexs.gearbox import Gearbox, PairStage, PlanetStage
 from solidgear.exchange.rexs.gears import ratio_of, teeth_of
@@ -19,8 +19,6 @@ from solidgear.exchange.rexs.shafts import Shaft
 
 #: twist of an elastic coupling under the torque that it is chosen for, rad (DIN 740: some degrees)
 TWIST = radians(3.0)
-#: width over diameter of a hub whose width nothing says
-HUB = 0.5
 #: of unit vectors: a direction along an axis
 ALONG = 1 - 1e-6
 
@@ -39,7 +37,7 @@ class Drive:
     """Which loads of a file bring torque and take it."""
 
     engine: Component
-    load: Component | None
+    load: Component
     sides: tuple[Shaft, Shaft]
     torque: Component  #: the load whose torque the file gives
     torque_side: Shaft
@@ -117,7 +115,6 @@ def drive_of(gearbox: Gearbox, cases: list[Case]) -> Drive | None:
     defining = next((pair for pair in given if pair[0].flag("defines_torque")), given[0])
     load, shaft = defining
     turns = turns_from(gearbox, shaft)
-    speed_of = {s.component.id: first[s.component.id].number("rotational_speed") for _, s in loads}
     speed = _speed_on(gearbox, cases[0], shaft)
     torque = next(t for c in cases if (t := torque_of(c.components[load.id], None)))
     others = [
@@ -136,7 +133,6 @@ def drive_of(gearbox: Gearbox, cases: list[Case]) -> Drive | None:
         notes.assume(load, f"its torque passes to {far.component.label}; the file names no other load")
         others = [(load, far)]
     other, side = others[-1]
-    del speed_of
     engine, taker = ((load, shaft), (other, side)) if brings else ((other, side), (load, shaft))
     scale = turns[engine[1].component.id]
     turns = {number: turn / scale for number, turn in turns.items()}
@@ -198,36 +194,33 @@ def _index(order: list[int], number: int) -> int:
     return order.index(number) if number in order else len(order)
 
 
-def rotor_tables(gearbox: Gearbox, drive: Drive, cases: list[Case]) -> dict[str, Any]:
+def rotor_tables(
+    gearbox: Gearbox, drive: Drive, cases: list[Case], ports: dict[int, str]
+) -> dict[str, Any]:
     """Return the tables of engine and load: their inertia and couplings are no part of REXS."""
     out = {}
     torque = max(abs(t) for c in cases if (t := torque_of(c.components[drive.torque.id], None)))
+    here = drive.turns[drive.torque_side.component.id]
     for role, load, shaft in zip(("engine", "load"), (drive.engine, drive.load), drive.sides):
-        assert load is not None  # a drive has both
-        turns = drive.turns
-        ratio = turns[shaft.component.id] / turns[drive.torque_side.component.id]
-        stiffness = torque / abs(ratio) / TWIST
-        inertia = polar_inertia(gearbox, shaft)
-        u = load.number("u_coordinate_on_shaft") if gearbox.shaft_of(load) is shaft else None
-        y = shaft.length if u is None else shaft.place(u)
-        width = HUB * shaft.mean_outer(*(shaft.seat(y, HUB * shaft.length) or (0.0, shaft.length)))
-        seat = shaft.seat(y, load.number("width_of_external_load") or width) or (0.0, shaft.length)
+        ratio = drive.turns[shaft.component.id] / here
+        port = ports.get(load.id) if gearbox.shaft_of(load) is shaft else None
+        port = port or next(g.name for g in gearbox.gears.values() if g.shaft is shaft)
+        stiffness = said(float(f"{torque / abs(ratio) / TWIST:.4g}"), "N*m/rad")
+        inertia = said(float(f"{polar_inertia(gearbox, shaft):.4g}"), "kg*m^2")
         out[role] = {
             "shaft": Sourced(shaft.name, load.label),
-            "inertia": Sourced(said(float(f"{inertia:.4g}"), "kg*m^2"), "assumed: as its shaft"),
+            "inertia": Sourced(inertia, "assumed: as that of its shaft"),
             "status": "assumed",
             "spring": {
-                "stiffness": Sourced(
-                    said(float(f"{stiffness:.4g}"), "N*m/rad"), "assumed: twists by 3 deg"
-                ),
-                "position": Sourced(mm((seat[0] + seat[1]) / 2), f"{load.label}: u_coordinate_on_shaft"),
-                "seat_width": mm(seat[1] - seat[0]),
+                "stiffness": Sourced(stiffness, "assumed: twists by 3 deg under the torque"),
+                "at": Sourced(port, load.label),
                 "status": "assumed",
             },
         }
     gearbox.notes.ask(
-        "inertia and coupling of the machines at both ends: [engine] and [load] are assumed, each as "
-        "heavy as its shaft, behind a coupling that twists by 3 deg under the largest torque"
+        "inertia and coupling of the machines at both ends, which set the lowest torsional modes: "
+        "[engine] and [load] are assumed, each as heavy as its shaft, behind a coupling that twists by "
+        "3 deg under the largest torque"
     )
     return out
 

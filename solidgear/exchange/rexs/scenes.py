@@ -13,7 +13,7 @@ from solidgear.exchange.rexs.gearbox import Gearbox, sides_of
 from solidgear.exchange.rexs.gears import gear_places
 from solidgear.exchange.rexs.materials import STEEL, material_of, material_table
 from solidgear.exchange.rexs.planets import cage_diameter, carried_masses, point_of
-from solidgear.exchange.rexs.running import Case, load_vector, lubrication_table, planets_of
+from solidgear.exchange.rexs.running import Case, Drive, load_vector, lubrication_table, planets_of
 from solidgear.exchange.rexs.shafts import Section, Shaft, plain_name
 
 #: pieces that stand for a conical bore; each has its volume
@@ -29,10 +29,10 @@ BEARINGS = (
 
 
 def scene_table(
-    gearbox: Gearbox, shaft: Shaft, cases: list[Case]
-) -> tuple[dict[str, Any], dict[int, str], float]:
-    """Return the tables of a scene, the lumped points of loads that push by the load's number, and by
-    how much places moved along y, m, where a stub stands before the shaft.
+    gearbox: Gearbox, shaft: Shaft, cases: list[Case], drive: Drive | None
+) -> tuple[dict[str, Any], dict[int, str]]:
+    """Return the tables of a scene, and the lumped points of loads that push or drive, by the number
+    of the load.
     """
     shift, before, after = _stubs(gearbox, shaft)
     segments = [*before, *_segments(gearbox, shaft), *after]
@@ -44,7 +44,7 @@ def scene_table(
         "segment": segments,
     }
     bearings = _bearings(gearbox, shaft, shift, names)
-    ports, loads = _ports(gearbox, shaft, cases, shift)
+    ports, loads = _ports(gearbox, shaft, cases, drive, shift)
     masses = [
         *(mass for stage in planets_of(gearbox, shaft) for mass in carried_masses(gearbox, stage)),
         *_masses(gearbox, shaft, shift),
@@ -59,7 +59,7 @@ def scene_table(
     rolling = [b for b, table in bearings if "catalogue" in table]
     if lubrication := lubrication_table(gearbox, rolling):
         tables["lubrication"] = lubrication
-    return tables, loads, shift
+    return tables, loads
 
 
 def _segments(gearbox: Gearbox, shaft: Shaft) -> list[dict[str, Any]]:
@@ -191,9 +191,7 @@ def _bearings(
         names.append(name)
         width, _ = width_of(bearing, shaft, y, gearbox.notes)
         if hi - lo < width - 1e-6:
-            gearbox.notes.assume(
-                bearing, f"its seat is {1e3 * (hi - lo):.4g} mm wide, where the shaft has no step"
-            )
+            gearbox.notes.assume(bearing, "its seat ends where the shaft has a step or ends")
         if abs((lo + hi) / 2 - y) > 1e-6:
             gearbox.notes.assume(
                 bearing, f"stands {1e3 * ((lo + hi) / 2 - y):+.4g} mm off its place, beside a step"
@@ -225,11 +223,11 @@ def _seat_of(gearbox: Gearbox, bearing: Component, shaft: Shaft) -> float | None
             return None
         gearbox.notes.assume(
             bearing,
-            f"stands in {other.label}, and here under {shaft.component.label} on the ground: trains "
-            "have no bearings between shafts",
+            f"stands on the ground under {shaft.component.title}, not in {other.title}: trains have no "
+            "bearings between shafts",
         )
     elif other.kind != "gear_casing":
-        gearbox.notes.assume(bearing, f"stands in {other.label}, and here on the ground")
+        gearbox.notes.assume(bearing, f"stands on the ground, not in {other.title}")
     u = bearing.number(f"u_coordinate_on_shaft_{side}_side")
     if u is None:
         raise bearing.wrong(f"u_coordinate_on_shaft_{side}_side", "is missing")
@@ -242,7 +240,7 @@ def _in_casing(gearbox: Gearbox, shaft: Component) -> int:
 
 
 def _ports(
-    gearbox: Gearbox, shaft: Shaft, cases: list[Case], shift: float
+    gearbox: Gearbox, shaft: Shaft, cases: list[Case], drive: Drive | None, shift: float
 ) -> tuple[list[dict[str, Any]], dict[int, str]]:
     """Return the lumped points of a shaft: its gears, the pins that it carries, loads that push."""
     ports = []
@@ -259,10 +257,12 @@ def _ports(
         middle |= {"attach_to": f"cage_{stage.name}"[:40]}
         ports.append({"name": point_of(stage), **middle})
     loads: dict[int, str] = {}
+    driving = () if drive is None else (drive.engine.id, drive.load.id)
     names = [port["name"] for port in ports]
     for load in gearbox.document.parts_of(shaft.component, "external_load"):
         vectors = [load_vector(case.components[load.id], shaft) for case in cases]
-        if not any(np.any(force) or np.any(moment) for force, moment in vectors):
+        pushes = any(np.any(force) or np.any(moment) for force, moment in vectors)
+        if not pushes and load.id not in driving:
             continue
         u = load.number("u_coordinate_on_shaft")
         if u is None:
