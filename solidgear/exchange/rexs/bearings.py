@@ -10,6 +10,7 @@ import numpy as np
 from solidgear.bearings.designation import Boundary, boundary
 from solidgear.core import SceneError
 from solidgear.core.scene.bearing_stiffness import stiffness_entries
+from solidgear.core.scene.support import RIGID
 from solidgear.core.scene.units import TYPED
 from solidgear.exchange.rexs.commented import Sourced, deg, mm, said
 from solidgear.exchange.rexs.document import Component, Document
@@ -17,10 +18,8 @@ from solidgear.exchange.rexs.notes import Notes
 from solidgear.exchange.rexs.shafts import Shaft
 from solidgear.exchange.rexs.units import MOTIONS
 
-#: N/m, N m/rad: what is stiffer is meant as rigid, and written so. E d and E d^3 of a steel shaft of
-#: 0.1 m are 2e10 N/m and 2e8 N m/rad; with 1e22, as rigid bearings of one scene have, forces of
-#: catalogue bearings beside them drown in rounding
-RIGID, RIGID_TURN = 1e15, 1e12
+#: N m/rad from there on stands for rigid: E d^3 of a steel shaft of 0.1 m is 2e8 N m/rad
+RIGID_TURN = 1e13
 ROLLING = ("rolling_bearing_with_catalog_geometry", "rolling_bearing_with_detailed_geometry")
 KINDS = {
     "radial_grooved_ball_bearing": "deep_groove",
@@ -71,7 +70,7 @@ def bearing_table(
     table: dict[str, Any] = {}
     if (
         bearing.text("axial_force_absorption") == "no_direction"
-        and catalogue["kind"].value not in FLOATING + ONE_WAY
+        and kind_of(bearing) not in FLOATING + ONE_WAY
     ):
         table["support"] = Sourced("floating", "axial_force_absorption: no_direction")
     return {**table, "catalogue": catalogue}
@@ -105,6 +104,13 @@ def standard_of(bearing: Component) -> tuple[Boundary | None, str]:
         except SceneError:
             continue
     return None, text
+
+
+def kind_of(bearing: Component) -> str:
+    """Return the kind of a rolling bearing by its type, or its designation; empty where unknown."""
+    standard, _ = standard_of(bearing)
+    kind = KINDS.get(bearing.text("bearing_type"), "")
+    return kind or (standard.kind if standard is not None else "")
 
 
 def _unit(entry: str) -> str:
@@ -168,18 +174,14 @@ def _catalogue(
 ) -> dict[str, Any] | None:
     """Return the catalogue data of a rolling bearing; None where its kind or sizes are not known."""
     standard, designation = standard_of(bearing)
-    kind = KINDS.get(bearing.text("bearing_type"), "")
+    kind = kind_of(bearing)
     file_sizes = [bearing.number(k) for k in ("inner_diameter", "outer_diameter", "width")]
     label, table = bearing.label, {}
-    if standard is not None and kind in ("", standard.kind) and _fits(standard, file_sizes):
+    if standard is not None and kind == standard.kind and _fits(standard, file_sizes):
         text = bearing.text("catalogue_designation")
         source = f"{label}: catalogue_designation"
         source += f" {text}" if designation != text else ""
-        kind = standard.kind
-        table |= {
-            "kind": Sourced(kind, "by its designation"),
-            "designation": Sourced(designation, source),
-        }
+        table["designation"] = Sourced(designation, source)
     elif kind and all(file_sizes):
         if standard is not None:
             notes.doubt(bearing, f"is no {designation} by its type or sizes; those of the file hold")

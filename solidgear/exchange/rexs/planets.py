@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.exchange.rexs.bearings import RIGID
+from solidgear.core.scene.support import RIGID
 from solidgear.exchange.rexs.commented import Sourced, deg, mm, said
 from solidgear.exchange.rexs.document import Component, RexsError
 from solidgear.exchange.rexs.frames import frame_of
@@ -255,7 +255,7 @@ def carried_masses(gearbox: Gearbox, stage: PlanetStage) -> Iterator[dict[str, A
     """Yield tables of the masses that move with a carrier beside its shaft: plates, other shafts and
     pins, each about the lumped point of the pins.
     """
-    origin = gear_places(gearbox, stage.sun)[1] if _is_placed(stage) else 0.0
+    origin = _carrier_start(gearbox, stage) + pins_at(gearbox, stage)
     for part in stage.carrier_parts:
         if part.kind == "side_plate":
             body = _plate(gearbox, part)
@@ -282,8 +282,11 @@ def carried_masses(gearbox: Gearbox, stage: PlanetStage) -> Iterator[dict[str, A
         break
 
 
-def _is_placed(stage: PlanetStage) -> bool:
-    return stage.sun.shaft.frame is not None
+def _carrier_start(gearbox: Gearbox, stage: PlanetStage) -> float:
+    """Return the place of the beginning of the carrier's scene along the first shaft, m."""
+    carrier = stage.carrier
+    beginning = _along(gearbox, carrier.component, 0.0)
+    return beginning + carrier.first if carrier.sign > 0 else beginning - carrier.first - carrier.length
 
 
 def _plate(gearbox: Gearbox, plate: Component) -> tuple[float, float, float] | None:
@@ -321,8 +324,17 @@ def _mass(
     }
 
 
-def cage_diameter(gearbox: Gearbox, stage: PlanetStage) -> float:
-    """Return the diameter of the plates of a carrier, or of the circle of its pins, m."""
-    plates = [p.number("outer_diameter") or 0.0 for p in stage.carrier_parts if p.kind == "side_plate"]
-    wheels = [wheel_of(gearbox, g.component) for g in (stage.sun, stage.planets[0])]
-    return max([*plates, 2 * (wheels[0].radius + wheels[1].radius)])
+def pins_middle(gearbox: Gearbox, stage: PlanetStage) -> float:
+    """Return the place of the middle of the sun along the carrier, m, on its shaft or off it."""
+    carrier = stage.carrier
+    if stage.sun.shaft.frame is None or carrier.frame is None:
+        return carrier.length / 2
+    first = next(s for s in gearbox.shafts.values() if s.frame is not None)
+    assert first.frame is not None  # it was looked for
+    start = float((carrier.frame.origin - first.frame.origin) @ first.frame.u)
+    return carrier.place(carrier.sign * (float(gear_places(gearbox, stage.sun)[1]) - start))
+
+
+def pins_at(gearbox: Gearbox, stage: PlanetStage) -> float:
+    """Return the place on the shaft of the carrier at which it holds the pins, m."""
+    return min(max(pins_middle(gearbox, stage), 0.0), stage.carrier.length)

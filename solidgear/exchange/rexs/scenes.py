@@ -10,17 +10,13 @@ from solidgear.exchange.rexs.bearings import bearing_table, width_of
 from solidgear.exchange.rexs.commented import Sourced, mm, said
 from solidgear.exchange.rexs.document import Component, RexsError
 from solidgear.exchange.rexs.gearbox import Gearbox, sides_of
-from solidgear.exchange.rexs.gears import gear_places
-from solidgear.exchange.rexs.materials import STEEL, material_of, material_table
-from solidgear.exchange.rexs.planets import cage_diameter, carried_masses, point_of
+from solidgear.exchange.rexs.materials import material_table
+from solidgear.exchange.rexs.planets import carried_masses, pins_at, pins_middle, point_of
 from solidgear.exchange.rexs.running import Case, Drive, load_vector, lubrication_table, planets_of
 from solidgear.exchange.rexs.shafts import Section, Shaft, plain_name
 
 #: pieces that stand for a conical bore; each has its volume
 STEPS = 8
-#: kg/m^3 of a stub that stands for parts whose mass is elsewhere: a thousandth of steel
-LIGHT = 8.0
-#: share of the width that seats of bearings beside each other lose
 BEARINGS = (
     "concept_bearing",
     "rolling_bearing_with_catalog_geometry",
@@ -34,8 +30,7 @@ def scene_table(
     """Return the tables of a scene, and the lumped points of loads that push or drive, by the number
     of the load.
     """
-    shift, before, after = _stubs(gearbox, shaft)
-    segments = [*before, *_segments(gearbox, shaft), *after]
+    segments = _segments(gearbox, shaft)
     names = {segment["name"] for segment in segments}
     tables: dict[str, Any] = {
         "title": shaft.component.name or shaft.name,
@@ -43,11 +38,11 @@ def scene_table(
         "material": material_table(gearbox, shaft.component),
         "segment": segments,
     }
-    bearings = _bearings(gearbox, shaft, shift, names)
-    ports, loads = _ports(gearbox, shaft, cases, drive, shift)
+    bearings = _bearings(gearbox, shaft, names)
+    ports, loads = _ports(gearbox, shaft, cases, drive)
     masses = [
         *(mass for stage in planets_of(gearbox, shaft) for mass in carried_masses(gearbox, stage)),
-        *_masses(gearbox, shaft, shift),
+        *_masses(gearbox, shaft),
     ]
     if bearings:
         tables["bearing"] = [table for _, table in bearings]
@@ -110,59 +105,8 @@ def _cylindrical_bores(section: Section) -> list[Section]:
     return pieces
 
 
-def _stubs(
-    gearbox: Gearbox, shaft: Shaft
-) -> tuple[float, list[dict[str, Any]], list[dict[str, Any]]]:
-    """Return light segments that lead from the ends of a carrier to the middle of its planets, and by
-    how much the shaft moves along y.
-    """
-    before: list[dict[str, Any]] = []
-    after: list[dict[str, Any]] = []
-    shift = 0.0
-    for stage in planets_of(gearbox, shaft):
-        y = _pins_at(gearbox, stage.sun, shaft)
-        reach = -y if y < 0 else y - shaft.length
-        if reach <= 0:
-            continue
-        end = shaft.sections[0] if y < 0 else shaft.sections[-1]
-        bore = end.inner[0 if y < 0 else 1]
-        modulus = _modulus(gearbox, shaft.component)
-        segment = {
-            "kind": "cylinder",
-            "name": f"cage_{stage.name}"[:40],
-            "length": Sourced(mm(round(reach, 12)), f"{stage.component.label}: up to its pins"),
-            "diameter": Sourced(mm(cage_diameter(gearbox, stage)), "of its plates"),
-            "material": {"E": said(modulus, "GPa", 1e9), "density": f"{LIGHT:g} kg/m^3"},
-        }
-        if bore:
-            segment["bore"] = mm(bore)
-        (before if y < 0 else after).append(segment)
-        shift += reach if y < 0 else 0.0
-        gearbox.notes.assume(
-            stage.carrier.component,
-            f"a light stub of {1e3 * reach:.4g} mm leads from its end to the middle of the planets; "
-            "plates, pins and what couplings join to it are masses there",
-        )
-    return shift, before, after
-
-
-def _modulus(gearbox: Gearbox, shaft: Component) -> float:
-    material = material_of(gearbox, shaft)
-    return (material.number("elastic_modulus") if material is not None else None) or STEEL.E
-
-
-def _pins_at(gearbox: Gearbox, sun: Any, carrier: Shaft) -> float:
-    """Return the place of the middle of the sun along a carrier, m."""
-    if sun.shaft.frame is None or carrier.frame is None:
-        return carrier.length / 2
-    first = next(s for s in gearbox.shafts.values() if s.frame is not None)
-    assert first.frame is not None  # it was looked for
-    start = float((carrier.frame.origin - first.frame.origin) @ first.frame.u)
-    return carrier.place(carrier.sign * (float(gear_places(gearbox, sun)[1]) - start))
-
-
 def _bearings(
-    gearbox: Gearbox, shaft: Shaft, shift: float, taken: set[str]
+    gearbox: Gearbox, shaft: Shaft, taken: set[str]
 ) -> list[tuple[Component, dict[str, Any]]]:
     """Return the bearings of a shaft with their tables, in the order of y."""
     rows, names = [], [*taken, *(g.name for g in gearbox.gears.values())]
@@ -198,7 +142,7 @@ def _bearings(
             )
         table = {
             "name": name,
-            "position": Sourced(mm(round((lo + hi) / 2 + shift, 12)), bearing.label),
+            "position": Sourced(mm(round((lo + hi) / 2, 12)), bearing.label),
             "seat_width": Sourced(mm(round(hi - lo, 12)), source),
         }
         out.append((bearing, table | bearing_table(gearbox.document, bearing, shaft, y, gearbox.notes)))
@@ -240,23 +184,26 @@ def _in_casing(gearbox: Gearbox, shaft: Component) -> int:
 
 
 def _ports(
-    gearbox: Gearbox, shaft: Shaft, cases: list[Case], drive: Drive | None, shift: float
+    gearbox: Gearbox, shaft: Shaft, cases: list[Case], drive: Drive | None
 ) -> tuple[list[dict[str, Any]], dict[int, str]]:
     """Return the lumped points of a shaft: its gears, the pins that it carries, loads that push."""
     ports = []
     for gear in gearbox.gears.values():
         if gear.shaft is shaft:
             width = gear.component.number("face_width") or 0.0
-            ports.append(_port(shaft, gear.name, gear.component, gear.y, width, shift))
+            ports.append(_port(shaft, gear.name, gear.component, gear.y, width))
     for stage in planets_of(gearbox, shaft):
-        y = _pins_at(gearbox, stage.sun, shaft)
-        if 0 <= y <= shaft.length:
-            ports.append(_port(shaft, point_of(stage), stage.component, y, shaft.length / 10, shift))
-            continue
-        middle = {"at": f"cage_{stage.name}"[:40] + (".start" if y < 0 else ".end")}
-        middle |= {"attach_to": f"cage_{stage.name}"[:40]}
-        ports.append({"name": point_of(stage), **middle})
+        y = pins_at(gearbox, stage)
+        off = pins_middle(gearbox, stage) - y
+        if abs(off) > 1e-6:
+            gearbox.notes.assume(
+                shaft.component,
+                f"its planets stand at its end, {1e3 * abs(off):.4g} mm from where they are: trains hold "
+                "pins at a place of the carrier's shaft",
+            )
+        ports.append(_port(shaft, point_of(stage), stage.component, y, shaft.length / 5))
     loads: dict[int, str] = {}
+    places: dict[float, str] = {}
     driving = () if drive is None else (drive.engine.id, drive.load.id)
     names = [port["name"] for port in ports]
     for load in gearbox.document.parts_of(shaft.component, "external_load"):
@@ -267,18 +214,19 @@ def _ports(
         u = load.number("u_coordinate_on_shaft")
         if u is None:
             raise load.wrong("u_coordinate_on_shaft", "is missing")
-        name = plain_name(load.name, names, f"load_{load.id}")
-        names.append(name)
-        width = load.number("width_of_external_load") or shaft.length / 20
-        ports.append(_port(shaft, name, load, shaft.place(u), width, shift))
+        if (name := places.get(u)) is None:
+            name = places[u] = plain_name(load.name, names, f"load_{load.id}")
+            names.append(name)
+            width = load.number("width_of_external_load") or shaft.length / 20
+            ports.append(_port(shaft, name, load, shaft.place(u), width))
         loads[load.id] = name
     if not ports:
-        ports.append(_port(shaft, "middle", shaft.component, shaft.length / 2, shaft.length / 10, shift))
+        ports.append(_port(shaft, "middle", shaft.component, shaft.length / 2, shaft.length / 10))
     return ports, loads
 
 
 def _port(
-    shaft: Shaft, name: str, part: Component, y: float, width: float, shift: float
+    shaft: Shaft, name: str, part: Component, y: float, width: float
 ) -> dict[str, Any]:
     span = shaft.span(y, width)
     if span is None or not -1e-6 <= y <= shaft.length + 1e-6:
@@ -289,12 +237,12 @@ def _port(
     y = min(max(y, 0.0), shaft.length)
     return {
         "name": name,
-        "position": Sourced(mm(round(y + shift, 12)), part.label),
-        "span": [mm(round(end + shift, 12)) for end in span],
+        "position": Sourced(mm(round(y, 12)), part.label),
+        "span": [mm(round(end, 12)) for end in span],
     }
 
 
-def _masses(gearbox: Gearbox, shaft: Shaft, shift: float) -> list[dict[str, Any]]:
+def _masses(gearbox: Gearbox, shaft: Shaft) -> list[dict[str, Any]]:
     """Return additional masses of a shaft."""
     out = []
     for mass in gearbox.document.parts_of(shaft.component, "additional_mass"):
@@ -309,7 +257,7 @@ def _masses(gearbox: Gearbox, shaft: Shaft, shift: float) -> list[dict[str, Any]
                 "name": plain_name(mass.name, [m["name"] for m in out], f"mass_{mass.id}"),
                 "mass": Sourced(said(size, "kg"), f"{mass.label}: mass_of_component"),
                 "inertia": [said(v, "kg*m^2") for v in inertia],
-                "position": mm(round((seat[0] + seat[1]) / 2 + shift, 12)),
+                "position": mm(round((seat[0] + seat[1]) / 2, 12)),
                 "seat_width": mm(round(seat[1] - seat[0], 12)),
             }
         )

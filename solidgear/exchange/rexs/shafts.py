@@ -15,6 +15,8 @@ from solidgear.exchange.rexs.frames import Frame
 
 #: gap between sections, m, that digits leave
 TOUCH = 1e-6
+#: letters of a name
+LONGEST = 32
 
 
 @dataclass(frozen=True)
@@ -182,7 +184,9 @@ def plain_name(text: str, taken: Collection[str], usual: str) -> str:
     'planetentrager_3'
     """
     letters = unicodedata.normalize("NFKD", text.lower()).encode("ascii", "ignore").decode()
-    name = re.sub(r"[^a-z0-9]+", "_", letters).strip("_")[:40].strip("_") or usual
+    name = re.sub(r"[^a-z0-9]+", "_", letters).strip("_") or usual
+    if len(name) > LONGEST:
+        name = name[:LONGEST].rpartition("_")[0] or name[:LONGEST]
     number, unique = 2, name
     while unique in taken:
         unique, number = f"{name}_{number}", number + 1
