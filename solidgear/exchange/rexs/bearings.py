@@ -41,6 +41,22 @@ USUAL_WIDTH = 0.4
 _ENTRY_WORDS = {motion: k for k, motion in enumerate(("u", "v", "w", "u_rot", "v_rot", "w_rot"))}
 
 
+#: words of axial_force_absorption
+ABSORBS = ("both_directions", "no_direction", "positive", "negative")
+
+
+def absorbed(bearing: Component, notes: Notes) -> str:
+    """Return the direction along the shaft in which a bearing takes force; empty where none is said."""
+    word = bearing.text("axial_force_absorption").lower()
+    if word in ("true", "false"):
+        # some writers of 1.4 put false at every bearing, and shafts would be free along their axes
+        notes.doubt(bearing, f"axial_force_absorption {word} is no word of REXS: both directions")
+        return ABSORBS[0]
+    if word and word not in ABSORBS:
+        raise bearing.wrong("axial_force_absorption", f"REXS has {', '.join(ABSORBS)}")
+    return word
+
+
 def bearing_table(
     document: Document, bearing: Component, shaft: Shaft, y: float, notes: Notes
 ) -> dict[str, Any]:
@@ -68,10 +84,7 @@ def bearing_table(
             "give the stiffness",
         )
     table: dict[str, Any] = {}
-    if (
-        bearing.text("axial_force_absorption") == "no_direction"
-        and kind_of(bearing) not in FLOATING + ONE_WAY
-    ):
+    if absorbed(bearing, notes) == "no_direction" and kind_of(bearing) not in FLOATING + ONE_WAY:
         table["support"] = Sourced("floating", "axial_force_absorption: no_direction")
     return {**table, "catalogue": catalogue}
 
@@ -124,7 +137,7 @@ def _given(bearing: Component, radial: float | None, notes: Notes) -> dict[str, 
     is rigid.
     """
     entries: dict[str, str] = {}
-    absorbs = bearing.text("axial_force_absorption") or "both_directions"
+    absorbs = absorbed(bearing, notes) or "both_directions"
     rigid = []
     if bearing.flag("radial_force_absorption") is not False:
         stiffness = RIGID if radial is None else min(radial, RIGID)
@@ -184,7 +197,9 @@ def _catalogue(
         table["designation"] = Sourced(designation, source)
     elif kind and all(file_sizes):
         if standard is not None:
-            notes.doubt(bearing, f"is no {designation} by its type or sizes; those of the file hold")
+            notes.doubt(
+                bearing, f"is no {designation} by its type or sizes; those of the file hold"
+            )
         table["kind"] = Sourced(kind, f"{label}: bearing_type")
         for key, size in zip(("bore", "outer_diameter", "width"), file_sizes):
             table[key] = Sourced(mm(size or 0.0), label)
@@ -204,9 +219,12 @@ def _catalogue(
     table |= _inside(document, bearing, kind, notes)
     if kind in ONE_WAY:
         table |= _one_way(bearing, shaft, y, notes)
-    elif kind in FLOATING and bearing.text("axial_force_absorption") not in ("", "no_direction"):
-        notes.assume(bearing, "carries nothing along the shaft, where the file says it does: ribs are not modelled")
-    elif bearing.text("axial_force_absorption") in ("positive", "negative"):
+    elif kind in FLOATING and absorbed(bearing, notes) not in ("", "no_direction"):
+        notes.assume(
+            bearing,
+            "carries nothing along the shaft, where the file says it does: ribs are not modelled",
+        )
+    elif absorbed(bearing, notes) in ("positive", "negative"):
         notes.assume(bearing, BOTH_WAYS)
     return table
 
@@ -247,8 +265,14 @@ def _inside(document: Document, bearing: Component, kind: str, notes: Notes) -> 
         out["element_diameter"] = Sourced(mm(diameter), source)
     if pitch:
         out["pitch_diameter"] = Sourced(mm(pitch), f"{row.label}: reference diameter")
-    if kind not in BALLS and elements and (length := elements[0].number("length_of_rolling_element")):
-        out["element_length"] = Sourced(mm(length), f"{elements[0].label}: length_of_rolling_element")
+    if (
+        kind not in BALLS
+        and elements
+        and (length := elements[0].number("length_of_rolling_element"))
+    ):
+        out["element_length"] = Sourced(
+            mm(length), f"{elements[0].label}: length_of_rolling_element"
+        )
     angle = row.number("pressure_angle")
     if angle and kind in ("angular_contact", "tapered", "spherical"):
         out["contact_angle"] = Sourced(deg(abs(angle)), f"{row.label}: pressure_angle")
@@ -264,7 +288,7 @@ def _inside(document: Document, bearing: Component, kind: str, notes: Notes) -> 
 
 def _one_way(bearing: Component, shaft: Shaft, y: float, notes: Notes) -> dict[str, Any]:
     """Return which way a bearing with a contact angle holds the shaft, and its preload."""
-    word = bearing.text("axial_force_absorption")
+    word = absorbed(bearing, notes)
     out: dict[str, Any] = {}
     kind = bearing.text("bearing_type")
     if (bearing.whole("number_of_bearing_rows") or 1) > 1 and "axial" not in kind:
@@ -287,5 +311,7 @@ def _one_way(bearing: Component, shaft: Shaft, y: float, notes: Notes) -> dict[s
     if force:
         out["preload"] = Sourced(said(abs(force), "N"), f"{bearing.label}: preload_force")
     elif distance:
-        out["preload"] = Sourced(said(abs(distance), "um", 1e-6), f"{bearing.label}: preload_distance")
+        out["preload"] = Sourced(
+            said(abs(distance), "um", 1e-6), f"{bearing.label}: preload_distance"
+        )
     return out

@@ -9,9 +9,9 @@ import typer
 
 from solidgear.core import SolidgearError
 from solidgear.core.machine.whole_file import whole_or_refused
+from solidgear.exchange.rexs.document import RexsError
 from solidgear.exchange.rexs.importing import Imported, imported, name_of
 from solidgear.exchange.rexs.reading import read
-from solidgear.exchange.rexs.document import RexsError
 from solidgear.show.command import NOT_REACHED, command, filled, say
 
 
@@ -31,7 +31,9 @@ def import_file(
     paths = {out / name: text for name, text in gearbox.files.items()}
     for path in paths:
         if path.exists() and not force:
-            raise SolidgearError(f"{path}: there is such a file already; give another --out, or --force")
+            raise SolidgearError(
+                f"{path}: there is such a file already; give another --out, or --force"
+            )
     for path, text in paths.items():
         with whole_or_refused(path) as partial:
             path.parent.mkdir(parents=True, exist_ok=True)

@@ -82,8 +82,10 @@ def _direction(component: Component, name: str, usual: tuple[float, float, float
     return vector / length
 
 
-def along(frame: Frame, first: Frame, component: Component) -> int | None:
+def along(frame: Frame | None, first: Frame | None, component: Component) -> int | None:
     """Return 1 or -1 where a shaft runs along the first or against it; None where it does neither."""
+    if frame is None or first is None:
+        return None
     cosine = float(frame.u @ first.u)
     if abs(abs(cosine) - 1) > ROUNDED:
         return None

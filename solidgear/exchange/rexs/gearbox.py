@@ -61,9 +61,12 @@ class Gearbox:
     document: Document
     notes: Notes
     shafts: dict[int, Shaft] = field(default_factory=dict)
+    #: what is wrong with shafts that are none, by number: of no matter unless a stage needs them
+    unsound: dict[int, RexsError] = field(default_factory=dict)
     gears: dict[int, GearOnShaft] = field(default_factory=dict)
     pairs: list[PairStage] = field(default_factory=list)
     planetary: list[PlanetStage] = field(default_factory=list)
+    reference: Frame | None = None  #: of the shaft whose axes are those of the train
 
     def shaft_of(self, part: Component) -> Shaft | None:
         """Return the shaft that a component is a part of."""
@@ -72,9 +75,7 @@ class Gearbox:
 
     def is_ring_held(self, shaft: Component) -> bool:
         """Return True where a coupling holds a shaft to the casing."""
-        return any(
-            other.kind == "gear_casing" for _, other in couplings_of(self.document, shaft)
-        )
+        return any(other.kind == "gear_casing" for _, other in couplings_of(self.document, shaft))
 
     @property
     def joined(self) -> list[tuple[Shaft, Shaft]]:
@@ -148,23 +149,34 @@ def _add_shafts(gearbox: Gearbox) -> None:
     if not shafts:
         raise RexsError("holds no shaft")
     frames = {shaft.id: frame_of(document, shaft) for shaft in shafts}
-    first: Frame | None = next((f for f in frames.values() if f is not None), None)
+    placed = [shaft for shaft in shafts if frames[shaft.id] is not None]
+    # that of a shaft with gears, for worms and others may stand at any angle to the train
+    placed.sort(key=lambda shaft: not document.parts_of(shaft, *GEARS))
+    first = gearbox.reference = frames[placed[0].id] if placed else None
     names: list[str] = []
     for shaft in shafts:
         frame = frames[shaft.id]
         sign, turn = 1, PLAIN_TURN
         if frame is not None and first is not None:
             way = along(frame, first, shaft)
-            if way is None:
-                notes.drop(shaft, "its axis is not parallel to that of the first shaft")
-                continue
-            sign, turn = way, first.train_axes.T @ frame.axes
+            if way is not None:
+                sign, turn = way, first.train_axes.T @ frame.axes
         name = plain_name(shaft.name, [*names, "shaft"], f"shaft_{shaft.id}")
-        sections, start = sections_of(document, shaft, sign)
+        try:
+            sections, start = sections_of(document, shaft, sign)
+        except RexsError as error:
+            gearbox.unsound[shaft.id] = error
+            continue
         names.append(name)
         gearbox.shafts[shaft.id] = Shaft(
             name, shaft, tuple(sections), frame, sign, np.round(turn, 12), start
         )
+    if not gearbox.shafts:
+        raise next(iter(gearbox.unsound.values()))
+    for number, problem in gearbox.unsound.items():
+        if gearbox.document.parts_of(document.components[number], *GEARS):
+            raise problem
+        notes.drop(document.components[number], f"no shaft can be made of it ({problem})")
 
 
 def _add_gears(gearbox: Gearbox) -> None:
@@ -219,6 +231,10 @@ def _add_pairs(gearbox: Gearbox, in_planets: set[int]) -> None:
         name = plain_name(stage.name, names, f"stage_{stage.id}")
         names.append(name)
         first, second = (gear for gear in gears if gear is not None)
+        frames = first.shaft.frame, second.shaft.frame
+        if None not in frames and along(frames[0], frames[1], stage) is None:
+            gearbox.notes.drop(stage, "its shafts are not parallel")
+            continue
         if first.shaft is second.shaft:
             raise RexsError(f"{stage.label}: both gears sit on {first.shaft.component.label}")
         gearbox.pairs.append(PairStage(name, stage, (first, second)))
@@ -235,7 +251,9 @@ def stage_gears(document: Document, stage: Component) -> tuple[int, int] | None:
 
 def _add_planetary(gearbox: Gearbox) -> set[int]:
     """Add the planetary stages that trains have; return the cylindrical stages of all of them."""
-    document, inside, names = gearbox.document, set(), []
+    document = gearbox.document
+    inside: set[int] = set()
+    names: list[str] = []
     for stage in document.of_kind("planetary_stage"):
         parts = document.parts_of(stage, "cylindrical_stage")
         inside |= {part.id for part in parts}
@@ -248,9 +266,7 @@ def _add_planetary(gearbox: Gearbox) -> set[int]:
     return inside
 
 
-def _try_planetary(
-    gearbox: Gearbox, stage: Component, parts: list[Component], name: str
-) -> str:
+def _try_planetary(gearbox: Gearbox, stage: Component, parts: list[Component], name: str) -> str:
     """Add a planetary stage, or return why trains do not have it."""
     document = gearbox.document
     roles = {

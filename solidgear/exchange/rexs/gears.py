@@ -37,7 +37,8 @@ def flank_number(gearbox: Gearbox, gear: Component, name: str) -> tuple[float | 
         return None, ""
     if max(values) - min(values) > SAME:
         gearbox.notes.doubt(
-            gear, f"{name} of left and right flank are {values[0]:g} and {values[1]:g}: the first is taken"
+            gear,
+            f"{name} of left and right flank are {values[0]:g} and {values[1]:g}: the first is taken",
         )
     return values[0], f"{next(k for k, v in numbers.items() if v is not None)}: {name}"
 
@@ -131,7 +132,9 @@ def _rack(document: Document, gear: Component) -> dict[str, Any]:
     dedendum = tool.number("addendum_coefficient_reference_profile")
     radius = tool.number("tip_radius_factor")
     if dedendum:
-        rack["dedendum"] = Sourced(dedendum, f"{tool.label}: addendum_coefficient_reference_profile")
+        rack["dedendum"] = Sourced(
+            dedendum, f"{tool.label}: addendum_coefficient_reference_profile"
+        )
     if radius:
         rack["root_radius"] = Sourced(radius, f"{tool.label}: tip_radius_factor")
     return {"rack": Sourced(rack, tool.label)} if rack else {}
@@ -255,7 +258,9 @@ def _where(gearbox: Gearbox, stage: PairStage) -> dict[str, Any]:
     apart = gear_places(gearbox, second) - gear_places(gearbox, first)
     across = hypot(apart[0], apart[2])
     if across < NEAR:
-        raise RexsError(f"{label}: the axes of {first.component.label} and {second.component.label} are one")
+        raise RexsError(
+            f"{label}: the axes of {first.component.label} and {second.component.label} are one"
+        )
     if distance and abs(across - distance) > SHARE * distance:
         notes.doubt(
             stage.component,
@@ -277,12 +282,11 @@ def _where(gearbox: Gearbox, stage: PairStage) -> dict[str, Any]:
 
 def gear_places(gearbox: Gearbox, gear: GearOnShaft) -> np.ndarray:
     """Return the place (3,) of a gear in x, y, z of the first shaft, m."""
-    first = next(s for s in gearbox.shafts.values() if s.frame is not None)
-    assert first.frame is not None and gear.shaft.frame is not None  # asked of placed shafts
-    shaft = gear.shaft
+    shaft, first = gear.shaft, gearbox.reference
+    assert shaft.frame is not None and first is not None  # asked of placed shafts
     u = gear.y if shaft.sign > 0 else shaft.length - gear.y
-    place = shaft.frame.origin + (u + shaft.first) * shaft.frame.u - first.frame.origin
-    return first.frame.train_axes.T @ place
+    place = shaft.frame.origin + (u + shaft.first) * shaft.frame.u - first.origin
+    return first.train_axes.T @ place
 
 
 def _stiffness(gearbox: Gearbox, stage: PairStage, has_torque: bool) -> dict[str, Any]:
@@ -296,9 +300,7 @@ def _stiffness(gearbox: Gearbox, stage: PairStage, has_torque: bool) -> dict[str
     return mesh_stiffness(gearbox, stage.component, width, "stiffness")
 
 
-def mesh_stiffness(
-    gearbox: Gearbox, stage: Component, width: float, key: str
-) -> dict[str, Any]:
+def mesh_stiffness(gearbox: Gearbox, stage: Component, width: float, key: str) -> dict[str, Any]:
     """Return the stiffness of a mesh by that of a metre of face."""
     width = stage.number("common_face_width") or width
     name = "mesh_stiffness_for_load_distribution_along_face_width"

@@ -59,7 +59,7 @@ def imported(document: Document, name: str) -> Imported:
     drive = drive_of(gearbox, cases) if shafts else None
     files: dict[str, Any] = {}
     loads: dict[int, str] = {}
-    for shaft in shafts or list(gearbox.shafts.values()):
+    for shaft in [*shafts, *_alone(gearbox, shafts)]:
         tables, ports = scene_table(gearbox, shaft, cases, drive)
         loads |= ports
         files[f"{shaft.name}.toml"] = tables
@@ -80,15 +80,15 @@ def imported(document: Document, name: str) -> Imported:
     if drive is not None:
         train |= rotor_tables(gearbox, drive, cases, loads)
         train["operation"] = operation_tables(gearbox, drive, cases, loads)
-    notes.ask(
-        "the transmission_error of every mesh, which response needs: no file of REXS has it"
-    )
+    notes.ask("the transmission_error of every mesh, which response needs: no file of REXS has it")
     train_file = f"{name}.toml"
     if train_file in files:
         train_file = f"{name}_train.toml"
     texts = {train_file: toml_of(train, [*head, *_head(notes)])}
     texts |= {file: toml_of(tables, head) for file, tables in files.items()}
-    return Imported(texts, {train_file: plain(train)} | plain(files), notes, _facts(gearbox, shafts))
+    return Imported(
+        texts, {train_file: plain(train)} | plain(files), notes, _facts(gearbox, shafts)
+    )
 
 
 def _shaft_tables(
@@ -117,7 +117,8 @@ def _in_train(gearbox: Gearbox) -> list[Shaft]:
     """Return the shafts of the largest group that teeth join, in the order of the file; the stages of
     other groups are left out.
     """
-    notes, groups = gearbox.notes, []
+    notes = gearbox.notes
+    groups: list[dict[int, float]] = []
     for first, _ in gearbox.joined:
         if not any(first.component.id in group for group in groups):
             groups.append(turns_from(gearbox, first))
@@ -136,8 +137,14 @@ def _in_train(gearbox: Gearbox) -> list[Shaft]:
     return [shaft for number, shaft in gearbox.shafts.items() if number in group]
 
 
-def _note_others(gearbox: Gearbox, group: Collection[int]) -> None:
-    """Note shafts and couplings that no train has."""
+def _alone(gearbox: Gearbox, shafts: Collection[Shaft]) -> list[Shaft]:
+    """Return the shafts that no teeth of the train lead to, and no stage has in itself."""
+    inside = _inside(gearbox, [shaft.component.id for shaft in shafts])
+    return [shaft for number, shaft in gearbox.shafts.items() if number not in inside]
+
+
+def _inside(gearbox: Gearbox, group: Collection[int]) -> set[int]:
+    """Return the numbers of the shafts of a train, with those that are parts of its stages."""
     inside = {*group}
     for stage in gearbox.planetary:
         inside |= {part.id for part in stage.carrier_parts}
@@ -145,9 +152,17 @@ def _note_others(gearbox: Gearbox, group: Collection[int]) -> None:
         inside |= {planet.shaft.component.id for planet in stage.planets}
         ring = gearbox.document.whole_of(stage.ring, "shaft")
         inside |= {ring.id} if ring is not None else set()
+    return inside
+
+
+def _note_others(gearbox: Gearbox, group: Collection[int]) -> None:
+    """Note shafts and couplings that no train has."""
+    inside = _inside(gearbox, group)
     for number, shaft in gearbox.shafts.items():
         if number not in inside:
-            gearbox.notes.drop(shaft.component, "no teeth of the train lead to it")
+            gearbox.notes.drop(
+                shaft.component, "no teeth of the train lead to it: its scene stands alone"
+            )
             continue
         for coupling, other in couplings_of(gearbox.document, shaft.component):
             if other.id not in inside and other.kind != "gear_casing":

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from solidgear.core.scene.support import RIGID
+from solidgear.exchange.rexs.bearings import absorbed
 from solidgear.exchange.rexs.commented import Sourced, deg, mm, said
 from solidgear.exchange.rexs.document import Component, RexsError
 from solidgear.exchange.rexs.frames import frame_of
@@ -48,7 +49,9 @@ def stage_table(gearbox: Gearbox, stage: PlanetStage, has_torque: bool) -> dict[
     first, label = stage.planets[0].component, stage.component.label
     table: dict[str, Any] = {
         "sun": Sourced(f"{stage.sun.shaft.name}.{stage.sun.name}", stage.sun.component.label),
-        "carrier": Sourced(f"{stage.carrier.name}.{point_of(stage)}", stage.carrier.component.label),
+        "carrier": Sourced(
+            f"{stage.carrier.name}.{point_of(stage)}", stage.carrier.component.label
+        ),
         "ring_teeth": Sourced(teeth_of(stage.ring), f"{stage.ring.label}: number_of_teeth"),
     }
     table |= _angles(gearbox, stage)
@@ -103,7 +106,9 @@ def _refuse_shifts(gearbox: Gearbox, stage: PlanetStage) -> None:
             )
     teeth = {teeth_of(planet.component) for planet in stage.planets}
     if len(teeth) > 1:
-        raise RexsError(f"{stage.component.label}: its planets have {sorted(teeth)} teeth; one is needed")
+        raise RexsError(
+            f"{stage.component.label}: its planets have {sorted(teeth)} teeth; one is needed"
+        )
 
 
 def _angles(gearbox: Gearbox, stage: PlanetStage) -> dict[str, Any]:
@@ -188,13 +193,13 @@ def _pin(gearbox: Gearbox, stage: PlanetStage) -> dict[str, Any]:
         raise RexsError(f"{planet.component.label}: its shaft has no bearing on a pin")
     arms, compliance, axial = [], [], 0.0
     for bearing in bearings:
-        sides = sides_of(document, bearing) or ()
-        side = "outer" if sides[1] == planet.shaft.component else "inner"
+        sides = sides_of(document, bearing)
+        side = "outer" if sides and sides[1] == planet.shaft.component else "inner"
         u = bearing.number(f"u_coordinate_on_shaft_{side}_side")
         arms.append((planet.shaft.place(u) if u is not None else planet.y) - planet.y)
         stiffness = bearing.number("radial_stiffness") or RIGID
         compliance.append(1 / min(stiffness, RIGID))
-        if bearing.text("axial_force_absorption") != "no_direction":
+        if absorbed(bearing, notes) != "no_direction":
             axial += min(bearing.number("axial_stiffness") or RIGID, RIGID)
     matrix = np.diag(compliance)
     source = ", ".join(b.label for b in bearings)
@@ -257,13 +262,12 @@ def carried_masses(gearbox: Gearbox, stage: PlanetStage) -> Iterator[dict[str, A
     """
     origin = _carrier_start(gearbox, stage) + pins_at(gearbox, stage)
     for part in stage.carrier_parts:
-        if part.kind == "side_plate":
-            body = _plate(gearbox, part)
-        else:
-            shaft = gearbox.shafts.get(part.id)
-            body = None if shaft is None else total(section_bodies(gearbox, shaft, shaft.length / 2))
+        shaft = gearbox.shafts.get(part.id)
+        body = _plate(gearbox, part) if part.kind == "side_plate" else None
+        if shaft is not None:
+            body = total(section_bodies(gearbox, shaft, shaft.length / 2))
         if body is not None and body[0]:
-            length = part.number("length") or getattr(gearbox.shafts.get(part.id), "length", 0.0)
+            length = shaft.length if shaft is not None else part.number("length") or 0.0
             yield _mass(stage, part.label, body, _along(gearbox, part, length) - origin)
     for pin, planet in zip(stage.pins, stage.planets):
         mass, torsional, bending = total(section_bodies(gearbox, pin, pin.length / 2))
@@ -286,7 +290,11 @@ def _carrier_start(gearbox: Gearbox, stage: PlanetStage) -> float:
     """Return the place of the beginning of the carrier's scene along the first shaft, m."""
     carrier = stage.carrier
     beginning = _along(gearbox, carrier.component, 0.0)
-    return beginning + carrier.first if carrier.sign > 0 else beginning - carrier.first - carrier.length
+    return (
+        beginning + carrier.first
+        if carrier.sign > 0
+        else beginning - carrier.first - carrier.length
+    )
 
 
 def _plate(gearbox: Gearbox, plate: Component) -> tuple[float, float, float] | None:
@@ -303,7 +311,7 @@ def _plate(gearbox: Gearbox, plate: Component) -> tuple[float, float, float] | N
 def _along(gearbox: Gearbox, part: Component, length: float) -> float:
     """Return the place of the middle of a part along the first shaft, m."""
     frame = frame_of(gearbox.document, part)
-    first = next((s.frame for s in gearbox.shafts.values() if s.frame is not None), None)
+    first = gearbox.reference
     if frame is None or first is None:
         return 0.0
     # parts are placed by their beginnings
@@ -329,9 +337,9 @@ def pins_middle(gearbox: Gearbox, stage: PlanetStage) -> float:
     carrier = stage.carrier
     if stage.sun.shaft.frame is None or carrier.frame is None:
         return carrier.length / 2
-    first = next(s for s in gearbox.shafts.values() if s.frame is not None)
-    assert first.frame is not None  # it was looked for
-    start = float((carrier.frame.origin - first.frame.origin) @ first.frame.u)
+    first = gearbox.reference
+    assert first is not None  # a shaft is placed
+    start = float((carrier.frame.origin - first.origin) @ first.u)
     return carrier.place(carrier.sign * (float(gear_places(gearbox, stage.sun)[1]) - start))
 
 

@@ -108,7 +108,7 @@ def drive_of(gearbox: Gearbox, cases: list[Case]) -> Drive | None:
         for load in document.of_kind("external_load")
         if (shaft := gearbox.shaft_of(load)) is not None and shaft.component.id in joined
     ]
-    given = [pair for pair in loads if any(torque_of(c.components[pair[0].id], None) for c in cases)]
+    given = [(x, side) for x, side in loads if any(torque_in(gearbox, c, x, side) for c in cases)]
     if not given:
         notes.ask("no load of the file has a torque: write [engine], [load] and [[operation]]")
         return None
@@ -116,7 +116,7 @@ def drive_of(gearbox: Gearbox, cases: list[Case]) -> Drive | None:
     load, shaft = defining
     turns = turns_from(gearbox, shaft)
     speed = _speed_on(gearbox, cases[0], shaft)
-    torque = next(t for c in cases if (t := torque_of(c.components[load.id], None)))
+    torque = next(t for c in cases if (t := torque_in(gearbox, c, load, shaft)))
     others = [
         (other, side)
         for other, side in loads
@@ -124,13 +124,15 @@ def drive_of(gearbox: Gearbox, cases: list[Case]) -> Drive | None:
         and other.flag("transmits_torque") is not False
         and side.component.id in turns
     ]
-    brings = torque * (speed if speed else torque) * shaft.sign**2 >= 0
+    brings = torque * (speed or torque) >= 0
     if len(others) > 1:
         names = ", ".join(other.label for other, _ in others)
         notes.assume(load, f"its torque goes to {others[-1][0].label} alone, of {names}")
     if not others:
         far = _farthest(gearbox, shaft, turns)
-        notes.assume(load, f"its torque passes to {far.component.label}; the file names no other load")
+        notes.assume(
+            load, f"its torque passes to {far.component.label}; the file names no other load"
+        )
         others = [(load, far)]
     other, side = others[-1]
     engine, taker = ((load, shaft), (other, side)) if brings else ((other, side), (load, shaft))
@@ -143,12 +145,13 @@ def drive_of(gearbox: Gearbox, cases: list[Case]) -> Drive | None:
     return Drive(engine[0], taker[0], (engine[1], taker[1]), load, shaft, turns, sign)
 
 
-def torque_of(load: Component, speed: float | None) -> float | None:
-    """Return the torque of a load about its shaft, N m: as given, or of its power at a speed."""
-    torque = load.number("torque_around_u_axis")
-    power = load.number("power")
-    if torque is None and power and speed:
-        return power / speed
+def torque_in(gearbox: Gearbox, case: Case, load: Component, shaft: Shaft) -> float | None:
+    """Return the torque of a load about its shaft in a case, N m: as given, or of its power."""
+    component = case.components[load.id]
+    torque, power = component.number("torque_around_u_axis"), component.number("power")
+    if torque is None and power:
+        speed = _speed_on(gearbox, case, shaft)
+        return power / speed if speed else None
     return torque
 
 
@@ -199,7 +202,9 @@ def rotor_tables(
 ) -> dict[str, Any]:
     """Return the tables of engine and load: their inertia and couplings are no part of REXS."""
     out = {}
-    torque = max(abs(t) for c in cases if (t := torque_of(c.components[drive.torque.id], None)))
+    side = drive.torque_side
+    torques = [torque_in(gearbox, c, drive.torque, side) for c in cases]
+    torque = max(abs(t) for t in torques if t)
     here = drive.turns[drive.torque_side.component.id]
     for role, load, shaft in zip(("engine", "load"), (drive.engine, drive.load), drive.sides):
         ratio = drive.turns[shaft.component.id] / here
@@ -228,9 +233,14 @@ def rotor_tables(
 def polar_inertia(gearbox: Gearbox, shaft: Shaft) -> float:
     """Return the inertia of a shaft about its axis, kg m^2, its wheels left out."""
     density, _ = density_of(gearbox, shaft.component)
-    return density * pi / 32 * fsum(
-        section.length * (_fourth(*section.outer) - _fourth(*section.inner))
-        for section in shaft.sections
+    return (
+        density
+        * pi
+        / 32
+        * fsum(
+            section.length * (_fourth(*section.outer) - _fourth(*section.inner))
+            for section in shaft.sections
+        )
     )
 
 
@@ -249,18 +259,23 @@ def operation_tables(
     shares = [case.share for case in cases]
     duty = len(cases) > 1 and all(shares) and abs(fsum(s or 0.0 for s in shares) - 1) <= TYPED
     if any(shares) and len(cases) > 1 and not duty:
-        notes.doubt("load spectrum", f"its shares of time are {shares}, which do not sum to 1: left out")
+        notes.doubt(
+            "load spectrum", f"its shares of time are {shares}, which do not sum to 1: left out"
+        )
     for case in cases:
         speed = _speed_on(gearbox, case, side)
         load = case.components[drive.torque.id]
-        torque = torque_of(load, speed)
+        torque = torque_in(gearbox, case, drive.torque, side)
         if not torque:
             notes.drop(f"load {case.name}", "has no torque")
             continue
         first = first or torque
         table: dict[str, Any] = {"name": case.name}
-        source = f"{load.label}: torque_around_u_axis"
-        table["torque"] = Sourced(said(abs(torque) * (1 if torque * first > 0 else -1), "N*m"), source)
+        word = "torque_around_u_axis" if load.attribute("torque_around_u_axis") else "power"
+        source = f"{load.label}: {word}"
+        table["torque"] = Sourced(
+            said(abs(torque) * (1 if torque * first > 0 else -1), "N*m"), source
+        )
         if side is not drive.sides[0]:
             table["of"] = side.name
         if speed:
@@ -285,7 +300,7 @@ def _weight(gearbox: Gearbox, case: Case) -> Sourced | None:
             return None
         names = [f"direction_vector_gravity_{axis}" for axis in "uvw"]
         vector = np.array([unit.number(name) or 0.0 for name in names])
-        first = next((s.frame for s in gearbox.shafts.values() if s.frame is not None), None)
+        first = gearbox.reference
         turned = vector[[2, 0, 1]] if first is None else first.train_axes.T @ vector
         size = float(np.linalg.norm(turned))
         place = int(np.argmax(np.abs(turned)))
@@ -314,7 +329,9 @@ def _forces(gearbox: Gearbox, case: Case, ports: dict[int, str]) -> list[Any]:
         force, moment = load_vector(load, shaft)
         entry: dict[str, Any] = {"at": f"{shaft.name}.{port}"}
         entry |= {key: said(float(v), "N") for key, v in zip("xyz", force) if v}
-        entry |= {f"th{k}": said(float(moment[i]), "N*m") for i, k in ((0, "x"), (2, "z")) if moment[i]}
+        entry |= {
+            f"th{k}": said(float(moment[i]), "N*m") for i, k in ((0, "x"), (2, "z")) if moment[i]
+        }
         if len(entry) > 1:
             out.append(Sourced(entry, load.label))
     return out
@@ -342,7 +359,9 @@ def lubrication_table(gearbox: Gearbox, shaft_bearings: list[Component]) -> dict
         notes.drop("lubricants", f"all but {lubricants[0].label}: a shaft has one")
     factor = next((f for f in factors if f is not None), None)
     if factor is None:
-        notes.assume("bearings without contamination factor", 'are of "normal" cleanliness (ISO 281)')
+        notes.assume(
+            "bearings without contamination factor", 'are of "normal" cleanliness (ISO 281)'
+        )
     cleanliness = Sourced(factor if factor is not None else "normal", "contamination factor")
     return {
         "viscosity": Sourced(said(float(f"{viscosity:.6g}"), "mm^2/s", 1e-6), source),

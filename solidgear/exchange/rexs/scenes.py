@@ -145,7 +145,9 @@ def _bearings(
             "position": Sourced(mm(round((lo + hi) / 2, 12)), bearing.label),
             "seat_width": Sourced(mm(round(hi - lo, 12)), source),
         }
-        out.append((bearing, table | bearing_table(gearbox.document, bearing, shaft, y, gearbox.notes)))
+        out.append(
+            (bearing, table | bearing_table(gearbox.document, bearing, shaft, y, gearbox.notes))
+        )
     return out
 
 
@@ -180,7 +182,9 @@ def _seat_of(gearbox: Gearbox, bearing: Component, shaft: Shaft) -> float | None
 
 def _in_casing(gearbox: Gearbox, shaft: Component) -> int:
     pairs = (sides_of(gearbox.document, b) for b in gearbox.document.of_kind(*BEARINGS))
-    return sum(1 for pair in pairs if pair and shaft in pair and any(p.kind == "gear_casing" for p in pair))
+    return sum(
+        1 for pair in pairs if pair and shaft in pair and any(p.kind == "gear_casing" for p in pair)
+    )
 
 
 def _ports(
@@ -225,9 +229,7 @@ def _ports(
     return ports, loads
 
 
-def _port(
-    shaft: Shaft, name: str, part: Component, y: float, width: float
-) -> dict[str, Any]:
+def _port(shaft: Shaft, name: str, part: Component, y: float, width: float) -> dict[str, Any]:
     span = shaft.span(y, width)
     if span is None or not -1e-6 <= y <= shaft.length + 1e-6:
         raise RexsError(
@@ -244,7 +246,8 @@ def _port(
 
 def _masses(gearbox: Gearbox, shaft: Shaft) -> list[dict[str, Any]]:
     """Return additional masses of a shaft."""
-    out = []
+    out: list[dict[str, Any]] = []
+    names: list[str] = []
     for mass in gearbox.document.parts_of(shaft.component, "additional_mass"):
         size, u = mass.number("mass_of_component"), mass.number("u_coordinate_on_shaft")
         seat = None if u is None else shaft.seat(shaft.place(u), mass.number("length") or 0.01)
@@ -252,9 +255,10 @@ def _masses(gearbox: Gearbox, shaft: Shaft) -> list[dict[str, Any]]:
             gearbox.notes.drop(mass, "has no mass_of_component, or lies off its shaft")
             continue
         inertia = [mass.number(f"moment_of_inertia_{axis}_axis") or 0.0 for axis in "wuv"]
+        names.append(plain_name(mass.name, names, f"mass_{mass.id}"))
         out.append(
             {
-                "name": plain_name(mass.name, [m["name"] for m in out], f"mass_{mass.id}"),
+                "name": names[-1],
                 "mass": Sourced(said(size, "kg"), f"{mass.label}: mass_of_component"),
                 "inertia": [said(v, "kg*m^2") for v in inertia],
                 "position": mm(round((seat[0] + seat[1]) / 2, 12)),
