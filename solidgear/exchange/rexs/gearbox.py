@@ -147,7 +147,7 @@ def _add_shafts(gearbox: Gearbox) -> None:
     document, notes = gearbox.document, gearbox.notes
     shafts = document.of_kind("shaft")
     if not shafts:
-        raise RexsError("holds no shaft")
+        raise RexsError("holds no component of the type shaft, and no gearbox")
     frames = {shaft.id: frame_of(document, shaft) for shaft in shafts}
     placed = [shaft for shaft in shafts if frames[shaft.id] is not None]
     # that of a shaft with gears, for worms and others may stand at any angle to the train

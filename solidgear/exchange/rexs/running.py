@@ -376,7 +376,7 @@ def viscosity_at(temperature: float, cold: float, hot: float) -> float:
     Examples
     --------
     >>> round(1e6 * viscosity_at(40.0, 1e-4, 1.1e-5), 6), round(1e6 * viscosity_at(70.0, 1e-4, 1.1e-5), 1)
-    (100.0, 27.6)
+    (100.0, 27.0)
     """
 
     def height(viscosity: float) -> float:
