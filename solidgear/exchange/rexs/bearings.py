@@ -11,7 +11,6 @@ from solidgear.bearings.designation import Boundary, boundary
 from solidgear.core import SceneError
 from solidgear.core.scene.bearing_stiffness import stiffness_entries
 from solidgear.core.scene.support import RIGID
-from solidgear.core.scene.units import TYPED
 from solidgear.exchange.rexs.commented import Sourced, deg, mm, said
 from solidgear.exchange.rexs.document import Component, Document
 from solidgear.exchange.rexs.notes import Notes
@@ -34,6 +33,8 @@ KINDS = {
 ONE_WAY, FLOATING = ("angular_contact", "tapered", "thrust_ball"), ("cylindrical", "needle")
 BALLS = ("deep_groove", "angular_contact", "thrust_ball")
 BOTH_WAYS = "holds the shaft both ways along its axis, where the file says one way"
+#: relative difference of sizes that are the same
+SAME = 1e-3
 #: width over bore of a bearing whose width nothing says: of ISO 15, series 02, 0.6 at 25 mm and 0.34
 #: at 100 mm
 USUAL_WIDTH = 0.4
@@ -97,7 +98,7 @@ def width_of(bearing: Component, shaft: Shaft, y: float, notes: Notes) -> tuple[
     standard, designation = standard_of(bearing)
     if standard is not None:
         return standard.width, f"width of {designation}"
-    seat = shaft.seat(y, TYPED * shaft.length)
+    seat = shaft.seat(y, shaft.length / 1000)
     width = USUAL_WIDTH * shaft.mean_outer(*(seat or (0.0, shaft.length)))
     notes.assume(bearing, f"as wide as {USUAL_WIDTH:g} of the shaft's diameter")
     return width, f"assumed: {USUAL_WIDTH:g} of the diameter"
@@ -231,7 +232,7 @@ def _catalogue(
 
 def _fits(standard: Boundary, sizes: list[float | None]) -> bool:
     pairs = zip(sizes, (standard.bore, standard.outer_diameter, standard.width))
-    return all(size is None or abs(size - due) <= TYPED * due for size, due in pairs)
+    return all(size is None or abs(size - due) <= SAME * due for size, due in pairs)
 
 
 def _clearance(bearing: Component, kind: str, notes: Notes) -> dict[str, Any]:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from solidgear.core import SolidgearError
-from solidgear.core.machine.whole_file import whole_or_refused
+from solidgear.core import SolidgearError, whole
 from solidgear.exchange.rexs.document import RexsError
 from solidgear.exchange.rexs.importing import Imported, imported, name_of
 from solidgear.exchange.rexs.reading import read
@@ -34,15 +35,27 @@ def import_file(
             raise SolidgearError(
                 f"{path}: there is such a file already; give another --out, or --force"
             )
-    for path, text in paths.items():
-        with whole_or_refused(path) as partial:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            partial.write_text(text, encoding="utf-8")
+    _write(paths)
     first = next(iter(paths))
     _report(gearbox, first)
     if (problem := _problem(first, gearbox)) is not None:
         typer.echo(f"solidgear: {problem}", err=True)
         raise typer.Exit(NOT_REACHED)
+
+
+def _write(texts: Mapping[Path, str]) -> None:
+    """Write all files or none."""
+    try:
+        with ExitStack() as stack:
+            for path, text in texts.items():
+                path.parent.mkdir(parents=True, exist_ok=True)
+                stack.enter_context(whole(path)).write_text(text, encoding="utf-8")
+    except OSError as error:
+        reason = error.strerror or error
+        folder = next(iter(texts)).parent
+        raise SolidgearError(
+            f"{folder}: cannot be written ({reason}); name a folder you may write"
+        ) from error
 
 
 def _report(gearbox: Imported, first: Path) -> None:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from math import atan2, hypot, pi, radians
+from dataclasses import dataclass
+from math import atan2, cos, hypot, pi, radians
 from typing import Any
 
 import numpy as np
 
-from solidgear.core.gears.wheel import Rack, Wheel
 from solidgear.exchange.rexs.commented import Sourced, deg, mm, said
 from solidgear.exchange.rexs.document import Component, Document, RexsError
 from solidgear.exchange.rexs.gearbox import NEAR, SHARE, Gearbox, GearOnShaft, PairStage
@@ -91,19 +91,30 @@ def _module(gear: Component) -> float:
     return module
 
 
-def wheel_of(gearbox: Gearbox, gear: Component) -> Wheel:
-    """Return the teeth of a gear with the usual rack."""
-    helix = abs(gear.number("helix_angle_reference_diameter") or 0.0)
-    return Wheel(_teeth(gear), _module(gear), helix, shift_of(gearbox, gear), Rack())
+@dataclass(frozen=True)
+class Circles:
+    """Radii of a gear that the basic rack of ISO 53 cuts, m."""
+
+    radius: float  #: of the reference circle
+    tip: float
+    root: float
+
+
+def circles_of(gearbox: Gearbox, gear: Component) -> Circles:
+    """Return the radii of a gear."""
+    module, shift = _module(gear), shift_of(gearbox, gear)
+    helix = gear.number("helix_angle_reference_diameter") or 0.0
+    radius = module * _teeth(gear) / (2 * cos(helix))
+    return Circles(radius, radius + module * (1 + shift), radius - module * (1.25 - shift))
 
 
 def _tips(gearbox: Gearbox, gear: Component) -> dict[str, Any]:
     tip = gear.number("tip_diameter")
     if not tip:
         return {}
-    wheel = wheel_of(gearbox, gear)
+    wheel = circles_of(gearbox, gear)
     # the thinnest and the thickest teeth that a rack of any standard gives
-    low, high = 2 * wheel.root, 2 * (wheel.tip + wheel.module)
+    low, high = 2 * wheel.root, 2 * (wheel.tip + _module(gear))
     if not low < tip < high:
         gearbox.notes.doubt(
             gear,
@@ -181,7 +192,7 @@ def _head(gearbox: Gearbox, gear: GearOnShaft) -> dict[str, Any]:
     width = component.number("face_width")
     if not width:
         return {}
-    wheel = wheel_of(gearbox, component)
+    wheel = circles_of(gearbox, component)
     outer = wheel.tip + wheel.root
     lo, hi = gear.y - width / 2, gear.y + width / 2
     inner = max(shaft.mean_outer(lo, hi), component.number("inner_diameter") or 0.0)

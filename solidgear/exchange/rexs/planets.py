@@ -23,13 +23,13 @@ from solidgear.exchange.rexs.gearbox import (
 )
 from solidgear.exchange.rexs.gears import (
     USUAL_PRESSURE_ANGLE,
+    circles_of,
     flank_number,
     gear_places,
     mesh_stiffness,
     ring_inertia,
     shift_of,
     teeth_of,
-    wheel_of,
 )
 from solidgear.exchange.rexs.materials import STEEL, density_of, material_of
 from solidgear.exchange.rexs.pins import clamped_compliance, on_middle
@@ -76,7 +76,7 @@ def stage_table(gearbox: Gearbox, stage: PlanetStage, has_torque: bool) -> dict[
     mesh["pressure_angle"] = Sourced(deg(angle), source)
     table["mesh"] = mesh
     distance = stage.stages[0].number("center_distance")
-    due = wheel_of(gearbox, stage.sun.component).radius + wheel_of(gearbox, first).radius
+    due = circles_of(gearbox, stage.sun.component).radius + circles_of(gearbox, first).radius
     if distance and abs(distance - due) > SHARE * due:
         notes.doubt(
             stage.stages[0],
@@ -135,7 +135,7 @@ def _planet_mass(gearbox: Gearbox, stage: PlanetStage) -> dict[str, Any]:
     planet = stage.planets[0]
     gear, shaft = planet.component, planet.shaft
     width = gear.number("face_width") or shaft.length
-    wheel = wheel_of(gearbox, gear)
+    wheel = circles_of(gearbox, gear)
     density, source = density_of(gearbox, gear, shaft.component)
     inner = shaft.mean_outer(planet.y - width / 2, planet.y + width / 2)
     bodies = [(*ring_inertia(wheel.tip + wheel.root, inner, width, density), 0.0)]
@@ -271,7 +271,7 @@ def carried_masses(gearbox: Gearbox, stage: PlanetStage) -> Iterator[dict[str, A
             yield _mass(stage, part.label, body, _along(gearbox, part, length) - origin)
     for pin, planet in zip(stage.pins, stage.planets):
         mass, torsional, bending = total(section_bodies(gearbox, pin, pin.length / 2))
-        wheels = [wheel_of(gearbox, g.component) for g in (stage.sun, planet)]
+        wheels = [circles_of(gearbox, g.component) for g in (stage.sun, planet)]
         radius = wheels[0].radius + wheels[1].radius
         count = len(stage.pins)
         whole = (

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.core.scene.units import TYPED
 from solidgear.exchange.rexs.commented import Sourced, said
 from solidgear.exchange.rexs.document import Component
 from solidgear.exchange.rexs.gearbox import Gearbox, PairStage, PlanetStage
@@ -19,6 +18,8 @@ from solidgear.exchange.rexs.shafts import Shaft
 
 #: twist of an elastic coupling under the torque that it is chosen for, rad (DIN 740: some degrees)
 TWIST = radians(3.0)
+#: difference of a sum of shares from 1 that their digits leave
+ROUNDED = 1e-3
 #: of unit vectors: a direction along an axis
 ALONG = 1 - 1e-6
 
@@ -257,7 +258,7 @@ def operation_tables(
     side = drive.torque_side
     first = None
     shares = [case.share for case in cases]
-    duty = len(cases) > 1 and all(shares) and abs(fsum(s or 0.0 for s in shares) - 1) <= TYPED
+    duty = len(cases) > 1 and all(shares) and abs(fsum(s or 0.0 for s in shares) - 1) <= ROUNDED
     if any(shares) and len(cases) > 1 and not duty:
         notes.doubt(
             "load spectrum", f"its shares of time are {shares}, which do not sum to 1: left out"
