@@ -397,3 +397,19 @@ def test_trains_answer_without_a_hand_on_them(box, tmp_path):
     for name in ("check", "system-modes", "deflect", "contact"):
         run = CliRunner().invoke(app, ["-q", name, path], catch_exceptions=False)
         assert run.exit_code in (0, 3), run.output
+
+
+def test_a_shaft_behind_a_coupling_is_the_inertia_of_the_engine(tmp_path):
+    box = helical()
+    box.relations = [r for r in box.relations if ("part", 40) not in r[1]]
+    box.add(6, "shaft", "motor", **box.place((-100, 0, 0)))
+    box.sections(6, 600, (100, 40, 40, 0))
+    box.relate("assembly", assembly=6, part=40)
+    box.add(60, "coupling", "claw", rotational_stiffness=(4e6, "N mm / rad"),
+            u_coordinate_on_shaft_inner_side=(100, "mm"), u_coordinate_on_shaft_outer_side=(0, "mm"))  # fmt: skip
+    box.relate("side", assembly=60, inner_part=6, outer_part=3)
+    train = sg.load_train(written(box, tmp_path))
+    assert train.engine.shaft == "input" and train.engine.spring.at == "claw"
+    assert train.engine.spring.stiffness == pytest.approx(4e3)
+    assert train.engine.inertia == pytest.approx(7850 * np.pi / 32 * 0.04**4 * 0.1, rel=1e-3)
+    assert "motor" not in train.shafts and train.operation[0].torque == 120.0

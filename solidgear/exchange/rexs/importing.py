@@ -9,18 +9,12 @@ from typing import Any
 
 from solidgear.exchange.rexs.commented import plain, toml_of, wrapped
 from solidgear.exchange.rexs.document import Component, Document
+from solidgear.exchange.rexs.drive import cases_of, coupled_to, drive_of, ordered, turns_from
 from solidgear.exchange.rexs.gearbox import Gearbox, couplings_of, gearbox_of
 from solidgear.exchange.rexs.gears import gear_table, mesh_table
 from solidgear.exchange.rexs.notes import Notes, unread
 from solidgear.exchange.rexs.planets import stage_table
-from solidgear.exchange.rexs.running import (
-    cases_of,
-    drive_of,
-    operation_tables,
-    ordered,
-    rotor_tables,
-    turns_from,
-)
+from solidgear.exchange.rexs.running import operation_tables, rotor_tables
 from solidgear.exchange.rexs.scenes import scene_table
 from solidgear.exchange.rexs.shafts import Shaft, plain_name
 
@@ -152,6 +146,10 @@ def _inside(gearbox: Gearbox, group: Collection[int]) -> set[int]:
         inside |= {planet.shaft.component.id for planet in stage.planets}
         ring = gearbox.document.whole_of(stage.ring, "shaft")
         inside |= {ring.id} if ring is not None else set()
+    for number, shaft in gearbox.shafts.items():
+        loads = gearbox.document.parts_of(shaft.component, "external_load")
+        if number not in inside and loads and coupled_to(gearbox, shaft, {*group}) is not None:
+            inside.add(number)
     return inside
 
 
@@ -180,10 +178,16 @@ def _head(notes: Notes) -> list[str]:
 def _facts(gearbox: Gearbox, shafts: Collection[Shaft]) -> tuple[str, ...]:
     sections = sum(len(shaft.sections) for shaft in shafts)
     gears = {g.component.id for stage in gearbox.pairs for g in stage.gears}
-    counts = f"{len(shafts)} shafts of {sections} sections, {len(gearbox.pairs)} cylindrical stages"
-    if gearbox.planetary:
-        counts += f", {len(gearbox.planetary)} planetary"
-    return (f"{counts}, {len(gears)} gears of pairs",)
+    facts = [f"{len(shafts)} shafts of {sections} sections"]
+    if gears:
+        stages = (
+            "1 cylindrical stage"
+            if len(gearbox.pairs) == 1
+            else f"{len(gearbox.pairs)} cylindrical stages"
+        )
+        facts.append(f"{stages} of {len(gears)} gears")
+    facts += [f"planetary stage of {len(stage.planets)} planets" for stage in gearbox.planetary]
+    return (", ".join(facts),)
 
 
 def name_of(path: Path) -> str:

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections import deque
-from dataclasses import dataclass
 from math import exp, fsum, log, pi, radians
 from typing import Any
 
 import numpy as np
 
+from solidgear.exchange.rexs.bearings import RIGID_TURN
 from solidgear.exchange.rexs.commented import Sourced, said
 from solidgear.exchange.rexs.document import Component
-from solidgear.exchange.rexs.gearbox import Gearbox, PairStage, PlanetStage
-from solidgear.exchange.rexs.gears import ratio_of, teeth_of
+from solidgear.exchange.rexs.drive import Case, Drive, cases_of, speed_on, torque_in
+from solidgear.exchange.rexs.gearbox import Gearbox, PlanetStage
 from solidgear.exchange.rexs.materials import density_of
 from solidgear.exchange.rexs.shafts import Shaft
 
@@ -22,180 +21,6 @@ TWIST = radians(3.0)
 ROUNDED = 1e-3
 #: of unit vectors: a direction along an axis
 ALONG = 1 - 1e-6
-
-
-@dataclass(frozen=True)
-class Case:
-    """A load case: the components as they are in it."""
-
-    name: str
-    share: float | None
-    components: dict[int, Component]
-
-
-@dataclass(frozen=True)
-class Drive:
-    """Which loads of a file bring torque and take it."""
-
-    engine: Component
-    load: Component
-    sides: tuple[Shaft, Shaft]
-    torque: Component  #: the load whose torque the file gives
-    torque_side: Shaft
-    turns: dict[int, float]  #: of every shaft in one of the engine's, by the number of the shaft
-    engine_sign: float  #: of the torque of the engine in the first case, about y
-
-
-def cases_of(gearbox: Gearbox) -> list[Case]:
-    """Return the load cases, or the values of the components themselves as one."""
-    document = gearbox.document
-    out = []
-    for spectrum in document.spectra:
-        for case in spectrum.cases:
-            components = dict(document.components)
-            for component in case.components:
-                base = document.components[component.id]
-                components[component.id] = base.with_attributes(component.attributes)
-            share = _share(components)
-            name = f"case {case.id}"
-            if len(document.spectra) > 1:
-                name = f"spectrum {spectrum.id} {name}"
-            out.append(Case(name, share, components))
-    return out or [Case("as given", None, dict(document.components))]
-
-
-def _share(components: dict[int, Component]) -> float | None:
-    units = [c for c in components.values() if c.kind == "gear_unit"]
-    return units[0].number("operating_time_fraction") if units else None
-
-
-def turns_from(gearbox: Gearbox, first: Shaft) -> dict[int, float]:
-    """Return the turns of every shaft that teeth lead to, in one of the first, with their way, by the
-    number of the shaft.
-    """
-    turns, queue = {first.component.id: 1.0}, deque([first])
-    while queue:
-        shaft = queue.popleft()
-        here = turns[shaft.component.id]
-        for other, ratio in _mates(gearbox, shaft):
-            if other.component.id not in turns:
-                turns[other.component.id] = here / ratio
-                queue.append(other)
-    return turns
-
-
-def _mates(gearbox: Gearbox, shaft: Shaft) -> list[tuple[Shaft, float]]:
-    """Return the shafts that teeth join to one, each with turns of this in one of that."""
-    out = []
-    for stage in gearbox.pairs:
-        for here, there in (stage.gears, stage.gears[::-1]):
-            if here.shaft is shaft:
-                out.append((there.shaft, -ratio_of(here, there)))
-    for planets in gearbox.planetary:
-        ratio = 1 + teeth_of(planets.ring) / teeth_of(planets.sun.component)
-        if planets.sun.shaft is shaft:
-            out.append((planets.carrier, ratio))
-        if planets.carrier is shaft:
-            out.append((planets.sun.shaft, 1 / ratio))
-    return out
-
-
-def drive_of(gearbox: Gearbox, cases: list[Case]) -> Drive | None:
-    """Return where torque comes in and goes out; None where the file gives no torque."""
-    document, notes, first = gearbox.document, gearbox.notes, cases[0].components
-    joined = {s.component.id for pair in gearbox.joined for s in pair}
-    loads = [
-        (first[load.id], shaft)
-        for load in document.of_kind("external_load")
-        if (shaft := gearbox.shaft_of(load)) is not None and shaft.component.id in joined
-    ]
-    given = [(x, side) for x, side in loads if any(torque_in(gearbox, c, x, side) for c in cases)]
-    if not given:
-        notes.ask("no load of the file has a torque: write [engine], [load] and [[operation]]")
-        return None
-    defining = next((pair for pair in given if pair[0].flag("defines_torque")), given[0])
-    load, shaft = defining
-    turns = turns_from(gearbox, shaft)
-    speed = _speed_on(gearbox, cases[0], shaft)
-    torque = next(t for c in cases if (t := torque_in(gearbox, c, load, shaft)))
-    others = [
-        (other, side)
-        for other, side in loads
-        if side is not shaft
-        and other.flag("transmits_torque") is not False
-        and side.component.id in turns
-    ]
-    brings = torque * (speed or torque) >= 0
-    if len(others) > 1:
-        names = ", ".join(other.label for other, _ in others)
-        notes.assume(load, f"its torque goes to {others[-1][0].label} alone, of {names}")
-    if not others:
-        far = _farthest(gearbox, shaft, turns)
-        notes.assume(
-            load, f"its torque passes to {far.component.label}; the file names no other load"
-        )
-        others = [(load, far)]
-    other, side = others[-1]
-    engine, taker = ((load, shaft), (other, side)) if brings else ((other, side), (load, shaft))
-    scale = turns[engine[1].component.id]
-    turns = {number: turn / scale for number, turn in turns.items()}
-    sign = float(np.sign(torque)) * shaft.sign
-    if not brings:
-        # the engine turns its shaft, and its torque is about the way in which it turns
-        sign = -sign * float(np.sign(turns[shaft.component.id]))
-    return Drive(engine[0], taker[0], (engine[1], taker[1]), load, shaft, turns, sign)
-
-
-def torque_in(gearbox: Gearbox, case: Case, load: Component, shaft: Shaft) -> float | None:
-    """Return the torque of a load about its shaft in a case, N m: as given, or of its power."""
-    component = case.components[load.id]
-    torque, power = component.number("torque_around_u_axis"), component.number("power")
-    if torque is None and power:
-        speed = _speed_on(gearbox, case, shaft)
-        return power / speed if speed else None
-    return torque
-
-
-def _speed_on(gearbox: Gearbox, case: Case, shaft: Shaft) -> float | None:
-    """Return the speed of a shaft, rad/s, from any shaft whose speed the file gives."""
-    turns = turns_from(gearbox, shaft)
-    shafts = [case.components[n] for n in turns]
-    shafts.sort(key=lambda s: not s.flag("defines_speed"))
-    for other in shafts:
-        speed = other.number("rotational_speed")
-        if speed:
-            return speed / turns[other.id]
-    return None
-
-
-def _farthest(gearbox: Gearbox, shaft: Shaft, turns: dict[int, float]) -> Shaft:
-    """Return the shaft that turns most unlike another."""
-    others = [n for n in turns if n != shaft.component.id]
-    return gearbox.shafts[max(others, key=lambda n: abs(log(abs(turns[n]))))]
-
-
-def ordered(gearbox: Gearbox, drive: Drive | None) -> list[tuple[PairStage, str]]:
-    """Return the pairs with the gear first that is nearer to the engine, each with the flank that it
-    drives with, from the engine on.
-    """
-    joined = gearbox.joined
-    start = drive.sides[0] if drive is not None else joined[0][0]
-    order = list(turns_from(gearbox, start))
-    out = []
-    for stage in gearbox.pairs:
-        gears = sorted(stage.gears, key=lambda g: _index(order, g.shaft.component.id))
-        flank = ""
-        if drive is not None and gears[0].shaft.component.id in drive.turns:
-            way = drive.engine_sign * drive.turns[gears[0].shaft.component.id]
-            # seen from the start of a shaft a right flank leads where it turns about +y
-            flank = "right" if way > 0 else "left"
-        ends = PairStage(stage.name, stage.component, (gears[0], gears[1]))
-        out.append((_index(order, gears[0].shaft.component.id), ends, flank))
-    return [(stage, flank) for _, stage, flank in sorted(out, key=lambda row: row[0])]
-
-
-def _index(order: list[int], number: int) -> int:
-    return order.index(number) if number in order else len(order)
 
 
 def rotor_tables(
@@ -209,20 +34,36 @@ def rotor_tables(
     here = drive.turns[drive.torque_side.component.id]
     for role, load, shaft in zip(("engine", "load"), (drive.engine, drive.load), drive.sides):
         ratio = drive.turns[shaft.component.id] / here
-        port = ports.get(load.id) if gearbox.shaft_of(load) is shaft else None
+        behind = drive.coupled.get(load.id)
+        is_here = behind is not None or gearbox.shaft_of(load) is shaft
+        port = ports.get(load.id) if is_here else None
         port = port or next(g.name for g in gearbox.gears.values() if g.shaft is shaft)
-        stiffness = said(float(f"{torque / abs(ratio) / TWIST:.4g}"), "N*m/rad")
-        inertia = said(float(f"{polar_inertia(gearbox, shaft):.4g}"), "kg*m^2")
+        stiffness, source = torque / abs(ratio) / TWIST, "assumed: twists by 3 deg under the torque"
+        rotor, rotor_source = shaft, "assumed: as that of its shaft"
+        if behind is not None:
+            rotor, rotor_source = behind.shaft, f"of {behind.shaft.component.label}"
+            if given := behind.coupling.number("rotational_stiffness"):
+                stiffness = min(given, RIGID_TURN)
+                source = f"{behind.coupling.label}: rotational_stiffness"
+        inertia = said(float(f"{polar_inertia(gearbox, rotor):.4g}"), "kg*m^2")
         out[role] = {
             "shaft": Sourced(shaft.name, load.label),
-            "inertia": Sourced(inertia, "assumed: as that of its shaft"),
+            "inertia": Sourced(inertia, rotor_source),
             "status": "assumed",
             "spring": {
-                "stiffness": Sourced(stiffness, "assumed: twists by 3 deg under the torque"),
-                "at": Sourced(port, load.label),
+                "stiffness": Sourced(said(float(f"{stiffness:.4g}"), "N*m/rad"), source),
+                "at": Sourced(port, load.label if behind is None else behind.coupling.label),
                 "status": "assumed",
             },
         }
+        if behind is not None:
+            gearbox.notes.assume(
+                behind.shaft.component,
+                f"is the inertia of the {role}, behind its coupling; it bends nothing, and its machine "
+                "adds none",
+            )
+    if {drive.engine.id, drive.load.id} <= {*drive.coupled}:
+        return out
     gearbox.notes.ask(
         "inertia and coupling of the machines at both ends, which set the lowest torsional modes: "
         "[engine] and [load] are assumed, each as heavy as its shaft, behind a coupling that twists by "
@@ -264,7 +105,7 @@ def operation_tables(
             "load spectrum", f"its shares of time are {shares}, which do not sum to 1: left out"
         )
     for case in cases:
-        speed = _speed_on(gearbox, case, side)
+        speed = speed_on(gearbox, case, side)
         load = case.components[drive.torque.id]
         torque = torque_in(gearbox, case, drive.torque, side)
         if not torque:

@@ -9,10 +9,11 @@ import numpy as np
 from solidgear.exchange.rexs.bearings import bearing_table, width_of
 from solidgear.exchange.rexs.commented import Sourced, mm, said
 from solidgear.exchange.rexs.document import Component, RexsError
+from solidgear.exchange.rexs.drive import Case, Drive
 from solidgear.exchange.rexs.gearbox import Gearbox, sides_of
 from solidgear.exchange.rexs.materials import material_table
 from solidgear.exchange.rexs.planets import carried_masses, pins_at, pins_middle, point_of
-from solidgear.exchange.rexs.running import Case, Drive, load_vector, lubrication_table, planets_of
+from solidgear.exchange.rexs.running import load_vector, lubrication_table, planets_of
 from solidgear.exchange.rexs.shafts import Section, Shaft, plain_name
 
 #: pieces that stand for a conical bore; each has its volume
@@ -224,6 +225,18 @@ def _ports(
             width = load.number("width_of_external_load") or shaft.length / 20
             ports.append(_port(shaft, name, load, shaft.place(u), width))
         loads[load.id] = name
+    for number, behind in () if drive is None else drive.coupled.items():
+        if behind.inside is not shaft:
+            continue
+        sides = sides_of(gearbox.document, behind.coupling)
+        side = "inner" if sides and sides[0] == shaft.component else "outer"
+        u = behind.coupling.number(f"u_coordinate_on_shaft_{side}_side")
+        if u is None:
+            raise behind.coupling.wrong(f"u_coordinate_on_shaft_{side}_side", "is missing")
+        name = plain_name(behind.coupling.name, names, f"coupling_{behind.coupling.id}")
+        names.append(name)
+        ports.append(_port(shaft, name, behind.coupling, shaft.place(u), shaft.length / 20))
+        loads[number] = name
     if not ports:
         ports.append(_port(shaft, "middle", shaft.component, shaft.length / 2, shaft.length / 10))
     return ports, loads
