@@ -1,6 +1,7 @@
 """Gearboxes in REXS as trains: small ones of our own, whose numbers are known."""
 
 import tomllib
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from solidgear.exchange.rexs.importing import imported
 from solidgear.exchange.rexs.notes import Notes
 from solidgear.exchange.rexs.pins import clamped_compliance
 from solidgear.exchange.rexs.reading import document_of
+from solidgear.trains.load.contact import contact
 from validation import rexs_files
 
 
@@ -413,3 +415,38 @@ def test_a_shaft_behind_a_coupling_is_the_inertia_of_the_engine(tmp_path):
     assert train.engine.spring.stiffness == pytest.approx(4e3)
     assert train.engine.inertia == pytest.approx(7850 * np.pi / 32 * 0.04**4 * 0.1, rel=1e-3)
     assert "motor" not in train.shafts and train.operation[0].torque == 120.0
+
+
+def test_spur_planets_leave_axial_motion_unmoved(tmp_path):
+    """No mode of a spur stage moves its shafts along their axes: their error bars are those of the
+    harmonics that move.
+    """
+    no_torque = ('id="power" unit="kW">20<', 'id="note" unit="none">20<')
+    train = sg.load_train(written(spoiled(no_torque, box=planetary), tmp_path))
+    assert not train.operation and train.stages[0].table.mesh.sun_stiffness == 6e8  # 20 N/(mm um)
+    solved = sg.system_modes(tmp_path / "train.toml")
+    assert solved.frequency_hz[0] == 0.0 and len(solved.frequency_hz) > 3
+
+
+def test_teeth_with_profile_shift_touch_beyond_the_pitch_circle(tmp_path):
+    """A point between the pitch circle and the tips, on a shaft that is thinner than both."""
+    pair = sg.load_train(written(helical(), tmp_path)).pairs[0]
+    wheel = pair.pinion
+    pitch, tip = 0.1 * 23 / 76, 2.5e-3 * (23 / (2 * np.cos(wheel.helix_angle)) + 1.2)
+    touched = contact(replace(pair, mesh=pair.mesh.with_changes(stiffness=2e8, azimuth=0.0))).pinion
+    for way, is_on in ((0.3, True), (1.3, False)):
+        # along the line of action from the pitch point, as far as a share of the way to the tips
+        step = way * np.sqrt(tip**2 - pitch**2)
+        point = max(
+            (touched.point + sign * step * touched.normal for sign in (1, -1)),
+            key=lambda place: np.hypot(place[0], place[2]),
+        )
+        assert (pitch < np.hypot(point[0], point[2]) < tip) == is_on
+        line = {"line_of_action": tuple(touched.normal), "point": tuple(point)}
+        line |= {"stiffness": 2e8, "pressure_angle": None, "azimuth": 0.0}
+        mesh = pair.mesh.with_changes(**line)
+        if is_on:
+            assert contact(replace(pair, mesh=mesh)).pinion.point == pytest.approx(point)
+            continue
+        with pytest.raises(SolidgearError, match="from the axis"):
+            contact(replace(pair, mesh=mesh))
