@@ -31,6 +31,7 @@ from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.planetary import PlanetMesh, PlanetMeshes, Stage
 from solidgear.trains.file.tables import TEETH, ErrorTable, Mesh
+from solidgear.trains.file.tip_rules import tip_problems
 from solidgear.trains.file.train import Train
 from solidgear.trains.load.contact import axes_of, other_flank
 
@@ -119,6 +120,11 @@ def teeth_of(mesh: Pair | PlanetMesh, coast: bool) -> MeshTeeth:
         )
     if not teeth.wheels.contact_ratio > 0:
         raise SceneError("has tips that do not reach each other", path=path)
+    cutting = tip_problems(mesh, teeth.wheels, solved=True)
+    if isinstance(mesh, Pair):
+        cutting = mesh.with_file_paths(cutting)
+    for problem in cutting:
+        raise problem if isinstance(mesh, Pair) else problem.located(None, prefix=path)
     return teeth
 
 
