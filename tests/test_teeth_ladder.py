@@ -10,6 +10,7 @@ import solidgear as sg
 from solidgear.core import WITHIN
 from solidgear.teeth.bars import error_bars, numbers_of
 from solidgear.teeth.contact.cycle import mesh_cycle
+from solidgear.teeth.contact.frame import Frame
 from solidgear.teeth.ladder import ERROR, FACE, NORM, SOLID, STIFFNESS, energy_share, ladder
 from solidgear.teeth.supports import Carried, with_sections
 from solidgear.teeth.train_teeth import TeethModel, mesh_contact, teeth_of, toothed
@@ -102,7 +103,7 @@ def test_error_bars_hold_against_finer_slices_and_cells(carried):
         ),
     )
     place = carried.place(mesh, teeth)
-    supports = carried.supports(place, place.frame(teeth))
+    supports = carried.supports(place, Frame.of(place, teeth))
     base = teeth.wheels.first.base
     cycle = mesh_cycle(finer, contact.cycle.torque, base, 64, supports, 16)
     found = numbers_of(replace(contact, pair=finer, cycle=cycle))

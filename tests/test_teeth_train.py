@@ -10,6 +10,7 @@ import pytest
 import solidgear as sg
 from solidgear.core import SceneError, SolidgearError
 from solidgear.show.units import ENGINEERING
+from solidgear.teeth.contact.frame import Frame
 from solidgear.teeth.sheet import contact_sheet
 from solidgear.teeth.study import teeth_study
 from solidgear.teeth.supports import Carried, with_sections
@@ -70,7 +71,7 @@ def test_the_force_on_the_cells_is_along_the_line_of_action_of_the_train(name):
             teeth = teeth_of(pair, point.coast)
             place = carried.place(pair, teeth)
             helix = teeth.wheels.base_helix
-            normal = place.frame(teeth).axes @ [-np.cos(helix), 0, np.sin(helix)]
+            normal = Frame.of(place, teeth).axes @ [-np.cos(helix), 0, np.sin(helix)]
             assert normal == pytest.approx(place.normal, abs=1e-9)
 
 
@@ -91,7 +92,7 @@ def test_planets_touch_where_their_meshes_push():
         for mesh in stage.meshes:
             teeth = teeth_of(mesh, carried.coast(mesh))
             place = carried.place(mesh, teeth)
-            frame = place.frame(teeth)
+            frame = Frame.of(place, teeth)
             # the pitch point lies on the line of centres, the line of action leans by 20 degrees
             first = carried.system.port(place.ends[0]).point
             outward = place.pitch_point - first
@@ -121,7 +122,7 @@ def test_deflection_under_the_load_is_that_of_the_train(contact, carried):
     pair = carried.train.pairs[0]
     teeth = teeth_of(pair, False)
     place = carried.place(pair, teeth)
-    supports = carried.supports(place, place.frame(teeth))
+    supports = carried.supports(place, Frame.of(place, teeth))
     wheel = supports.motion[-6:]  # a rigid wheel: its section is the lumped point
     count = len(supports.motion)
     force = carried.force(place)

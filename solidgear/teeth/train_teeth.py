@@ -21,6 +21,7 @@ from solidgear.teeth.compliance.slices import SPREAD, Slices
 from solidgear.teeth.compliance.solid import SolidTeeth
 from solidgear.teeth.contact.cycle import POSITIONS, harmonics, mesh_cycle
 from solidgear.teeth.contact.cylindrical import CylindricalPair
+from solidgear.teeth.contact.frame import Frame
 from solidgear.teeth.contact.local import Elasticity, LineContact
 from solidgear.teeth.mesh_contact import ORDERS, MeshContact
 from solidgear.teeth.supports import Carried, with_sections
@@ -162,9 +163,8 @@ def _gears(mesh: Pair | PlanetMesh) -> list[tuple[Scene | None, bool]]:
 
 
 def _material(scene: Scene) -> Elasticity:
-    y = scene.port.y
-    segment = next((s for s in scene.segments if s.y0 <= y <= s.y1), None)
-    material = scene.material if segment is None else segment.material
+    segments = scene.segments_at(scene.port.y)
+    material = segments[0].material if segments else scene.material
     return Elasticity(material.E, material.nu)
 
 
@@ -173,8 +173,8 @@ def _hold(scene: Scene, wheel: Wheel, rigid: bool) -> float | None:
     part of its shaft, or none where it is solid.
     """
     y = scene.port.y
-    segments = [s for s in scene.segments if s.y0 <= y <= s.y1]
-    inner, outer = (max(values) for values in zip(*(s.radius_at(y) for s in segments)))
+    radii = [segment.radius_at(y) for segment in scene.segments_at(y)]
+    inner, outer = (max(values) for values in zip(*radii))
     radius = outer if rigid else inner
     deepest = wheel.root - 1.5 * wheel.module
     return radius if THINNEST * wheel.root < radius < deepest else None
@@ -193,7 +193,7 @@ def mesh_contact(
         carried.pairs[wheels] = toothed(mesh, teeth, model)
     contact = carried.pairs[wheels].with_shapes(teeth.shapes)
     place = carried.place(mesh, teeth)
-    supports = carried.supports(place, place.frame(teeth))
+    supports = carried.supports(place, Frame.of(place, teeth))
     torque = carried.force(place) * teeth.wheels.first.base * np.cos(teeth.wheels.base_helix)
     base = teeth.wheels.first.base
     return MeshContact(

@@ -76,9 +76,9 @@ def stage_flank_problems(stage: Stage) -> Iterator[SceneError]:
         ("ring_flanks",): (table.ring_flanks or Flanks(), 1, 1),
     }
     meshes = [wheels_of(mesh) for mesh in stage.together]
-    problems = []
-    for path, (wheel_flanks, mesh, k) in flanks.items():
-        teeth = meshes[mesh]
+    problems: list[SceneError] = []
+    for path, (wheel_flanks, number, k) in flanks.items():
+        teeth = meshes[number]
         if teeth is not None and wheel_flanks.is_described:
             problems += _wheel(teeth.wheels, k, wheel_flanks, path)
     for mesh, teeth in zip(stage.together, meshes):

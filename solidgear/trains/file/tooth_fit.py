@@ -59,7 +59,7 @@ def fit_problems(pair: Pair) -> Iterator[SceneError]:
     yield from _distance(pair, fit)
     for (side, gear), wheel in zip(pair.members.items(), wheels_in(fit)):
         y, root = gear.scene.port.y, wheel.root
-        bore = min(s.radius_at(y)[0] for s in gear.scene.segments if s.y0 <= y <= s.y1)
+        bore = min(s.radius_at(y)[0] for s in gear.scene.segments_at(y))
         if root <= bore:
             yield SceneError(
                 f"puts the roots of its teeth at {in_mm(root)} from the axis, inside the bore of "
