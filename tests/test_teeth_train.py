@@ -16,8 +16,10 @@ from solidgear.teeth.study import teeth_study
 from solidgear.teeth.supports import Carried, with_sections
 from solidgear.teeth.train_teeth import TeethModel, mesh_contact, mesh_of_teeth, teeth_of
 from solidgear.trains.assembly.assembly import Assembly
+from solidgear.trains.assembly.mesh_stiffness import with_usual_meshes
 from solidgear.trains.assembly.stages import mesh_row
 from solidgear.trains.file.operation import OperatingPoint
+from solidgear.trains.response.excitation import excitation
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 QUICK = TeethModel(slices=12, positions=8)
@@ -256,6 +258,23 @@ def test_planets_take_the_stiffness_of_their_teeth():
     assert filled.status == "calculated"
     # per face width, N/(mm um): teeth of two and of nearly two pairs, a ring's thicker at their feet
     assert 12 < filled.sun_stiffness / 12e-3 / 1e9 < filled.ring_stiffness / 12e-3 / 1e9 < 40
+    # each mesh is driven by the loaded error of its own teeth, planet by planet in its phase
+    carried = Carried.at_rest(with_sections(with_usual_meshes(asked)), asked.point)
+    for mate in ("sun", "ring"):
+        (mesh,) = (
+            m for m in carried.train.stages[0].meshes if m.mate == mate and m.planets == (1,)
+        )
+        error = mesh_contact(carried, mesh).cycle.line_error
+        orders = getattr(filled, f"{mate}_error").orders
+        assert orders[0] == pytest.approx(2 * abs(np.fft.rfft(error)[1]) / len(error), rel=1e-6)
+    solved = asked.with_changes(planetary={"stage": stage.with_changes(mesh=filled)})
+    assembly = Assembly(solved)
+    together = assembly.train.stages[0].together[0]
+    weights = excitation(assembly, together, together=True).weights()
+    assert len(weights) == 6 and weights["mesh stage sun 1"] == 1.0
+    sizes = {name: abs(weight) for name, weight in weights.items()}
+    share = filled.ring_error.orders[0] / filled.sun_error.orders[0]
+    assert sizes["mesh stage ring 2"] == pytest.approx(share, rel=1e-9)
 
 
 def test_a_train_without_a_torque_is_refused(train):

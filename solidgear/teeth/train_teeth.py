@@ -259,13 +259,26 @@ def with_teeth(train: Train, carried: Carried, varies: str = "") -> Train:
 
 
 def _of_stage(carried: Carried, stage: Stage, table: PlanetMeshes) -> PlanetMeshes:
-    """Return the table of a stage's meshes with the stiffness of the teeth of its first planet."""
-    stiffness = {
-        f"{mesh.mate}_stiffness": float(mesh_contact(carried, mesh).cycle.tangent.mean())
-        for mesh in stage.meshes
-        if mesh.planets == (1,) and getattr(table, f"{mesh.mate}_stiffness") == TEETH
-    }
-    return table.with_changes(**stiffness, status="calculated") if stiffness else table
+    """Return the table of a stage's meshes with the stiffness and the transmission error of the teeth of
+    its first planet.
+    """
+    changes: dict[str, Any] = {}
+    for mesh in stage.meshes:
+        if mesh.planets != (1,) or getattr(table, f"{mesh.mate}_stiffness") != TEETH:
+            continue
+        cycle = mesh_contact(carried, mesh).cycle
+        changes[f"{mesh.mate}_stiffness"] = float(cycle.tangent.mean())
+        if mesh.error is None or table.status == "assumed":
+            changes[f"{mesh.mate}_error"] = _orders(cycle.line_error)
+    return table.with_changes(**changes, status="calculated") if changes else table
+
+
+def _orders(error: np.ndarray) -> ErrorTable:
+    """Return the orders of a transmission error over a mesh cycle."""
+    orders = harmonics(error, ORDERS)
+    return ErrorTable(
+        orders=tuple(np.abs(orders).tolist()), phases=tuple(np.angle(orders).tolist())
+    )
 
 
 def _point(train: Train) -> OperatingPoint:
@@ -293,10 +306,7 @@ def _filled(carried: Carried, pair: Pair, mesh: Mesh, varies: bool) -> Mesh:
             angle=tuple(angle.tolist()), stiffness=tuple(stiffness.tolist())
         )
     if mesh.transmission_error is None or mesh.transmission_error_status == "assumed":
-        orders = harmonics(error, ORDERS)
-        changes["transmission_error"] = ErrorTable(
-            orders=tuple(np.abs(orders).tolist()), phases=tuple(np.angle(orders).tolist())
-        )
+        changes["transmission_error"] = _orders(error)
         changes["transmission_error_status"] = solved.status
     point, normal = in_pinion_frame(carried, pair, solved)
     place, mean = point.mean(axis=0), normal.mean(axis=0)

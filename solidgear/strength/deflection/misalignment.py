@@ -220,10 +220,11 @@ class _Torques:
         """Rows (N,) of the torque about y of all teeth on every gear, N m, by end."""
         torque: dict[str, np.ndarray] = {}
         for place in self.places.values():
-            row, stiffness = mesh_row(self.system, place.link)
-            for end, load in place.load(self.system):
-                # the force of the teeth presses the row together
-                torque[end] = torque.get(end, 0.0) - stiffness * load[4] * row
+            loads = place.load(self.system)
+            opening = np.sum([self.system.motion(end).T @ load for end, load in loads], axis=0)
+            _, stiffness = mesh_row(self.system, place.link)
+            for end, load in loads:
+                torque[end] = torque.get(end, 0.0) - stiffness * load[4] * opening
         return torque
 
     def wind_up(self, place: MeshPlace, width: float) -> np.ndarray:

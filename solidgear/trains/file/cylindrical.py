@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 RADIUS = 5e-3
 #: keys of cylindrical gears, by table
 WORDS = {
-    "pinion": ("module", "helix_angle", "profile_shift", *Flanks.model_fields),
-    "gear": ("module", "helix_angle", "profile_shift", *Flanks.model_fields),
+    "pinion": ("module", "helix_angle", "profile_shift", "angle", *Flanks.model_fields),
+    "gear": ("module", "helix_angle", "profile_shift", "angle", *Flanks.model_fields),
     "mesh": ("centre_distance",),
 }
 #: keys of bevel gears alone, by table

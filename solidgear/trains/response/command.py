@@ -129,6 +129,13 @@ def response(
             help="Force on a port instead of the transmission error, such as gear.gear:z=100 in N; repeatable.",
         ),
     ] = None,
+    together: Annotated[
+        bool,
+        typer.Option(
+            "--together",
+            help="Drive by all meshes at the frequencies of the mesh, each at its phase.",
+        ),
+    ] = False,
     orders: Annotated[
         int | None,
         typer.Option(
@@ -143,7 +150,10 @@ def response(
     (turns, origin), spectrum = at.turns(assembly.train), at.spectrum()
     mixes, driver = driven.mixes(assembly.train), assembly.train.named_mesh(driven.mesh)
     options = {"highest_hz": reduced.max_frequency, "mesh": driver.name, **driven.losses}
+    options["together"] = together
     forces = _forces(force)
+    if forces and together:
+        raise SolidgearError("--together adds up errors of meshes, and --force takes their place")
 
     def study(progress: Progress) -> Sheet:
         responses = [
@@ -158,7 +168,9 @@ def response(
         if turns:
             speed = at_speed(assembly.train, modes, turns, origin, within, spectrum, at.fit_speed)
         title = assembly.train.called
-        if driver.label and not forces:
+        if together:
+            title += f", driven by all meshes at the frequencies of the {driver.name}"
+        elif driver.label and not forces:
             title += f", driven by the {driver.name}"
         result = Responses(
             assembly=assembly,
