@@ -16,16 +16,15 @@ from typing import Any, Literal
 
 import numpy as np
 
-from solidgear.core import WITHIN, System, gap_verdict
+from solidgear.core import WITHIN, gap_verdict
 from solidgear.core.judge.deviations import OPEN
 from solidgear.core.plain import plain
-from solidgear.core.system.links import RowSpring
 from solidgear.teeth.bars import error_bars, numbers_of
 from solidgear.teeth.mesh_contact import MeshContact
 from solidgear.teeth.supports import Carried
 from solidgear.teeth.train_teeth import TeethModel, mesh_contact
 from solidgear.trains.assembly.assembly import Assembly
-from solidgear.trains.assembly.stages import mesh_row
+from solidgear.trains.assembly.stages import with_mesh_stiffness
 from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.planetary import PlanetMesh
 
@@ -207,12 +206,7 @@ def energy_share(carried: Carried, mesh: Pair | PlanetMesh, tangent: float) -> f
     names = [mesh.name]
     if isinstance(mesh, PlanetMesh):
         names = [m.name for m in mesh.stage.meshes if m.mate == mesh.mate]
-    links = dict(carried.system.links)
-    for name in names:
-        spring, (_, stiffness) = links[name], mesh_row(carried.system, name)
-        assert isinstance(spring, RowSpring)
-        links[name] = replace(spring, stiffness=spring.stiffness * tangent / stiffness)
-    modes = System(carried.system.parts, links).modes()
+    modes = with_mesh_stiffness(carried.system, dict.fromkeys(names, tangent)).modes()
     wanted = (modes.frequency_hz > 0) & (modes.frequency_hz <= assembly.train.ask.max_frequency)
     share = np.sum([modes.energy[name] for name in names], axis=0)[wanted]
     return float(np.max(share, initial=0.0))
