@@ -176,15 +176,19 @@ def _turned(table: ErrorTable | None, order: int, phase: MeshPhase) -> complex:
     return complex(np.exp(1j * phase.way * (2 * np.pi * order * phase.pitches + angle)))
 
 
-def meeting_caution(assembly: Assembly, driver: Pair | PlanetMesh) -> str:
-    """Return a sentence on other meshes that drive at the same frequencies; empty without any."""
-    met = list(meetings(assembly, driver))
-    if not met:
-        return ""
-    text = f"{_met(driver.name, met[0])}, and {driver.name} drives alone here; "
-    if all(meeting.error is not None for meeting in met):
-        return text + "--together adds them up"
-    return text + unknown(assembly)
+def meeting_cautions(
+    assembly: Assembly, driver: Pair | PlanetMesh, together: bool
+) -> Iterator[str]:
+    """Yield a sentence on other meshes that drive at the same frequencies, or on none that do."""
+    first = next(meetings(assembly, driver), None)
+    if together and first is None:
+        yield f"no other mesh drives at the frequencies of {driver.name}"
+    if together or first is None:
+        return
+    remedy = unknown(assembly)
+    if all(meeting.error is not None for meeting in meetings(assembly, driver)):
+        remedy = "--together adds them up"
+    yield f"{_met(driver.name, first)}, and {driver.name} drives alone here; {remedy}"
 
 
 def _met(driver: str, meeting: Meeting) -> str:

@@ -13,7 +13,7 @@ from solidgear.trains.assembly.meshes import mesh_bars
 from solidgear.trains.assembly.spin import spin_cautions
 from solidgear.trains.modes.parting import parting_lines
 from solidgear.trains.response.drive import Drive
-from solidgear.trains.response.excitation import meeting_caution
+from solidgear.trains.response.excitation import meeting_cautions
 from solidgear.trains.response.response import TrainResponse
 
 LITERAL = (
@@ -69,8 +69,8 @@ def respond(
     by_shaft = assembly.models_by_shaft(models)
     cautions = [*assembly.cautions, *local_lines(assembly, drive.system)]
     cautions += spin_cautions(assembly, drive.system, by_shaft, highest, turns)
-    if not (forces or together) and (caution := meeting_caution(assembly, drive.pair)):
-        cautions.append(caution)
+    if not forces:
+        cautions += meeting_cautions(assembly, drive.pair, together)
     if damping == "literal":
         limit_hz = float(highest)
         cautions.append(LITERAL.format(limit_hz, np.pi * limit_hz * assembly.train.losses.mesh))
