@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, TypeAlias
 
-from pydantic import BeforeValidator, model_validator
+from pydantic import BeforeValidator, PrivateAttr, model_validator
 
 from solidgear.core.display import Displayed
 from solidgear.core.errors import SceneError
@@ -22,6 +22,7 @@ from solidgear.core.scene.ask import Ask
 from solidgear.core.scene.bearing_stiffness import stiffness_entries
 from solidgear.core.scene.blends import Blend
 from solidgear.core.scene.corner import Corner
+from solidgear.core.scene.document import Origin
 from solidgear.core.scene.ends import seat_masses, snap_seats
 from solidgear.core.scene.feature_rules import Feature
 from solidgear.core.scene.housing import ONE_HOUSING, Housing
@@ -48,6 +49,11 @@ else:
 def _several(value: Any) -> tuple:
     """Return the things of a field of one or of several."""
     return value if isinstance(value, tuple) else (value,)
+
+
+def _paths_of(bearings: Iterable[str]) -> tuple[str, ...]:
+    """Return how paths of entries of bearings begin."""
+    return tuple(f"bearing.{name}." for name in bearings)
 
 
 def _end_to_end(segments: Iterable[Segment], material: Material | str) -> Iterator[Segment]:
@@ -131,6 +137,7 @@ class Scene(Displayed, Model):
     lubrication: Lubrication | None = None
     uncertain: tuple[Uncertain, ...] = ()
     ask: Ask = Ask()
+    _origin: Origin = PrivateAttr(Origin())
 
     @model_validator(mode="after")
     def _hangs_together(self) -> Scene:
@@ -295,10 +302,74 @@ class Scene(Displayed, Model):
         """
         return addition("document", "write scene")(self)
 
+    def to_toml(self, path: str | os.PathLike | None = None) -> str:
+        """The file of the scene: that which it was read from with its words and comments, where entries
+        that have changed since are written anew.
+
+        Parameters
+        ----------
+        path : str or path, optional
+            File to write, whole or not at all. Its name is that of the scene, unless the scene has
+            another.
+
+        Returns
+        -------
+        str
+            Text that `solidgear.load` reads back equal.
+
+        Raises
+        ------
+        SolidgearError
+            A file that cannot be written.
+
+        Examples
+        --------
+        >>> import solidgear as sg
+        >>> scene = sg.load("geometry/shaft_stepped.toml")
+        >>> bearing = scene.bearings[0].with_changes(seat_width="22 mm")
+        >>> changed = scene.with_changes(bearings=(bearing, *scene.bearings[1:]))
+        >>> before, after = (s.to_toml().splitlines() for s in (scene, changed))
+        >>> [line for line in after if line not in before]
+        ['seat_width = "22 mm"']
+        """
+        return addition("document", "text of scene")(self, path)
+
+    @property
+    def document(self) -> Any:
+        """Document that the scene was read from, whatever has been changed since; None of one made in
+        Python.
+        """
+        return self._origin.document
+
+    @property
+    def as_read(self) -> Any:
+        """Document that the scene was read from; None of one that has changed since."""
+        return self.document if self._origin.thing == self else None
+
+    def read_from(self, document: Any) -> Scene:
+        """Return the same scene with the document that it was read from."""
+        out = self.unjudged()
+        out._origin = Origin(document, out)
+        return out
+
     @property
     def length(self) -> float:
         """Length of the shaft in m."""
         return self.segments[-1].y1
+
+    def segments_at(self, y: float) -> list[Segment]:
+        """Return the segments at a place along the shaft, m: both where two meet.
+
+        Examples
+        --------
+        >>> import solidgear as sg
+        >>> first = sg.Segment.cylinder("a", length=0.1, diameter=0.03)
+        >>> further = sg.Segment.cylinder("b", y0=0.1, length=0.1, diameter=0.03)
+        >>> scene = sg.Scene.from_parts([first, further])
+        >>> [[s.name for s in scene.segments_at(y)] for y in (0.05, 0.1)]
+        [['a'], ['a', 'b']]
+        """
+        return [segment for segment in self.segments if segment.y0 <= y <= segment.y1]
 
     @property
     def ports(self) -> tuple[Port, ...]:
@@ -379,7 +450,14 @@ class Scene(Displayed, Model):
             )
         if changes.get("load", self.load) != self.load and "bearings" not in changes:
             changes["bearings"] = tuple(b.unsettled for b in self.bearings)
-        return super().with_changes(**changes)
+        if "bearings" in changes:
+            changes["bearings"] = tuple(changes["bearings"])
+            removed = {b.name for b in self.bearings} - {b.name for b in changes["bearings"]}
+            ranges = [u for u in self.uncertain if not u.path.startswith(_paths_of(removed))]
+            changes.setdefault("uncertain", tuple(ranges))
+        out = super().with_changes(**changes)
+        out._origin = self._origin
+        return out
 
     def with_attachment(self, attachment: str) -> Scene:
         """The same scene with ports, bearings and masses attached in one way; faces stay sections.

@@ -238,6 +238,15 @@ class Bearing(Placed):
             raise SceneError.of(problems)
         return self
 
+    def with_changes(self, **changes: Any) -> Bearing:
+        """Return a validated copy with some fields replaced; other catalogue data wait for their
+        stiffness.
+        """
+        if not {"matrix", "stiffness"} & {*changes} and "catalogue" in changes:
+            same = changes["catalogue"] == self.catalogue
+            changes["matrix"] = self.matrix if same else None
+        return super().with_changes(**changes)
+
     @property
     def floats(self) -> bool:
         """True where the bearing carries nothing along y, by mounting or kind."""

@@ -50,6 +50,7 @@ def sheet(deflected: Deflections, units: Units) -> Sheet:
     """Return the sheet of a train at an operating point, or of a shaft under its load."""
     judge = deflected.judge
     skew = misalignment(deflected, units)
+    pressed = face_load(judge, units)
     turning = over_a_turn(judge.turns, units)
     by_point = over_points(deflected.points, units)
     housed = housing(judge, units)
@@ -83,7 +84,7 @@ def sheet(deflected: Deflections, units: Units) -> Sheet:
         name="deflection",
         title=title,
         lead=lead,
-        tables=[skew, *turning, *by_point, *housed, *carried],
+        tables=[skew, *pressed, *turning, *by_point, *housed, *carried],
         data=deflected.as_dict(),
         charts=charts,
         lines=lines,
@@ -91,7 +92,7 @@ def sheet(deflected: Deflections, units: Units) -> Sheet:
         cautions=[*cautions, *judge.notes, *deflected.cautions],
         terminal=Terminal(
             heading=heading,
-            tables=[skew, *carried, *housed, *turning, *by_point],
+            tables=[skew, *pressed, *carried, *housed, *turning, *by_point],
             closing=[*judge.notes, *map(caution, deflected.cautions)],
         ),
         words=words,
@@ -135,6 +136,38 @@ def misalignment(deflected: Deflections, units: Units = ENGINEERING) -> Table:
     if has_ranges:
         note += " Range: by estimated insides and classes of clearance of the bearings."
     return Table("Misalignment", columns, rows, note)
+
+
+def face_load(deflected: Deflection, units: Units = ENGINEERING) -> list[Table]:
+    """Return the face load factor of every mesh by the norm; none without known teeth."""
+    if not deflected.face_loads:
+        return []
+    columns = [
+        word("mesh"),
+        quantity("line load", "N/m along", units, digits=4),
+        quantity("f_sh", "m moved", units, digits=3),
+        quantity("flanks", "m moved", units, digits=3),
+        Column("c_ga, N/(mm um)"),
+        Column("KHb"),
+        Column("error bar"),
+    ]
+    rows = [
+        [
+            load.mesh,
+            load.line_load,
+            load.skew,
+            load.shape,
+            f"{1e-9 * load.stiffness:.3g}",
+            f"{load.factor:.2f}",
+            percent_of(load.bar, load.factor),
+        ]
+        for load in deflected.face_loads
+    ]
+    note = (
+        "By c_ga of steel teeth, f_sh and slopes of the file's flanks, without further deviations and "
+        "running-in; line load: transverse force per face width. solidgear contact solves the teeth."
+    )
+    return [Table("Face load factor by ISO 6336-1", columns, rows, note)]
 
 
 def percent_of(bar: float | None, value: float) -> str | None:
@@ -206,10 +239,17 @@ def over_points(points: Sequence[Deflection], units: Units = ENGINEERING) -> lis
         if share := percent_of(widest, max(abs(m.value) for m in at_points)):
             bars.append(f"{m.name} {share}")
     note = f"By {first.model}; error bars {', '.join(bars)} at most." if bars else ""
+    lie += [Column(f"KHb{load.mesh.removeprefix('mesh')}") for load in first.face_loads]
     ends = [f"{shaft.name}.{b.name}" for shaft in first.shafts for b in shaft.bearings]
     carried = [text("at"), *(quantity(end, "N", units, digits=4) for end in ends)]
     lie_rows = [
-        [p.point.label, *p.mesh_forces.values(), *(m.value for m in p.misalignment)] for p in points
+        [
+            p.point.label,
+            *p.mesh_forces.values(),
+            *(m.value for m in p.misalignment),
+            *(f"{load.factor:.2f}" for load in p.face_loads),
+        ]
+        for p in points
     ]
     carried_rows = [
         [p.point.label, *(b.radial for shaft in p.shafts for b in shaft.bearings)] for p in points

@@ -157,12 +157,18 @@ def _stage(stage: Mapping[str, Any], units: Units) -> list[list[str]]:
         ["planets", f"at {angles}, pins at {units.text(stage['pin_radius'], 'm', 4)}", ""],
         ["each planet", f"{units.text(planet['mass'], 'kg', 4)} {pin}", f"{name}.planet"],
         ["meshes with sun and ring", " and ".join(stiff), f"{name}.mesh"],
-        ["transmission error of each", _error(mesh["transmission_error"], units), f"{name}.mesh"],
+        ["transmission error of each", _errors(mesh, units), f"{name}.mesh"],
     ]
     support = "fixed"
     if stage["ring"] is not None:
         support = f"{units.text(stage['ring']['mass'], 'kg', 4)} on springs"
     return [*rows, ["ring", support, f"{name}.ring"]]
+
+
+def _errors(mesh: Mapping[str, Any], units: Units) -> str:
+    """Return the transmission errors of planets with sun and ring."""
+    both = (mesh[f"{mate}_error"] or mesh["transmission_error"] for mate in ("sun", "ring"))
+    return " and ".join(dict.fromkeys(_error(error, units) for error in both))
 
 
 def mark(status: str) -> Cell:
