@@ -16,7 +16,7 @@ import scipy.linalg as sla
 from solidgear.core import SolidgearError
 from solidgear.core.reduction.matrix_units import MatrixUnits
 from solidgear.core.reduction.port_matrices import PortMatrices, not_free
-from solidgear.exchange.matrices.header import header
+from solidgear.exchange.matrices.header import header, quoted
 from solidgear.exchange.matrices.nodes import real
 
 #: share of the largest motion of a point that is rounding, and of stiffness that is a free motion
@@ -36,7 +36,7 @@ def write(matrices: PortMatrices, path: Path, units: MatrixUnits) -> dict[Path, 
     moved = (shapes / unit[:, None] * root)[: 6 * count]
     lines = [f"** {line}" for line in header(matrices, units) if "is node" not in line]
     for k, name in enumerate(matrices.positions):
-        lines.append(f"** point {name}: REF NODE {2 * k + 1}, ROT NODE {2 * k + 2}")
+        lines.append(f"** point {quoted(name)}: REF NODE {2 * k + 1}, ROT NODE {2 * k + 2}")
     lines.append("** a node of a mode has up to three of them, along its directions")
     lines.append("*NODE, NSET=POINTS")
     for k, place in enumerate(matrices.positions.values()):
