@@ -134,8 +134,8 @@ def read(path: Path, source: str) -> NodeMatrices:
 
 def _meaning(label: str) -> str:
     """Return what a matrix is, by its name."""
-    for name, mine in NAMES.items():
-        if label == mine:
+    for name, deck_name in NAMES.items():
+        if label == deck_name:
             return name
     return next((name for start, name in FIRST.items() if label.startswith(start)), label)
 

@@ -61,8 +61,8 @@ def write_ross(source: Any, path: str | os.PathLike, units: str, **wanted: Any) 
     ports = [*wanted.pop("ports", ())] or [scene.port.name]
     if len(ports) > 1:
         raise SolidgearError(f"an element of ROSS is at one node, not at {', '.join(ports)}")
-    held = wanted.pop("bearings", None)
-    bearings = True if held is None else held
+    bearings = wanted.pop("bearings", None)
+    bearings = True if bearings is None else bearings
     condensed = port_matrices(scene, ports=ports, bearings=bearings, **wanted)
     supports = as_supports(scene)
     lines = ["Rotor of ROSS (6 motions a node, axis z), in SI.", *header(condensed, SI)]
