@@ -2,8 +2,8 @@
 
 Read are lines ``node, direction, node, direction, value`` under ``*MATRIX INPUT`` or alone
 (``*MATRIX GENERATE`` with ``*MATRIX OUTPUT``, files of one matrix each), the lower triangles of
-``*USER ELEMENT`` (``*SUBSTRUCTURE MATRIX OUTPUT`` of both programs), and the ``.sti`` and ``.mas`` of
-CalculiX with the ``.dof`` beside them (``*FREQUENCY, SOLVER=MATRIXSTORAGE``).
+``*USER ELEMENT`` (``*SUBSTRUCTURE MATRIX OUTPUT`` of both programs), and the ``.sti`` and ``.mas``
+of CalculiX with the ``.dof`` beside them (``*FREQUENCY, SOLVER=MATRIXSTORAGE``).
 """
 
 from __future__ import annotations

@@ -34,8 +34,8 @@ def write_npz(matrices: PortMatrices, path: Path, units: MatrixUnits) -> dict[Pa
 
 
 def write_mat(matrices: PortMatrices, path: Path, units: MatrixUnits) -> dict[Path, bytes]:
-    """Return a ``.mat`` file of level 5, lists of words as cells; none is read, for the reader of SciPy
-    1.17 ends the program on damaged ones.
+    """Return a ``.mat`` file of level 5, lists of words as cells; none is read, for the reader of
+    SciPy 1.17 ends the program on damaged ones.
     """
     from scipy.io import savemat  # start-up: for this format alone
 

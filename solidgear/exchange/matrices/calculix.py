@@ -1,9 +1,10 @@
 """CalculiX: matrices as unit masses on springs, tied to the points by equations.
 
-CalculiX reads no matrix of six directions a node in all its versions, but masses, springs and linear
-equations in each.  In the modes of the free body, ``K = diag(w^2)`` and ``M = 1`` are exact as
-``*SPRING`` and ``*MASS``; points move by their shares of the modes in ``*EQUATION``.  A point is two
-nodes, as ``*RIGID BODY`` takes them: REF NODE with x y z, and ROT NODE, whose x y z are rotations.
+CalculiX reads no matrix of six directions a node in all its versions, but masses, springs and
+linear equations in each.  In the modes of the free body, ``K = diag(w^2)`` and ``M = 1`` are exact
+as ``*SPRING`` and ``*MASS``; points move by their shares of the modes in ``*EQUATION``.  A point is
+two nodes, as ``*RIGID BODY`` takes them: REF NODE with x y z, and ROT NODE, whose x y z are
+rotations.
 """
 
 from __future__ import annotations

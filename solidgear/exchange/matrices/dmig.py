@@ -146,7 +146,7 @@ def _refuse_complex(out: NodeMatrices, label: str, card: list[str]) -> None:
 
 
 def _cards(text: str) -> Iterator[list[str]]:
-    """Yield cards as fields, continuations joined: the name, then 8 small or 4 large fields a line."""
+    """Yield cards as fields, continuations joined: the name, then 8 small or 4 large ones a line."""
     card: list[str] = []
     for line in text.splitlines():
         line = line.split("$")[0].rstrip()

@@ -2,8 +2,8 @@
 
 What moves beside the points is either a coordinate of a mode already, as where the program has
 condensed its body, or it is condensed here (Craig and Bampton 1968), with the static fields of the
-inertia of its static shapes beside the modes, a Krylov step: modes alone converge slowly where a rigid
-face ends.
+inertia of its static shapes beside the modes, a Krylov step: modes alone converge slowly where a
+rigid face ends.
 """
 
 from __future__ import annotations
@@ -156,7 +156,7 @@ class NodeMatrices:
     def _with_modes(
         self, tables: Mapping[str, sp.csr_matrix], places: Mapping[str, np.ndarray]
     ) -> tuple[dict[str, np.ndarray], tuple[str, ...]]:
-        """Return dense matrices of points and modes, condensed where the file has other unknowns."""
+        """Return dense matrices of points and modes, condensed where there are other unknowns."""
         p = 6 * len(places)
         stiffness = tables.get("stiffness")
         if not places or stiffness is None or "mass" not in tables:

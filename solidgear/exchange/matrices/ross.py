@@ -1,4 +1,4 @@
-"""ROSS: a Python file with the rotor of the beam, and the shaft condensed to one point as an element.
+"""ROSS: a Python file with the rotor of the beam, and the shaft condensed to a point as an element.
 
 The axis of a rotor in ROSS is z; x, y, z there are z, x, y here, a turn of the axes, so that a 6x6 of
 a point keeps its signs.  ROSS has no bearing with tilt or with couplings of six motions, but takes
