@@ -120,7 +120,7 @@ class Assembly:
         >>> list(assembly.system("timoshenko").parts), list(assembly.system("timoshenko").links)
         (['shaft'], ['shaft.1', 'shaft.2'])
         """
-        return cls(Train.of(scene), kept=kept, tol=tol)
+        return cls(Train.of(scene.settled), kept=kept, tol=tol)
 
     def __post_init__(self):
         if self.reduction not in REDUCTIONS:

@@ -11,6 +11,7 @@ from solidgear.core.reduction.port_matrices import PortMatrices
 from solidgear.core.scene.stations import Status
 from solidgear.core.scene.units import Inertia, Mass, PitchAngle, SpiralAngle
 from solidgear.trains.file.flanks import Flanks
+from solidgear.trains.file.tables import Azimuth
 
 #: relative, of inertias: the last of three digits
 ROUNDED = 5e-3
@@ -73,6 +74,9 @@ class Gear(Flanks):
     #: radius, and where the pinion's blade is curved
     cutter_radius: PositiveLength | None = None
     blade_curvature: Annotated[float, Field(ge=-MOST_CURVED, le=MOST_CURVED)] | None = None
+    #: of cylindrical gears, of the middle of a tooth at the lumped point about y of the scene, right-
+    #: handed from x, rad: that of two gears of a shaft ties the phases of their meshes
+    angle: Azimuth | None = None
     apex: Literal["start", "end"] = "start"  #: towards which end of the shaft the pitch apex lies
     head: HeadInertia | None = None
 

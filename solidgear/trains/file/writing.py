@@ -73,7 +73,8 @@ def _rotors(train: Shafting) -> Table:
     for name, rotor in train.rotors.items():
         kind = "engine" if name in train.engines else "load" if name in train.loads else "rotor"
         tables[kind][name] = entry_of(rotor)
-    return tables
+    # a single one needs no name
+    return {kind: table[kind] if [*table] == [kind] else table for kind, table in tables.items()}
 
 
 def _housing(housing: TrainHousing | None) -> Table | None:
