@@ -44,6 +44,10 @@ GROUPS = {
             "Say which models hold for a scene or train, which do not, and why; solves light "
             "meshes only.",
         ),
+        "export": Entry(
+            "exchange.matrices.command",
+            "Mass and stiffness of a shaft or a train at its ports, for other programs.",
+        ),
         "import": Entry(
             "exchange.rexs.command",
             "Read a gearbox of another program, in REXS, as a train with its shafts.",
