@@ -11,6 +11,7 @@ from typer.testing import CliRunner
 import solidgear as sg
 from solidgear.app import app
 from solidgear.core import SolidgearError
+from solidgear.exchange.rexs.commented import one_line
 from solidgear.exchange.rexs.importing import imported
 from solidgear.exchange.rexs.notes import Notes
 from solidgear.exchange.rexs.pins import clamped_compliance
@@ -418,6 +419,20 @@ def test_what_is_left_out_is_named_and_the_rest_goes_on(tmp_path):
         "worm.toml" in result.files and len(tomllib.loads(result.files["train.toml"])["shaft"]) == 2
     )
     assert any("Walther" in text for text in result.files.values())
+
+
+def test_words_of_a_file_end_no_comment(tmp_path):
+    """Names and designations of a file stand in comments, whatever letters they have."""
+    text = (
+        helical()
+        .xml()
+        .replace("6209-C3", "6209-C3&#10;[ask]&#10;")
+        .replace('applicationId="test', 'applicationId="te&#10;x = 1')
+    )
+    text = text.replace('name="section 1"', 'name="neck&#10;[load]&#10;"')
+    train = sg.load_train(written(text, tmp_path))
+    assert [b.name for b in train.shafts["output"].scene.bearings] == ["left", "right"]
+    assert one_line("neck\n\x1b[2J") == "neck??[2J"
 
 
 def test_a_note_is_there_once():
