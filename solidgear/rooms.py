@@ -28,6 +28,7 @@ ADDITIONS = {
         "long train": "trains.file.reading:LongFile",
         "short train": "trains.file.reading:ShortFile",
     },
+    "further file": {"measured": "measured.data:Measured"},
     # rules and questions of features
     "rule of features": {"meeting": "cuts.features.around:meeting_problems"},
     "question of features": {

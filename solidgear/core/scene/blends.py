@@ -15,8 +15,6 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, TypeAlias
 
-from pydantic import BeforeValidator
-
 from solidgear.core.errors import SceneError
 from solidgear.core.scene.corner import Corner, Surface
 from solidgear.core.scene.limits import TOUCH
@@ -24,7 +22,8 @@ from solidgear.core.scene.outline import radii_of
 from solidgear.core.scene.parts import Segment
 from solidgear.core.scene.places import Placed, Places
 from solidgear.core.scene.typed import Model
-from solidgear.core.scene.units import Position, PositiveLength, quantity
+from solidgear.core.scene.units import Position, PositiveLength, SignedAngle
+from solidgear.core.scene.written import Range
 
 Edge = Literal["root", "rim"]
 
@@ -32,6 +31,7 @@ Edge = Literal["root", "rim"]
 class _At(Model):
     """Words for the place of an edge: a datum."""
 
+    #: place of the edge, such as `NAME.end` of a segment
     at: str
 
 
@@ -44,9 +44,13 @@ class _Blend(Placed):
     if TYPE_CHECKING:
         kind: str  # a field of every subclass, in its own order
 
+    #: name in reports; by default its kind and number
     name: str
     y: Position
+    #: surface that the edge lies on
     surface: Surface = "outer"
+    #: root adds material in the corner of a step, rim rounds off the edge; by default the root,
+    #: and the rim at an end face
     edge: Edge | None = None
 
     @classmethod
@@ -155,7 +159,8 @@ class Fillet(_Blend):
     """
 
     kind: Literal["fillet"] = "fillet"
-    radius: PositiveLength  #: m
+    #: radius of the fillet, m
+    radius: PositiveLength
 
     @property
     def extents(self) -> tuple[float, float]:
@@ -166,12 +171,15 @@ class Fillet(_Blend):
         return "radius"
 
 
-def slope(value: Any) -> float:
-    """Return the angle of a chamfer to the axis, rad."""
-    angle = quantity(value, "angle")
-    if not math.radians(5) <= angle <= math.radians(85):
-        raise SceneError("the angle of a chamfer to the axis lies between 5 and 85 deg")
-    return angle
+#: angle of a chamfer to the axis, rad
+Slope = Annotated[
+    SignedAngle,
+    Range(
+        "the angle of a chamfer to the axis lies between 5 and 85 deg",
+        least=math.radians(5),
+        most=math.radians(85),
+    ),
+]
 
 
 class Chamfer(_Blend):
@@ -185,9 +193,10 @@ class Chamfer(_Blend):
     """
 
     kind: Literal["chamfer"] = "chamfer"
-    length: PositiveLength  #: along the shaft, m
-    #: to the axis, rad; 45 degrees by default
-    angle: Annotated[float, BeforeValidator(slope)] = math.pi / 4
+    #: length along the shaft, m
+    length: PositiveLength
+    #: angle to the axis, rad; 45 degrees by default
+    angle: Slope = math.pi / 4
 
     @property
     def extents(self) -> tuple[float, float]:

@@ -9,11 +9,12 @@ from typing import Annotated, ClassVar, Literal, NamedTuple, TypeAlias
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from solidgear.core.errors import SceneError
-from solidgear.core.scene.materials import by_name
+from solidgear.core.scene.materials import MaterialName, by_name
 from solidgear.core.scene.parts import Material, Segment
 from solidgear.core.scene.places import Places, plain_name
 from solidgear.core.scene.typed import Model
 from solidgear.core.scene.units import Angle, Density, Modulus, Poisson, PositiveLength, Thickness
+from solidgear.core.scene.written import Written
 
 NANOMETRE = 1e-9
 _WORDS = ("start", "end", "bearing")  # first words of datums, so no segment may be called that
@@ -41,9 +42,13 @@ class Frustum(NamedTuple):
 class OtherMaterial(Model):
     """Constants of a segment that are not those of the scene."""
 
+    #: Young's modulus, Pa
     E: Modulus | None = None
+    #: Poisson's ratio
     nu: Poisson | None = None
+    #: density, kg/m^3
     density: Density | None = None
+    #: name in reports, without effect
     name: str | None = None
 
 
@@ -54,9 +59,14 @@ class _Shape(Model):
     #: places on it that others can be counted from
     datums: ClassVar[tuple[str, ...]] = ("start", "end", "middle")
 
+    #: name that places and reports refer to
     name: Annotated[str, AfterValidator(_segment_name)]
+    #: diameter of the bore, m; 0 is solid
     bore: Thickness = 0.0
-    material: Annotated[OtherMaterial, BeforeValidator(by_name)] = OtherMaterial()
+    #: constants that differ from the material of the shaft, or a name
+    material: Annotated[
+        OtherMaterial, BeforeValidator(by_name), Written(OtherMaterial | MaterialName)
+    ] = OtherMaterial()
 
     def _check_bore(self, *keys: str) -> None:
         for key in keys:
@@ -80,7 +90,9 @@ class Cylinder(_Shape):
     keys: ClassVar = {"outer0": "diameter", "outer1": "diameter", "y1": "length"}
 
     kind: Literal["cylinder"]
+    #: length along the shaft, m
     length: PositiveLength
+    #: outer diameter, m
     diameter: PositiveLength
 
     @model_validator(mode="after")
@@ -98,8 +110,11 @@ class Cone(_Shape):
     keys: ClassVar = {"outer0": "start_diameter", "outer1": "end_diameter", "y1": "length"}
 
     kind: Literal["cone"]
+    #: length along the shaft, m
     length: PositiveLength
+    #: outer diameter at the start, m
     start_diameter: PositiveLength
+    #: outer diameter at the end, m
     end_diameter: PositiveLength
 
     @model_validator(mode="after")
@@ -118,10 +133,15 @@ class BevelHead(_Shape):
     datums: ClassVar = ("start", "end", "middle", "mid_face")
 
     kind: Literal["bevel_head"]
+    #: pitch radius at the heel, m
     pitch_radius: PositiveLength
+    #: angle of the pitch cone to the axis, rad
     pitch_angle: Angle
+    #: face width along the pitch cone, m
     face_width: PositiveLength
+    #: length of the cylinder behind the cone, m
     backcone: Thickness = 0.0
+    #: end of the shaft that the small end looks to
     toe: Literal["start", "end"] = "start"
 
     @property

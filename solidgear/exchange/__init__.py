@@ -1,0 +1,1 @@
+"""Exchange with other programs: schemas of files and results."""
