@@ -18,8 +18,7 @@ from solidgear.bearings.catalogue import (
     PairWord,
     arrangement_word,
 )
-from solidgear.core import SceneError, listed, nearest, show
-from solidgear.core.scene.written import Written
+from solidgear.core import SceneError, Written, listed, nearest, show
 
 #: word and, where there is more than one pair, names of the two bearings
 Words = tuple[tuple[str, tuple[str, ...] | None], ...]

@@ -14,7 +14,16 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from solidgear.bearings.designation import boundary
 from solidgear.bearings.kinds import SHARES, Shares
-from solidgear.core import Length, Model, PositiveLength, SceneError, SignedAngle, show
+from solidgear.core import (
+    Length,
+    Model,
+    PositiveLength,
+    Range,
+    SceneError,
+    SignedAngle,
+    Written,
+    show,
+)
 from solidgear.core.scene.load import BearingLoad
 from solidgear.core.scene.units import (
     Angle,
@@ -26,7 +35,7 @@ from solidgear.core.scene.units import (
     TemperatureRise,
     quantity,
 )
-from solidgear.core.scene.written import Measure, Range, Word, Written
+from solidgear.core.scene.written import Measure, Word
 
 if TYPE_CHECKING:
     from solidgear.core import Bearing

@@ -33,7 +33,6 @@ if TYPE_CHECKING:
     from solidgear.core.machine.threads import pinned
     from solidgear.core.machine.whole_file import whole
     from solidgear.core.quantity import (
-        C_ZZ,
         COMPLIANCE,
         FIRST_BENDING,
         QUANTITIES,
@@ -50,19 +49,21 @@ if TYPE_CHECKING:
     from solidgear.core.scene.toml_file import is_train, parse
     from solidgear.core.scene.typed import Model
     from solidgear.core.scene.units import DIMENSIONS, Length, PositiveLength, SignedAngle
+    from solidgear.core.scene.written import Range, Written
     from solidgear.core.solve.condensed import Condensed
     from solidgear.core.solve.modes import Mode, ModeSet, modes
     from solidgear.core.solve.statics import flexibility
     from solidgear.core.system.system import System
 
 __all__ = [
+    "Written",
+    "Range",
     "BEAM",
     "BarredMode",
     "Bearing",
     "Block",
     "Body",
     "COMPLIANCE",
-    "C_ZZ",
     "Condensed",
     "DIMENSIONS",
     "DOF_NAMES",
@@ -170,7 +171,6 @@ _WHERE = {
     "pinned": "solidgear.core.machine.threads",
     "whole": "solidgear.core.machine.whole_file",
     "COMPLIANCE": "solidgear.core.quantity",
-    "C_ZZ": "solidgear.core.quantity",
     "FIRST_BENDING": "solidgear.core.quantity",
     "QUANTITIES": "solidgear.core.quantity",
     "Quantity": "solidgear.core.quantity",
@@ -192,6 +192,8 @@ _WHERE = {
     "Length": "solidgear.core.scene.units",
     "PositiveLength": "solidgear.core.scene.units",
     "SignedAngle": "solidgear.core.scene.units",
+    "Range": "solidgear.core.scene.written",
+    "Written": "solidgear.core.scene.written",
     "Condensed": "solidgear.core.solve.condensed",
     "Mode": "solidgear.core.solve.modes",
     "ModeSet": "solidgear.core.solve.modes",

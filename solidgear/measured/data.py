@@ -30,9 +30,8 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 from pydantic import AfterValidator, BeforeValidator, Field, PrivateAttr, model_validator
 
-from solidgear.core import Model, SceneError, Surface, explained, parse, show
+from solidgear.core import Model, SceneError, Surface, Written, explained, parse, show
 from solidgear.core.scene.units import Frequency, Tolerance, quantity
-from solidgear.core.scene.written import Written
 from solidgear.measured.alignment import BANDWIDTH
 from solidgear.measured.modal_fit import ResponseFit
 from solidgear.measured.placement import Places, PointsTable

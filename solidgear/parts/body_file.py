@@ -14,14 +14,13 @@ from typing import Annotated, Any, ClassVar, Literal, get_args
 import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
-from solidgear.core import Length, Model, PositiveLength, SceneError, listed
+from solidgear.core import Length, Model, PositiveLength, SceneError, Written, listed
 from solidgear.core.scene.file_materials import FileMaterial
 from solidgear.core.scene.materials import MaterialName, by_name
 from solidgear.core.scene.outline import Torus
 from solidgear.core.scene.parts import Material
 from solidgear.core.scene.patches import Patch, Triple, refuse_elsewhere
 from solidgear.core.scene.units import Mass, quantity
-from solidgear.core.scene.written import Written
 
 #: units of length of a file, m
 UNITS = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "inch": 0.0254, "in": 0.0254}

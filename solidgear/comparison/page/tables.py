@@ -7,7 +7,6 @@ from functools import partial
 
 from solidgear.core import (
     BEAM,
-    C_ZZ,
     COMPLIANCE,
     FIRST_BENDING,
     SCENE,
@@ -28,7 +27,7 @@ from solidgear.core.judge.record import (
     relative_change,
 )
 from solidgear.core.ladder.model import LUMPED
-from solidgear.core.quantity import FREQUENCY, K_ZZ
+from solidgear.core.quantity import C_ZZ, FREQUENCY, K_ZZ
 from solidgear.show.matrices import block, entry
 from solidgear.show.run_tables import pairs_of
 from solidgear.show.table import Cell, Column, Table, quantity, text, word

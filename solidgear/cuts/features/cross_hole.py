@@ -8,10 +8,9 @@ from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 
-from solidgear.core import Length, PositiveLength, SceneError, SignedAngle
+from solidgear.core import Length, PositiveLength, Range, SceneError, SignedAngle
 from solidgear.core.scene.feature import SMALLEST
 from solidgear.core.scene.parts import Segment
-from solidgear.core.scene.written import Range
 from solidgear.cuts.features.cut import Cut, Frame
 
 #: inclination beyond which the rim of the mouth is a wedge of less than 30 degrees, which no mesh

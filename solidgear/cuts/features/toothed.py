@@ -14,11 +14,10 @@ from typing import Annotated, ClassVar, Literal
 import numpy as np
 from pydantic import Field, model_validator
 
-from solidgear.core import SceneError, SignedAngle
+from solidgear.core import Range, SceneError, SignedAngle
 from solidgear.core.scene.feature import SMALLEST, Count, OnSegment
 from solidgear.core.scene.parts import Segment
 from solidgear.core.scene.units import Ratio
-from solidgear.core.scene.written import Range
 
 #: least land between two teeth, and least top of a tooth, in pitches; smaller ones would need
 #: endless meshes

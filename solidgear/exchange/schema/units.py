@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
+from solidgear.core import Range
 from solidgear.core.scene.units import DIMENSIONS, LARGEST, TURNS
-from solidgear.core.scene.written import Range
 
 
 def _any(*words: str) -> str:

@@ -7,11 +7,10 @@ from typing import Annotated, Self
 
 from pydantic import Field, model_validator
 
-from solidgear.core import Length, Model, PositiveLength, SceneError
+from solidgear.core import Length, Model, PositiveLength, SceneError, Written
 from solidgear.core.gears.flank_shape import FlankGrid
 from solidgear.core.gears.wheel import Rack
 from solidgear.core.scene.units import Thickness
-from solidgear.core.scene.written import Written
 
 #: deviation that no ground or broken-in flank has, m
 LARGEST_DEVIATION = 1e-3

@@ -6,10 +6,9 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from solidgear.core import Model, PositiveLength, Scene, SceneError, listed, nearest
+from solidgear.core import Model, PositiveLength, Scene, SceneError, Written, listed, nearest
 from solidgear.core.scene.stations import Status
 from solidgear.core.scene.units import Inertia, Mass, PitchAngle, SpiralAngle
-from solidgear.core.scene.written import Written
 from solidgear.trains.file.flanks import Flanks
 
 #: relative, of inertias: the last of three digits

@@ -11,12 +11,11 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 from pydantic import BeforeValidator, Field, InstanceOf, model_validator
 
-from solidgear.core import Model, SceneError, listed, nearest
+from solidgear.core import Model, SceneError, Written, listed, nearest
 from solidgear.core.scene.bearing_stiffness import Matrix
 from solidgear.core.scene.housing_matrices import HousingMatrices
 from solidgear.core.scene.stations import Status
 from solidgear.core.scene.units import TYPED, Loss, Mass, quantity, quantity_type
-from solidgear.core.scene.written import Written
 from solidgear.trains.file.mesh_cycle import Vector
 
 #: names of the housing among the parts of a train, and of the centre of mass among its points

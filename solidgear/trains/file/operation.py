@@ -8,10 +8,9 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from solidgear.core import DOF_NAMES, Model, SceneError
+from solidgear.core import DOF_NAMES, Model, SceneError, Written
 from solidgear.core.scene.load import BearingLoad
 from solidgear.core.scene.units import Speed, Torque
-from solidgear.core.scene.written import Written
 
 Direction = Literal["x", "-x", "y", "-y", "z", "-z"]
 #: m/s^2, standard gravity (ISO 80000-3)

@@ -14,12 +14,11 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import model_validator
 
-from solidgear.core import Model, Scene, SceneError, near, parse
+from solidgear.core import Model, Scene, SceneError, Written, near, parse
 from solidgear.core.scene.file import load
 from solidgear.core.scene.housing_matrices import ARRAYS, read_matrices
 from solidgear.core.scene.toml_file import name_of, with_table_paths
 from solidgear.core.scene.typed import Problems
-from solidgear.core.scene.written import Written
 from solidgear.trains.file.columns import CELL_COLUMNS, read_cells, read_flank
 from solidgear.trains.file.gears import Member, Shaft
 from solidgear.trains.file.housing import HOUSING, TrainHousing

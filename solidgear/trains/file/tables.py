@@ -12,9 +12,11 @@ from solidgear.core import (
     Length,
     Model,
     PositiveLength,
+    Range,
     SceneError,
     SignedAngle,
     SolidgearError,
+    Written,
 )
 from solidgear.core.scene.stations import Status
 from solidgear.core.scene.units import (
@@ -30,7 +32,6 @@ from solidgear.core.scene.units import (
     TorsionSpring,
     quantity,
 )
-from solidgear.core.scene.written import Range, Written
 from solidgear.trains.file.mesh_cycle import LineCycle, StiffnessCycle, Vector
 
 #: nodal diameters; ports hold those below, and finer waves than the last are shorter than teeth
