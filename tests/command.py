@@ -17,10 +17,15 @@ def command(*words, **how):
     """Run `solidgear` with these words: exit code, output and exception. JSON has its schema."""
     words = [str(word) for word in words]
     result = CliRunner().invoke(app, words, **how)
-    name = next((word for word in words if not word.startswith("-")), "")
-    if "--json" in words and name in registered("printed") and result.stdout.startswith("{"):
-        assert against_schema(name, result.stdout) == []
+    hold_to_schema(words, result.stdout)
     return result
+
+
+def hold_to_schema(words, text):
+    """Hold JSON that a command printed against its schema; nothing where it printed none."""
+    name = next((word for word in words if not word.startswith("-")), "")
+    if "--json" in words and name in registered("printed") and text.startswith("{"):
+        assert against_schema(name, text) == []
 
 
 @cache
