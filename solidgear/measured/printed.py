@@ -25,6 +25,7 @@ PAIR = Printed(
     },
     sometimes={"damping": float, "damping_deviation": float},
 )
+MISSED = Printed(keys={"mode": str, "computed_hz": float, "probability": float})
 CORRELATE = Printed(
     keys={
         "kind": Literal["correlation"],
@@ -37,9 +38,7 @@ CORRELATE = Printed(
         "pairs": list[PAIR],  # type: ignore[valid-type]
         "mac": list[list[Number] | None] | None,
         "modes": list[str],
-        "not_measured": list[
-            Printed(keys={"mode": str, "computed_hz": float, "probability": float})  # type: ignore[misc]
-        ],
+        "not_measured": list[MISSED],  # type: ignore[valid-type]
         "sentences": list[str],
     }
 )

@@ -14,7 +14,7 @@ class Printed:
     """
 
     #: results whose keys it has
-    results: tuple[type, ...] = ()
+    results: tuple[type | Printed, ...] = ()
     keys: Mapping[str, Any] = field(default_factory=dict)
     #: keys that not every run has, of results all
     sometimes: Mapping[str, Any] = field(default_factory=dict)

@@ -126,9 +126,9 @@ class ScenePartFile(SceneFile):
     """A scene file with a part from another file in place of segments."""
 
     # not needed where the groups of the part have all their own
-    material: Annotated[  # type: ignore[assignment]
+    material: Annotated[
         Material | None, BeforeValidator(by_name), Written(Material | MaterialName)
-    ] = None
+    ] = None  # type: ignore[assignment]
     body: BodyTable
     segment: list[Shape] = []
 

@@ -358,6 +358,7 @@ Tolerance = Annotated[
 ]
 
 # Quantities of a train.
+Product = Annotated[float, _in("inertia")]
 Inertia = Annotated[float, _in("inertia"), _POSITIVE]
 TorsionSpring = Annotated[float, _in("moment"), _POSITIVE]
 MeshSpring = Annotated[float, _in("force_per_length"), _POSITIVE]

@@ -15,7 +15,7 @@ from solidgear.core import Model, SceneError, Written, listed, nearest
 from solidgear.core.scene.bearing_stiffness import Matrix
 from solidgear.core.scene.housing_matrices import HousingMatrices
 from solidgear.core.scene.stations import Status
-from solidgear.core.scene.units import TYPED, Loss, Mass, quantity, quantity_type
+from solidgear.core.scene.units import TYPED, Loss, Mass, Product, quantity
 from solidgear.trains.file.mesh_cycle import Vector
 
 #: names of the housing among the parts of a train, and of the centre of mass among its points
@@ -51,7 +51,7 @@ def _inertia(value: Any) -> tuple[tuple[float, ...], ...]:
 
 
 #: three moments, or a row of three
-Triple = Annotated[list[quantity_type("inertia")], Field(min_length=3, max_length=3)]
+Triple = Annotated[list[Product], Field(min_length=3, max_length=3)]
 
 
 class Mount(Model):
