@@ -42,6 +42,7 @@ from solidgear.core.scene.toml_file import (
 )
 from solidgear.core.scene.typed import Holds, Model, Problems
 from solidgear.core.scene.uncertain import with_ranges
+from solidgear.core.scene.writing import digest_of_scene
 from solidgear.core.scene.written import Kinds, Word, Written
 
 PAIRING, PARTS = pairing(), parts()
@@ -84,6 +85,8 @@ class SceneFile(Model):
 
     #: title of the shaft in tables and pages
     title: str = ""
+    #: name of the scene; by default that of the file
+    name: str | None = None
     #: where the numbers come from
     source: str = ""
     #: how seats and surfaces follow what they carry, unless their tables say otherwise
@@ -176,6 +179,31 @@ def _drop_tag(path: tuple) -> tuple:
     return (*path[:2], *path[3:]) if tagged else path
 
 
+def says_unsettled(tables: Mapping[str, Any]) -> bool:
+    """Return True for tables of a scene whose catalogue bearings wait for their stiffness."""
+    bearings = tables.get("bearing") or ()
+    return any(isinstance(t, Mapping) and t.get("settled") is False for t in bearings)
+
+
+def with_settled(scene: Scene, tables: Sequence[Table]) -> Scene:
+    """Return a scene with the stiffness that catalogue bearings have in their tables, where it was
+    solved for this scene and no other.
+    """
+    settled = {
+        k: t["settled"] for k, t in enumerate(tables) if isinstance(t.get("settled"), Mapping)
+    }
+    if not settled:
+        return scene
+    digest = digest_of_scene(scene)
+    bearings = tuple(
+        bearing.with_changes(stiffness=settled[k]["stiffness"])
+        if k in settled and settled[k]["under"] == digest
+        else bearing
+        for k, bearing in enumerate(scene.bearings)
+    )
+    return scene.unjudged(bearings=bearings)
+
+
 class _Row(NamedTuple):
     """A thing that was read, None without a place, and the table that it was read from."""
 
@@ -243,7 +271,7 @@ class _Reading:
             further_ports=tuple(further),
             **things,
             title=file.title,
-            name=name_of(self.where),
+            name=name_of(self.where) if file.name is None else file.name,
             source=file.source,
             body=PARTS.with_seats(self.part, stations, self.segments) if self.part else None,
             housing_axial=housing if isinstance(housing, float) else None,
@@ -252,7 +280,7 @@ class _Reading:
             lubrication=file.lubrication,
             ask=Ask(**{key: getattr(file.ask, key) for key in Ask.model_fields}),
         )
-        return with_ranges(scene, file.uncertain, file.bearing)
+        return with_settled(with_ranges(scene, file.uncertain, file.bearing), file.bearing)
 
     def _tables(self) -> tuple[SceneFile, set[str]]:
         """Return the file without spoilt keys, and these keys."""

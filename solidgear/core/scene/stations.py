@@ -24,7 +24,7 @@ from solidgear.core.scene.support import (
     sliding,
 )
 from solidgear.core.scene.tables import Absent
-from solidgear.core.scene.typed import Problems
+from solidgear.core.scene.typed import Model, Problems
 from solidgear.core.scene.units import (
     POSITION_DECIMALS,
     SOFTEST,
@@ -44,6 +44,17 @@ else:
 Attachment = Literal["average", "rigid", "section"]
 Status = Literal["published", "identified", "assumed", "measured", "calculated", "estimated"]
 Face = Literal["start", "end"]
+
+
+class Settled(Model):
+    """Stiffness that catalogue data have under the load of a shaft; False in its place where it is
+    not solved yet.
+    """
+
+    #: digest of the tables that it was solved for; with others it is solved anew
+    under: str
+    #: 6x6, SI: named entries or six rows
+    stiffness: Matrix
 
 
 class Bearing(Placed):
@@ -111,6 +122,9 @@ class Bearing(Placed):
         patch: str | None = None
         #: point in place of the middle of the patch, in the axes of the file, m
         point: Point = None
+        #: stiffness that catalogue data have under the load of the shaft, as `to_dict` writes it;
+        #: false where it is not solved yet
+        settled: Settled | Literal[False] | None = None
 
     sources: ClassVar = {
         "y": ("seat", "face", "position"),

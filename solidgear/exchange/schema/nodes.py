@@ -78,7 +78,7 @@ class Nodes:
             return table({key: self.of(entry) for key, entry in kind.items()})
         origin, parts = get_origin(kind), get_args(kind)
         if origin is Literal:
-            return {"type": "string", "enum": [*parts]}
+            return {"type": SIMPLE[type(parts[0])], "enum": [*parts]}
         if origin in (Union, types.UnionType):
             return either([self.of(part) for part in parts if part is not type(None)])
         if origin is tuple and parts[1:] != (...,):

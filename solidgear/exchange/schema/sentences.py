@@ -1,6 +1,6 @@
 """Sentences on the fields of classes, where they stand in the code.
 
-A field has its sentence in the section Attributes of the docstring of its class, or in a comment
+A field has its sentence in a comment
 ``#:`` behind it or above it; above it a comment may begin with the names of several fields.
 """
 
@@ -33,7 +33,7 @@ def sentences(kind: type) -> dict[str, str]:
     out: dict[str, str] = {}
     for base in reversed(kind.__mro__):
         if base.__module__.startswith("solidgear."):
-            out |= {**_comments(base), **attributes(base)}
+            out |= {**attributes(base), **_comments(base)}
     return out
 
 

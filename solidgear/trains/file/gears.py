@@ -98,8 +98,8 @@ class Gear(Flanks):
 class Shaft(Model):
     """A shaft and the gears that it carries."""
 
-    #: file of the shaft
-    scene: Annotated[Scene, Written(str)]
+    #: file of the shaft, or the tables of its scene
+    scene: Annotated[Scene, Written(str | dict)]
     #: gears by the lumped points of the scene at which they sit
     gears: dict[str, Gear] = {}
     #: whether the [load] of the scene is added to the mesh force or replaced by it, in a train
@@ -136,8 +136,8 @@ class Shaft(Model):
 class Member(Gear):
     """A gear and its shaft, whose main lumped point is that of the gear."""
 
-    #: file of the shaft
-    scene: Annotated[Scene, Written(str)]
+    #: file of the shaft, or the tables of its scene
+    scene: Annotated[Scene, Written(str | dict)]
     #: whether the [load] of the scene is added to the mesh force or replaced by it, in a train
     #: with an operating point; without this key it must be the mesh force
     scene_load: Literal["added", "replaced"] | None = None
