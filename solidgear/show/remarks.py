@@ -7,9 +7,8 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from solidgear.core import Body, OpenNumbers, Scene
+from solidgear.core import Body, OpenNumbers, Scene, addition
 from solidgear.core import load as read
-from solidgear.core.registry import addition
 
 
 def load(path: Path) -> Scene:

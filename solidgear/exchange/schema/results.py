@@ -17,8 +17,8 @@ from typing import Annotated, Any, Literal, NamedTuple, Union, get_args, get_ori
 import numpy as np
 from pydantic import BaseModel
 
-from solidgear.core import SolidgearError, nearest, show
-from solidgear.core.registry import addition, registered
+from solidgear.core import SolidgearError, addition, nearest, show
+from solidgear.core.registry import registered
 from solidgear.exchange.schema.files import DRAFT, text_of
 from solidgear.exchange.schema.sentences import sentences, summary
 from solidgear.show.printed import Printed

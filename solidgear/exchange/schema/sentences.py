@@ -1,7 +1,7 @@
 """Sentences on the fields of classes, where they stand in the code.
 
-A field has its sentence in a comment
-``#:`` behind it or above it; above it a comment may begin with the names of several fields.
+A field has its sentence in a comment ``#:`` behind it or above it, where it may begin with the names
+of several fields, or else in the section Attributes of the docstring of its class.
 """
 
 from __future__ import annotations

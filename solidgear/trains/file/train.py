@@ -16,8 +16,16 @@ from typing import Any
 import numpy as np
 from pydantic import model_validator
 
-from solidgear.core import Bearing, Document, Model, Scene, SceneError, SolidgearError, listed
-from solidgear.core.registry import addition
+from solidgear.core import (
+    Bearing,
+    Document,
+    Model,
+    Scene,
+    SceneError,
+    SolidgearError,
+    addition,
+    listed,
+)
 from solidgear.trains.file.gears import HeadInertia, Member, Shaft
 from solidgear.trains.file.housing import TrainHousing
 from solidgear.trains.file.layout import (
