@@ -26,7 +26,7 @@ def sentences(kind: type) -> dict[str, str]:
 
     Examples
     --------
-    >>> from solidgear.core import Material
+    >>> from solidgear import Material
     >>> sentences(Material)["nu"]
     "Poisson's ratio, between -1 and 0.5, both excluded."
     """
