@@ -271,7 +271,9 @@ def test_the_command_prints_writes_and_refuses(tmp_path):
 def test_every_command_that_prints_json_has_a_schema():
     printing = set()
     for name, entry in COMMANDS.items():
-        function = getattr(import_module(f"solidgear.{entry.module}"), name.replace("-", "_"))
+        function = getattr(
+            import_module(f"solidgear.{entry.module}"), entry.function or name.replace("-", "_")
+        )
         if "as_json" in inspect.signature(function).parameters:
             printing.add(name)
     assert printing == set(registered("printed"))

@@ -23,7 +23,7 @@ MODE = Printed(
         "family": str,
         "frequency_hz": float,
         "multiplicity": int,
-        "error": Number,
+        "solver_error": Number,
         "bar": Number,
         "split": Any,
     }
@@ -31,8 +31,8 @@ MODE = Printed(
 #: of a model that was chosen or given, with what is beside its numbers
 SOLVED = {
     "scene": str,
-    "fidelity": str,
-    "dofs": int,
+    "model": str,
+    "unknowns": int,
     "evidence": dict[str, Any],
     "cautions": list[str],
     "open": OpenNumbers,

@@ -1,1 +1,1 @@
-"""Exchange with other programs: schemas of files and results."""
+"""Files of other programs, in and out; schemas of files and results."""

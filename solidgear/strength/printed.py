@@ -20,6 +20,7 @@ SOLUTION = Printed(
         "displacement": SIX,
         "shafts": dict[str, ShaftDeflection],
         "turns": dict[str, StageTurn],
+        "face_load_norm": dict[str, Any],
         "notes": list[str],
         "seconds": float,
     },

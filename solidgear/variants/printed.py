@@ -35,7 +35,7 @@ OPTIMISE = Printed(
         "best": int | None,
         "at_end": list[str],
         "search": str,
-        "bars": str,
+        "about_bars": str,
         "gain": Any,
         "designs": list[DESIGN],  # type: ignore[valid-type]
         "sentences": list[str],

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from solidgear.core import SolidgearError
-from solidgear.core.machine.whole_file import write_page
+from solidgear.core.machine.whole_file import write_files
 from solidgear.exchange.schema.files import KINDS, path_of
 from solidgear.show.command import command
 
@@ -42,4 +42,5 @@ def schema(
     if out is None:
         typer.echo(text, nl=False)
         return
-    typer.echo(f"Written: {write_page(out, text)}")
+    write_files({out: text.encode()})
+    typer.echo(f"Written: {out}")

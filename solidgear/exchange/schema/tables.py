@@ -7,7 +7,6 @@ from typing import Any
 
 from pydantic.fields import FieldInfo
 
-from solidgear.core.scene.places import Placed
 from solidgear.core.scene.typed import Holds, Model
 from solidgear.core.scene.written import Kinds
 from solidgear.exchange.schema.nodes import Node, Nodes, also, described, table
@@ -105,21 +104,21 @@ def _said(kind: type[Model]) -> dict[str, str]:
         for name, text in sentences(kind).items()
         if (field := kind.model_fields.get(name)) is not None
     }
-    if issubclass(kind, Placed):
-        for name, keys in kind.sources.items():
-            out = {key: out[name] for key in keys if name in out} | out
-        words = kind.Words
-        out |= {
-            field.alias or name: text
-            for name, text in sentences(words).items()
-            if (field := words.model_fields.get(name)) is not None
-        }
+    for name, keys in getattr(kind, "sources", {}).items():
+        out = {key: out[name] for key in keys if name in out} | out
+    words = getattr(kind, "Words", None)
+    of_words = {} if words is None else sentences(words)
+    out |= {
+        field.alias or name: text
+        for name, text in of_words.items()
+        if (field := words.model_fields.get(name)) is not None
+    }
     return out
 
 
 def _source(kind: type[Model], key: str) -> FieldInfo | None:
     """Return the field that a key of another name gives."""
-    sources = kind.sources if issubclass(kind, Placed) else {}
+    sources = getattr(kind, "sources", {})
     return next((kind.model_fields[name] for name, keys in sources.items() if key in keys), None)
 
 

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from typing import Annotated, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import Field, InstanceOf, model_validator
 
 from solidgear.core import Model, PositiveLength, Scene, SceneError, Written, listed, nearest
+from solidgear.core.reduction.port_matrices import PortMatrices
 from solidgear.core.scene.stations import Status
 from solidgear.core.scene.units import Inertia, Mass, PitchAngle, SpiralAngle
 from solidgear.trains.file.flanks import Flanks
+from solidgear.trains.file.matrix_keys import WithMatrices
+from solidgear.trains.file.tables import Azimuth
 
 #: relative, of inertias: the last of three digits
 ROUNDED = 5e-3
@@ -22,6 +25,10 @@ MOST_CURVED = 10.0
 Teeth = Annotated[int, Field(strict=True, ge=FEWEST_TEETH, le=MOST_TEETH)]
 #: of cylindrical gears (ISO 21771)
 FLANKS = ("left", "right")
+
+
+#: of a shaft: mass and stiffness of its free body in the axes of its scene, by another program
+Matrices = Annotated[InstanceOf[PortMatrices] | None, Field(exclude=True, repr=False), Written(str)]
 
 
 class HeadInertia(Model):
@@ -76,6 +83,9 @@ class Gear(Flanks):
     #: curvature of the blade of the cutter of a bevel gear, 1/m; where the pinion's blade is
     #: curved, flanks open away from their middle
     blade_curvature: Annotated[float, Field(ge=-MOST_CURVED, le=MOST_CURVED)] | None = None
+    #: angle of the middle of a tooth of a cylindrical gear at the lumped point about y of the
+    #: scene, right-handed from x, rad: that of two gears of a shaft ties the phases of their meshes
+    angle: Azimuth | None = None
     #: end of the shaft that the pitch apex lies towards
     apex: Literal["start", "end"] = "start"
     #: rigid mass and inertia of the gear body at the lumped point
@@ -95,7 +105,7 @@ class Gear(Flanks):
         return self.hand if self.loaded_side == "concave" else FLANKS[self.hand == "left"]
 
 
-class Shaft(Model):
+class Shaft(WithMatrices):
     """A shaft and the gears that it carries."""
 
     #: file of the shaft, or the tables of its scene
@@ -105,6 +115,8 @@ class Shaft(Model):
     #: whether the [load] of the scene is added to the mesh force or replaced by it, in a train
     #: with an operating point; without this key it must be the mesh force
     scene_load: Literal["added", "replaced"] | None = None
+    #: file of matrices of the free body by another program
+    matrices: Matrices = None
 
     @model_validator(mode="after")
     def _at_points(self) -> Shaft:
@@ -129,11 +141,12 @@ class Shaft(Model):
         return Member(
             scene=self.scene if main else self.scene.with_main_port(port),
             scene_load=self.scene_load,
+            matrices=self.matrices,
             **{key: getattr(self.gears[port], key) for key in Gear.model_fields},
         )
 
 
-class Member(Gear):
+class Member(WithMatrices, Gear):
     """A gear and its shaft, whose main lumped point is that of the gear."""
 
     #: file of the shaft, or the tables of its scene
@@ -141,10 +154,14 @@ class Member(Gear):
     #: whether the [load] of the scene is added to the mesh force or replaced by it, in a train
     #: with an operating point; without this key it must be the mesh force
     scene_load: Literal["added", "replaced"] | None = None
+    #: file of matrices of the free body by another program
+    matrices: Matrices = None
 
     @property
     def shaft(self) -> Shaft:
         """Shaft that carries this gear alone."""
         gear = Gear(**{key: getattr(self, key) for key in Gear.model_fields})
         gears = {self.scene.port.name: gear}
-        return Shaft(scene=self.scene, gears=gears, scene_load=self.scene_load)
+        return Shaft(
+            scene=self.scene, gears=gears, scene_load=self.scene_load, matrices=self.matrices
+        )

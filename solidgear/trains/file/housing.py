@@ -12,14 +12,15 @@ import numpy as np
 from pydantic import BeforeValidator, Field, InstanceOf, model_validator
 
 from solidgear.core import Model, SceneError, Written, listed, nearest
+from solidgear.core.reduction.port_matrices import CENTRE, PortMatrices
 from solidgear.core.scene.bearing_stiffness import Matrix
-from solidgear.core.scene.housing_matrices import HousingMatrices
 from solidgear.core.scene.stations import Status
 from solidgear.core.scene.units import TYPED, Loss, Mass, Product, quantity
+from solidgear.trains.file.matrix_keys import WithMatrices
 from solidgear.trains.file.mesh_cycle import Vector
 
-#: names of the housing among the parts of a train, and of the centre of mass among its points
-HOUSING, CENTRE = "housing", "centre"
+#: name of the housing among the parts of a train
+HOUSING = "housing"
 #: loss factor of castings with their joints, where none is given
 LOSS = 0.01
 
@@ -83,7 +84,7 @@ class Mount(Model):
         return self
 
 
-class TrainHousing(Model):
+class TrainHousing(WithMatrices):
     """A body that carries the bearings of shafts, on mounts to ground: rigid, or of matrices.
 
     Examples
@@ -96,8 +97,8 @@ class TrainHousing(Model):
 
     needs: ClassVar = (("matrices", ("mass", "inertia", "centre")),)
 
-    #: an .npz file of the matrices of an elastic housing; mass, inertia and centre are then theirs
-    matrices: Annotated[InstanceOf[HousingMatrices] | None, Written(str)] = Field(
+    #: file of the matrices of an elastic housing; mass, inertia and centre are then theirs
+    matrices: Annotated[InstanceOf[PortMatrices] | None, Written(str)] = Field(
         None, exclude=True, repr=False
     )
     #: mass of a rigid housing, kg
@@ -115,13 +116,15 @@ class TrainHousing(Model):
     carries: Annotated[tuple[str, ...], Field(min_length=1)] | None = None
     #: springs between the housing and ground
     mounts: tuple[Mount, ...] = Field((), alias="mount")
-    #: places of a rigid housing whose motion is given, by name, m
-    points: dict[str, Vector] = {}
+    #: places of a rigid housing whose motion is given, by name, m, or the nodes of the file of
+    #: matrices
+    points: Annotated[dict[str, Vector], Written(dict[str, Any])] = {}
     #: source of mass and inertia
     status: Status = "assumed"
 
     def __init__(self, /, **data: Any):
-        if isinstance(matrices := data.get("matrices"), HousingMatrices):
+        if isinstance(matrices := data.get("matrices"), PortMatrices):
+            _ = matrices.elastic  # which refuses a body that is held
             rigid_mass = matrices.rigid_mass
             mass_fields = {"mass": float(rigid_mass[0, 0]), "inertia": rigid_mass[3:, 3:].tolist()}
             data |= mass_fields | {"centre": tuple(matrices.centre.tolist()), "points": {}}

@@ -93,6 +93,10 @@ class PlanetMeshes(Model):
     #: amplitude of the transmission error of each mesh, m, or a table of orders or over frequency;
     #: needed where it drives a motion
     transmission_error: Error = None
+    #: transmission error of the meshes with the sun, in place of that of each
+    sun_error: Error = None
+    #: transmission error of the meshes with the ring, in place of that of each
+    ring_error: Error = None
     #: source of these numbers
     status: Status = "assumed"
 
@@ -149,6 +153,12 @@ class PlanetMesh:
     def mesh(self) -> PlanetMeshes:
         """Table of the teeth."""
         return self.stage.table.mesh
+
+    @property
+    def error(self) -> ErrorTable | None:
+        """Transmission error of each planet's mesh; None where the file gives none."""
+        own_error = getattr(self.mesh, f"{self.mate}_error")
+        return own_error if own_error is not None else self.mesh.transmission_error
 
     @property
     def stiffness(self) -> float:
@@ -252,7 +262,7 @@ def stage_of(name: str, table: Planetary, shafts: Mapping[str, Shaft]) -> Stage:
 
 def error_of(driver: Pair | PlanetMesh) -> ErrorTable:
     """Return the transmission error of a mesh that drives a motion; refuse a mesh without one."""
-    if (error := driver.mesh.transmission_error) is not None:
+    if (error := driver.error) is not None:
         return error
     table: tuple
     if isinstance(driver, PlanetMesh):
