@@ -57,6 +57,10 @@ GROUPS = {
             "app.files",
             "List what --set takes: every builder option with default, limits and meaning.",
         ),
+        "schema": Entry(
+            "exchange.schema.command",
+            "Print the JSON Schema of files, for editors, or of what a command prints with --json.",
+        ),
     },
     "One shaft": {
         "answer": Entry(
