@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from functools import partial
 from math import degrees, isfinite
+from typing import Any
 
 import numpy as np
 
@@ -14,8 +15,9 @@ from solidgear.show.panel import GREY, Panel, Series, curve, lines_legend, reado
 from solidgear.show.plot import NARROW, WIDE, Chart, Make, in_columns
 from solidgear.show.scales import Axis
 from solidgear.show.sheet import Sheet, Terminal
-from solidgear.show.table import Cell, Column, Table, numbers, quantity, text, word
+from solidgear.show.table import Cell, Column, Table, in_units, numbers, quantity, text, word
 from solidgear.show.units import ENGINEERING, Units
+from solidgear.show.words import DASH
 from solidgear.strength.deflection.at_rest import (
     MOVED,
     WITHOUT_BAR,
@@ -110,22 +112,28 @@ def misalignment(deflected: Deflections, units: Units = ENGINEERING) -> Table:
     """Return misalignment by every model, with error bar and range by bearing data."""
     measures = deflected.judge.misalignment
     columns = [word("of the axes"), *(Column(s.model) for s in deflected.solutions)]
-    columns.append(Column("error bar"))
-    rows: list[list[str | None]] = []
+    has_ranges = any(m.open is not None for m in measures)
+    columns += [
+        Column("error bar"),
+        Column("range", name="least", hidden=not has_ranges),
+        Column("largest", hidden=True),
+        Column("unit", hidden=True),
+    ]
+    rows: list[list[Any]] = []
     for k, m in enumerate(measures):
         values = [s.misalignment[k].value for s in deflected.solutions]
-        share = percent_of(m.bar, m.value)
-        shown = [units.number(value, m.unit, 3) for value in values]
-        rows.append([f"{m.name}, {units.unit(m.unit)}", *shown, share])
+        share = Cell(m.bar, "", percent_of(m.bar, m.value) or DASH)
+        shown = [in_units(value, m.unit, units, 3) for value in values]
+        name = Cell(m.name, "", f"{m.name}, {units.unit(m.unit)}")
+        least, largest = m.open or (None, None)
+        ends = [units.number(end, m.unit, 3) for end in m.open or ()]
+        range_ = Cell(least, "", " to ".join(ends) or DASH)
+        rows.append([name, *shown, share, range_, largest, m.si_unit])
     note = (
         f"{meanings(measures, units)}. Error bar: of the last model's mesh, "
         "by local problems; models differ by what their theory leaves out."
     )
-    if any(m.open is not None for m in measures):
-        columns.append(Column("range"))
-        for row, m in zip(rows, measures):
-            ends = [units.number(end, m.unit, 3) for end in m.open or ()]
-            row.append(" to ".join(ends) or None)
+    if has_ranges:
         note += " Range: by estimated insides and classes of clearance of the bearings."
     return Table("Misalignment", columns, rows, note)
 
@@ -210,7 +218,7 @@ def turn_lines(turn: StageTurn) -> Table:
     programs.
     """
     forces = {f"planet {k} [N]": force for k, force in enumerate(turn.force.T, start=1)}
-    return numbers({"carrier [rad]": turn.angle, **forces})
+    return numbers({"carrier [rad]": turn.angle, **forces}, axes=1)
 
 
 def over_points(points: Sequence[Deflection], units: Units = ENGINEERING) -> list[Table]:
@@ -309,7 +317,7 @@ def motions(deflected: Deflections, units: Units = ENGINEERING) -> list[Table]:
     return [Table(f"Motion of {port}", [word("model"), *_six(MOVED, units)], rows, note)]
 
 
-def _bars(deflected: Deflection, place: str, units: Units) -> list[list[str | None]]:
+def _bars(deflected: Deflection, place: str, units: Units) -> list[list[Cell]]:
     """Return a row of the error bars of a place, none less than a share of the largest translation
     or rotation; no row where it has none.
     """
@@ -319,10 +327,10 @@ def _bars(deflected: Deflection, place: str, units: Units) -> list[list[str | No
     largest = np.abs([m.value for m in six]).reshape(2, 3).max(axis=1)
     least = np.repeat(LEAST / 100 * largest, 3)
     bars = [
-        None if m.bar is None else units.number(max(m.bar, size), m.unit, 2)
+        Cell(None) if m.bar is None else in_units(float(max(m.bar, size)), m.unit, units, 2)
         for m, size in zip(six, least)
     ]
-    return [["error bar", *bars]]
+    return [[Cell(f"error bar of {place}", "", "error bar"), *bars]]
 
 
 def _six(si_units: Sequence[str], units: Units) -> list[Column]:
@@ -358,7 +366,7 @@ def bearings(shafts: Sequence[ShaftDeflection], units: Units = ENGINEERING) -> l
     ]
     if not inside:
         return [Table("Bearing loads", loads, rows, note)]
-    loads += [Column("C0/P0"), Column("L10r, 1e6")]
+    loads += [Column("C0/P0"), Column("L10r, 1e6", name="L10r", unit="1")]
     for row, (_, bearing) in zip(rows, by_name):
         row += [_rated(bearing.static_safety, 1.0), _rated(bearing.reference_life, 1e6)]
     note += (
@@ -386,10 +394,10 @@ def bearings(shafts: Sequence[ShaftDeflection], units: Units = ENGINEERING) -> l
     ]
 
 
-def _rated(value: float | None, unit: float) -> str | None:
+def _rated(value: float | None, unit: float) -> Cell | None:
     if value is None:
         return None
-    return f"{value / unit:.3g}" if isfinite(value) else "endless"
+    return Cell(value, "", f"{value / unit:.3g}" if isfinite(value) else "endless")
 
 
 def _loaded(bearing: BearingState) -> str | Cell:
@@ -400,7 +408,7 @@ def _loaded(bearing: BearingState) -> str | Cell:
 def line(shaft: ShaftDeflection) -> Table:
     """Return the deflection line of a shaft in SI, for other programs."""
     heads = [f"{dof} [{si.split()[0]}]" for dof, si in zip(DOF_NAMES, MOVED)]
-    return numbers({"y [m]": shaft.stations, **dict(zip(heads, shaft.line.T))})
+    return numbers({"y [m]": shaft.stations, **dict(zip(heads, shaft.line.T))}, axes=1)
 
 
 def turn_chart(turn: StageTurn, units: Units = ENGINEERING, width: float = WIDE) -> Chart:
