@@ -82,3 +82,33 @@ def test_options_for_one_shaft_are_refused_for_a_train(option, tmp_path):
     done = command("compare", TRAIN, "--out", tmp_path / "out", *option)
     assert done.exit_code == 1 and f"{option[0]} is for one shaft" in str(done.exception)
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    "words, judge",
+    [
+        ([], "trains.judge.command.compared"),
+        (["geometry/axle_straddle.toml"], "comparison.two.command.two_trains"),
+    ],
+    ids=["a train", "two trains"],
+)
+def test_the_tolerance_of_the_meshes_of_trains_is_that_of_the_option(words, judge, monkeypatch):
+    class Asked(Exception):
+        pass
+
+    def judged(assemblies, *_, **__):
+        raise Asked(assemblies)
+
+    monkeypatch.setattr(f"solidgear.{judge}", judged)
+    done = command("compare", TRAIN, *(ROOT / word for word in words), "--tol", "3%")
+    assert isinstance(done.exception, Asked), done.output
+    (asked,) = done.exception.args
+    assemblies = asked if isinstance(asked, list) else [asked]
+    assert [assembly.tol for assembly in assemblies] == [0.03] * (1 + len(words))
+
+
+@pytest.mark.parametrize("count, said", [(1, "--tol is for trains"), (2, "--tol does not apply")])
+def test_a_tolerance_of_meshes_is_refused_for_shafts(count, said):
+    shafts = [SHAFT, ROOT / "geometry/shaft_stepped.toml"][:count]
+    done = command("compare", *shafts, "--tol", "0.01")
+    assert done.exit_code == 1 and said in str(done.exception)

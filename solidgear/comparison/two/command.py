@@ -28,6 +28,7 @@ def compare_two(
     files: list[Path],
     out: Path,
     mix: Pair,
+    reduced: Reduced,
     mesh: str | None,
     run: Shown,
     options: dict[str, bool],
@@ -47,7 +48,7 @@ def compare_two(
         return
     solve: Callable[..., TwoTrains | TwoShafts]
     if trains:
-        assemblies = [Reduced().assembly(path) for path in files]
+        assemblies = [reduced.assembly(path) for path in files]
         models = mix.by_shaft(assemblies[0].train).values()
         for model in models:
             checked_model(model)
