@@ -22,14 +22,22 @@ copyright = "solidgear developers, GPL-3.0-or-later"
 version = release = solidgear.__version__
 
 extensions = [
-    "myst_parser",
+    "myst_nb",
     "sphinx.ext.autodoc",
+    "sphinx.ext.autosummary",
     "sphinx.ext.napoleon",
 ]
 # attributes of several classes share a name, and a word in a docstring may be one of them
 suppress_warnings = ["ref.python"]
 root_doc = "index"
 exclude_patterns = ["tools", "package.md"]
+
+# a page an object, made from docs/api.md
+autosummary_generate = True
+autosummary_ignore_module_all = False
+templates_path = ["_templates"]
+# notebooks show what they hold; the tests run them
+nb_execution_mode = "off"
 
 myst_enable_extensions = ["dollarmath", "amsmath", "deflist", "colon_fence", "attrs_inline"]
 myst_heading_anchors = 3

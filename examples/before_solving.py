@@ -9,14 +9,12 @@ It illustrates how to:
 from pathlib import Path
 
 import solidgear as sg
-from solidgear.guards.check import check_scene
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 
 
 def main():
-    scene = sg.load(GEOMETRY / "pinion_overhung.toml")
-    found = check_scene(scene, sg.build(scene, "timoshenko"))
+    found = sg.check(GEOMETRY / "pinion_overhung.toml")
     for model, verdict in found.verdicts.items():
         print(f"{model:11s} {verdict.verdict}")
     for caution in found.cautions:

@@ -15,9 +15,6 @@ from pathlib import Path
 import numpy as np
 
 import solidgear as sg
-from solidgear.trains.assembly.assembly import Assembly
-from solidgear.trains.modes.modes import train_modes
-from solidgear.trains.response.drive import Drive
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 
@@ -25,15 +22,15 @@ GEOMETRY = Path(__file__).parent.parent / "geometry"
 def main():
     """First bending mode of the gear by both, and the mesh force at 700 Hz."""
     train = sg.load_train(GEOMETRY / "axle_overhung.toml")
-    assembly = Assembly(train, settings={"harmonic": {"order": 2}})
     first, force = {}, {}
     for gear in ("timoshenko", "harmonic"):
-        found = train_modes(assembly, "timoshenko", gear, max_frequency=1000.0)
-        first[gear] = next(m.frequency_hz for m in found.modes if m.name == "gear bending 1")
-        drive = Drive(assembly, "timoshenko", gear)
-        force[gear] = float(abs(drive.mesh(np.array([700.0]))[1][0]))
+        models = {"pinion": "timoshenko", "gear": gear}
+        found = sg.system_modes(train, models, max_frequency=1000.0)
+        first[gear] = found["gear bending 1"].frequency_hz
+        response = sg.response(train, models, max_frequency=1000.0).responses[0]
+        force[gear] = float(np.interp(700.0, response.frequency_hz, response.force))
         print(f"gear {gear}: bending at {first[gear]:.0f} Hz, {force[gear]:.0f} N at 700 Hz")
-    for line in found.remarks():
+    for line in found.solved.remarks():
         print(line)
     return first, force
 

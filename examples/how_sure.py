@@ -2,27 +2,25 @@
 
 It illustrates how to:
 
-* study one model alone,
-* read the error bar of each quantity.
+* ask for numbers within a tolerance,
+* read the error bar of each.
 """
 
 from pathlib import Path
 
 import solidgear as sg
-from solidgear.core.judge.study import study
-from solidgear.core.judge.ties import SCENE
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 
 
 def main():
-    scene = sg.load(GEOMETRY / "pinion_overhung.toml")
-    found = study(scene, "harmonic", evidence=False)
-    bars = found.error_bars[SCENE]
-    for name in ("C_zz", "C_thx", "bending 1"):
-        print(f"{name:10s} {found.quantities[name]:.5g}, sure to {100 * bars[name].width:.2g} %")
-    print(f"{len(found.levels)} meshes, the last with {found.body.size} unknowns")
-    return {name: bar.width for name, bar in bars.items()}
+    pinion = GEOMETRY / "pinion_overhung.toml"
+    found = sg.answer(pinion, "0.5 %", ["C_zz", "C_thx", "bending 1"])
+    for value in found.values:
+        print(f"{value.quantity:10s} {value.value:.5g}, sure to {100 * value.bar:.2g} %")
+    meshes = [step for step in found.steps if step.unknowns]
+    print(f"{len(meshes)} meshes, the last with {meshes[-1].unknowns} unknowns")
+    return {str(value.quantity): value.bar for value in found.values}
 
 
 if __name__ == "__main__":

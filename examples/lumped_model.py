@@ -9,7 +9,6 @@ It illustrates how to:
 from pathlib import Path
 
 import solidgear as sg
-from solidgear.core.reduction.effective_mass import synthesise
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 
@@ -18,7 +17,7 @@ def main():
     scene = sg.load(GEOMETRY / "pinion_overhung.toml")
     body = sg.build(scene, "timoshenko")
     modes = sg.modes(body, scene, n=6)
-    point, models = synthesise(body, scene, scene.port.name, modes)
+    point, models = sg.synthesise(body, scene, scene.port.name, modes)
     print(f"a static shape holds {100 * point.static_share:.0f} % of the energy of first bending")
     found = {}
     for name, model in models.items():

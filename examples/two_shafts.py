@@ -13,7 +13,6 @@ from pathlib import Path
 import numpy as np
 
 import solidgear as sg
-from solidgear.core.system.gear_mesh import line_of_action, mesh_point, to_gear_frame
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 RADIUS, TEETH, MESH = 0.055, (14, 45), 8.6e8
@@ -28,10 +27,10 @@ def main():
     )
 
     # One direction of the tooth force, told in the frame of each shaft.
-    normal = line_of_action(0.391, 0.478, np.radians(20), "left", "concave")
-    on_pinion = sg.MeshVector(normal, mesh_point(RADIUS))
-    at = mesh_point(RADIUS * TEETH[1] / TEETH[0], member="gear")
-    on_gear = sg.MeshVector(to_gear_frame(normal), at)
+    normal = sg.line_of_action(0.391, 0.478, np.radians(20), "left", "concave")
+    on_pinion = sg.MeshVector(normal, sg.mesh_point(RADIUS))
+    at = sg.mesh_point(RADIUS * TEETH[1] / TEETH[0], member="gear")
+    on_gear = sg.MeshVector(sg.to_gear_frame(normal), at)
 
     parts = {"pinion": pinion, "gear": sg.Placed(gear, ACROSS)}
     links = sg.grounded("pinion", scenes["pinion_overhung"])

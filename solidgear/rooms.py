@@ -53,7 +53,14 @@ ADDITIONS = {
         "cyclic": "cuts.sector.body:whole_mesh",
     },
     "solid size": {"cut": "cuts.solid.featured:cut_size_of"},
-    # reading a file
+    # reading a file, and writing what reads back equal
+    "document": {
+        "read scene": "core.loading:scene_of",
+        "write scene": "core.scene.writing:tables_of",
+        "settle scene": "core.loading:settled",
+        "read train": "trains.loading:load_train",
+        "write train": "trains.file.writing:tables_of",
+    },
     "settling": {
         "solved": "bearings.solved:solved",
         "wants equilibrium": "bearings.solved:wants_equilibrium",

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from solidgear.core.machine.memory import resident_mb
+from solidgear.core.machine.processes import resident_mb
 from solidgear.core.machine.threads import pin
 from tests.by_room import belongs, is_room
 

@@ -46,9 +46,9 @@ def shafts(draw, most=6):
         )
         if kind == "bevel_head":
             rows = [
-                (f"{k}.frustum", "frustum", length, min(one, two), max(one, two)),
+                (f"s{k}", "frustum", length, min(one, two), max(one, two)),
                 (
-                    f"{k}.backcone",
+                    f"s{k}.backcone",
                     "backcone",
                     _drawn(draw, 0.005, 0.02),
                     max(one, two),
@@ -61,7 +61,7 @@ def shafts(draw, most=6):
                 else [(name, part, long, b, a) for name, part, long, a, b in reversed(rows)]
             )
         else:
-            rows = [(f"{k}.{kind}", "shaft", length, one, two if kind == "cone" else one)]
+            rows = [(f"s{k}", "shaft", length, one, two if kind == "cone" else one)]
         for name, part, axial, d0, d1 in rows:
             segments.append(
                 Segment(

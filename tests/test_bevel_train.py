@@ -11,7 +11,6 @@ from solidgear.teeth.charts import pattern
 from solidgear.teeth.contact.cycle import mesh_cycle
 from solidgear.teeth.contact.local import Elasticity
 from solidgear.teeth.sheet import contact_sheet
-from solidgear.teeth.study import teeth_study
 from solidgear.teeth.supports import Carried, with_sections
 from solidgear.teeth.train_teeth import TeethModel
 from solidgear.trains.assembly.assembly import Assembly
@@ -110,7 +109,7 @@ def test_conjugate_teeth_of_table_1_and_mismatched_ones():
 
 
 def test_the_sheet_of_an_axle_has_its_band_and_pattern(axle):
-    study = teeth_study(axle, model=TeethModel(slices=12, positions=4), factors=(0.5, 1.0))
+    study = sg.contact(axle, model=TeethModel(slices=12, positions=4), factors=(0.5, 1.0))
     (mesh,) = study.meshes
     sheet = contact_sheet(study, ENGINEERING)
     assert {*sheet.charts} == {"cycle", "pattern", "face", "torque"}

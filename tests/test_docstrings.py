@@ -23,7 +23,9 @@ DEAR = {
         "variants/sweep/command.py",
         "variants/sweep/file_task.py",
         "trains/judge/check.py",
+        "trains/judge/study.py",
         "backlash/train.py",
+        "backlash/nonlinear.py",
     )
 }
 NOUNS = [name for name in sg.__all__ if callable(getattr(sg, name))]

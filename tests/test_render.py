@@ -234,6 +234,7 @@ def test_the_child_starts_without_the_rest_of_the_package():
         "solidgear",
         "solidgear.core",
         "solidgear.core.machine",
+        "solidgear.core.machine.processes",
         "solidgear.core.machine.version",
         "solidgear.core.registry",
         "solidgear.rooms",

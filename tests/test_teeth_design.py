@@ -19,7 +19,7 @@ from solidgear.teeth.compliance.slices import Slices
 from solidgear.teeth.contact.cycle import mesh_cycle
 from solidgear.teeth.contact.cylindrical import CylindricalPair
 from solidgear.teeth.contact.local import Elasticity, LineContact
-from solidgear.teeth.study import stated_stiffness, teeth_study
+from solidgear.teeth.study import stated_stiffness
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.tooth_stiffness import tooth_stiffness
 from solidgear.trains.file.operation import OperatingPoint
@@ -66,7 +66,7 @@ def test_a_row_is_the_contact_of_the_file_edited_by_hand(tmp_path, rows):
     path.write_text(text)
     for scene in ("gearbox_catalogue.toml", "gearbox_wheel.toml"):
         (tmp_path / scene).write_text((GEOMETRY / scene).read_text())
-    cycle = teeth_study(sg.load_train(path), factors=()).meshes[0].cycle
+    cycle = sg.contact(sg.load_train(path), factors=()).meshes[0].cycle
     row = rows[3]
     assert row["status"] == "ok" and row["torque"] == 115.0
     assert row["transmission_error"] == pytest.approx(cycle.peak_to_peak, rel=1e-6)

@@ -11,7 +11,6 @@ import solidgear as sg
 from solidgear.core import SceneError, SolidgearError
 from solidgear.show.units import ENGINEERING
 from solidgear.teeth.sheet import contact_sheet
-from solidgear.teeth.study import teeth_study
 from solidgear.teeth.supports import Carried, with_sections
 from solidgear.teeth.train_teeth import TeethModel, mesh_contact, mesh_of_teeth, teeth_of
 from solidgear.trains.assembly.assembly import Assembly
@@ -260,9 +259,9 @@ def test_planets_take_the_stiffness_of_their_teeth():
 def test_a_train_without_a_torque_is_refused(train):
     bare = train.with_changes(operation=())
     with pytest.raises(SolidgearError, match="no torque"):
-        teeth_study(bare)
+        sg.contact(bare)
     with pytest.raises(SolidgearError, match="0 N m presses no teeth"):
-        teeth_study(bare, OperatingPoint(torque=0.0))
+        sg.contact(bare, OperatingPoint(torque=0.0))
     mesh = bare.mesh.with_changes(stiffness="teeth")
     with pytest.raises(SceneError, match="under a load"):
         mesh_of_teeth(bare.with_changes(mesh=mesh))
@@ -270,11 +269,11 @@ def test_a_train_without_a_torque_is_refused(train):
 
 def test_bevel_trains_and_missing_faces_are_refused():
     with pytest.raises(SceneError, match="face_width"):
-        teeth_study(sg.load_train(GEOMETRY / "reducer.toml"))
+        sg.contact(sg.load_train(GEOMETRY / "reducer.toml"))
 
 
 def test_the_sheet_says_what_teeth_are_made_of_and_reads_loads_per_length(train):
-    study = teeth_study(train, model=TeethModel(slices=8, positions=8), factors=())
+    study = sg.contact(train, model=TeethModel(slices=8, positions=8), factors=())
     sheet = contact_sheet(study, ENGINEERING)
     assert "plane slices" in sheet.lead
     solid = contact_sheet(replace(study, model=TeethModel("solid")), ENGINEERING)

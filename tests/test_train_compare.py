@@ -84,27 +84,17 @@ def test_options_for_one_shaft_are_refused_for_a_train(option, tmp_path):
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.parametrize(
-    "words, judge",
-    [
-        ([], "trains.judge.command.compared"),
-        (["geometry/axle_straddle.toml"], "comparison.two.command.two_trains"),
-    ],
-    ids=["a train", "two trains"],
-)
-def test_the_tolerance_of_the_meshes_of_trains_is_that_of_the_option(words, judge, monkeypatch):
+@pytest.mark.parametrize("others", [[], [ROOT / "geometry/axle_straddle.toml"]], ids=["one", "two"])
+def test_the_tolerance_of_the_meshes_of_trains_is_that_of_the_option(others, monkeypatch):
     class Asked(Exception):
         pass
 
-    def judged(assemblies, *_, **__):
-        raise Asked(assemblies)
+    def assembled(*_, tol, **__):
+        raise Asked(tol)
 
-    monkeypatch.setattr(f"solidgear.{judge}", judged)
-    done = command("compare", TRAIN, *(ROOT / word for word in words), "--tol", "3%")
-    assert isinstance(done.exception, Asked), done.output
-    (asked,) = done.exception.args
-    assemblies = asked if isinstance(asked, list) else [asked]
-    assert [assembly.tol for assembly in assemblies] == [0.03] * (1 + len(words))
+    monkeypatch.setattr("solidgear.trains.options.Assembly", assembled)
+    done = command("compare", TRAIN, *others, "--tol", "3%")
+    assert isinstance(done.exception, Asked) and done.exception.args == (0.03,), done.output
 
 
 @pytest.mark.parametrize("count, said", [(1, "--tol is for trains"), (2, "--tol does not apply")])

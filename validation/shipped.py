@@ -6,8 +6,9 @@ from functools import cache
 from pathlib import Path
 
 from solidgear.core.loading import load
+from solidgear.core.scene.document import is_train
 from solidgear.core.scene.shaft import resolved
-from solidgear.core.scene.toml_file import is_train, parse
+from solidgear.core.scene.toml_file import parse
 
 GEOMETRY = Path(__file__).resolve().parent.parent / "geometry"
 

@@ -27,6 +27,10 @@ DOCS = ROOT / "docs"
 #: where copies go, not under version control
 COPIES = DOCS / "validation" / "written"
 
+#: notebooks with what they show, and where their copies go
+NOTEBOOKS = ROOT / "examples" / "notebooks"
+NOTEBOOK_COPIES = DOCS / "notebooks"
+
 #: file of the project -> name of its copy
 WRITTEN = {
     **{p: p.name for p in sorted((ROOT / "validation" / "manual").glob("*.md"))},
@@ -67,6 +71,7 @@ def copy_pages(app=None):
         (COPIES / name).write_text(fenced(text))
     for picture in [*PICTURES, *(ROOT / "validation" / "thesis").glob("claim_*.png")]:
         shutil.copy(picture, COPIES)
+    shutil.copytree(NOTEBOOKS, NOTEBOOK_COPIES, dirs_exist_ok=True)
 
 
 def to_copies(text: str, folder: Path) -> str:

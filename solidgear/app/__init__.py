@@ -29,6 +29,7 @@ if _hears:
 
 
 from solidgear.app.application import app
+from solidgear.app.streams import spell_out
 from solidgear.core import SolidgearError
 from solidgear.core.errors import for_terminal
 from solidgear.core.machine.interruptible import leave
@@ -50,6 +51,8 @@ NOT_MAPPED = ("failed to map segment", "annot allocate memory")
 
 def main() -> None:
     """Run the command line; errors raised on purpose become one sentence each and exit code 1."""
+    for stream in (sys.stdout, sys.stderr):
+        spell_out(stream)
     try:
         _run()
     except SystemExit as end:

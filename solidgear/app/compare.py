@@ -111,11 +111,10 @@ def compare(
     if more:
         # start-up: for two files alone
         from solidgear.comparison.two.command import compare_two
-        from solidgear.trains.options import Pair, Reduced
+        from solidgear.trains.options import Pair
 
         mix, of_trains["--tol"] = Pair(pinion or MODEL, gear or MODEL, shafts), tol is not None
-        reduced = Reduced(tol=tol)
-        compare_two([scene, *more], out, mix, reduced, mesh, run, of_one_shaft, of_trains)
+        compare_two([scene, *more], out, mix, mesh, tol, run, of_one_shaft, of_trains)
         return
     refuse(of_trains, f"two trains, and {scene} is one, of which every model is solved")
     if is_train(scene):

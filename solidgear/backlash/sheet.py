@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from solidgear.backlash.nonlinear import Nonlinear
 from solidgear.backlash.periodic import Backlash, runs_of
 from solidgear.backlash.speed_run import SpeedRun
 from solidgear.backlash.study import BacklashStudy
@@ -20,7 +21,6 @@ from solidgear.show.sheet import Sheet, Terminal
 from solidgear.show.table import Column, Table, numbers, text
 from solidgear.show.units import ENGINEERING, Units, plain
 from solidgear.show.words import DASH, hertz
-from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.judge.comparison import train_data
 from solidgear.trains.modes.modes import unpublished_lines
 from solidgear.trains.page import tables as train_tables
@@ -39,10 +39,9 @@ SPECTRA = (
 )
 
 
-def nonlinear_sheet(
-    study: BacklashStudy, assembly: Assembly, cautions: Sequence[str], units: Units
-) -> Sheet:
+def nonlinear_sheet(result: Nonlinear, units: Units) -> Sheet:
     """Return the sheet of a train whose teeth have backlash."""
+    study, assembly, cautions = result.study, result.assembly, result.cautions
     title = f"{study.train.called}: teeth with backlash"
     if study.teeth.others:
         title += f", driven by the {study.teeth.mesh}"

@@ -9,7 +9,7 @@ import time
 from collections.abc import Callable, Collection
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar, overload
+from typing import TYPE_CHECKING, Any, ClassVar, overload
 
 from solidgear.comparison.page.write import Pictures, write_all
 from solidgear.comparison.recording import Findings, recorded
@@ -22,7 +22,10 @@ from solidgear.core import (
     Scene,
     SolidgearError,
     Solution,
+    Source,
     change,
+    is_train,
+    load,
     pinned,
     without_axis,
 )
@@ -43,6 +46,9 @@ from solidgear.show.units import units_named
 
 if TYPE_CHECKING:
     from solidgear.comparison.two.two_shafts import TwoShafts
+    from solidgear.comparison.two.two_trains import TwoTrains
+    from solidgear.trains.file.train import Train
+    from solidgear.trains.judge.comparison import TrainComparison
 
 log = logging.getLogger(__name__)
 Progress = Callable[[str], None]
@@ -117,12 +123,20 @@ class Comparison(Displayed):
 
 
 @overload
-def compare(scene: Scene, other: Scene, /, *, progress: Progress = ...) -> TwoShafts: ...
+def compare(source: Scene, other: Scene, /, *, progress: Progress = ...) -> TwoShafts: ...
+
+
+@overload
+def compare(source: Train, other: Train, /, *, progress: Progress = ...) -> TwoTrains: ...
+
+
+@overload
+def compare(source: Train, /, *, progress: Progress = ...) -> TrainComparison: ...
 
 
 @overload
 def compare(
-    scene: Scene,
+    source: Scene,
     models: tuple[str, ...] | None = None,
     *,
     settings: dict[str, dict] | None = None,
@@ -131,16 +145,28 @@ def compare(
 ) -> Comparison: ...
 
 
+@overload
+def compare(
+    source: Source | Train,
+    models: Source | Train | tuple[str, ...] | None = None,
+    *,
+    settings: dict[str, dict] | None = None,
+    progress: Progress = ...,
+    solved: Solved = ...,
+) -> Any: ...
+
+
 @pinned
 def compare(
-    scene: Scene,
-    models: Scene | tuple[str, ...] | None = None,
+    source: Source | Train,
+    models: Source | Train | tuple[str, ...] | None = None,
     *,
     settings: dict[str, dict] | None = None,
     progress: Progress = lambda _: None,
     solved: Solved = nothing,
-) -> Comparison | TwoShafts:
-    """Solve a scene with several models and compare them; or two scenes beside each other.
+) -> Comparison | TwoShafts | TrainComparison | TwoTrains:
+    """Solve a scene or a train with several models and compare them; or two of them beside each
+    other.
 
     Solids are solved on ever finer meshes until their error bars are small enough: a tenth of the
     tolerance of the scene for the harmonic solid, which judges, all of it for the 3D solid. Where
@@ -150,11 +176,13 @@ def compare(
 
     Parameters
     ----------
-    scene : Scene
+    source : path, dict, Scene or Train
+        A scene or train: its file (TOML), the tables of one, or an object.
     models : tuple of str, optional
         Models of the ladder (lumped, euler, timoshenko, harmonic, solid); all by default. The
         lumped one needs one of the others. Another scene in their place is compared with
-        the first, each solved as by :func:`answer`.
+        the first, each solved as by :func:`answer`; another train, both by harmonic solids. A train
+        alone is judged by every mix of models, as by :func:`judge`.
     settings : dict, optional
         Builder options per model, such as ``{"harmonic": {"order": 8}}``.  Options that concern the
         mesh fix it: that mesh and two coarser ones are solved.
@@ -167,15 +195,17 @@ def compare(
     -------
     Comparison
         After Ctrl-C with the models solved so far, ``record.complete`` False.
-    TwoShafts
-        For two scenes: ``inputs`` that differ, ``changes`` of numbers with both error bars, ``modes`` in
+    TwoShafts, TwoTrains
+        For two: ``inputs`` that differ, ``changes`` of numbers with both error bars, ``modes`` in
         pairs, ``sentences``, ``write_report(out)``.
+    TrainComparison
+        For a train.
 
     Raises
     ------
     SolidgearError
-        For an unknown model, a train, or settings of two scenes.  A model that fails is reported
-        as not valid, and the others go on.
+        For an unknown model, a scene beside a train, or settings of two scenes.  A model that fails
+        is reported as not valid, and the others go on.
 
     Examples
     --------
@@ -189,25 +219,22 @@ def compare(
     >>> shafts["mass"].verdict, round(shafts["mass"].relative, 4)
     ('resolved', 0.21)
     """
-    if not isinstance(scene, Scene) or not isinstance(models, Scene | Collection | None):
-        raise SolidgearError(
-            "compare takes scenes of one shaft; trains are compared by the command: "
-            "solidgear compare A.toml B.toml"
-        )
-    if any(isinstance(s, Scene) and without_axis(s) for s in (scene, models)):
-        raise SolidgearError(
-            "compare: a body without an axis has one model, the 3D solid; run solidgear modes and "
-            "stiffness"
-        )
-    if isinstance(models, Scene):
+    if not isinstance(models, tuple | list | None):
         if settings:
             raise SolidgearError(
                 "settings are for models of one scene; for two the program chooses"
             )
-        from solidgear.comparison.two.two_shafts import two_shafts  # start-up: for two alone
+        from solidgear.comparison.two.study import beside  # start-up: for two alone
 
-        return two_shafts((scene, models), progress=progress)
-    models = LADDER.names if models is None else models
+        return beside(source, models, progress=progress, read=_with_axis)
+    if not isinstance(source, Scene) and is_train(source):
+        if models or settings:
+            raise SolidgearError("models and settings are for one shaft; a train is judged by all")
+        from solidgear.trains.judge.study import judge  # start-up: for trains alone
+
+        return judge(source, progress=progress)
+    scene = _with_axis(source)
+    models = LADDER.names if models is None else tuple(models)
     check_models(models)
     options = {m: dict((settings or {}).get(m, {})) for m in LADDER.bodies}
     findings = Findings()
@@ -225,6 +252,17 @@ def compare(
     record.peak_mb_total = record.peak_mb = overall.peak_mb
     record.expected_peak_mb = run.expected_mb
     return Comparison(scene, record, findings.solutions, began)
+
+
+def _with_axis(source: Source) -> Scene:
+    """Return a scene that has several models."""
+    scene = load(source)
+    if without_axis(scene):
+        raise SolidgearError(
+            "compare: a body without an axis has one model, the 3D solid; run solidgear modes and "
+            "stiffness"
+        )
+    return scene
 
 
 def _opened(scene: Scene) -> OpenNumbers:

@@ -13,7 +13,6 @@ from solidgear.core import (
     DOF_NAMES,
     FIRST_BENDING,
     LADDER,
-    SCENE,
     OpenNumbers,
     Quantity,
     Record,
@@ -49,6 +48,7 @@ from solidgear.core.judge.record import (
     VariantRecord,
 )
 from solidgear.core.judge.solving import ENOUGH, Answer
+from solidgear.core.judge.ties import SCENE
 from solidgear.core.judge.verdict import Judgement, judge, percent, trusted
 from solidgear.core.judge.where import recorded_places
 from solidgear.core.ladder.model import LUMPED, SOLID

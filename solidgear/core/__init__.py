@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from solidgear.core.body import Block, Body, Supports, as_supports
     from solidgear.core.body.mode_names import ModeName
     from solidgear.core.body.surface import Surface
-    from solidgear.core.display import Displayed
+    from solidgear.core.display import Displayed, Sheeted
     from solidgear.core.elements import ELEMENTS
     from solidgear.core.errors import SceneError, SolidgearError, listed, near, nearest, show
     from solidgear.core.frames import DOF_NAMES, rotation
@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     from solidgear.core.judge.record import OpenNumbers, Record, WhereRecord
     from solidgear.core.judge.settle import Settled, bars_of_modes, settle
     from solidgear.core.judge.solution import Solution
-    from solidgear.core.judge.ties import SCENE
-    from solidgear.core.kernel.room import assemblable
     from solidgear.core.ladder import build
     from solidgear.core.ladder.meshes import HARMONIC
     from solidgear.core.ladder.model import BEAM
@@ -33,7 +31,6 @@ if TYPE_CHECKING:
     from solidgear.core.machine.threads import pinned
     from solidgear.core.machine.whole_file import whole
     from solidgear.core.quantity import (
-        C_ZZ,
         COMPLIANCE,
         FIRST_BENDING,
         QUANTITIES,
@@ -44,10 +41,16 @@ if TYPE_CHECKING:
     from solidgear.core.reduction.rubin import rubin
     from solidgear.core.scene import Bearing, Port, Scene
     from solidgear.core.scene.coned import coned
+    from solidgear.core.scene.document import (
+        Document,
+        Source,
+        document_of,
+        is_train,
+        name_of_source,
+    )
     from solidgear.core.scene.limits import MOST_MODES, TOUCH
     from solidgear.core.scene.outline import Outline
     from solidgear.core.scene.shaft import without_axis
-    from solidgear.core.scene.toml_file import is_train, parse
     from solidgear.core.scene.typed import Model
     from solidgear.core.scene.units import DIMENSIONS, Length, PositiveLength, SignedAngle
     from solidgear.core.solve.condensed import Condensed
@@ -62,11 +65,11 @@ __all__ = [
     "Block",
     "Body",
     "COMPLIANCE",
-    "C_ZZ",
     "Condensed",
     "DIMENSIONS",
     "DOF_NAMES",
     "Displayed",
+    "Document",
     "ELEMENTS",
     "FIRST_BENDING",
     "HARMONIC",
@@ -84,14 +87,15 @@ __all__ = [
     "QUANTITIES",
     "Quantity",
     "Record",
-    "SCENE",
     "STIFFNESS",
     "Scene",
     "SceneError",
     "Settled",
+    "Sheeted",
     "SignedAngle",
     "SolidgearError",
     "Solution",
+    "Source",
     "Supports",
     "Surface",
     "System",
@@ -100,11 +104,11 @@ __all__ = [
     "WhereRecord",
     "as_supports",
     "as_written",
-    "assemblable",
     "bars_of_modes",
     "build",
     "change",
     "coned",
+    "document_of",
     "explained",
     "flexibility",
     "gap_verdict",
@@ -112,9 +116,9 @@ __all__ = [
     "listed",
     "load",
     "modes",
+    "name_of_source",
     "near",
     "nearest",
-    "parse",
     "pinned",
     "rotation",
     "rubin",
@@ -136,6 +140,7 @@ _WHERE = {
     "ModeName": "solidgear.core.body.mode_names",
     "Surface": "solidgear.core.body.surface",
     "Displayed": "solidgear.core.display",
+    "Sheeted": "solidgear.core.display",
     "ELEMENTS": "solidgear.core.elements",
     "SceneError": "solidgear.core.errors",
     "SolidgearError": "solidgear.core.errors",
@@ -157,8 +162,6 @@ _WHERE = {
     "bars_of_modes": "solidgear.core.judge.settle",
     "settle": "solidgear.core.judge.settle",
     "Solution": "solidgear.core.judge.solution",
-    "SCENE": "solidgear.core.judge.ties",
-    "assemblable": "solidgear.core.kernel.room",
     "build": "solidgear.core.ladder",
     "HARMONIC": "solidgear.core.ladder.meshes",
     "BEAM": "solidgear.core.ladder.model",
@@ -170,7 +173,6 @@ _WHERE = {
     "pinned": "solidgear.core.machine.threads",
     "whole": "solidgear.core.machine.whole_file",
     "COMPLIANCE": "solidgear.core.quantity",
-    "C_ZZ": "solidgear.core.quantity",
     "FIRST_BENDING": "solidgear.core.quantity",
     "QUANTITIES": "solidgear.core.quantity",
     "Quantity": "solidgear.core.quantity",
@@ -185,8 +187,11 @@ _WHERE = {
     "TOUCH": "solidgear.core.scene.limits",
     "MOST_MODES": "solidgear.core.scene.limits",
     "without_axis": "solidgear.core.scene.shaft",
-    "is_train": "solidgear.core.scene.toml_file",
-    "parse": "solidgear.core.scene.toml_file",
+    "Document": "solidgear.core.scene.document",
+    "Source": "solidgear.core.scene.document",
+    "document_of": "solidgear.core.scene.document",
+    "is_train": "solidgear.core.scene.document",
+    "name_of_source": "solidgear.core.scene.document",
     "Model": "solidgear.core.scene.typed",
     "DIMENSIONS": "solidgear.core.scene.units",
     "Length": "solidgear.core.scene.units",

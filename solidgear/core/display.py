@@ -7,9 +7,12 @@ imported by name when first needed, so that nothing below imports the report.
 from __future__ import annotations
 
 import importlib
+import os
+from pathlib import Path
 from typing import Any, ClassVar, Protocol
 
 TABLES = "solidgear.show.shown"
+SHEETS = "solidgear.show.sheet"
 
 
 class Table(Protocol):
@@ -55,6 +58,60 @@ class Displayed:
 
     def _repr_html_(self) -> str:
         return self.table()._repr_html_()
+
+
+class Sheeted(Displayed):
+    """Base of results of a study: they show what its command prints, and write what it writes."""
+
+    #: ``module:function`` of the room of the result, which makes its sheet in some units
+    sheeted: ClassVar[str] = ""
+    #: the same for a folder, given last, where more is drawn for one
+    filed: ClassVar[str] = ""
+
+    def sheet(self, units: Any = "engineering") -> Any:
+        """Return all that is shown, in units of a name."""
+        return _sheets().sheet_of(self, _shown(self.sheeted), units)
+
+    def write(self, folder: str | os.PathLike, units: str = "engineering") -> list[Path]:
+        """Write a page, the data, tables and charts into a folder, as the command does.
+
+        Parameters
+        ----------
+        folder : path
+        units : {'engineering', 'si', 'us'}
+            Of the page; data and tables are in SI always.
+
+        Returns
+        -------
+        list of pathlib.Path
+            The files.
+
+        Raises
+        ------
+        SolidgearError
+            If the folder cannot be written, or units are unknown.
+        """
+        return _sheets().write_result(
+            self, folder, units, _shown(self.filed) if self.filed else None
+        )
+
+    def table(self, *args: Any, **kwargs: Any) -> Table:
+        """Return a table of the main numbers."""
+        if self.shown:
+            return super().table(*args, **kwargs)
+        return _sheets().main_table(self.sheet())
+
+    def __repr__(self) -> str:
+        return super().__repr__() if self.shown else _sheets().as_printed(self.sheet())
+
+    __str__ = __repr__
+
+    def _repr_html_(self) -> str:
+        return super()._repr_html_() if self.shown else _sheets().as_html(self.sheet())
+
+
+def _sheets() -> Any:
+    return importlib.import_module(SHEETS)
 
 
 def _shown(name: str) -> Any:

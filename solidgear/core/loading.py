@@ -1,4 +1,5 @@
-"""Reading of scene and train files: catalogue bearings get their stiffness at their load.
+"""Reading of scenes, from a file, a dict or an object: catalogue bearings get their stiffness at
+their load.
 
 :mod:`solidgear.core.scene` reads a file as data; here the catalogue data of bearings become a 6x6 once,
 as for any other bearing.
@@ -15,26 +16,29 @@ from typing import TYPE_CHECKING, Any
 from solidgear.core.errors import SceneError, SolidgearError
 from solidgear.core.registry import addition
 from solidgear.core.scene import file
+from solidgear.core.scene.document import Source, document_of, name_of_source
+from solidgear.core.scene.model import Scene
 from solidgear.core.scene.tables import parts
-from solidgear.core.scene.toml_file import parse, place_of
 
 if TYPE_CHECKING:
     from solidgear.core.body import Body
-    from solidgear.core.scene import Scene
 
 #: model on which bearings and shaft find their equilibrium: loads in a shaft depend little on how
 #: its shoulders are modelled
 SHAFT = "timoshenko"
 
 
-def load(path: str | os.PathLike) -> Scene:
-    """Read and resolve a scene file, and work out the stiffness of catalogue bearings.
+def load(source: Source) -> Scene:
+    """Read and resolve a scene, and work out the stiffness of catalogue bearings.
 
     Parameters
     ----------
-    path : str or path
+    source : str, path or dict
         A TOML file; ``geometry/pinion_overhung.toml`` describes the format, and
-        ``geometry/gearbox_catalogue.toml`` that of catalogue bearings.
+        ``geometry/gearbox_catalogue.toml`` that of catalogue bearings. Or the tables of one, as
+        ``tomllib`` gives them, with names of files relative to the folder of work. A Scene is
+        returned with its catalogue bearings settled. A train is refused: read it with
+        :func:`solidgear.load_train`.
 
     Returns
     -------
@@ -55,14 +59,20 @@ def load(path: str | os.PathLike) -> Scene:
     >>> [bearing.name for bearing in scene.bearings], scene.port.name
     (['1', '2'], 'pinion')
     """
-    return scene_of(parse(os.fspath(path)), path)
+    if isinstance(source, Scene):
+        return source.settled
+    document = document_of(source)
+    return scene_of(document.tables, document.path)
 
 
-def as_written(path: str | os.PathLike) -> Scene:
-    """Read a scene file as it is written: catalogue bearings without their stiffness, the part of a
+def as_written(source: Source) -> Scene:
+    """Read a scene as it is written: catalogue bearings without their stiffness, the part of a
     [body] read; errors as of :func:`load`.
     """
-    return file.load(path, part_of)
+    if isinstance(source, Scene):
+        return source
+    document = document_of(source)
+    return scene_of(document.tables, document.path, alone=False)
 
 
 def scene_of(tables: Mapping[str, Any], path: str | os.PathLike, alone: bool = True) -> Scene:
@@ -71,10 +81,22 @@ def scene_of(tables: Mapping[str, Any], path: str | os.PathLike, alone: bool = T
     `alone`, and not with a train.
     """
     scene = file.scene_of(dict(tables), os.fspath(path), part_of)
-    if not alone or all(bearing.catalogue is None for bearing in scene.bearings):
+    if not alone or not is_unsettled(scene) or file.says_unsettled(tables):
         return scene
     with explained(path, tables):
-        return addition("settling", "solved")(scene, shaft(scene)).scene
+        return settled(scene)
+
+
+def is_unsettled(scene: Scene) -> bool:
+    """Return True where a catalogue bearing waits for its stiffness."""
+    return any(bearing.matrix is None for bearing in scene.bearings)
+
+
+def settled(scene: Scene) -> Scene:
+    """Return a scene with a stiffness for every bearing: that of catalogue data at their load."""
+    if not is_unsettled(scene):
+        return scene
+    return addition("settling", "solved")(scene, shaft(scene)).scene
 
 
 def part_of(table: Any, folder: Path) -> Any:
@@ -83,17 +105,17 @@ def part_of(table: Any, folder: Path) -> Any:
 
 
 @contextmanager
-def explained(path: str | os.PathLike, tables: Mapping[str, Any] | None = None) -> Iterator[None]:
+def explained(source: Source, tables: Mapping[str, Any] | None = None) -> Iterator[None]:
     """Raise errors anew with the file, the key and the value they come from; tables are those of
     the file where some of them have been changed.
     """
     try:
         yield
     except SceneError as error:
-        written = parse(os.fspath(path)) if tables is None else tables
-        raise error.located(written, where=place_of(os.fspath(path))) from None
+        written = document_of(source).tables if tables is None else tables
+        raise error.located(written, where=name_of_source(source)) from None
     except SolidgearError as error:
-        raise SceneError(str(error), where=place_of(os.fspath(path))) from None
+        raise SceneError(str(error), where=name_of_source(source)) from None
 
 
 def shaft(scene: Scene) -> Body | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from solidgear.core import (
     LADDER,
     Body,
     Outline,
+    Sheeted,
     SolidgearError,
     Solution,
     listed,
@@ -85,9 +86,11 @@ class Verdict:
     reasons: tuple[str, ...] = ()  #: names of guards, or of shafts of a train
 
 
-@dataclass(frozen=True)
-class Check:
+@dataclass(frozen=True, repr=False)
+class Check(Sheeted):
     """Check of a shaft, or of a train with the checks of its shafts."""
+
+    sheeted: ClassVar[str] = "guards.sheet:check_sheet"
 
     name: str
     records: tuple[GuardRecord, ...]  #: what every guard says

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from solidgear.core import (
-    C_ZZ,
     FIRST_BENDING,
     LADDER,
     Quantity,
@@ -23,6 +22,7 @@ from solidgear.core.elements import SOLVED_AS
 from solidgear.core.judge.quantities import in_words
 from solidgear.core.machine.memory import available_mb
 from solidgear.core.meshing.corners import sharpest_corner
+from solidgear.core.quantity import C_ZZ
 from solidgear.core.solve.backends import BACKENDS, INSTALL, missing
 from solidgear.core.solve.backends.memory_law import law
 from solidgear.core.solve.choice import FASTEST, SMALL

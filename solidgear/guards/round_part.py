@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from solidgear.core import LADDER, SCENE, WITHIN, Solution, change, gap_verdict, listed
+from solidgear.core import LADDER, WITHIN, Solution, change, gap_verdict, listed
 from solidgear.core.judge.deviations import BEYOND
 from solidgear.core.judge.quantities import judged
+from solidgear.core.judge.ties import SCENE
 from solidgear.core.judge.verdict import percent
 from solidgear.core.ladder.model import SOLID
 from solidgear.core.models.kinds import PARTS

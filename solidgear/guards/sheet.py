@@ -8,13 +8,14 @@ from solidgear.core.judge.record import GuardRecord
 from solidgear.guards.check import BEST, Check
 from solidgear.show.command import FAULTY, caution
 from solidgear.show.sheet import Sheet, Terminal
+from solidgear.show.units import ENGINEERING, Units
 
 #: not capitalised where it begins a sentence
 COMMAND = "solidgear"
 
 
-def check_sheet(check: Check) -> Sheet:
-    """Return the sheet of a check."""
+def check_sheet(check: Check, units: Units = ENGINEERING) -> Sheet:
+    """Return the sheet of a check, which has no numbers with units."""
     sentences = _sentences(check)
     for side, of_shaft in check.shafts.items():
         sentences += [f"== {side}", *_verdicts(of_shaft), *_sentences(of_shaft)]

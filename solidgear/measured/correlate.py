@@ -11,11 +11,11 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from solidgear.core import BarredMode, Displayed, ModeName, Scene, pinned, without_axis
+from solidgear.core import BarredMode, Displayed, ModeName, Source, load, pinned, without_axis
 from solidgear.core.plain import plain
 from solidgear.measured.alignment import Peak
 from solidgear.measured.computed import Computed, computed_up_to
-from solidgear.measured.data import Measured, MeasuredMode
+from solidgear.measured.data import Measured, MeasuredMode, load_measured
 from solidgear.measured.same_part import FAR_SHIFTS, Common, Likeness, alignment_of
 from solidgear.measured.shapes import OnPoints
 
@@ -165,14 +165,46 @@ class Correlation(Displayed):
 
 @pinned
 def correlate(
-    scene: Scene,
-    measured: Measured,
+    scene: Source,
+    measured: Source | Measured,
     tol: float | None = None,
     progress: Callable[[str], None] = lambda _: None,
 ) -> Correlation:
-    """Pair measured resonances with the modes of a scene, whose relative error bars are brought
-    below `tol`, by default a tenth of the tolerance of the scene.
+    """Pair measured resonances with the modes of a scene.
+
+    Parameters
+    ----------
+    scene : path, dict or Scene
+        A scene: its file (TOML), the tables of one, or an object.
+    measured : path, dict or Measured
+        Resonances: a ``.toml``, ``.csv``, ``.unv`` or ``.uff`` file, or the tables of a TOML file.
+    tol : float, optional
+        Relative error bar that modes are brought to; a tenth of the tolerance of the scene by
+        default.
+    progress : callable
+        Called with a sentence at every step.
+
+    Returns
+    -------
+    Correlation
+        ``pairs`` of a resonance and a mode each, with their probability, and ``sentences``.
+
+    Raises
+    ------
+    SceneError
+        The file, the key, the value as written, what would be right.
+
+    Examples
+    --------
+    A free rod with two resonances, half a per cent below those of its scene:
+
+    >>> import solidgear as sg
+    >>> rod = sg.Scene.from_parts([sg.Segment.cylinder("rod", length=0.6, diameter=0.02)])
+    >>> tap = {"uncertainty": "0.1 %", "mode": [{"frequency": 251.95}, {"frequency": 690.85}]}
+    >>> [pair.computed.name for pair in sg.correlate(rod, tap).pairs]
+    ['bending 1', 'bending 2']
     """
+    scene, measured = load(scene), load_measured(measured)
     tol = scene.ask.tolerance / 10 if tol is None else tol
     highest = measured.modes[-1].frequency
     correlation = _paired(measured, computed_up_to(scene, highest, tol, progress))

@@ -30,7 +30,7 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import AfterValidator, BeforeValidator, Field, PrivateAttr, model_validator
 
-from solidgear.core import Model, SceneError, Surface, explained, parse, show
+from solidgear.core import Model, SceneError, Source, Surface, document_of, explained, show
 from solidgear.core.scene.units import Frequency, quantity
 from solidgear.measured.alignment import BANDWIDTH
 from solidgear.measured.modal_fit import ResponseFit
@@ -117,7 +117,27 @@ class MeasuredMode(Model):
 
 
 class Measured(Model):
-    """Measured resonances of a body."""
+    """Measured resonances of a body; read them with `solidgear.load_measured`.
+
+    Attributes
+    ----------
+    title, source : str
+    uncertainty : tuple of float and str, optional
+        Of all resonances that say nothing else: a share, ``"relative"``, or ``"Hz"``.
+    shapes, file : str
+        Universal files of shapes and of resonances.
+    mode : tuple of MeasuredMode
+        By ascending frequency, Hz.
+    noise, damping : tuple of float and str
+        Standard deviation of a component of a shape; damping ratio at which modes are heard as one.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> tap = sg.Measured(uncertainty="0.1 %", mode=[{"frequency": "1.2 kHz", "multiplicity": 2}])
+    >>> [mode.frequency for mode in tap.modes]
+    [1200.0]
+    """
 
     title: str = ""
     source: str = ""
@@ -207,12 +227,36 @@ class Measured(Model):
         )
 
 
-def load_measured(path: str | os.PathLike) -> Measured:
-    """Return measured resonances of a ``.toml`` or ``.csv`` file, or of a universal file ``.unv``,
-    ``.uff`` of mode shapes, or of frequency responses, in which resonances are then found; an error
-    names the file, the entry, its value and the right form.
+def load_measured(source: Source | Measured | Responses) -> Measured:
+    """Read measured resonances, or find them in frequency responses.
+
+    Parameters
+    ----------
+    source : path, dict or Responses
+        A ``.toml`` or ``.csv`` file of resonances; a universal file ``.unv``, ``.uff`` of mode shapes
+        or of frequency responses; the tables of a TOML file; or responses.
+
+    Returns
+    -------
+    Measured
+
+    Raises
+    ------
+    SceneError
+        The file, the entry, its value and the right form.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> tables = {"uncertainty": "0.1 %", "mode": [{"frequency": "251.6 Hz"}]}
+    >>> sg.load_measured(tables).modes[0].uncertainty
+    (0.001, 'relative')
     """
-    name = os.fspath(path)
+    if isinstance(source, Measured):
+        return source
+    if isinstance(source, Responses):
+        return measured_from_responses(source)
+    name = os.fspath(source) if isinstance(source, str | os.PathLike) else "measured data"
     if name.lower().endswith(ENDINGS):
         content = read_universal(name)
         if isinstance(content, Responses):
@@ -221,9 +265,9 @@ def load_measured(path: str | os.PathLike) -> Measured:
     tables: Mapping[str, Any] | Responses
     if name.lower().endswith(".csv"):
         with explained(name, {}):
-            tables = read_csv(Path(path), tuple(MeasuredMode.model_fields))
+            tables = read_csv(Path(name), tuple(MeasuredMode.model_fields))
     else:
-        tables = parse(name)
+        tables = document_of(source).tables
     if isinstance(tables, Responses):
         return measured_from_responses(tables, name)
     try:

@@ -12,7 +12,6 @@ unknowns (Rayleigh and Ritz; the static deflections are the residual attachment 
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
@@ -23,19 +22,21 @@ from scipy.optimize import linear_sum_assignment
 
 from solidgear.core import (
     Displayed,
+    Document,
     Scene,
     SolidgearError,
+    Source,
     Supports,
     as_supports,
+    document_of,
     flexibility,
-    parse,
     pinned,
 )
 from solidgear.core.loading import scene_of
 from solidgear.core.scene.paths import Tables, replace_entry
 from solidgear.measured.computed import Computed, computed_like, computed_up_to
 from solidgear.measured.correlate import DEVIATIONS, SURE, placed_in
-from solidgear.measured.data import Measured
+from solidgear.measured.data import Measured, load_measured
 from solidgear.measured.fit import ALIKE, SAME, End, Fit, best_of, varied_of
 from solidgear.measured.same_part import Likeness
 from solidgear.variants.sensitivity.adjoint import mode_form
@@ -221,8 +222,8 @@ WIDER = 1.15
 
 @pinned
 def identify(
-    scene: str | os.PathLike,
-    measured: Measured,
+    scene: Source,
+    measured: Source | Measured,
     vary: Iterable[str],
     *,
     tol: float = 2e-4,
@@ -230,7 +231,7 @@ def identify(
     progress: Progress = lambda _: None,
     priors: bool = False,
 ) -> Identification:
-    """Find entries of a scene file from measured resonances, by least squares of the logarithms of
+    """Find entries of a scene from measured resonances, by least squares of the logarithms of
     frequencies (Gauss and Newton, with exact derivatives).
 
     Resonances are paired with modes anew in every round; those whose mode is not sure are left out
@@ -238,14 +239,49 @@ def identify(
     scatter widens all deviations where it is larger. Pairs that may have changed places are tried,
     and values elsewhere that fit as well are reported.
 
-    Paths in `vary` leave the shape as it is: of materials, springs, masses; with bounds as in
-    ``"material.E=180 GPa : 220 GPa"``, or with a prior value and standard deviation, as in
-    ``"material.E=206 GPa ± 3 %"``; with `priors`, ranges of the scene's ``[uncertain]`` hold for
-    entries without one. Error bars of modes are brought to `tol`, relative; `predict` modes beyond
-    the highest measured resonance are predicted. Refused are a path that names no positive number,
-    entries that the data do not determine, with the direction, and fewer resonances than entries.
+    Parameters
+    ----------
+    scene : path, dict or Scene
+        A scene: its file (TOML), the tables of one, or an object.
+    measured : path, dict or Measured
+        Resonances, as of :func:`solidgear.correlate`.
+    vary : iterable of str
+        Paths of entries that leave the shape as it is: of materials, springs, masses; with bounds,
+        ``"material.E=180 GPa : 220 GPa"``, or with a prior value and standard deviation,
+        ``"material.E=206 GPa ± 3 %"``.
+    tol : float
+        Relative error bar that modes are brought to.
+    predict : int
+        Modes beyond the highest measured resonance to predict.
+    progress : callable
+        Called with a sentence at every step.
+    priors : bool
+        Whether the ranges of the scene's ``[uncertain]`` hold for entries without a prior.
+
+    Returns
+    -------
+    Identification
+        ``entries`` with value and deviation, resonances that were ``fitted``, ``sentences``.
+
+    Raises
+    ------
+    SolidgearError
+        For a path that names no positive number, entries that the data do not determine, with the
+        direction, and fewer resonances than entries.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> rod = {"material": "steel", "port": {"attach_to": "rod", "at": "rod.middle"},
+    ...     "segment": [{"kind": "cylinder", "name": "rod", "length": 0.6, "diameter": 0.02}]}
+    >>> tap = {"uncertainty": "0.1 %", "mode": [{"frequency": 251.95}, {"frequency": 690.85}]}
+    >>> (modulus,) = sg.identify(rod, tap, ["material.E"]).entries
+    >>> bool(abs(modulus.value / 207e9 - 0.99) < 0.01)
+    True
     """
-    search = _Search(os.fspath(scene), measured, tuple(vary), tol, progress, priors)
+    search = _Search(
+        document_of(scene), load_measured(measured), tuple(vary), tol, progress, priors
+    )
     return search.identification(predict)
 
 
@@ -254,16 +290,16 @@ class _Search:
 
     def __init__(
         self,
-        path: str,
+        document: Document,
         measured: Measured,
         vary: Sequence[str],
         tol: float,
         progress: Progress,
         priors: bool,
     ):
-        self.path, self.measured, self.tol, self.progress = path, measured, tol, progress
-        tables = parse(path)
-        ranges = scene_of(tables, path).uncertain if priors else None
+        self.path, self.measured, self.tol, self.progress = document.path, measured, tol, progress
+        tables = document.tables
+        ranges = scene_of(tables, document.path).uncertain if priors else None
         # results may lie outside the ranges that the file states
         self.tables: Tables = {key: table for key, table in tables.items() if key != "uncertain"}
         self.varied = varied_of(vary, self.tables, ranges)

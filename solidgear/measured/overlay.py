@@ -83,8 +83,26 @@ class Overlay:
 
 
 def overlay(correlation: Correlation) -> Overlay | None:
-    """Return responses of the scene beside the measured ones; None where no responses were
-    measured, or their points or kind are unknown.
+    """Responses of the scene beside the measured ones.
+
+    Parameters
+    ----------
+    correlation : Correlation
+        Of measured responses, as of :func:`solidgear.correlate`.
+
+    Returns
+    -------
+    Overlay or None
+        ``hertz`` (k,), ``measured`` and ``computed`` (n, k); None where no responses were measured,
+        or their points or kind are unknown.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> rod = sg.Scene.from_parts([sg.Segment.cylinder("rod", length=0.6, diameter=0.02)])
+    >>> tap = {"uncertainty": "0.1 %", "mode": [{"frequency": 251.95}, {"frequency": 690.85}]}
+    >>> sg.overlay(sg.correlate(rod, tap)) is None  # frequencies alone
+    True
     """
     fitted, computed = correlation.measured.responses, correlation.computed
     if fitted is None:

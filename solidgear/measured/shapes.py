@@ -29,6 +29,17 @@ TRIED = 300
 class SurfacePoints:
     """Motions of a body's surface at measuring points (p, 3), m, by their numbers; a point that is
     off the surface is refused.
+
+    Examples
+    --------
+    >>> import numpy as np, solidgear as sg
+    >>> scene = sg.Scene.from_parts([sg.Segment.cylinder("rod", length=0.6, diameter=0.02)])
+    >>> body = sg.build(scene, "harmonic", order=3)
+    >>> ends = sg.SurfacePoints(body, [1, 2], np.array([[0.01, 0.0, 0.0], [0.01, 0.6, 0.0]]))
+    >>> bending = sg.modes(body, scene, n=2).named("bending 1")
+    >>> across = ends.motion(bending.vectors[0])
+    >>> across.shape, bool(np.allclose(across[0, [0, 2]], across[1, [0, 2]], rtol=1e-6))
+    ((2, 3), True)
     """
 
     def __init__(self, body: Body, numbers: Sequence[int], points: np.ndarray):

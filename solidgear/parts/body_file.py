@@ -17,6 +17,7 @@ from pydantic import BeforeValidator, Field, model_validator
 from solidgear.core import Model, PositiveLength, SceneError, listed
 from solidgear.core.scene.file_materials import FileMaterial
 from solidgear.core.scene.materials import by_name
+from solidgear.core.scene.model_table import table_of
 from solidgear.core.scene.outline import Torus
 from solidgear.core.scene.parts import Material
 from solidgear.core.scene.patches import Patch, Triple, refuse_elsewhere
@@ -28,6 +29,10 @@ Unit = Literal["mm", "cm", "m", "inch", "in"]
 #: axes of a shaft, and the word for a body that is no shaft
 AxisWord = Literal["x", "y", "z", "-x", "-y", "-z", "none"]
 NONE = "none"
+#: keys that name files
+FILES = ("step", "mesh", "block")
+#: a vector of unit length, up to rounding
+UNIT = 1e-15
 #: meshes of one body, coarse to fine
 MOST_MESHES = 5
 #: share of the surface, and relative difference of volume, within which a part equals its segments
@@ -53,6 +58,8 @@ def _direction(value: Any) -> Any:
     length = 0.0
     if all(type(v) in (int, float) for v in numbers):
         length = hypot(*numbers)
+    if abs(length - 1) <= UNIT:  # dividing again would move the last digit
+        return tuple(map(float, numbers))
     if not 0 < length < inf:
         raise SceneError(
             "must be x, y, z, -x, -y, -z or none, or three numbers: the direction of the "
@@ -177,6 +184,9 @@ class BodyFile(Model):
     kind: Literal["step", "mesh", "block"]
     name: str  #: of the file, without its folder; of a block its edges in words
     path: str = Field(exclude=True, repr=False)  #: where it is; no part of what identifies the body
+    #: unit, axis, origin and checks as a file gives them, without names of files and materials; None
+    #: of a block
+    words: BodyTable | None = Field(None, exclude=True, repr=False)
     sha256: str  #: of the content
     unit: float  #: m for each unit of length of the file
     #: turn, foot: place in the scene: ``turn @ (unit * x - foot)``, m
@@ -289,7 +299,25 @@ class BodyFile(Model):
         x, y, z = np.array(self.turn) @ (np.array(point) - self.foot)
         return float(x), float(y), float(z)
 
+    def in_file(self, point: Sequence[float]) -> Triple:
+        """Return a point (m) in the axes of the scene in those of the file: the inverse of `placed`."""
+        x, y, z = np.array(self.turn).T @ np.array(point) + self.foot
+        return float(x), float(y), float(z)
+
     @property
     def one_mesh(self) -> bool:
         """True where the mesh of the file is the only one, and no finer one can be made."""
         return self.kind == "mesh"
+
+
+def written(body: BodyFile) -> dict[str, Any]:
+    """Return the table of a scene file that names a part, with the full paths of its files."""
+    if body.words is None:
+        return {"block": list(body.edges or ())}
+    files = [*(mesh.path for mesh in body.coarser), body.path]
+    table = {
+        body.kind: files if body.coarser else body.path,
+        **table_of(body.words, leave_out=FILES),
+    }
+    materials = {g.name: table_of(g.material) for g in body.groups if g.material is not None}
+    return table | ({"materials": materials} if materials else {})

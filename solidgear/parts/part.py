@@ -124,6 +124,7 @@ def recognise(table: BodyTable, folder: Path) -> Recognised:
         kind="step" if table.step is not None else "mesh",
         name=path.name,
         path=str(path),
+        words=table.with_changes(materials={}, **{table.key: ""}),
         sha256=hashlib.sha256(content).hexdigest(),
         unit=unit,
         turn=place.turn,

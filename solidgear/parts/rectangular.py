@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from skfem import Mesh, MeshHex
 
-from solidgear.core import Body, SolidgearError, assemblable
+from solidgear.core import Body, SolidgearError
+from solidgear.core.kernel.room import assemblable
 from solidgear.core.scene.patches import FACES
 from solidgear.parts.own_mesh import solid_body
 

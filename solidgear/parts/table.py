@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from solidgear.core import SceneError
-from solidgear.parts.body_file import BodyFile, BodyTable, with_port
+from solidgear.parts.body_file import BodyFile, BodyTable, with_port, written
 from solidgear.parts.recognised import Recognised, with_seats
 
 
@@ -26,6 +26,8 @@ class Parts:
     with_port = staticmethod(with_port)
     with_seats = staticmethod(with_seats)
     refuse_parts = staticmethod(refuse_parts)
+
+    written = staticmethod(written)
 
     @staticmethod
     def recognise(table: BodyTable, folder: Path) -> Recognised:

@@ -74,7 +74,7 @@ def _environment() -> dict[str, str]:
     out["OMPI_MCA_rmaps_base_oversubscribe"] = "1"
     # ranks that wait leave the processor to those that work
     out["OMPI_MCA_mpi_yield_when_idle"] = "1"
-    if os.geteuid() == 0:
+    if hasattr(os, "geteuid") and os.geteuid() == 0:
         # whoever runs this program as root has decided that already
         out |= {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
     return out
@@ -103,8 +103,8 @@ class Ranks:
         np.save(self.folder / "rigid.npy", rigid)
         block = 3 if nodal and self.n % 3 == 0 else 1
         task = {"n": self.n, "block": block, "method": "mumps" if self.direct else "gamg"}
-        (self.folder / "task.json").write_text(json.dumps(task))
-        self._log = open(self.folder / "log", "w+")
+        (self.folder / "task.json").write_text(json.dumps(task), encoding="utf-8")
+        self._log = open(self.folder / "log", "w+", encoding="utf-8", errors="replace")
         command = [*launcher(), "-n", str(factoring.ranks), python(), str(WORKER), str(self.folder)]
         self._process = subprocess.Popen(
             command, env=_environment(), stdout=self._log, stderr=subprocess.STDOUT
@@ -127,7 +127,7 @@ class Ranks:
                     f"PETSc ended without an answer: {(lines or ['killed'])[-1][:200]}"
                 )
             time.sleep(0.002)
-        answer = json.loads(done_file.read_text())
+        answer = json.loads(done_file.read_text(encoding="utf-8"))
         self.peak_mb = max(self.peak_mb, answer["peak_mb"])
         self.steps = max(self.steps, answer.get("steps", 0))
         return answer
@@ -139,7 +139,7 @@ class Ranks:
         out = self.folder / f"{self._number}_out.npy"
         np.lib.format.open_memmap(out, "w+", float, (self.n, columns)).flush()
         order = self.folder / "order.tmp"
-        order.write_text(json.dumps({"what": task, **more}))
+        order.write_text(json.dumps({"what": task, **more}), encoding="utf-8")
         order.rename(self.folder / f"{self._number}.json")
         answer = self._wait()
         result = np.load(out)

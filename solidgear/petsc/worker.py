@@ -11,6 +11,7 @@ talk; numbers come and go as arrays in files of which each rank reads and writes
 import glob
 import json
 import os
+import resource
 import sys
 import time
 
@@ -47,7 +48,7 @@ class Rank:
         self.folder = folder
         self.petsc, self.slepc = libraries()
         self.comm = self.petsc.COMM_WORLD
-        self.task = json.load(open(self.path("task.json")))
+        self.task = self.read("task.json")
         self.n = self.task["n"]
         self.a = self.matrix("a")
         self.lo, self.hi = self.a.getOwnershipRange()
@@ -55,6 +56,11 @@ class Rank:
 
     def path(self, name):
         return os.path.join(self.folder, name)
+
+    def read(self, name):
+        """Return the data of a file."""
+        with open(self.path(name), encoding="utf-8") as file:
+            return json.load(file)
 
     def rows(self, name):
         """Return this rank's rows of an array in a file."""
@@ -207,9 +213,11 @@ class Rank:
 
     def peak_mb(self):
         """Return the most memory that all ranks took, MB."""
-        rank_kb = open("/proc/self/status").read().split("VmHWM:")[1].split()[0]
+        # of this interpreter, which need not have psutil; macOS counts bytes, Linux 1024 of them
+        unit = 1 if sys.platform == "darwin" else 1024
+        rank_mb = unit * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
         v = self.petsc.Vec().createMPI((1, None), comm=self.comm)
-        v.setValue(self.comm.getRank(), int(rank_kb) / 1024)
+        v.setValue(self.comm.getRank(), rank_mb)
         v.assemble()
         return v.sum()
 
@@ -225,14 +233,14 @@ def main(folder):
             continue
         answer = {}
         if number:
-            order = json.load(open(ask))
+            order = rank.read(f"{number}.json")
             serving = order["what"] != "stop"
             if serving:
                 answer = getattr(rank, order["what"])(number, order)
         answer["peak_mb"] = rank.peak_mb()
         rank.comm.barrier()
         if rank.comm.getRank() == 0:
-            with open(rank.path("said.tmp"), "w") as file:
+            with open(rank.path("said.tmp"), "w", encoding="utf-8") as file:
                 json.dump(answer, file)
             os.replace(rank.path("said.tmp"), rank.path(f"{number}.done"))
         number += 1

@@ -29,11 +29,11 @@ def console(stderr: bool = False) -> Console:
     return Console(highlight=False, markup=False, emoji=False, stderr=stderr)
 
 
-def say(*blocks: RenderableType, soft_wrap: bool = True) -> None:
+def say(*blocks: RenderableType, soft_wrap: bool = True, printer: Console | None = None) -> None:
     """Print tables, and texts as they stand: a line of any length each, or broken at the width of
-    the terminal without `soft_wrap`.
+    the terminal without `soft_wrap`; on a printer in place of the terminal, where one is given.
     """
-    terminal = console()
+    terminal = printer or console()
     for block in blocks:
         if isinstance(block, str) and not soft_wrap:
             # rich breaks lines at the spaces that hold the digits of a number together as well

@@ -1,9 +1,9 @@
 """The drawing process: deformed shapes as PNG files, one or several frames each, and shaded surfaces.
 
-    python -m solidgear.show.drawing FOLDER
+    python -m solidgear.show.drawing FOLDER CALLER
 
-:mod:`solidgear.show.render` starts it and reads how it ended; it imports nothing else of
-solidgear, and so starts quickly.
+:mod:`solidgear.show.render` starts it, with the number of its process, and reads how it ended; it
+imports next to nothing of solidgear, and so starts quickly.
 """
 
 from __future__ import annotations
@@ -15,6 +15,8 @@ import time
 from pathlib import Path
 
 import numpy as np
+
+from solidgear.core.machine.processes import Other
 
 SIZE = (1200, 700)
 #: height of a title over several frames
@@ -35,7 +37,7 @@ SHADED = (840, 490)
 FAINT = 1e-3
 
 
-def _main(room: Path) -> int:
+def _main(room: Path, caller: Other) -> int:
     if os.environ.get("SOLIDGEAR_RENDERER") == "none":
         print("SOLIDGEAR_RENDERER=none", file=sys.stderr)
         return 3
@@ -46,13 +48,13 @@ def _main(room: Path) -> int:
     probe = pv.Plotter(off_screen=True, window_size=[16, 16])
     probe.show(auto_close=False)
     probe.close()
-    caller, index = os.getppid(), 0
+    index = 0
     while True:
         no_more = (room / LAST).exists()
         if (room / f"{index}.json").exists():
             _drawn(pv, room, index)
             index += 1
-        elif no_more or os.getppid() != caller:
+        elif no_more or not caller.alive:
             break
         else:
             time.sleep(PAUSE)
@@ -401,4 +403,4 @@ def _aim(p, undeformed, drawn, aspect, right, upward, back):
 
 
 if __name__ == "__main__":
-    sys.exit(_main(Path(sys.argv[1])))
+    sys.exit(_main(Path(sys.argv[1]), Other(int(sys.argv[2]))))

@@ -11,21 +11,27 @@ from __future__ import annotations
 import json
 import os
 import re
-import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import IO
 
 from solidgear.core import SolidgearError
+from solidgear.core.machine.processes import Other
 from solidgear.show.outputs import OUTPUTS
 
 try:
     import fcntl
 except ImportError:  # Windows
     fcntl = None  # type: ignore[assignment]  # a module, or none
+try:
+    import msvcrt
+except ImportError:  # all but Windows
+    msvcrt = None  # type: ignore[assignment]  # a module, or none
 
 LOCK = ".solidgear.lock"
+#: byte that Windows locks: no other process can read it, so it lies far behind what is written
+LOCKED_BYTE = 2**30
 #: what is ever listed, and so ever removed: a damaged list can name nothing else
 OWN = re.compile(
     r"(report\.html|(mode|error)_\w+\.png|modes\.html|system_mode_\d+\.png"
@@ -90,9 +96,7 @@ def held(out: str | os.PathLike) -> Iterator[Path]:
     finally:
         _held.discard(place)
         if lock is not None:
-            # Removed while it is held: whoever waits for this very file sees that it is gone.
-            (folder / LOCK).unlink(missing_ok=True)
-            lock.close()
+            _give_up(lock, folder / LOCK)
         if is_new and not any(folder.iterdir()):
             folder.rmdir()
 
@@ -121,15 +125,13 @@ def begun(out: str | os.PathLike) -> Iterator[Path]:
 
 
 def _locked(folder: Path, out) -> IO | None:
-    if fcntl is None:
-        return None
     while True:
         try:
-            file = (folder / LOCK).open("a+")
+            file = (folder / LOCK).open("a+", encoding="ascii")
         except OSError as error:
             raise _unwritable(out, error) from None
         try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            _lock(file)
         except BlockingIOError:
             file.seek(0)
             process = file.read().strip()
@@ -147,6 +149,38 @@ def _locked(folder: Path, out) -> IO | None:
             file.flush()
             return file
         file.close()  # of a run that has just ended
+
+
+def _lock(file: IO) -> None:
+    """Lock a file against other processes; BlockingIOError where another one has, OSError where there
+    are no locks.
+    """
+    if fcntl is not None:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        return
+    if msvcrt is None:
+        raise OSError("this system has no locks")
+    file.seek(LOCKED_BYTE)
+    try:
+        msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
+    except PermissionError as error:
+        raise BlockingIOError(*error.args) from None
+
+
+def _give_up(lock: IO, path: Path) -> None:
+    """Remove a file that is locked while it is held: whoever waits for this very file sees that it is
+    gone. Windows removes it afterwards, unless another process has opened it meanwhile.
+    """
+    try:
+        path.unlink(missing_ok=True)
+    except OSError:
+        pass
+    lock.close()
+    if fcntl is None:
+        try:
+            path.unlink(missing_ok=True)
+        except OSError:
+            pass
 
 
 def _is(file: IO, path: Path) -> bool:
@@ -169,7 +203,7 @@ def clear_halves(folder: Path) -> None:
     """Remove halves of files left by processes that were killed."""
     for path in folder.iterdir():
         half = HALF.fullmatch(path.name)
-        if half and not _alive(int(half["process"])):
+        if half and not Other(int(half["process"])).alive:
             path.unlink(missing_ok=True)
 
 
@@ -180,15 +214,3 @@ def _listed(folder: Path) -> list[str]:
         return [str(name) for name in results["files"]]
     except (OSError, ValueError, KeyError, TypeError):
         return []
-
-
-def _alive(process: int) -> bool:
-    if sys.platform == "win32":  # where signal 0 is Ctrl-C, or the end of that process
-        return True
-    try:
-        os.kill(process, 0)
-    except ProcessLookupError:
-        return False
-    except (OSError, OverflowError):  # someone else's, or no number of a process
-        return True
-    return True

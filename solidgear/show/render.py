@@ -114,7 +114,9 @@ class Drawing:
         self._end = ""
 
     def __enter__(self) -> Drawing:
-        self._folder = tempfile.TemporaryDirectory(prefix="solidgear-render-")
+        self._folder = tempfile.TemporaryDirectory(
+            prefix="solidgear-render-", ignore_cleanup_errors=True
+        )
         self._windows = _windows()
         try:
             for job in self._first:
@@ -185,7 +187,13 @@ class Drawing:
         # The child must find the same solidgear, wherever the caller runs.
         root = str(Path(__file__).resolve().parents[2])
         env["PYTHONPATH"] = os.pathsep.join(filter(None, [root, env.get("PYTHONPATH")]))
-        command = [sys.executable, "-m", "solidgear.show.drawing", str(self._room)]
+        command = [
+            sys.executable,
+            "-m",
+            "solidgear.show.drawing",
+            str(self._room),
+            str(os.getpid()),
+        ]
         try:
             # into a file: nobody empties a pipe meanwhile
             with (self._room / SAID).open("wb") as errors:

@@ -6,7 +6,9 @@ command was asked to.
 
 from __future__ import annotations
 
+import io
 import json
+import os
 from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field
@@ -16,17 +18,20 @@ from typing import TYPE_CHECKING, Any, Literal
 from solidgear.core import whole
 from solidgear.core.machine.whole_file import write_page as write_whole
 from solidgear.show.command import NOT_REACHED, Progress, caution, filled, say
+from solidgear.show.file_stems import file_stems
 from solidgear.show.table import Table
-from solidgear.show.units import in_ascii
+from solidgear.show.units import Units, in_ascii, units_named
 
 if TYPE_CHECKING:
-    from rich.console import RenderableType
+    from rich.console import Console, RenderableType
 
     from solidgear.show.options import Run
     from solidgear.show.plot import Make
 
 #: files of a chart
 KINDS = ("png", "svg")
+#: columns of a sheet that is printed as a text
+PRINTED = 100
 
 
 @dataclass(frozen=True)
@@ -109,14 +114,61 @@ def present(study: Callable[[Progress], Sheet], run: Run, out: Path | None = Non
         raise typer.Exit(exit_code)
 
 
-def _held(folder: Path) -> AbstractContextManager[Any]:
+def _held(folder: str | os.PathLike) -> AbstractContextManager[Any]:
     from solidgear.show.folder import held  # start-up: for a folder alone
 
     return held(folder)
 
 
-def print_sheet(sheet: Sheet) -> None:
-    """Print a sheet on the terminal, broken at its width."""
+def sheet_of(result: Any, make: Callable[[Any, Units], Sheet], units: str | Units) -> Sheet:
+    """Return the sheet of a result in some units."""
+    return make(result, units_named(units))
+
+
+def main_table(sheet: Sheet) -> Table:
+    """Return the first table of a sheet with rows, or its conclusions as one."""
+    tables = [*sheet.tables, *(table for s in sheet.sections for table in s.tables)]
+    conclusions = Table(sheet.title, [""], [[line] for line in [*sheet.verdict, *sheet.notes]])
+    return next((table for table in tables if table), conclusions)
+
+
+def as_printed(sheet: Sheet) -> str:
+    """Return what a terminal shows of a sheet."""
+    from rich.console import Console  # start-up: as in `say`
+
+    lines = io.StringIO()
+    plain = Console(file=lines, width=PRINTED, highlight=False, markup=False, emoji=False)
+    print_sheet(sheet, plain)
+    return "\n".join(map(str.rstrip, lines.getvalue().rstrip("\n").split("\n")))
+
+
+def as_html(sheet: Sheet) -> str:
+    """Return tables and sentences of a sheet for a notebook."""
+    from markupsafe import escape
+
+    sentences = [*filter(None, [sheet.title, sheet.headline]), *sheet.verdict]
+    blocks = [f"<p>{escape(sentence)}</p>" for sentence in sentences]
+    blocks += [table._repr_html_() for table in sheet.tables if table]
+    blocks += [f"<p>{escape(text)}</p>" for text in [*sheet.notes, *map(caution, sheet.cautions)]]
+    return "".join(blocks)
+
+
+def write_result(
+    result: Any,
+    folder: str | os.PathLike,
+    units: str | Units,
+    make_for_folder: Callable[[Any, Units, Path], Sheet] | None = None,
+) -> list[Path]:
+    """Write the sheet of a result into a folder that no other run holds, and return the files."""
+    chosen = units_named(units)
+    with _held(folder) as place:
+        if make_for_folder is None:
+            return write_folder(result.sheet(chosen), place)
+        return write_folder(make_for_folder(result, chosen, place), place)
+
+
+def print_sheet(sheet: Sheet, printer: Console | None = None) -> None:
+    """Print a sheet on the terminal, or another one, broken at its width."""
     terminal = sheet.terminal
     heading, tables, closing = terminal.heading, terminal.tables, terminal.closing
     results = terminal.results
@@ -132,8 +184,8 @@ def print_sheet(sheet: Sheet) -> None:
     blocks += [*(sentence for sentence in results if sentence), *closing]
     if terminal.lines == "hanging":
         blocks = [filled(block) if isinstance(block, str) else block for block in blocks]
-    say(*blocks, soft_wrap=terminal.lines != "broken")
-    say(*terminal.unbroken)
+    say(*blocks, soft_wrap=terminal.lines != "broken", printer=printer)
+    say(*terminal.unbroken, printer=printer)
 
 
 def as_json(sheet: Sheet) -> str:
@@ -153,19 +205,19 @@ def _written(sheet: Sheet, folder: Path) -> list[Path]:
     folder.mkdir(parents=True, exist_ok=True)
     charts = {**sheet.charts}
     for s in sheet.sections:
-        charts |= {stem: make for stem, make in s.charts.items() if _is_filed(s, stem)}
-    data = sheet.data
+        charts |= {name: make for name, make in s.charts.items() if _is_filed(s, name)}
+    data, stems = sheet.data, file_stems([*sheet.lines, *charts])
     if sheet.json_name:
-        names = [f"{sheet.name}.html", *(f"{stem}.csv" for stem in sheet.lines)]
-        names += [f"{stem}.{kind}" for stem in charts for kind in KINDS]
+        names = [f"{sheet.name}.html", *(f"{stems[name]}.csv" for name in sheet.lines)]
+        names += [f"{stems[name]}.{kind}" for name in charts for kind in KINDS]
         names += sheet.pictures
         data = {**data, "files": names}
     json_file = folder / f"{sheet.json_name or sheet.name}.json"
     write_json(json_file, data)  # numbers first: whatever happens to charts, they are there
-    files = [table.write(folder / f"{stem}.csv") for stem, table in sheet.lines.items()]
+    files = [table.write(folder / f"{stems[name]}.csv") for name, table in sheet.lines.items()]
     files.append(json_file)
-    for stem, make in charts.items():
-        files += write_charts(folder / stem, make)
+    for name, make in charts.items():
+        files += write_charts(folder / stems[name], make)
     page = write_page(sheet, folder / f"{sheet.name}.html")
     return [page, *files]
 

@@ -4,12 +4,20 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
 import typer
 
 from solidgear.bearings.study import loaded_by
-from solidgear.core import SceneError, SolidgearError, as_written, is_train, show
+from solidgear.core import (
+    SceneError,
+    SolidgearError,
+    Source,
+    as_written,
+    is_train,
+    name_of_source,
+    show,
+)
 from solidgear.show.command import Group
 from solidgear.show.options import refuse
 from solidgear.strength.load import AT_REST
@@ -21,6 +29,12 @@ from solidgear.trains.loading import load_train
 
 #: modes kept of a shaft, whose deflection needs none
 FEW = 6
+#: torque as a text with a unit or a number in N m; None where it is not given
+Given: TypeAlias = str | float | None
+if TYPE_CHECKING:
+    Torque: TypeAlias = Given
+else:
+    Torque = str | None
 AtRestFile = Annotated[
     Path, typer.Argument(help="Train or scene file (TOML), such as geometry/axle_overhung.toml.")
 ]
@@ -31,7 +45,7 @@ class Acting(Group):
     """An operating point of a train, or a load of a shaft."""
 
     torque: Annotated[
-        str | None,
+        Torque,
         typer.Option(
             help='Torque on a train, such as "115 N*m"; by default its first operating point.'
         ),
@@ -57,35 +71,43 @@ class Acting(Group):
         ),
     ] = None
 
-    def read(self, file: Path, tol: float | None = None) -> tuple[Assembly, OperatingPoint]:
+    def read(
+        self, source: Source | Train, tol: float | None = None
+    ) -> tuple[Assembly, OperatingPoint]:
         """Return a train and its operating point, or a shaft under its load, with the error that
         meshes may leave; refuse options of the other.
         """
-        if is_train(file):
-            train, point = self.read_train(file)
+        if isinstance(source, Train) or is_train(source):
+            train, point = self.read_train(source)
             return Assembly(train, kept=FEW, tol=tol), point
         of_train = {"--torque": self.torque, "--point": self.point, "--weight": self.weight}
         options = {option: value is not None for option, value in of_train.items()}
-        refuse(options, f"a train, and {file} is a shaft: give --load, or [load] in the file")
-        scene = as_written(file)
+        name = name_of_source(source)
+        refuse(options, f"a train, and {name} is a shaft: give --load, or [load] in the file")
+        scene = as_written(source)
         if self.load is not None:
             scene = loaded_by(scene, self.load)
         return Assembly.of(scene, kept=FEW, tol=tol), AT_REST
 
-    def read_train(self, file: Path) -> tuple[Train, OperatingPoint]:
+    def read_train(self, source: Source | Train) -> tuple[Train, OperatingPoint]:
         """Return a train as its file has it and its operating point; refuse a load on a shaft."""
-        kind = f"a shaft, and {file} is a train: give --torque"
-        refuse({"--load": self.load is not None}, kind)
-        return self._at_point(file)
+        self.refuse_load(source)
+        return self._at_point(source)
 
-    def _at_point(self, file: Path) -> tuple[Train, OperatingPoint]:
+    def refuse_load(self, train: Source | Train) -> None:
+        """Refuse a load on a shaft."""
+        kind = f"a shaft, and {name_of_source(train)} is a train: give --torque"
+        refuse({"--load": self.load is not None}, kind)
+
+    def _at_point(self, source: Source | Train) -> tuple[Train, OperatingPoint]:
         if self.torque is None:
-            kind = f"a --torque, and there is none: write weight into [operation] of {file}"
+            name = name_of_source(source)
+            kind = f"a --torque, and there is none: write weight into [operation] of {name}"
             refuse({"--weight": self.weight is not None}, kind)
-            train = load_train(file)
+            train = load_train(source)
             if not train.operation:
                 raise SolidgearError(
-                    f'{file}: no torque is given; write [operation] with torque = "115 N*m", or '
+                    f'{name}: no torque is given; write [operation] with torque = "115 N*m", or '
                     "give --torque"
                 )
             by_name = self.point is not None
@@ -98,7 +120,7 @@ class Acting(Group):
         except SceneError as error:
             raise SolidgearError(f"--torque {show(self.torque, 40)}: {error}") from None
         try:
-            train = load_train(file, point)
+            train = load_train(source, point)
         except SceneError as error:
             if error.path[:1] != ("operation",) or error.path[-1] != "of":
                 raise

@@ -8,14 +8,13 @@ from typing import Annotated
 
 import typer
 
-from solidgear.core import SolidgearError, explained
-from solidgear.show.command import Progress, command
+from solidgear.core import SolidgearError
+from solidgear.show.command import command
 from solidgear.show.options import Shown
-from solidgear.show.sheet import Sheet, present
-from solidgear.show.units import units_named
+from solidgear.show.sheet import present
 from solidgear.strength.acting import Acting
-from solidgear.teeth.sheet import contact_sheet
-from solidgear.teeth.study import FACTORS, teeth_study
+from solidgear.teeth.study import FACTORS
+from solidgear.teeth.study import contact as solved
 from solidgear.teeth.train_teeth import TeethModel
 from solidgear.trains.options import TrainFile
 
@@ -69,19 +68,19 @@ def contact(
     ):
         if not least <= value <= most:
             raise SolidgearError(f"{option} {value}: give {least} to {most}")
-    # as the file has it: an assembly would have the teeth solved already
-    (as_written, point), units = acting.read_train(train), units_named(run.units)
-
-    def study(progress: Progress) -> Sheet:
-        with explained(train):
-            solved = teeth_study(
-                as_written,
-                point,
-                model=TeethModel(teeth.value, slices, positions),
-                factors=FACTORS if curve else (),
-                judge=judge,
-                progress=progress,
-            )
-        return contact_sheet(solved, units)
-
-    present(study, run, out)
+    acting.refuse_load(train)
+    present(
+        lambda progress: solved(
+            train,
+            acting.point,
+            torque=acting.torque,
+            of=acting.of,
+            weight=acting.weight,
+            model=TeethModel(teeth.value, slices, positions),
+            factors=FACTORS if curve else (),
+            judge=judge,
+            progress=progress,
+        ).sheet(run.units),
+        run,
+        out,
+    )

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from time import perf_counter
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
-from solidgear.core import SolidgearError, pinned
+from solidgear.core import Sheeted, SolidgearError, Source, explained, pinned
 from solidgear.core.plain import plain
+from solidgear.strength.acting import Acting, Given
 from solidgear.teeth.bars import error_bars
 from solidgear.teeth.ladder import Ladder, ladder
 from solidgear.teeth.mesh_contact import MeshContact, SolvedMesh
@@ -22,6 +23,7 @@ from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.planetary import PlanetMesh
 from solidgear.trains.file.tables import TEETH
 from solidgear.trains.file.train import Train
+from solidgear.trains.loading import load_train
 
 #: torques of a curve, of that of the operating point
 FACTORS = (0.1, 0.2, 0.35, 0.5, 0.75, 1.0, 1.25, 1.5)
@@ -50,8 +52,8 @@ class AtTorque:
         )
 
 
-@dataclass(frozen=True, eq=False)
-class TeethStudy:
+@dataclass(frozen=True, eq=False, repr=False)
+class TeethStudy(Sheeted):
     """Contact of all meshes of a train.
 
     Attributes
@@ -77,13 +79,15 @@ class TeethStudy:
     Examples
     --------
     >>> import solidgear as sg
-    >>> train = sg.load_train("geometry/gearbox_train.toml")
-    >>> study = teeth_study(train, model=TeethModel(slices=12, positions=8), factors=())
+    >>> coarse = TeethModel(slices=12, positions=8)
+    >>> study = sg.contact("geometry/gearbox_train.toml", model=coarse, factors=())
     >>> [mesh.name for mesh in study.meshes], study.stiffness
     (['mesh'], {'mesh': 320000000.0})
     >>> sorted(study.as_dict()["meshes"]["mesh"])[:3]
     ['assumed', 'contact_ratio', 'corner_share']
     """
+
+    sheeted: ClassVar[str] = "teeth.sheet:contact_sheet"
 
     title: str
     point: OperatingPoint
@@ -117,22 +121,29 @@ class TeethStudy:
 
 
 @pinned
-def teeth_study(
-    train: Train,
-    point: OperatingPoint | None = None,
+def contact(
+    train: Source | Train,
+    point: str | OperatingPoint | None = None,
     *,
+    torque: Given = None,
+    of: str | None = None,
+    weight: str | None = None,
     model: TeethModel | None = None,
     factors: Sequence[float] = FACTORS,
     judge: bool = False,
     progress: Callable[[str], None] = lambda text: None,
 ) -> TeethStudy:
-    """Solve the contact of all meshes over a mesh cycle, and over the torque.
+    """Teeth in contact: mesh stiffness, transmission error and load along the face over a mesh cycle,
+    and over the torque.
 
     Parameters
     ----------
-    train : Train
-    point : OperatingPoint, optional
-        By default the first of the train.
+    train : path, dict or Train
+        A train: its file (TOML), the tables of one, or an object.
+    point : str or OperatingPoint, optional
+        By name or number; by default the first of the train.
+    torque, of, weight
+        A torque in place of a point, as of :func:`solidgear.deflect`.
     model : TeethModel, optional
         By default slices.
     factors : sequence of float
@@ -145,6 +156,7 @@ def teeth_study(
     Returns
     -------
     TeethStudy
+        ``meshes`` with their cycles; ``write(folder)`` makes a page, charts and the mesh cycle.
 
     Raises
     ------
@@ -154,18 +166,28 @@ def teeth_study(
     Examples
     --------
     >>> import solidgear as sg
-    >>> study = teeth_study(sg.load_train("geometry/gearbox_train.toml"), factors=())
-    >>> mesh = study.meshes[0]
+    >>> mesh = sg.contact("geometry/gearbox_train.toml", factors=()).meshes[0]
     >>> bool(mesh.cycle.tangent.mean() > mesh.cycle.secant.mean() > 3e8)
     True
     """
-    start, model = perf_counter(), model or TeethModel()
-    point = train.point if point is None else point
-    if point is None:
-        raise SolidgearError(
-            f"{train.name} has no torque: teeth touch under a load; give --torque, or [operation] "
-            "in the file"
-        )
+    if isinstance(point, OperatingPoint):
+        # as the file has it: an assembly would have the teeth solved already
+        at_rest, at = load_train(train), point
+    else:
+        at_rest, at = Acting(torque, of, point, weight).read_train(train)
+    with explained(train):
+        return _contact(at_rest, at, model or TeethModel(), factors, judge, progress)
+
+
+def _contact(
+    train: Train,
+    point: OperatingPoint,
+    model: TeethModel,
+    factors: Sequence[float],
+    judge: bool,
+    progress: Callable[[str], None],
+) -> TeethStudy:
+    start = perf_counter()
     sectioned = with_sections(with_usual_meshes(train))
     carried = Carried.at_rest(sectioned, point)
     teeth = touching(carried.train)

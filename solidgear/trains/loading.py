@@ -2,24 +2,25 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
-from solidgear.core import Scene, as_written, explained, load
-from solidgear.trains.file import reading
+from solidgear.core import Scene, Source, as_written, document_of, explained, load
 from solidgear.trains.file.operation import OperatingPoint
+from solidgear.trains.file.reading import train_of
 from solidgear.trains.file.train import Train
 
 
-def load_train(path: str | os.PathLike, point: OperatingPoint | None = None) -> Train:
-    """Read a train file; the shafts it names lie relative to it, and the stiffness of their
+def load_train(source: Source | Train, point: OperatingPoint | None = None) -> Train:
+    """Read a train; the shafts it names lie relative to its file, and the stiffness of their
     catalogue bearings is worked out: at the first operating point of the train, or, without any, at
     the load of each shaft's own file.
 
     Parameters
     ----------
-    path : str or path
-        A TOML file; ``geometry/axle_overhung.toml`` describes the format.
+    source : str, path or dict
+        A TOML file; ``geometry/axle_overhung.toml`` describes the format. Or the tables of one, as
+        ``tomllib`` gives them, with names of files relative to the folder of work. A Train is
+        returned as it is, or settled at the point.
     point : OperatingPoint, optional
         Operating point for the bearings, in place of those of the file.
 
@@ -44,10 +45,15 @@ def load_train(path: str | os.PathLike, point: OperatingPoint | None = None) -> 
         # one that is not settled by itself settles with its train
         return load(file) if alone and point is None else as_written(file)
 
-    train = reading.load_train(path, scene)
-    if point is None and not train.operation:
+    if isinstance(source, Train):
+        train, settled = source, point is None
+    else:
+        document = document_of(source)
+        train = train_of(document.tables, document.path, scene)
+        settled = point is None and not train.operation
+    if settled:
         return train
     from solidgear.trains.load.operation import at_point  # start-up: not every file needs it
 
-    with explained(path):
+    with explained(source):
         return at_point(train if point is None else train.with_changes(operation=(point,)))

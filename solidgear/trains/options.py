@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, TypeAlias, TypedDict
 
 import typer
 
-from solidgear.core import LADDER, SceneError, SolidgearError, listed, parse, show
+from solidgear.core import LADDER, SceneError, SolidgearError, Source, document_of, listed, show
 from solidgear.show.command import Group
 from solidgear.show.options import MODEL, options_by_name, relative
 from solidgear.trains.assembly.assembly import Assembly
@@ -28,6 +28,25 @@ MODELS = (
     "lumped-old; a lumped one may name its body, lumped/euler."
 )
 MOST_KEPT = 200
+#: a model of all shafts, or models by shaft; harmonic solids where nothing is said
+Models: TypeAlias = str | Mapping[str, str] | None
+#: builder options by shaft, or texts such as ``pinion.order=3``
+Settings: TypeAlias = Mapping[str, Mapping[str, Any]] | Iterable[str] | None
+if TYPE_CHECKING:
+    Harmonics: TypeAlias = str | Sequence[int] | None
+else:
+    Harmonics = str | None
+
+
+class Reducing(TypedDict, total=False):
+    """Words of every study of a train: how its shafts are reduced, and up to which frequency."""
+
+    max_frequency: float | None
+    reduction: str
+    kept: int
+    local_harmonics: Harmonics
+    point: str | None
+    tol: float | None
 
 
 @dataclass(frozen=True)
@@ -45,7 +64,7 @@ class Reduction(Group):
         int, typer.Option("--kept", help="Modes of each shaft kept in its reduction.")
     ] = 24
     local_harmonics: Annotated[
-        str | None,
+        Harmonics,
         typer.Option(
             "--local-harmonics",
             help="Harmonics n >= 2 of harmonic solids that teeth drive where they touch, such as "
@@ -79,7 +98,9 @@ class Reduction(Group):
     @property
     def harmonics(self) -> tuple[int, ...]:
         """Harmonics of ``--local-harmonics``; none where the file decides."""
-        return () if self.local_harmonics is None else _harmonics(self.local_harmonics)
+        asked = self.local_harmonics
+        text = asked if isinstance(asked, str) or asked is None else ",".join(map(str, asked))
+        return () if text is None else _harmonics(text)
 
 
 @dataclass(frozen=True)
@@ -95,9 +116,21 @@ class Reduced(Reduction):
         ),
     ] = None
 
+    @property
+    def words(self) -> Reducing:
+        """These options as the words of a study."""
+        return Reducing(
+            max_frequency=self.max_frequency,
+            reduction=self.reduction,
+            kept=self.kept,
+            local_harmonics=self.local_harmonics,
+            point=self.point,
+            tol=self.tol,
+        )
+
     def assembly(
         self,
-        path: Path,
+        source: Source | Train,
         settings: Mapping[str | tuple[str, str], Mapping] | None = None,
         solves_teeth: bool = True,
     ) -> Assembly:
@@ -105,7 +138,7 @@ class Reduced(Reduction):
         side and model.
         """
         self.checked()
-        loaded = load_train(path)
+        loaded = load_train(source)
         if self.point is not None:
             loaded = at_point(loaded, self.point)
         if self.harmonics:
@@ -124,8 +157,9 @@ class Reduced(Reduction):
                 solves_teeth=solves_teeth,
             )
         except SceneError as error:  # what the mesh of a sound file cannot be
-            raw = parse(str(path))
-            raise as_written(error, raw).located(raw, where=str(path)) from None
+            document = document_of(source)
+            raw = document.tables
+            raise as_written(error, raw).located(raw, where=document.path) from None
 
 
 @dataclass(frozen=True)
@@ -145,25 +179,16 @@ class Pair(Group):
         ),
     ] = None
 
-    def by_shaft(self, train: Train) -> dict[str, str]:
-        """Return models of the shafts of a train."""
-        return self.of(train.shafts, train.name)
-
-    def of(self, shafts: Collection[str], name: str) -> dict[str, str]:
-        """Return models of shafts by the name of each; refuse a shaft that the train does not
-        have.
-        """
+    @property
+    def models(self) -> dict[str, str]:
+        """Models that are given, by shaft."""
         models = {s: m for s, m in (("pinion", self.pinion), ("gear", self.gear)) if m != MODEL}
         for text in self.shafts or []:
             side, equals, model = text.partition("=")
             if not equals:
                 raise SolidgearError(f"--shaft {show(text, 40)}: write SHAFT=MODEL, input=euler")
             models[side] = model
-        for side in models:
-            if side not in shafts:
-                names = listed(shafts)
-                raise SolidgearError(f"{name} has no shaft {show(side, 40)}; it has {names}")
-        return {side: models.get(side, MODEL) for side in shafts}
+        return models
 
 
 @dataclass(frozen=True)
@@ -178,12 +203,6 @@ class Mix(Pair):
             "pinion.order=3, gear.elements=40; solidgear options lists them.",
         ),
     ] = None
-
-    def assembly(self, reduced: Reduced, path: Path) -> Assembly:
-        """Return the assembly of a train with these builder options."""
-        assembly = reduced.assembly(path)
-        assembly.settings = of_shafts(self.settings, self.by_shaft(assembly.train))
-        return assembly
 
 
 @dataclass(frozen=True)
@@ -215,27 +234,48 @@ class Driven(Mix):
         ),
     ] = None
 
-    def mixes(self, train: Train) -> list[tuple[str, ...]]:
-        """Return models of all shafts, the first for the numbers shown."""
-        return [tuple(self.by_shaft(train).values()), *map(mix, self.against or [])]
-
     @property
-    def losses(self) -> dict[str, Any]:
-        """Return the kind of losses, and the Hz at which viscous ones match."""
-        return {"damping": self.damping, "matched_hz": self.matched_at or 0.0}
+    def words(self) -> dict[str, Any]:
+        """Return these options as the words of a study."""
+        words = {key: getattr(self, key) for key in ("damping", "matched_at", "mesh", "settings")}
+        return words | {"models": self.models, "against": self.against or ()}
+
+
+def models_of(shafts: Collection[str], name: str, models: Models) -> dict[str, str]:
+    """Return models of shafts by the name of each; refuse a shaft that the train of that name does
+    not have.
+    """
+    if isinstance(models, str):
+        return dict.fromkeys(shafts, models)
+    for side in models or ():
+        if side not in shafts:
+            names = listed(shafts)
+            raise SolidgearError(f"{name} has no shaft {show(side, 40)}; it has {names}")
+    return {side: (models or {}).get(side, MODEL) for side in shafts}
+
+
+def assembled(
+    source: Source | Train, models: Models, settings: Settings, reduced: Reducing
+) -> tuple[Assembly, tuple[str, ...]]:
+    """Return the assembly of a train with builder options, and the model of each shaft."""
+    assembly = Reduced(**reduced).assembly(source)
+    by_shaft = models_of(assembly.train.shafts, assembly.train.name, models)
+    assembly.settings = of_shafts(settings, by_shaft)
+    return assembly, tuple(by_shaft.values())
 
 
 def of_shafts(
-    pairs: list[str] | None, models: Mapping[str, str]
+    given: Settings, models: Mapping[str, str]
 ) -> dict[str | tuple[str, str], dict[str, Any]]:
-    """Return builder options by (side, model) from ``SIDE.key=value``; a lumped or rigid shaft has
-    its body's.
-    """
+    """Return builder options by (side, model); a lumped or rigid shaft has its body's."""
     out: dict[str | tuple[str, str], dict[str, Any]] = {}
-    settings = options_by_name(pairs, models, "side", "pinion.order=3")
-    for side, options in settings.items():
+    if not isinstance(given, Mapping):
+        given = options_by_name([*(given or ())], models, "side", "pinion.order=3")
+    for side, options in given.items():
+        if side not in models:
+            raise SolidgearError(f"settings: no shaft {show(side, 40)}; there are {listed(models)}")
         kind, base = checked_model(models[side])
-        out[side, base or kind] = LADDER[base or kind].checked(options)
+        out[side, base or kind] = LADDER[base or kind].checked(dict(options))
     return out
 
 
@@ -254,8 +294,10 @@ def _harmonics(text: str) -> tuple[int, ...]:
     return numbers
 
 
-def mix(text: str) -> tuple[str, ...]:
+def mix(text: str | Sequence[str]) -> tuple[str, ...]:
     """Return models of all shafts in the sequence of the file."""
+    if not isinstance(text, str):
+        return tuple(text)
     if "+" not in text:
         raise SolidgearError(f"--against {show(text, 40)}: write PINION+GEAR, such as euler+euler")
     return tuple(word.strip() for word in text.split("+"))

@@ -36,10 +36,10 @@ CORE_FLOORS = (
     "core.models",
     "core.bounds",
     "core.ladder",
+    "core.loading",
     "core.reduction",
     "core.system",
     "core.judge",
-    "core.loading",
 )
 #: how results are shown, then a room a question, then the command line
 FEATURES = (

@@ -19,7 +19,8 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.core.scene.toml_file import is_train, parse
+from solidgear.core.scene.document import is_train
+from solidgear.core.scene.toml_file import parse
 from validation.race.heat import Check, Heat, Lane, Sample
 from validation.race.process import ROOT, PeerError, last_words, run
 

@@ -18,8 +18,9 @@ from typing import Any, NamedTuple
 from solidgear.comparison.page import charts, tables
 from solidgear.comparison.race.race import race_of
 from solidgear.comparison.race.sheet import section
-from solidgear.core import BEAM, COMPLIANCE, FIRST_BENDING, SCENE, ModeName, Quantity, Record, whole
+from solidgear.core import BEAM, COMPLIANCE, FIRST_BENDING, ModeName, Quantity, Record, whole
 from solidgear.core.judge.record import ModelRecord, VerdictRecord, relative_change
+from solidgear.core.judge.ties import SCENE
 from solidgear.core.ladder.model import LUMPED
 from solidgear.core.quantity import AT
 from solidgear.show import open_words

@@ -12,8 +12,8 @@ from typing import TypeVar
 
 from solidgear.comparison.page.html import drawn_charts, write_report
 from solidgear.core import FIRST_BENDING, LADDER, ModeSet, Quantity, Record, Solution
-from solidgear.core.machine.memory import family_mb
 from solidgear.core.machine.meter import Meter
+from solidgear.core.machine.processes import family_memory
 from solidgear.show.folder import begun
 from solidgear.show.outputs import OUTPUTS
 from solidgear.show.page_parts import data_uri
@@ -69,7 +69,7 @@ def write_all(
     """
     record.left_out = []
     shapes = solutions if record.complete else {}
-    meter = Meter(family_mb)
+    meter = Meter(family_memory())
     with begun(out) as folder, meter.stage("report"):
         # Numbers first: whatever happens to pictures, they are there.  What is about to be
         # written is listed before it is.

@@ -29,6 +29,7 @@ from solidgear.core import (
     LADDER,
     QUANTITIES,
     Body,
+    Condensed,
     Quantity,
     Scene,
     SolidgearError,
@@ -43,7 +44,6 @@ from solidgear.core.judge.solving import Answer, Statics, solve
 from solidgear.core.ladder.model import LUMPED
 from solidgear.core.machine.meter import processor_seconds
 from solidgear.core.machine.patience import Patience
-from solidgear.core.solve.condensed import Condensed
 from solidgear.core.solve.families import FAMILIES
 
 log = logging.getLogger(__name__)

@@ -15,7 +15,7 @@ from typing import Any, ClassVar, Generic, TypeVar
 import numpy as np
 
 from solidgear.comparison.two.differences import Difference
-from solidgear.core import COMPLIANCE, BarredMode, Quantity
+from solidgear.core import COMPLIANCE, BarredMode, Quantity, Sheeted
 from solidgear.core.judge.change import Change, ModePair, Side
 from solidgear.core.machine.environment import environment
 from solidgear.core.plain import plain
@@ -74,7 +74,7 @@ class NumberChange:
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Beside(ABC, Generic[S, M]):
+class Beside(Sheeted, ABC, Generic[S, M]):
     """Two designs of a kind beside each other."""
 
     kind: ClassVar[str]  #: in words

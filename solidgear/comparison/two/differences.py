@@ -7,14 +7,13 @@ quantity in other units, or a key that repeats the default.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from math import isclose
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from solidgear.core import DIMENSIONS, SceneError, parse, show
+from solidgear.core import DIMENSIONS, Document, SceneError, Source, document_of, show
 from solidgear.core.scene import file
 from solidgear.core.scene.toml_file import describes_train
 from solidgear.core.scene.units import quantity
@@ -61,9 +60,9 @@ class Difference:
         return _text(self.a, width), _text(self.b, width)
 
 
-def differences(a: str | os.PathLike, b: str | os.PathLike) -> tuple[Difference, ...]:
-    """Return the entries in which two TOML files of trains or of scenes differ, in the order of the
-    first; the [ask] of shafts of a train is left out.
+def differences(a: Source, b: Source) -> tuple[Difference, ...]:
+    """Return the entries in which two trains or scenes differ, in the order of the first; the [ask]
+    of shafts of a train is left out.
 
     Examples
     --------
@@ -73,7 +72,7 @@ def differences(a: str | os.PathLike, b: str | os.PathLike) -> tuple[Difference,
     >>> pairs[1].a, pairs[1].b
     ('pinion_overhung.toml', 'pinion_straddle.toml')
     """
-    return tuple(_Tables((os.fspath(a), os.fspath(b))).of_files())
+    return tuple(_Tables((document_of(a), document_of(b))).of_files())
 
 
 def scene_differences(a: Scene, b: Scene) -> tuple[Difference, ...]:
@@ -94,9 +93,9 @@ def scene_differences(a: Scene, b: Scene) -> tuple[Difference, ...]:
 class _Tables:
     """Two tables, entry by entry; of files, with the path of the entry that names them."""
 
-    def __init__(self, files: tuple[str, str] | None = None, prefix: str = ""):
+    def __init__(self, files: tuple[Document, Document] | None = None, prefix: str = ""):
         self.files, self.prefix = files, prefix
-        self.raw = [parse(path) for path in files or ()]
+        self.raw = [dict(document.tables) for document in files or ()]
         for raw in self.raw:
             for key in ONE_OR_MORE:
                 if isinstance(raw.get(key), Mapping):
@@ -118,16 +117,20 @@ class _Tables:
                 yield from self._entries(entry_path, key, a.get(key), b.get(key))
 
     def _entries(self, path: str, key: str, a: Any, b: Any) -> Iterator[Difference]:
-        if isinstance(a, dict) and isinstance(b, dict):
+        side, _, key_name = path.rpartition(".")
+        is_shaft = side in SIDES or side.startswith("shaft.")
+        is_scene = bool(self.files) and key_name == "scene" and is_shaft
+        if isinstance(a, dict) and isinstance(b, dict) and not is_scene:
             yield from self.differing(path, a, b)
         elif _are_tables(a) and _are_tables(b):
             yield from self._lists(path, a, b)
-        elif not _is_equal(a, b) or self._other_content(key, a, b):
+        elif not is_scene and (not _is_equal(a, b) or self._other_content(key, a, b)):
             yield Difference(self.prefix + path, a, b)
-        side, _, key_name = path.rpartition(".")
-        is_shaft = side in SIDES or side.startswith("shaft.")
-        if self.files and key_name == "scene" and is_shaft:
-            yield from _Tables(self._paths(a, b), f"{self.prefix}{side}.").of_files()
+        if is_scene:
+            if a != b and isinstance(a, str) and isinstance(b, str):
+                yield Difference(self.prefix + path, a, b)
+            scenes = self._scene(0, a), self._scene(1, b)
+            yield from _Tables(scenes, f"{self.prefix}{side}.").of_files()
 
     def _lists(self, path: str, a: list[dict], b: list[dict]) -> Iterator[Difference]:
         """Yield the differences of lists of tables, by names or numbers."""
@@ -155,20 +158,23 @@ class _Tables:
         assert self.files
         read = train_file.train_of if describes_train(self.raw[k]) else file.scene_of
         try:
-            return read(self.raw[k], self.files[k])
+            return read(self.raw[k], self.files[k].path)
         except SceneError:
             return None
 
-    def _paths(self, a: str, b: str) -> tuple[str, str]:
-        """Return the paths of files that both files name."""
-        first, second = self.files or ("", "")
-        return str(Path(first).parent / a), str(Path(second).parent / b)
+    def _scene(self, k: int, scene: Any) -> Document:
+        """Return the scene of a shaft, of a file of its own or within the train."""
+        assert self.files
+        path = self.files[k].path
+        if isinstance(scene, Mapping):
+            return Document(scene, path)
+        return document_of(Path(path).parent / str(scene))
 
     def _other_content(self, key: str, a: Any, b: Any) -> bool:
         """Return True for one name of two files with different content."""
         if not self.files or key not in FILES or not (isinstance(a, str) and isinstance(b, str)):
             return False
-        files = [Path(path) for path in self._paths(a, b)]
+        files = [Path(document.path).parent / name for document, name in zip(self.files, (a, b))]
         return all(f.is_file() for f in files) and files[0].read_bytes() != files[1].read_bytes()
 
 

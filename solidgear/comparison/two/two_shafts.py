@@ -22,7 +22,6 @@ from solidgear.core import (
     LADDER,
     QUANTITIES,
     BarredMode,
-    Displayed,
     Mode,
     OpenNumbers,
     Quantity,
@@ -74,7 +73,7 @@ SHAPES = (
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class TwoShafts(Beside[OneShaft, BarredMode], Displayed):
+class TwoShafts(Beside[OneShaft, BarredMode]):
     """Two shafts beside each other.
 
     Attributes

@@ -29,10 +29,12 @@ from solidgear.core.ladder import NO_MODEL, build, way_out
 from solidgear.core.ladder.meshes import HARMONIC
 from solidgear.core.ladder.model import BEAM, SOLID
 from solidgear.core.ladder.registry import LADDER
+from solidgear.core.loading import load
 from solidgear.core.machine.memory import one_run
 from solidgear.core.machine.threads import pinned
 from solidgear.core.plain import plain
 from solidgear.core.quantity import ACROSS, QUANTITIES, Quantity
+from solidgear.core.scene.document import Source
 from solidgear.core.scene.shaft import without_axis
 from solidgear.core.scene.units import quantity
 from solidgear.core.solve.families import FAMILIES
@@ -82,7 +84,7 @@ class Answered(Displayed):
 
 @pinned
 def answer(
-    scene: Scene,
+    scene: Source,
     tol: float | str | None = None,
     ask: Iterable[str] | str = (),
     *,
@@ -92,7 +94,8 @@ def answer(
 
     Parameters
     ----------
-    scene : Scene
+    scene : path, dict or Scene
+        A scene: its file (TOML), the tables of one, or an object.
     tol : float or str, optional
         Relative error that every quantity may have, such as 0.01 or ``"1%"``; by default the
         tolerance of the scene.
@@ -122,6 +125,7 @@ def answer(
     >>> found.reached, found.rung, found.bar <= 0.01
     (True, 'harmonic', True)
     """
+    scene = load(scene)
     if without_axis(scene):
         raise SolidgearError(f"answer: {scene.name} has no axis: run solidgear stiffness or modes")
     start = time.perf_counter()

@@ -31,6 +31,6 @@ def control_groups(root: Path, controller: str) -> Iterator[tuple[Path, bool]]:
 def text_of(path: Path) -> str:
     """Return the text of a file, empty where it cannot be read."""
     try:
-        return path.read_text()
+        return path.read_text(encoding="utf-8", errors="replace")
     except OSError:
         return ""

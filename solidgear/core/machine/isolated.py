@@ -35,7 +35,7 @@ def isolated(function: Callable, *arguments: Any, seconds: float, memory_mb: flo
     5.0
     """
     place = os.pathsep.join(filter(None, (_ROOT, os.environ.get("PYTHONPATH"))))
-    with tempfile.TemporaryDirectory(prefix="solidgear") as folder:
+    with tempfile.TemporaryDirectory(prefix="solidgear", ignore_cleanup_errors=True) as folder:
         request, answer = Path(folder) / "request", Path(folder) / "answer"
         request.write_bytes(pickle.dumps((_name(function), arguments, memory_mb)))
         # the library prints no message of ours
@@ -96,4 +96,7 @@ def _limit(memory_mb: float) -> None:
         return
     size = int(memory_mb * 2**20)
     _, hard = resource.getrlimit(resource.RLIMIT_AS)
-    resource.setrlimit(resource.RLIMIT_AS, (size if hard < 0 else min(size, hard), hard))
+    try:
+        resource.setrlimit(resource.RLIMIT_AS, (size if hard < 0 else min(size, hard), hard))
+    except (OSError, ValueError):  # macOS refuses less than is mapped already
+        pass

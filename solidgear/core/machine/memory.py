@@ -4,7 +4,6 @@ the user.
 
 from __future__ import annotations
 
-import mmap
 import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -14,6 +13,7 @@ from pathlib import Path
 
 from solidgear.core.errors import SolidgearError
 from solidgear.core.machine.control_groups import control_groups, text_of
+from solidgear.core.machine.processes import MB, resident_mb
 
 
 class NoRoom(SolidgearError):
@@ -80,13 +80,12 @@ UNLIMITED = 2**60
 def available_mb(root: str | Path = "/") -> float | None:
     """Return the memory that can still be taken, MB of 2**20 bytes; None where the system does not show it.
 
-    The least of ``MemAvailable``, the room below the limit of every control group (v1 and v2) this
-    process is in, the rest of a limit of address space (``ulimit -v``), and the environment variable
-    ``SOLIDGEAR_MEMORY_MB``, a number above zero, which can only lower it (see :func:`one_run`).
-    ``proc`` and ``sys`` are looked for below ``root``.
+    The least of what the machine has available, the room below the limit of every control group of
+    Linux (v1 and v2) this process is in, the rest of a limit of address space (``ulimit -v``), and the
+    environment variable ``SOLIDGEAR_MEMORY_MB``, a number above zero, which can only lower it (see
+    :func:`one_run`). Control groups are looked for in ``proc`` and ``sys`` below ``root``.
     """
-    root = Path(root)
-    limits = [*_machine(root), *_groups(root), *_address_space(root)]
+    limits = [*_machine(), *_groups(Path(root)), *_address_space()]
     text = os.environ.get("SOLIDGEAR_MEMORY_MB", "").strip()
     if text:
         try:
@@ -170,44 +169,14 @@ def expect(more_mb: float) -> None:
         run.expected_mb = max(run.expected_mb or 0.0, resident + more_mb)
 
 
-def resident_mb() -> float | None:
-    """Return the resident memory of this process, MB of 2**20 bytes; None where the system does not
-    show it.
-    """
+def _machine() -> Iterator[float]:
+    """Yield the memory of the machine that is free, or is given back on demand."""
+    import psutil  # start-up: not for programs that build nothing
+
     try:
-        pages = int(Path("/proc/self/statm").read_text().split()[1])
-    except OSError:
-        return None
-    return pages * mmap.PAGESIZE / 2**20
-
-
-def family_mb() -> float | None:
-    """Return the resident memory of this process and of those it has started, MB of 2**20 bytes;
-    None where the system does not show it. What they share counts for each.
-    """
-    own = resident_mb()
-    if own is None:
-        return None
-    started = [file.read_text().split() for file in Path("/proc/self/task").glob("*/children")]
-    return own + sum(_resident(number) for numbers in started for number in numbers)
-
-
-def _resident(process: str) -> float:
-    folder = Path("/proc") / process
-    try:
-        pages = int((folder / "statm").read_text().split()[1])
-        called = (folder / "cmdline").read_bytes()
-    except OSError:  # it has ended
-        return 0.0
-    if called == Path("/proc/self/cmdline").read_bytes():  # it has just split off, and shares all
-        return 0.0
-    return pages * mmap.PAGESIZE / 2**20
-
-
-def _machine(root: Path) -> Iterator[float]:
-    for line in text_of(root / "proc/meminfo").splitlines():
-        if line.startswith("MemAvailable:"):
-            yield int(line.split()[1]) / 1024
+        yield psutil.virtual_memory().available / MB
+    except (psutil.Error, OSError):  # a room without /proc
+        return
 
 
 def _groups(root: Path) -> Iterator[float]:
@@ -223,16 +192,24 @@ def _groups(root: Path) -> Iterator[float]:
         if ceiling.isdigit() and taken.isdigit() and int(ceiling) < UNLIMITED:
             # Cached files count as used but are given back on demand.
             cached = _field(text_of(place / "memory.stat"), cache)
-            yield max(0, int(ceiling) - int(taken) + cached) / 2**20
+            yield max(0, int(ceiling) - int(taken) + cached) / MB
 
 
-def _address_space(root: Path) -> Iterator[float]:
+def _address_space() -> Iterator[float]:
     """Yield the rest of a limit of address space, of which a process takes more than it holds."""
-    rows = text_of(root / "proc/self/limits").splitlines()
-    soft = next((row.split()[3] for row in rows if row.startswith("Max address space")), "")
-    taken = text_of(root / "proc/self/statm").split()
-    if soft.isdigit() and taken:
-        yield max(0, int(soft) - int(taken[0]) * mmap.PAGESIZE) / 2**20
+    try:
+        import resource
+    except ImportError:  # not on Windows
+        return
+    import psutil  # start-up: not for programs that build nothing
+
+    soft, _ = resource.getrlimit(resource.RLIMIT_AS)
+    if soft == resource.RLIM_INFINITY:
+        return
+    try:
+        yield max(0, soft - psutil.Process().memory_info().vms) / MB
+    except (psutil.Error, OSError):
+        return
 
 
 def _field(text: str, name: str) -> int:

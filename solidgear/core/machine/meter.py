@@ -8,7 +8,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-from solidgear.core.machine.memory import resident_mb
+from solidgear.core.machine.processes import resident_mb
 
 
 def processor_seconds() -> float:

@@ -4,12 +4,10 @@ would end on a busy machine a process that it allows on an idle one.
 
 from __future__ import annotations
 
-import os
 import subprocess
 import time
-from pathlib import Path
 
-from solidgear.core.machine.control_groups import text_of
+from solidgear.core.machine.processes import tree_seconds
 
 #: share of a processor below which a process stands still
 STILL = 0.01
@@ -53,8 +51,9 @@ class Patience:
                 break
             except subprocess.TimeoutExpired:
                 clock = time.monotonic()
-            processor = _processor_seconds(child.pid)
-            taken = clock - begin if processor is None else processor
+            processor = tree_seconds(child.pid)
+            # what a process took that has ended is not shown everywhere
+            taken = clock - begin if processor is None else max(taken, processor)
             if taken > self.remaining:
                 self.reason = f"took more than {self.seconds:g} s of processor time"
             elif clock - checked > self.seconds:
@@ -66,13 +65,3 @@ class Patience:
             code = child.wait()
         self.remaining -= taken
         return code
-
-
-def _processor_seconds(pid: int) -> float | None:
-    """Return the processor time of a process and of the children it has waited for; None where that
-    is not shown.
-    """
-    fields = text_of(Path(f"/proc/{pid}/stat")).rpartition(")")[2].split()
-    if len(fields) < 15 or not hasattr(os, "sysconf"):
-        return None
-    return sum(int(field) for field in fields[11:15]) / os.sysconf("SC_CLK_TCK")

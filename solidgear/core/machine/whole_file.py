@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 import os
+import sys
+import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from solidgear.core.errors import SolidgearError
+
+#: s between attempts to replace a file: on Windows whoever reads one, such as a scanner for viruses,
+#: holds it against that
+PAUSES = (0.02, 0.1, 0.5) if sys.platform == "win32" else ()
 
 
 @contextmanager
@@ -29,9 +35,22 @@ def whole(path: Path) -> Iterator[Path]:
     partial = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
         yield partial
-        os.replace(partial, path)
+        _put(partial, path)
     finally:
-        partial.unlink(missing_ok=True)
+        with suppress(PermissionError):  # Windows, where what was raised has left it open
+            partial.unlink(missing_ok=True)
+
+
+def _put(partial: Path, path: Path) -> None:
+    """Rename a file, which takes the place of another."""
+    for pause in PAUSES:
+        try:
+            os.replace(partial, path)
+        except PermissionError:
+            time.sleep(pause)
+        else:
+            return
+    os.replace(partial, path)
 
 
 @contextmanager

@@ -22,24 +22,23 @@ from solidgear.core.scene.corner import Corner, Surface
 from solidgear.core.scene.limits import TOUCH
 from solidgear.core.scene.outline import radii_of
 from solidgear.core.scene.parts import Segment
-from solidgear.core.scene.places import Placed, Places
-from solidgear.core.scene.typed import Model
+from solidgear.core.scene.places import Along, Placed, Places
 from solidgear.core.scene.units import Position, PositiveLength, quantity
 
 Edge = Literal["root", "rim"]
 
 
-class _At(Model):
-    """Words for the place of an edge: a datum."""
+class _At(Along):
+    """Words for the place of an edge: a datum, or a position."""
 
-    at: str
+    at: str | None = None
 
 
 class _Blend(Placed):
     """Base of fillets and chamfers."""
 
     Words: ClassVar = _At
-    sources: ClassVar = {"y": ("at",)}
+    sources: ClassVar = {"y": ("at", "position")}
 
     if TYPE_CHECKING:
         kind: str  # a field of every subclass, in its own order
@@ -51,7 +50,11 @@ class _Blend(Placed):
 
     @classmethod
     def place(cls, words: Any, table: Mapping[str, Any], places: Places) -> dict[str, Any]:
-        return {"y": places.datum(words.at, "at")}
+        if words.at is not None:
+            words.refuse("give either at, or position with from, not both", "position", "from_")
+            return {"y": places.datum(words.at, "at")}
+        words.require("position", 'name the edge, as at = "<segment>.end"', "at")
+        return {"y": words.y(places)}
 
     @property
     def what(self) -> str:

@@ -42,6 +42,7 @@ from solidgear.core.scene.toml_file import (
 )
 from solidgear.core.scene.typed import Holds, Model, Problems
 from solidgear.core.scene.uncertain import with_ranges
+from solidgear.core.scene.writing import digest_of_scene
 
 PAIRING, PARTS = pairing(), parts()
 if TYPE_CHECKING:
@@ -73,6 +74,7 @@ class SceneFile(Model):
     """A scene file; tables of stations and features are read later, once the shaft is known."""
 
     title: str = ""
+    name: str | None = None  #: by default that of the file
     source: str = ""
     attachment: Attachment = "average"
     material: Annotated[Material, BeforeValidator(by_name)]
@@ -147,6 +149,31 @@ def _drop_tag(path: tuple) -> tuple:
     return (*path[:2], *path[3:]) if tagged else path
 
 
+def says_unsettled(tables: Mapping[str, Any]) -> bool:
+    """Return True for tables of a scene whose catalogue bearings wait for their stiffness."""
+    bearings = tables.get("bearing") or ()
+    return any(isinstance(t, Mapping) and t.get("settled") is False for t in bearings)
+
+
+def with_settled(scene: Scene, tables: Sequence[Table]) -> Scene:
+    """Return a scene with the stiffness that catalogue bearings have in their tables, where it was
+    solved for this scene and no other.
+    """
+    settled = {
+        k: t["settled"] for k, t in enumerate(tables) if isinstance(t.get("settled"), Mapping)
+    }
+    if not settled:
+        return scene
+    digest = digest_of_scene(scene)
+    bearings = tuple(
+        bearing.with_changes(stiffness=settled[k]["stiffness"])
+        if k in settled and settled[k]["under"] == digest
+        else bearing
+        for k, bearing in enumerate(scene.bearings)
+    )
+    return scene.unjudged(bearings=bearings)
+
+
 class _Row(NamedTuple):
     """A thing that was read, None without a place, and the table that it was read from."""
 
@@ -214,7 +241,7 @@ class _Reading:
             further_ports=tuple(further),
             **things,
             title=file.title,
-            name=name_of(self.where),
+            name=name_of(self.where) if file.name is None else file.name,
             source=file.source,
             body=PARTS.with_seats(self.part, stations, self.segments) if self.part else None,
             housing_axial=housing if isinstance(housing, float) else None,
@@ -223,7 +250,7 @@ class _Reading:
             lubrication=file.lubrication,
             ask=Ask(**{key: getattr(file.ask, key) for key in Ask.model_fields}),
         )
-        return with_ranges(scene, file.uncertain, file.bearing)
+        return with_settled(with_ranges(scene, file.uncertain, file.bearing), file.bearing)
 
     def _tables(self) -> tuple[SceneFile, set[str]]:
         """Return the file without spoilt keys, and these keys."""

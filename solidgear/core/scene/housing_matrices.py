@@ -34,6 +34,16 @@ class HousingMatrices:
     stiffness: np.ndarray
     positions: dict[str, np.ndarray]  #: of the points in the order of coordinates, m
 
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, HousingMatrices) and (
+            np.array_equal(self.mass, other.mass)
+            and np.array_equal(self.stiffness, other.stiffness)
+            and [*self.positions] == [*other.positions]
+            and all(np.array_equal(a, other.positions[n]) for n, a in self.positions.items())
+        )
+
+    __hash__ = object.__hash__
+
     @cached_property
     def _factor(self) -> np.ndarray:
         try:

@@ -7,7 +7,8 @@ everywhere in the order (x, y, z, thx, thy, thz); y runs along the shaft from it
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import os
+from collections.abc import Iterable, Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
 
@@ -15,6 +16,7 @@ from pydantic import model_validator
 
 from solidgear.core.display import Displayed
 from solidgear.core.errors import SceneError
+from solidgear.core.registry import addition
 from solidgear.core.scene import rules
 from solidgear.core.scene.ask import Ask
 from solidgear.core.scene.bearing_stiffness import stiffness_entries
@@ -186,6 +188,65 @@ class Scene(Displayed, Model):
         main: dict[str, Any] = {} if port is None else {"port": port}
         return cls(segments=segments, material=material, bearings=tuple(bearings), **main, **rest)
 
+    @classmethod
+    def from_dict(
+        cls, tables: Mapping[str, Any], folder: str | os.PathLike = ".", name: str = "scene"
+    ) -> Scene:
+        """A scene from the tables of a file, as `tomllib` gives them.
+
+        Parameters
+        ----------
+        tables : mapping
+            By the keys of a file; numbers in SI, or texts with units.
+        folder : str or path
+            Names of files in the tables are relative to it.
+        name : str
+            Of the scene where the tables have none, and in messages.
+
+        Returns
+        -------
+        Scene
+            As `solidgear.load` gives it.
+
+        Raises
+        ------
+        SceneError
+            Every problem of the tables, by their keys.
+
+        Examples
+        --------
+        >>> import solidgear as sg
+        >>> tables = {
+        ...     "material": "steel",
+        ...     "segment": [{"kind": "cylinder", "name": "rod", "length": "300 mm", "diameter": 0.06}],
+        ...     "port": {"at": "rod.middle", "attach_to": "rod"},
+        ... }
+        >>> scene = sg.Scene.from_dict(tables, name="rod")
+        >>> scene.length, sg.Scene.from_dict(scene.to_dict()) == scene
+        (0.3, True)
+        """
+        path = os.path.normpath(os.path.join(folder, name))
+        return addition("document", "read scene")(tables, path)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Tables of a file that describes the scene, as plain data in SI; `from_dict` reads them back
+        equal.
+
+        Returns
+        -------
+        dict
+            By the keys of a file. Names of files are full paths; the stiffness that catalogue data
+            have at the load of the scene stands beside them as `settled`.
+
+        Examples
+        --------
+        >>> import solidgear as sg
+        >>> tables = sg.load("geometry/shaft_stepped.toml").to_dict()
+        >>> tables["segment"][0]
+        {'kind': 'cylinder', 'name': 'left', 'length': 0.12, 'diameter': 0.05}
+        """
+        return addition("document", "write scene")(self)
+
     @property
     def length(self) -> float:
         """Length of the shaft in m."""
@@ -210,6 +271,13 @@ class Scene(Displayed, Model):
         if not self.features and self.body is None:
             return self
         return self.with_changes(features=(), body=None, **off_patches(self))
+
+    @cached_property
+    def settled(self) -> Scene:
+        """The same scene with a stiffness for every bearing, that of catalogue data at their load."""
+        if all(bearing.matrix is not None for bearing in self.bearings):
+            return self
+        return addition("document", "settle scene")(self)
 
     @cached_property
     def outline(self) -> Outline[Segment]:
@@ -270,15 +338,13 @@ class Scene(Displayed, Model):
         SceneError
             An unknown attachment, or two rigid surfaces that overlap.
         """
-        changes = {
-            key: tuple(
-                station.with_changes(attachment=attachment) for station in getattr(self, key)
-            )
-            for key in ("masses", "further_ports")
-        }
-        changes["bearings"] = tuple(b.attached(attachment) for b in self.bearings)
-        port = self.port.with_changes(attachment=attachment)
-        return self.with_changes(port=port, **changes)
+        port, *further = (p.with_changes(attachment=attachment) for p in self.ports)
+        return self.with_changes(
+            port=port,
+            further_ports=tuple(further),
+            bearings=tuple(b.attached(attachment) for b in self.bearings),
+            masses=tuple(m.attached(attachment) for m in self.masses),
+        )
 
     def with_seat_width(self, width: float | str) -> Scene:
         """The same scene with every bearing seat of one width.
@@ -405,6 +471,8 @@ class Scene(Displayed, Model):
 
     def as_dict(self) -> dict[str, Any]:
         """Return everything resolved, in SI, as plain data that JSON can hold."""
+        if self.settled is not self:
+            return self.settled.as_dict()
         data = self.model_dump(mode="json")
         for key in ("masses", "features", "blends", "further_ports", "uncertain"):
             if not data[key]:

@@ -14,6 +14,8 @@ from solidgear.core.scene.places import Placed, Places
 from solidgear.core.scene.stations import Attachment
 from solidgear.core.scene.units import POSITION_DECIMALS, Mass, Position, PositiveLength, three
 
+ON_A_STATION = "belongs to a seat of its own; a mass on a station has that of the station"
+
 
 class PointMass(Placed):
     """A rigid mass that moves with a port, a bearing seat or a seat of its own.
@@ -79,6 +81,11 @@ class PointMass(Placed):
                 "names a port or bearing that does",
                 path=("seat_width",),
             )
+        if self.on is not None:
+            seat = {"y": self.y, "seat_width": self.seat_width, "attachment": self.attachment}
+            for key, value in seat.items():
+                if value != type(self).model_fields[key].get_default():
+                    raise SceneError(ON_A_STATION, path=(key,))
         return self
 
     @classmethod
@@ -89,14 +96,17 @@ class PointMass(Placed):
             return {"y": words.y(places)}
         if words.position is not None:
             raise SceneError("give either on or position, not both", path=("position",))
-        reason = "belongs to a seat of its own; a mass on a station has that of the station"
-        words.refuse(reason, "from_", "seat_width", "attachment", table=table)
+        words.refuse(ON_A_STATION, "from_", "seat_width", "attachment", table=table)
         return {"attachment": "average"}
 
     @property
     def station(self) -> str:
         """Name of the station that it moves with."""
         return self.on or self.name
+
+    def attached(self, attachment: str) -> PointMass:
+        """Return the mass with another attachment of its seat; one on a station unchanged."""
+        return self if self.on is not None else self.with_changes(attachment=attachment)
 
     @property
     def lo(self) -> float:

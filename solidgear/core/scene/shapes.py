@@ -10,25 +10,31 @@ from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from solidgear.core.errors import SceneError
 from solidgear.core.scene.materials import by_name
-from solidgear.core.scene.parts import Material, Segment
+from solidgear.core.scene.parts import Material, Segment, Strength
 from solidgear.core.scene.places import Places, plain_name
 from solidgear.core.scene.typed import Model
 from solidgear.core.scene.units import Angle, Density, Modulus, Poisson, PositiveLength, Thickness
 
 NANOMETRE = 1e-9
 _WORDS = ("start", "end", "bearing")  # first words of datums, so no segment may be called that
+#: ends the name of the cylinder behind a bevel head
+BEHIND = ".backcone"
 
 
 def _segment_name(name: str) -> str:
     if name in _WORDS:
         raise SceneError("this name is kept for datums; choose another")
-    return plain_name(name)
+    plain_name(name.removesuffix(BEHIND))
+    return name
+
+
+Part = Literal["shaft", "frustum", "backcone"]
 
 
 class Frustum(NamedTuple):
     """A part of a shape, by the radii at both ends, m."""
 
-    part: Literal["shaft", "frustum", "backcone"]
+    part: Part
     length: float
     outer0: float
     outer1: float
@@ -44,7 +50,19 @@ class OtherMaterial(Model):
     E: Modulus | None = None
     nu: Poisson | None = None
     density: Density | None = None
+    strength: Strength | Literal[False] | None = None  #: False for none, whatever the scene has
     name: str | None = None
+
+    def in_scene_of(self, usual: Material) -> Material:
+        """Return the material of a segment in a scene with a usual material."""
+        changes = {
+            key: value
+            for key in type(self).model_fields
+            if (value := getattr(self, key)) is not None
+        }
+        if self.strength is False:
+            changes["strength"] = None
+        return usual.with_changes(**changes)
 
 
 class _Shape(Model):
@@ -57,6 +75,17 @@ class _Shape(Model):
     name: Annotated[str, AfterValidator(_segment_name)]
     bore: Thickness = 0.0
     material: Annotated[OtherMaterial, BeforeValidator(by_name)] = OtherMaterial()
+
+    @model_validator(mode="after")
+    def _behind_a_head(self):
+        if self.name.endswith(BEHIND) and getattr(self, "part", "") != "backcone":
+            raise SceneError("a name is a short text without a dot", path=("name",))
+        return self
+
+    @property
+    def bores(self) -> tuple[float, float]:
+        """Diameters of the bore at both ends, m."""
+        return self.bore, self.bore
 
     def _check_bore(self, *keys: str) -> None:
         for key in keys:
@@ -82,6 +111,7 @@ class Cylinder(_Shape):
     kind: Literal["cylinder"]
     length: PositiveLength
     diameter: PositiveLength
+    part: Part = "shaft"  #: of a bevel head that is written as its two pieces
 
     @model_validator(mode="after")
     def _wall(self) -> Cylinder:
@@ -89,7 +119,7 @@ class Cylinder(_Shape):
         return self
 
     def frusta(self) -> list[Frustum]:
-        return [Frustum("shaft", self.length, self.diameter / 2, self.diameter / 2)]
+        return [Frustum(self.part, self.length, self.diameter / 2, self.diameter / 2)]
 
 
 class Cone(_Shape):
@@ -101,14 +131,36 @@ class Cone(_Shape):
     length: PositiveLength
     start_diameter: PositiveLength
     end_diameter: PositiveLength
+    #: of a bore that is a cone as well, in place of `bore`
+    start_bore: Thickness | None = None
+    end_bore: Thickness | None = None
+    part: Part = "shaft"  #: as of :class:`Cylinder`
 
     @model_validator(mode="after")
     def _wall(self) -> Cone:
         self._check_bore("start_diameter", "end_diameter")
+        ends = {"start_bore": self.start_bore, "end_bore": self.end_bore}
+        keys = [key for key, bore in ends.items() if bore is not None]
+        if len(keys) == 1:
+            missing = next(key for key in ends if key not in keys)
+            raise SceneError("start_bore and end_bore go together; give both", path=(missing,))
+        if keys and self.bore:
+            raise SceneError("give either bore, or start_bore and end_bore", path=("bore",))
+        outer = {"start_bore": "start_diameter", "end_bore": "end_diameter"}
+        for key in keys:
+            if ends[key] >= (widest := getattr(self, outer[key])):
+                reason = f"must be smaller than {outer[key]} ({widest:.6g} m)"
+                raise SceneError(reason, path=(key,))
         return self
 
+    @property
+    def bores(self) -> tuple[float, float]:
+        if self.start_bore is None or self.end_bore is None:
+            return super().bores
+        return self.start_bore, self.end_bore
+
     def frusta(self) -> list[Frustum]:
-        return [Frustum("shaft", self.length, self.start_diameter / 2, self.end_diameter / 2)]
+        return [Frustum(self.part, self.length, self.start_diameter / 2, self.end_diameter / 2)]
 
 
 class BevelHead(_Shape):
@@ -182,7 +234,7 @@ def lay_out(shapes: Sequence[Shape], usual: Material, places: Places) -> Laid:
     places.datums["start"] = 0.0
     for index, shape in enumerate(shapes):
         start = y
-        material = usual.with_changes(**shape.material.model_dump(exclude_none=True))
+        material = shape.material.in_scene_of(usual)
         for frustum in shape.frusta():
             try:
                 segment = _segment(shape, frustum, y, material)
@@ -195,7 +247,7 @@ def lay_out(shapes: Sequence[Shape], usual: Material, places: Places) -> Laid:
             laid.segments.append(segment)
             laid.shapes.append((index, shape))
             y = segment.y1
-            if frustum.part != "backcone":
+            if frustum.part != "backcone" or shape.name.endswith(BEHIND):
                 places.surface[shape.name] = (segment.y0, y)
         lo, hi = places.surface.get(shape.name, (start, y))
         datums = {"start": start, "end": y, "middle": (start + y) / 2, "mid_face": (lo + hi) / 2}
@@ -207,18 +259,20 @@ def lay_out(shapes: Sequence[Shape], usual: Material, places: Places) -> Laid:
 
 
 def _segment(shape: Shape, frustum: Frustum, y: float, material: Material) -> Segment:
+    behind = frustum.part == "backcone" and not shape.name.endswith(BEHIND)
+    start_bore, end_bore = shape.bores
     if frustum.length <= NANOMETRE:
         key = "backcone" if frustum.part == "backcone" else "y1"
         reason = "is less than a nanometre along the shaft: probably wrong units"
         raise SceneError(reason, path=(key,))
     return Segment(
-        name=f"{shape.name}.backcone" if frustum.part == "backcone" else shape.name,
+        name=shape.name + BEHIND * behind,
         y0=y,
         y1=y + frustum.length,
         outer0=frustum.outer0,
         outer1=frustum.outer1,
-        inner0=shape.bore / 2,
-        inner1=shape.bore / 2,
+        inner0=start_bore / 2,
+        inner1=end_bore / 2,
         material=material,
         part=frustum.part,
     )

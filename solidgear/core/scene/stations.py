@@ -24,7 +24,7 @@ from solidgear.core.scene.support import (
     sliding,
 )
 from solidgear.core.scene.tables import Absent
-from solidgear.core.scene.typed import Problems
+from solidgear.core.scene.typed import Model, Problems
 from solidgear.core.scene.units import (
     POSITION_DECIMALS,
     SOFTEST,
@@ -43,6 +43,15 @@ else:
 Attachment = Literal["average", "rigid", "section"]
 Status = Literal["published", "identified", "assumed", "measured", "calculated", "estimated"]
 Face = Literal["start", "end"]
+
+
+class Settled(Model):
+    """Stiffness that catalogue data have under the load of a shaft; False in its place where it is
+    not solved yet.
+    """
+
+    under: str  #: digest of the tables that it was solved for; with others it is solved anew
+    stiffness: Matrix
 
 
 class Bearing(Placed):
@@ -107,6 +116,7 @@ class Bearing(Placed):
         seat: Seat | None = None
         patch: str | None = None
         point: Point = None
+        settled: Settled | Literal[False] | None = None
 
     sources: ClassVar = {
         "y": ("seat", "face", "position"),

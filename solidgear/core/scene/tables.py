@@ -79,6 +79,10 @@ class PartReader:
         """Return the body with remarks on seats that are not whole."""
         return part
 
+    def written(self, body: Any) -> dict[str, Any]:
+        """Return the table that names the part of a scene."""
+        raise NotImplementedError
+
     def refuse_parts(self, table: Any, folder: Path) -> Any:
         """Refuse the table."""
         _refuse(table)

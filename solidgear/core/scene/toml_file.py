@@ -4,7 +4,6 @@ it.
 
 from __future__ import annotations
 
-import os
 import re
 import stat
 import sys
@@ -52,11 +51,6 @@ def parse(file_path: str) -> dict[str, Any]:
 def describes_train(raw: Mapping[str, Any]) -> bool:
     """True for tables of a train of shafts, and not of one shaft."""
     return "segment" not in raw and ("shaft" in raw or {"pinion", "gear"} <= set(raw))
-
-
-def is_train(path: str | os.PathLike) -> bool:
-    """True for a file that describes a train."""
-    return describes_train(parse(os.fspath(path)))
 
 
 def name_of(file_path: str) -> str:

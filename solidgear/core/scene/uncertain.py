@@ -115,7 +115,7 @@ def _scaled(bearing: Bearing, key: str, factor: float) -> Bearing:
 
 def _flat(table: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, Any]]:
     for key, value in table.items():
-        if isinstance(value, Mapping):
+        if isinstance(value, Mapping) and {*value} != {"range", "factors"}:
             yield from _flat(value, f"{before}{key}.")
         else:
             yield f"{before}{key}", value
@@ -130,11 +130,30 @@ def _bearing(scene: Scene, path: str) -> tuple[Bearing | None, str]:
     return None, ""
 
 
+def written_range(scene: Scene, entry: Uncertain) -> Any:
+    """Return the range of an entry as a file gives it: its words, and the factors as well where the
+    value has been changed since.
+    """
+    try:
+        if _read(scene, entry.path, entry.said) == entry:
+            return entry.said
+    except SceneError:
+        pass  # the words do not contain the new value
+    return {"range": entry.said, "factors": [entry.low, entry.high]}
+
+
 def _read(scene: Scene, path: str, text: Any) -> Uncertain:
     value, dimension = _entry(scene, path)
+    factors = None
+    if isinstance(text, Mapping):
+        text, factors = text["range"], text["factors"]
     if not isinstance(text, str):
         raise SceneError('must be a text such as "± 3 %" or "0.5 : 2"', value=show(text))
-    low, high = sorted(end / value for end in range_ends(text, value, dimension))
+    if factors is None:
+        factors = [end / value for end in range_ends(text, value, dimension)]
+    elif not (isinstance(factors, list) and len(factors) == 2 and {*map(type, factors)} == {float}):
+        raise SceneError("must be two numbers: the ends over the value", path=("factors",))
+    low, high = sorted(factors)
     if not 0 < low <= 1 + 1e-9 or not high >= 1 - 1e-9 or not low < high:
         nominal = "1" if dimension == FACTOR else f"{value:.6g} in SI"
         raise SceneError(

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from skfem import MeshTet2
 
-from solidgear.core import Block, Body, Outline, SolidgearError, assemblable
+from solidgear.core import Block, Body, Outline, SolidgearError
+from solidgear.core.kernel.room import assemblable
 from solidgear.core.meshing.element_size import rough_cells
 from solidgear.core.models.kinds import CYCLIC
 from solidgear.core.models.size import Size, size_of_mesh

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from solidgear.core import Block, Body, assemblable
+from solidgear.core import Block, Body
+from solidgear.core.kernel.room import assemblable
 from solidgear.core.meshing.quality import check_mesh
 from solidgear.core.models.kinds import CYCLIC
 from solidgear.core.models.size import Size, size_of_mesh

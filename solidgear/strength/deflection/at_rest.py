@@ -7,12 +7,12 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from time import perf_counter
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
 from solidgear.bearings.bearing_life import left_open
-from solidgear.core import DOF_NAMES, WITHIN, SolidgearError, gap_verdict, listed, pinned
+from solidgear.core import DOF_NAMES, WITHIN, Sheeted, SolidgearError, gap_verdict, listed, pinned
 from solidgear.core.plain import plain
 from solidgear.strength.deflection.misalignment import Measure, misalignment
 from solidgear.strength.deflection.shaft import ShaftDeflection, shaft_deflection
@@ -135,9 +135,11 @@ class Standing:
     gap: float  #: by so much, relative
 
 
-@dataclass(frozen=True, eq=False)
-class Deflections:
+@dataclass(frozen=True, eq=False, repr=False)
+class Deflections(Sheeted):
     """A train at one operating point, or a shaft under its load, by several models."""
+
+    sheeted: ClassVar[str] = "strength.deflection.sheet:sheet"
 
     title: str
     tolerance: float  #: of the numbers that are compared, relative

@@ -7,14 +7,11 @@ from typing import Annotated
 
 import typer
 
-from solidgear.core import explained
-from solidgear.show.command import Progress, command
+from solidgear.show.command import command
 from solidgear.show.options import BY_MODEL, Shown, relative
-from solidgear.show.sheet import Sheet, present
-from solidgear.show.units import units_named
+from solidgear.show.sheet import present
 from solidgear.strength.acting import Acting, AtRestFile
-from solidgear.strength.deflection import at_rest
-from solidgear.strength.deflection.sheet import sheet
+from solidgear.strength.deflection.study import deflect as deflected
 
 
 @command
@@ -44,16 +41,10 @@ def deflect(
     ] = None,
     run: Shown,
 ) -> None:
-    (assembly, point), units = acting.read(file, tol), units_named(run.units)
-    every_point = (
-        acting.torque is None and acting.point is None and len(assembly.train.operation) > 1
+    present(
+        lambda progress: deflected(file, models, **vars(acting), tol=tol, progress=progress).sheet(
+            run.units
+        ),
+        run,
+        out,
     )
-
-    def study(progress: Progress) -> Sheet:
-        with explained(file):
-            deflected = at_rest.deflect(
-                assembly, point, models or at_rest.MODELS, progress, every_point
-            )
-        return sheet(deflected, units)
-
-    present(study, run, out)

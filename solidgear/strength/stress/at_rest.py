@@ -10,13 +10,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
 from solidgear.bearings.bearing_life import left_open
 from solidgear.bearings.solved import AS_STATED, Choice
-from solidgear.core import LADDER, Scene
+from solidgear.core import LADDER, Scene, Sheeted
 from solidgear.core.plain import plain
 from solidgear.core.scene.filleted import filleted
 from solidgear.parts.body_file import BodyFile
@@ -90,9 +90,11 @@ class AtPoint:
     mesh_force: float  #: N
 
 
-@dataclass(frozen=True)
-class StressAtRest:
+@dataclass(frozen=True, repr=False)
+class StressAtRest(Sheeted):
     """Stress of a shaft under its load, or of all shafts of a train at an operating point."""
+
+    sheeted: ClassVar[str] = "strength.stress.sheet:sheet"
 
     title: str
     model: str  #: on which shafts and bearings settled

@@ -8,16 +8,14 @@ from typing import Annotated
 
 import typer
 
-from solidgear.core import SceneError, SolidgearError, explained, show
+from solidgear.core import SceneError, SolidgearError, show
 from solidgear.core.scene.units import quantity
-from solidgear.show.command import Group, Progress, command
-from solidgear.show.options import BY_MODEL, MODEL, Choice, Shown, refuse, relative
-from solidgear.show.sheet import Sheet, present
-from solidgear.show.units import units_named
+from solidgear.show.command import Group, command
+from solidgear.show.options import BY_MODEL, MODEL, Choice, Shown, relative
+from solidgear.show.sheet import present
 from solidgear.strength.acting import Acting, AtRestFile
-from solidgear.strength.stress.at_rest import StressSettings, stress_at_rest
 from solidgear.strength.stress.rating import Conditions
-from solidgear.strength.stress.sheet import sheet
+from solidgear.strength.stress.study import stress as stressed
 
 
 @dataclass(frozen=True)
@@ -90,19 +88,19 @@ def stress(
     ] = None,
     run: Shown,
 ) -> None:
-    settings = StressSettings(tol, rated.conditions())
-    (assembly, point), units = acting.read(file), units_named(run.units)
-    torques = dict(map(_torque, drive or ()))
-    if not assembly.train.is_one_shaft:
-        instead = "torques come by the springs of engine and load"
-        refuse({"--drive": bool(drive)}, f"a shaft, and {file} is a train: {instead}")
-
-    def study(progress: Progress) -> Sheet:
-        with explained(file):
-            stressed = stress_at_rest(assembly, point, str(fidelity), settings, progress, torques)
-        return sheet(stressed, units)
-
-    present(study, run, out)
+    present(
+        lambda progress: stressed(
+            file,
+            str(fidelity),
+            **vars(acting),
+            drive=dict(map(_torque, drive or ())),
+            tol=tol,
+            conditions=rated.conditions(),
+            progress=progress,
+        ).sheet(run.units),
+        run,
+        out,
+    )
 
 
 def _torque(text: str) -> tuple[str, float]:

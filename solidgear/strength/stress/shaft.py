@@ -171,7 +171,7 @@ def shaft_stress(
     >>> arms = [bearing.y - scene.port.y for bearing in scene.bearings]
     >>> first = -10e3 * arms[1] / (arms[1] - arms[0])
     >>> across = {"pinion": 10e3, "1": first, "2": -10e3 - first}
-    >>> found = sg.shaft_stress(scene, {name: [0, 0, z, 0, 0, 0] for name, z in across.items()})
+    >>> found = shaft_stress(scene, {name: [0, 0, z, 0, 0, 0] for name, z in across.items()})
     >>> (notch,) = found.notches
     >>> notch.name, f'{notch.forces[3]:.1f} N m', f'{notch.found.factors["bending"].value:.1f}'
     ('head fillet', '431.2 N m', '2.2')

@@ -10,6 +10,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from solidgear.core import DOF_NAMES, Model, SceneError
 from solidgear.core.scene.load import BearingLoad
+from solidgear.core.scene.model_table import table_of
 from solidgear.core.scene.units import Speed, Torque
 
 Direction = Literal["x", "-x", "y", "-y", "z", "-z"]
@@ -58,6 +59,22 @@ class OperatingPoint(Model):
         if self.share is not None and self.hours is not None:
             raise SceneError("give either share or hours, not both", path=("share",))
         return self
+
+    @classmethod
+    def from_dict(cls, table: Mapping[str, Any]) -> OperatingPoint:
+        """An operating point from the table of a file, as `tomllib` gives it.
+
+        Examples
+        --------
+        >>> point = OperatingPoint.from_dict({"torque": "115 N*m", "speed": "3000 rpm"})
+        >>> OperatingPoint.from_dict(point.to_dict()) == point
+        True
+        """
+        return cls(**table)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The table of a file, as plain data in SI; `from_dict` reads it back equal."""
+        return table_of(self, write=self.model_fields_set & {"of"})
 
     @property
     def coast(self) -> bool:

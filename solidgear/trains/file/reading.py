@@ -14,10 +14,10 @@ from typing import Any
 
 from pydantic import model_validator
 
-from solidgear.core import Model, Scene, SceneError, near, parse
-from solidgear.core.scene.file import load
+from solidgear.core import Document, Model, Scene, SceneError, near
+from solidgear.core import as_written as scene_as_written
 from solidgear.core.scene.housing_matrices import ARRAYS, read_matrices
-from solidgear.core.scene.toml_file import name_of, with_table_paths
+from solidgear.core.scene.toml_file import name_of, parse, with_table_paths
 from solidgear.core.scene.typed import Problems
 from solidgear.trains.file.columns import CELL_COLUMNS, read_cells, read_flank
 from solidgear.trains.file.gears import Member, Shaft
@@ -30,12 +30,12 @@ from solidgear.trains.file.train import SHORT, SIDES, Train
 
 #: key of the file of a measured flank
 MEASURED = "measured_flank"
-#: reads the scene of a side from a file, given whether the shaft stands alone
-ReadShaft = Callable[[str, Path, bool], Scene]
+#: reads the scene of a side from a file or a document, given whether the shaft stands alone
+ReadShaft = Callable[[str, Any, bool], Scene]
 
 
-def _as_written(side: str, path: Path, alone: bool) -> Scene:
-    return load(path)
+def _as_written(side: str, source: Any, alone: bool) -> Scene:
+    return scene_as_written(source)
 
 
 def load_train(path: str | os.PathLike, shaft: ReadShaft = _as_written) -> Train:
@@ -140,6 +140,8 @@ def train_of(raw: Mapping[str, Any], file_path: str, shaft: ReadShaft = _as_writ
         for side in SIDES:
             if isinstance(raw.get(side), Mapping):
                 data[side] = _read(problems, partial(read_scene, raw[side], (side,))) or raw[side]
+        if any(problem.path[1:2] == ("scene",) != problem.path[1:] for problem in problems):
+            problems.raise_any()  # a train without one of its scenes cannot be judged
         _read_meshes(data, kind is LongFile, folder)
         if isinstance(stages := raw.get("planetary"), Mapping):
             data["planetary"] = {
@@ -221,7 +223,9 @@ def _read_meshes(data: dict[str, Any], many: bool, folder: Path) -> None:
     tables = meshes if many and isinstance(meshes, list) else [meshes]
     read = []
     for k, table in enumerate(tables):
-        if isinstance(table, Mapping) and "contact_cells" in table:
+        if isinstance(table, Mapping) and not isinstance(
+            table.get("contact_cells", ()), (list, tuple)
+        ):
             table = _with_cells(table, folder, ("mesh", k) if many else ("mesh",))
         read.append(table)
     if "mesh" in data:
@@ -243,17 +247,33 @@ def _with_scene(
     folder: Path, alone: bool, shaft: ReadShaft, table: Mapping[str, Any], path: tuple
 ) -> dict[str, Any]:
     name = table.get("scene")
-    if not isinstance(name, str):
-        reason = 'names the file of the shaft, such as "gear_shaft.toml"'
+    if isinstance(name, Mapping):
+        scene = _scene_inside(shaft, name, folder, alone, path)
+    elif isinstance(name, str):
+        scene = shaft(path[-1], folder / name, alone)
+    else:
+        reason = 'names the file of the shaft, such as "gear_shaft.toml", or holds its tables'
         raise SceneError(reason, path=(*path, "scene"))
-    fields = {**table, "scene": shaft(path[-1], folder / name, alone)}
-    return _with_flanks(fields, folder, path)
+    return _with_flanks({**table, "scene": scene}, folder, path)
+
+
+def _scene_inside(
+    shaft: ReadShaft, tables: Mapping[str, Any], folder: Path, alone: bool, path: tuple
+) -> Scene:
+    """Read the scene of a shaft from tables within those of the train; it is called as the shaft."""
+    try:
+        return shaft(path[-1], Document(tables, str(folder / path[-1])), alone)
+    except SceneError as error:
+        raise SceneError.of(
+            SceneError(problem.reason, path=(*path, "scene", *problem.path), value=problem.value)
+            for problem in error.problems
+        ) from None
 
 
 def _with_flanks(table: Mapping[str, Any], folder: Path, path: tuple) -> dict[str, Any]:
     """Return the table of a gear, a shaft or a planetary stage with the measured flanks in it read."""
     fields = dict(table)
-    if MEASURED in table:
+    if MEASURED in table and not isinstance(table[MEASURED], Mapping):
         name = table[MEASURED]
         if not isinstance(name, str):
             reason = "names a CSV file with the columns z, roll or diameter, and deviation, in m"

@@ -7,6 +7,8 @@ gears: y along the shaft from the pitch apex towards the back, the mesh on the -
 
 from __future__ import annotations
 
+import os
+from collections.abc import Mapping
 from functools import cached_property
 from math import pi
 from typing import Any
@@ -14,7 +16,8 @@ from typing import Any
 import numpy as np
 from pydantic import model_validator
 
-from solidgear.core import Bearing, Model, Scene, SceneError, SolidgearError, listed
+from solidgear.core import Bearing, Document, Model, Scene, SceneError, SolidgearError, listed
+from solidgear.core.registry import addition
 from solidgear.trains.file.gears import HeadInertia, Member, Shaft
 from solidgear.trains.file.housing import TrainHousing
 from solidgear.trains.file.layout import (
@@ -177,6 +180,52 @@ class Train(Model):
             self.only()
             changes["meshes"] = (changes.pop("mesh"),)
         return super().with_changes(**{"shafts": shafts, "rotors": rotors, **changes})
+
+    @classmethod
+    def from_dict(
+        cls, tables: Mapping[str, Any], folder: str | os.PathLike = ".", name: str = "train"
+    ) -> Train:
+        """A train from the tables of a file, as `tomllib` gives them.
+
+        Parameters
+        ----------
+        tables : mapping
+            By the keys of a file; ``scene`` of a shaft is the name of a file, or the tables of one.
+        folder : str or path
+            Names of files in the tables are relative to it.
+        name : str
+            Of the train where the tables have none, and in messages.
+
+        Returns
+        -------
+        Train
+            As `solidgear.load_train` gives it.
+
+        Raises
+        ------
+        SceneError
+            Every problem of the tables, by their keys.
+
+        Examples
+        --------
+        >>> import solidgear as sg
+        >>> train = sg.load_train("geometry/axle_overhung.toml")
+        >>> sg.Train.from_dict(train.to_dict()) == train
+        True
+        """
+        path = os.path.normpath(os.path.join(folder, name))
+        return addition("document", "read train")(Document(tables, path))
+
+    def to_dict(self) -> dict[str, Any]:
+        """Tables of a file that describes the train with its shafts, as plain data in SI; `from_dict`
+        reads them back equal.
+
+        Returns
+        -------
+        dict
+            By the keys of a file. Names of files are full paths.
+        """
+        return addition("document", "write train")(self)
 
     @property
     def called(self) -> str:

@@ -9,13 +9,11 @@ from typing import Annotated
 import typer
 
 from solidgear.show.command import Progress, command
-from solidgear.show.folder import begun
 from solidgear.show.options import Shown, refuse
-from solidgear.show.sheet import Sheet, present, write_json
+from solidgear.show.sheet import Sheet, present
 from solidgear.show.units import units_named
-from solidgear.trains.judge.comparison import Pictures
-from solidgear.trains.judge.comparison import compare_train as compared
-from solidgear.trains.judge.sheet import comparison_sheet, shapes
+from solidgear.trains.judge.sheet import drawn_sheet
+from solidgear.trains.judge.study import judge as judged
 from solidgear.trains.options import Reduced, TrainFile, mix
 
 
@@ -70,18 +68,11 @@ def _judged(
     *,
     renders: bool,
 ) -> None:
-    assembly, units = reduced.assembly(train), units_named(run.units)
-
     def study(progress: Progress) -> Sheet:
-        comparison = compared(assembly, reduced.max_frequency, more, progress)
+        comparison = judged(train, more, progress=progress, **reduced.words)
         if out is None:
-            return comparison_sheet(comparison, units)
+            return comparison.sheet(run.units)
         progress("report")
-        with begun(out) as folder:
-            # numbers first: whatever happens to pictures, they are there; without a list of files,
-            # since the folder is begun again when all of it is written
-            write_json(folder / "results.json", comparison.results())
-            pictures = comparison.pictures(folder) if renders else Pictures()
-        return comparison_sheet(comparison, units, pictures, shapes(comparison, pictures, out))
+        return drawn_sheet(comparison, units_named(run.units), out, renders)
 
     present(study, run, out)

@@ -9,8 +9,9 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from time import perf_counter
-from typing import Any
+from typing import Any, ClassVar
 
+from solidgear.core import Sheeted
 from solidgear.core.machine.environment import environment
 from solidgear.core.plain import plain
 from solidgear.core.scene.bearing_stiffness import stiffness_entries
@@ -41,9 +42,12 @@ class Pictures:
     left_out: list[str] = field(default_factory=list)  #: why some could not be drawn
 
 
-@dataclass(frozen=True, eq=False)
-class TrainComparison:
+@dataclass(frozen=True, eq=False, repr=False)
+class TrainComparison(Sheeted):
     """Findings about a train."""
+
+    sheeted: ClassVar[str] = "trains.judge.sheet:comparison_sheet"
+    filed: ClassVar[str] = "trains.judge.sheet:drawn_sheet"
 
     assembly: Assembly
     verdict: Verdict

@@ -8,10 +8,11 @@ from pathlib import Path
 from typing import Any
 
 from solidgear.show.command import caution
+from solidgear.show.folder import begun
 from solidgear.show.page_parts import figures
 from solidgear.show.plot import Make
 from solidgear.show.run_tables import pairs_of
-from solidgear.show.sheet import Section, Sheet, Terminal
+from solidgear.show.sheet import Section, Sheet, Terminal, write_json
 from solidgear.show.sketch import sketch_svg
 from solidgear.show.table import Column, Table, text
 from solidgear.show.units import GROUP, Units, in_ascii
@@ -86,6 +87,18 @@ def comparison_sheet(
             lines="whole",
         ),
     )
+
+
+def drawn_sheet(
+    comparison: TrainComparison, units: Units, folder: Path, renders: bool = True
+) -> Sheet:
+    """Return the sheet of a folder, with pictures that are drawn into it."""
+    with begun(folder):
+        # numbers first: whatever happens to pictures, they are there; without a list of files,
+        # since the folder is begun again when all of it is written
+        write_json(folder / "results.json", comparison.results())
+        pictures = comparison.pictures(folder) if renders else Pictures()
+    return comparison_sheet(comparison, units, pictures, shapes(comparison, pictures, folder))
 
 
 def shapes(comparison: TrainComparison, pictures: Pictures, folder: Path) -> str:

@@ -13,10 +13,10 @@ from solidgear.show.options import UNITS, Shown
 from solidgear.show.sheet import Sheet, present, write_page
 from solidgear.show.units import units_named
 from solidgear.show.viewer import viewer_fragment
-from solidgear.trains.assembly.assembly import Assembly
-from solidgear.trains.modes.modes import TrainModes, train_modes
 from solidgear.trains.modes.pictures import draw_modes, still_picture, turning_modes
 from solidgear.trains.modes.sheet import modes_sheet
+from solidgear.trains.modes.study import SolvedModes
+from solidgear.trains.modes.study import system_modes as solved
 from solidgear.trains.options import Mix, Reduced, TrainFile
 
 
@@ -40,7 +40,6 @@ def system_modes(
     reduced: Reduced,
     run: Shown,
 ) -> None:
-    assembly = models.assembly(reduced, train)
     if mode and pictures is None:
         raise SolidgearError("--mode says which mode to draw; add --pictures and a folder")
     if run.units != UNITS and turn is None:
@@ -50,16 +49,14 @@ def system_modes(
         )
 
     def study(progress: Progress) -> Sheet:
-        mix = models.by_shaft(assembly.train).values()
-        count, limit = assembly.train.ask.modes, reduced.max_frequency
-        system = train_modes(assembly, *mix, max_frequency=limit, at_most=count)
+        modes = solved(train, models.models, settings=models.settings, **reduced.words)
         written, viewer = [], ""
         if pictures:
-            written += _drawn(assembly, pictures, mode, system)
+            written += _drawn(modes, pictures, mode)
         if turn is not None:
-            viewer, sentence = _turned(assembly, system, limit)
+            viewer, sentence = _turned(modes, reduced.max_frequency)
             written += [line for line in (sentence, f"Written: {turn}") if line]
-        sheet = modes_sheet(assembly, system, units_named(run.units), viewer, written)
+        sheet = modes_sheet(modes, units_named(run.units), viewer, written)
         if turn is not None:
             write_page(sheet, turn)
         return sheet
@@ -67,24 +64,22 @@ def system_modes(
     present(study, run)
 
 
-def _drawn(
-    assembly: Assembly, folder: Path, numbers: list[int] | None, system: TrainModes
-) -> list[str]:
+def _drawn(modes: SolvedModes, folder: Path, numbers: list[int] | None) -> list[str]:
     """Draw pictures of modes and return the lines to print."""
-    listed = [n for n, mode in enumerate(system.modes, start=1) if mode.frequency_hz > 0]
-    mix = system.models.values()
-    pictures = draw_modes(assembly, *mix, folder=folder, numbers=numbers or listed).values()
+    listed = [n for n, mode in enumerate(modes, start=1) if mode.frequency_hz > 0]
+    mix = modes.solved.models.values()
+    pictures = draw_modes(modes.assembly, *mix, folder=folder, numbers=numbers or listed).values()
     written = [str(picture.path) for picture in pictures if picture.ok]
     lines = [f"Written: {', '.join(written)}"] if written else []
     return lines + sorted({picture.reason for picture in pictures if not picture.ok})
 
 
-def _turned(assembly: Assembly, system: TrainModes, max_frequency: float | None) -> tuple[str, str]:
+def _turned(modes: SolvedModes, max_frequency: float | None) -> tuple[str, str]:
     """Return the modes to turn as HTML, and why it has no picture for print."""
-    mix = system.models.values()
+    assembly, mix = modes.assembly, modes.solved.models.values()
     models = turning_modes(assembly, *mix, highest_hz=max_frequency)
     elastic = [shape.name for shape in models.shapes]
     first = next((name for name in elastic if "bending" in name), elastic[0])
-    number = [mode.name for mode in system.modes].index(first) + 1
+    number = [mode.name for mode in modes].index(first) + 1
     still, sentence = still_picture(assembly, *mix, number=number)
     return viewer_fragment([models], still=still, first=first), sentence

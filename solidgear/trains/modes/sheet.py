@@ -9,12 +9,12 @@ from solidgear.show.sheet import Sheet, Terminal
 from solidgear.show.table import NUMBER, Column, Table, text, word
 from solidgear.show.units import Units, in_ascii
 from solidgear.show.words import whole
-from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.shaft import mix_label
 from solidgear.trains.assembly.slips import unit_slips
 from solidgear.trains.assembly.tooth_stiffness import of_teeth
 from solidgear.trains.judge.comparison import train_data
 from solidgear.trains.modes.modes import TrainMode, TrainModes
+from solidgear.trains.modes.study import SolvedModes
 from solidgear.trains.page.tables import facts
 
 #: relative; no frequency is shown with a smaller bound, whatever the proof says
@@ -22,9 +22,10 @@ ROUNDING = 1e-12
 
 
 def modes_sheet(
-    assembly: Assembly, system: TrainModes, units: Units, viewer: str, written: Sequence[str]
+    modes: SolvedModes, units: Units, viewer: str = "", written: Sequence[str] = ()
 ) -> Sheet:
     """Return the sheet of the modes of a train; `written` are lines on files."""
+    assembly, system = modes.assembly, modes.solved
     slips = unit_slips(assembly)
     cautions = [*slips, *system.cautions]
     by_teeth = of_teeth(assembly, units)

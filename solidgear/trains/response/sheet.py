@@ -6,11 +6,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from types import MappingProxyType
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
-from solidgear.core import listed
+from solidgear.core import Sheeted, listed
 from solidgear.core.plain import plain
 from solidgear.show.command import caution
 from solidgear.show.plot import Make
@@ -55,9 +55,11 @@ WORDS = {
 }
 
 
-@dataclass(frozen=True, eq=False)
-class Responses:
+@dataclass(frozen=True, eq=False, repr=False)
+class Responses(Sheeted):
     """Responses of a train by several mixes of models, and what the first one meets."""
+
+    sheeted: ClassVar[str] = "trains.response.sheet:response_sheet"
 
     assembly: Assembly
     title: str
@@ -144,13 +146,20 @@ def response_sheet(result: Responses, units: Units) -> Sheet:
     )
 
 
-def receptance_sheet(
-    assembly: Assembly,
-    receptances: Sequence[TrainReceptance],
-    teeth: float,
-    units: Units,
-) -> Sheet:
+@dataclass(frozen=True, eq=False, repr=False)
+class Receptances(Sheeted):
+    """Receptances of a train by several mixes of models."""
+
+    sheeted: ClassVar[str] = "trains.response.sheet:receptance_sheet"
+
+    assembly: Assembly
+    receptances: Sequence[TrainReceptance]
+    teeth: float  #: of the mesh whose speeds are shown
+
+
+def receptance_sheet(result: Receptances, units: Units) -> Sheet:
     """Return the sheet of the receptance between two ports of a train, by several mixes of models."""
+    assembly, receptances, teeth = result.assembly, result.receptances, result.teeth
     first = receptances[0]
     unit, value, damping = first.unit, first.value, first.damping
     from_, to = ":".join(first.from_), ":".join(first.to)

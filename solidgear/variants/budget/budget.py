@@ -39,9 +39,11 @@ from solidgear.core import (
     Quantity,
     Scene,
     SolidgearError,
+    Source,
     as_supports,
     build,
     change,
+    load,
     modes,
     rubin,
 )
@@ -91,13 +93,14 @@ def _if_few(scene: Scene, solve: Callable[[], OpenNumbers]) -> OpenNumbers:
 
 
 def budget(
-    scene: Scene, *, samples: int = 0, seed: int = 0, progress: Progress = lambda _: None
+    scene: Source, *, samples: int = 0, seed: int = 0, progress: Progress = lambda _: None
 ) -> OpenNumbers:
     """Contribution of every open input to every number of a scene.
 
     Parameters
     ----------
-    scene : Scene
+    scene : path, dict or Scene
+        A scene: its file (TOML), the tables of one, or an object.
     samples : int
         Number of random samples of all inputs together (Latin hypercube), beside the sums; 0 for
         none.
@@ -118,12 +121,15 @@ def budget(
     Examples
     --------
     >>> import solidgear as sg
-    >>> from solidgear.core.scene.uncertain import with_ranges
-    >>> scene = with_ranges(sg.load("geometry/shaft_stepped.toml"), {"material.density": "± 1 %"})
-    >>> first = sg.budget(scene).of("bending 1")
+    >>> import tomllib
+    >>> from pathlib import Path
+    >>> tables = tomllib.loads(Path("geometry/shaft_stepped.toml").read_text(encoding="utf-8"))
+    >>> tables["uncertain"] = {"material.density": "± 1 %"}
+    >>> first = sg.budget(tables).of("bending 1")
     >>> round(first.total.low, 4), round(first.total.high, 4)
     (-0.005, 0.005)
     """
+    scene = load(scene)
     inputs = open_inputs(scene)
     if not inputs:
         raise SolidgearError(

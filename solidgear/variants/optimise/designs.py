@@ -5,10 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any
 
-from solidgear.core import SolidgearError
+from solidgear.core import SolidgearError, Source
 from solidgear.variants.optimise.wish import Rows
 from solidgear.variants.sweep.design import Design
 from solidgear.variants.sweep.entries import Entry
@@ -49,7 +48,7 @@ class Designs:
         return varied, self.task.rows(range(self.points))
 
 
-def scene_designs(scene: Path, design: Design, model: str | None, tol: float | None) -> Designs:
+def scene_designs(scene: Source, design: Design, model: str | None, tol: float | None) -> Designs:
     """Return the designs of a scene: each by the cheapest mesh whose bars are within the tolerance, or
     by a model that is given.
     """
@@ -71,7 +70,7 @@ def _numbers_of_scene(row: dict[str, Any]) -> list[str]:
 
 
 def train_designs(
-    train: Path,
+    train: Source,
     design: Design,
     names: Sequence[str],
     model: str | None,

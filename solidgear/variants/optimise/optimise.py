@@ -16,16 +16,14 @@ from __future__ import annotations
 
 import itertools
 import math
-import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
-from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
 
-from solidgear.core import Displayed, SolidgearError, is_train, nearest
+from solidgear.core import Displayed, SolidgearError, Source, document_of, nearest
 from solidgear.core.judge.change import Change
 from solidgear.core.plain import plain
 from solidgear.variants.optimise.designs import Designs, scene_designs, train_designs
@@ -171,7 +169,7 @@ SAME, AT_END = 1e-6, 1e-6
 
 
 def optimise(
-    scene: str | os.PathLike,
+    scene: Source,
     vary: Iterable[str],
     goal: str,
     keep: Iterable[str] = (),
@@ -183,12 +181,12 @@ def optimise(
     every_point: bool = False,
     progress: Callable[[str], None] = lambda _: None,
 ) -> Optimum:
-    """Vary entries of a scene or train file to make a number as large or as small as possible.
+    """Vary entries of a scene or train to make a number as large or as small as possible.
 
     Parameters
     ----------
-    scene : path
-        Of the scene or train file.
+    scene : path, dict, Scene or Train
+        A scene or train: its file, the tables of one, or an object.
     vary : iterable of str
         ``PATH=LOW:HIGH``, such as ``bearing.B.position=180 mm:240 mm``.
     goal : str
@@ -231,14 +229,15 @@ def optimise(
     """
     wanted, limits = wish_of(goal), tuple(map(limit_of, keep))
     texts, sums = tuple(map(_with_both_ends, vary)), tuple(keep_sum)
-    if is_train(Path(scene)):
+    document = document_of(scene)
+    if document.describes_train:
         names = [wish.name for wish in (wanted, *limits)]
         designs = train_designs(
-            Path(scene), SweepDesign(texts, keep_sum=sums), names, model, tol, point, every_point
+            document, SweepDesign(texts, keep_sum=sums), names, model, tol, point, every_point
         )
     else:
         designs = scene_designs(
-            Path(scene), SweepDesign(texts, one_at_a_time=True, keep_sum=sums), model, tol
+            document, SweepDesign(texts, one_at_a_time=True, keep_sum=sums), model, tol
         )
     return _Search(wanted, limits, designs, progress).run()
 

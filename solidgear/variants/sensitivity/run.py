@@ -7,7 +7,6 @@ bearings and masses are multiplied by the sensitivities of the numbers to them.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -20,13 +19,14 @@ from solidgear.core import (
     Scene,
     SceneError,
     SolidgearError,
+    Source,
     as_supports,
     build,
+    document_of,
     listed,
     load,
     modes,
     nearest,
-    parse,
     pinned,
 )
 from solidgear.core.loading import part_of
@@ -134,7 +134,7 @@ class Sensitivities:
 
 @pinned
 def sensitivities(
-    file: str | os.PathLike,
+    source: Source,
     model: str = "harmonic",
     of: Sequence[str] | None = None,
     by: Sequence[str] | None = None,
@@ -143,7 +143,7 @@ def sensitivities(
     progress: Callable[[str], None] = lambda _: None,
     **options: Any,
 ) -> Sensitivities:
-    """Derivatives of compliances, stiffnesses and natural frequencies by the numbers of a scene file.
+    """Derivatives of compliances, stiffnesses and natural frequencies by the numbers of a scene.
 
     Exact derivatives of the discrete numbers on a mesh that moves with the shaft, by adjoints: the
     problem is self-adjoint, so nothing is solved again (Haug, Choi and Komkov, Design Sensitivity
@@ -152,8 +152,8 @@ def sensitivities(
 
     Parameters
     ----------
-    file : str or path
-        A scene file (TOML).
+    source : path, dict or Scene
+        A scene: its file (TOML), the tables of one, or an object.
     model : {'harmonic', 'timoshenko', 'euler', 'solid'}
         The solid has derivatives of modes by springs, masses and materials alone.
     of : sequence of str, optional
@@ -191,8 +191,9 @@ def sensitivities(
     >>> round(bending["material.E"].elasticity + sum(springs), 6)
     0.5
     """
-    where = os.fspath(file)
-    scene, tables = load(where), parse(where)
+    document = document_of(source)
+    where, tables = document.path, document.tables
+    scene = load(document)
     _supported(scene, model)
     quantities = [Quantity(name) for name in of or USUAL[: 1 if model == "solid" else 2]]
     if model == "solid" and not all(quantity.is_frequency for quantity in quantities):

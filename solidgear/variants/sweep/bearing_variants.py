@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from pathlib import Path
 from typing import Any
 
 from solidgear.bearings.solved import solved
@@ -20,9 +19,9 @@ from solidgear.core import (
     Scene,
     SceneError,
     SolidgearError,
+    Source,
     Supports,
     as_supports,
-    load,
     shaft,
 )
 from solidgear.core.loading import scene_of
@@ -75,7 +74,7 @@ class BearingVariants(SceneVariants):
     @cached_property
     def scene(self) -> Scene:
         """Scene of the file as it is."""
-        return load(self.path)
+        return scene_of(self.files[MAIN], self.path)
 
     @cached_property
     def moves(self) -> list[int]:
@@ -188,7 +187,7 @@ class BearingVariants(SceneVariants):
 
 
 def bearing_variants(
-    path: Path | str, vary: Iterable[str], sample: int | None = None, seed: int = 0
+    scene: Source, vary: Iterable[str], sample: int | None = None, seed: int = 0
 ) -> BearingVariants | None:
     """Return the points of a sweep over springs and positions of bearings, all combinations or a sample
     of them; None if another entry varies, or a place is counted from a bearing that moves.
@@ -202,7 +201,7 @@ def bearing_variants(
     True
     """
     design = Design(tuple(vary), sample, seed)
-    variants = scene_variants(Path(path), design, "bearing.1.kxx=log:1e8 N/m:1e10 N/m:9")
+    variants = scene_variants(scene, design, "bearing.1.kxx=log:1e8 N/m:1e10 N/m:9")
     tables, varied, values = variants.files[MAIN], variants.entries, variants.values
     keys = [place.keys for varying in varied for place in varying.places]
     if not all(varying.numeric for varying in varied) or not all(map(_of_bearings, keys)):

@@ -13,13 +13,13 @@ import typer
 from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
 from rich.progress import Progress as ProgressBar
 
-from solidgear.core import LADDER, SolidgearError, build, is_train, parse
+from solidgear.core import LADDER, SolidgearError, build, document_of
 from solidgear.guards.check import cautions
 from solidgear.show.command import Group, Progress, command, console
 from solidgear.show.options import AUTO, MODEL, Chosen, Run, options, refuse, relative
 from solidgear.show.plot import FORMATS, WIDE, check_ending
 from solidgear.show.sheet import Sheet, present, write_page
-from solidgear.trains.options import Pair, Reduction, of_shafts
+from solidgear.trains.options import Pair, Reduction, models_of, of_shafts
 from solidgear.variants.sweep.bearing_task import (
     SweptBearings,
     bars_of_rows,
@@ -230,7 +230,8 @@ def sweep(
     if chart is not None:
         check_ending(chart, (*FORMATS, PAGE))
     swept: Swept | SweptBearings
-    if is_train(scene):
+    document = document_of(scene)
+    if document.describes_train:
         of_shaft = {
             "--model": model.name != AUTO,
             "--tolerance": tolerance != TOLERANCE,
@@ -238,9 +239,9 @@ def sweep(
         models = "its models are those of --pinion and --gear"
         refuse(of_shaft, f"one shaft, and {scene} is a train: {models}")
         reduced.checked()
-        mix = pair.of([*shafts_in(parse(str(scene)))], scene.stem)
+        mix = models_of([*shafts_in(document.tables)], scene.stem, pair.models)
         train = train_task(
-            scene,
+            document,
             rows.design(vary or ()),
             models=mix,
             mesh=train_rows.mesh,
@@ -270,7 +271,7 @@ def sweep(
         refuse(of_train, f"a train, and {scene} is the scene of one shaft")
         sets = None
         if not (rows.of_files or chart):
-            sets = bearing_variants(scene, vary or (), rows.sample, rows.seed)
+            sets = bearing_variants(document, vary or (), rows.sample, rows.seed)
         if sets is not None:
             swept, sheet = _bearings(sets, rows, model, tolerance, run)
         else:
@@ -280,7 +281,7 @@ def sweep(
                 )
             automatic = model.automatic()
             shafts = scene_task(
-                scene,
+                document,
                 rows.design(vary or ()),
                 model=None if automatic else str(model.name),
                 tolerance=model.tol,

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
-from solidgear.core import is_train
+from solidgear.core import Source, document_of
 from solidgear.variants.sweep.design import Design
 from solidgear.variants.sweep.file_task import FileTask, Swept, run
 from solidgear.variants.sweep.scene_task import scene_task
@@ -16,7 +16,7 @@ from solidgear.variants.sweep.train_task import train_task
 
 
 def sweep(
-    file: str | os.PathLike,
+    source: Source,
     vary: str | Iterable[str] = (),
     *,
     sample: int | None = None,
@@ -31,12 +31,12 @@ def sweep(
     progress: Callable[[int, int, str], None] = lambda done, total, text: None,
     **how: Any,
 ) -> Swept:
-    """Solve many variants of the file of a shaft or of a train.
+    """Solve many variants of a shaft or of a train.
 
     Parameters
     ----------
-    file : path
-        Of the scene or train.
+    source : path, dict, Scene or Train
+        A scene or train: its file, the tables of one, or an object.
     vary : str or iterable of str
         ``PATH=VALUES``: any number or word of the file, such as
         ``segment.neck.diameter=30 mm:40 mm:5``; of a train also of the scene of a shaft, such as
@@ -96,8 +96,9 @@ def sweep(
     texts = (vary,) if isinstance(vary, str) else tuple(vary)
     variants = None if table is None else Path(table)
     design = Design(texts, sample, seed, one_at_a_time, variants, tuple(keep_sum))
-    make: Callable[..., FileTask] = train_task if is_train(Path(file)) else scene_task
-    task = make(Path(file), design, **how)
+    document = document_of(source)
+    make: Callable[..., FileTask] = train_task if document.describes_train else scene_task
+    task = make(document, design, **how)
     with tempfile.TemporaryDirectory() as folder:
         rows = Path(folder) / "rows.csv" if out is None else Path(out)
         return run(task, rows, jobs=jobs, dask=dask, overwrite=overwrite, progress=progress)

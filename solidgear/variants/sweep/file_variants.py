@@ -9,7 +9,7 @@ from typing import Any, Generic, TypeVar
 
 import numpy as np
 
-from solidgear.core import Scene, SceneError, SolidgearError, listed, parse, show
+from solidgear.core import Scene, SceneError, SolidgearError, Source, document_of, listed, show
 from solidgear.core.loading import scene_of
 from solidgear.core.scene.paths import Tables, label_of
 from solidgear.core.scene.paths import entry as value_in_file
@@ -47,7 +47,7 @@ T = TypeVar("T")
 class FileVariants(Generic[T]):
     """Points of a sweep over entries of files."""
 
-    path: Path  #: of the file that was asked about
+    path: Path  #: of the document that was asked about
     files: Mapping[str, Tables]  #: tables by the names of files, those of `path` by an empty name
     entries: tuple[Entry, ...]  #: entries that vary
     values: np.ndarray  #: not a number where a variant leaves an entry as it is in the file
@@ -196,11 +196,14 @@ class SceneVariants(FileVariants[Scene]):
         return scene_of(self.put(MAIN, varied, row), self.path)
 
 
-def scene_variants(path: Path, design: Design, example: str) -> SceneVariants:
-    """Return the points of a sweep over a scene file; `example` of an entry is for error messages."""
-    files = {MAIN: parse(str(path))}
+def scene_variants(scene: Source, design: Design, example: str) -> SceneVariants:
+    """Return the points of a sweep over a scene; `example` of an entry is for error messages."""
+    document = document_of(scene)
+    files = {MAIN: document.tables}
     points = design.points(files, lambda within: (MAIN, within), example=example)
-    return SceneVariants(path, files, points.entries, points.values, points.sums, design)
+    return SceneVariants(
+        Path(document.path), files, points.entries, points.values, points.sums, design
+    )
 
 
 def data_of_other_designations(

@@ -12,6 +12,7 @@ import glob
 import io
 import json
 import math
+import sys
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, nullcontext, suppress
 from pathlib import Path
@@ -85,8 +86,11 @@ class RowFile:
             with suppress(sqlite3.Error, OSError):  # a full disk, say: the log is kept then
                 self._db.execute("PRAGMA journal_mode = DELETE")
                 if not self.done:
-                    self._database.unlink()  # not on Windows, which keeps a file that is open
+                    self._database.unlink()
             self._db.close()
+            if not self.done and sys.platform == "win32":  # which keeps a file that is open
+                with suppress(OSError):
+                    self._database.unlink(missing_ok=True)
 
     # ---------------------------------------------------------------------------------- opening
     def _locked(self, overwrite: bool) -> sqlite3.Connection:

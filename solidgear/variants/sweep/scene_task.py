@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 from typing import Any
 
-from solidgear.core import LADDER, QUANTITIES, Body, Scene, Settled, as_supports, build
+from solidgear.core import LADDER, QUANTITIES, Body, Scene, Settled, Source, as_supports, build
 from solidgear.core.judge.solving import answer_of_body
 from solidgear.core.models.limits import number
 from solidgear.guards.one_shaft import mass_of, one_shaft
@@ -122,7 +121,7 @@ class SceneTask(FileTask):
 
 
 def scene_task(
-    scene: Path,
+    scene: Source,
     design: Design,
     *,
     model: str | None = None,
@@ -136,7 +135,7 @@ def scene_task(
     Examples
     --------
     >>> design = Design(("segment.1.diameter=45 mm,50 mm",))
-    >>> task = scene_task(Path("geometry/shaft_stepped.toml"), design, model="timoshenko")
+    >>> task = scene_task("geometry/shaft_stepped.toml", design, model="timoshenko")
     >>> thin, thick = task.rows([0, 1])
     >>> thin["C_zz"] > thick["C_zz"]
     True

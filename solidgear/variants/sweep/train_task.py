@@ -10,7 +10,15 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.core import Scene, SolidgearError, listed, nearest, parse, show
+from solidgear.core import (
+    Scene,
+    SolidgearError,
+    Source,
+    document_of,
+    listed,
+    nearest,
+    show,
+)
 from solidgear.core.judge.answer import read_tolerance
 from solidgear.core.loading import scene_of
 from solidgear.core.models.limits import number
@@ -280,7 +288,7 @@ class TrainTask(FileTask):
 
 
 def train_task(
-    train: Path,
+    train: Source,
     design: Design,
     *,
     pinion: str | None = None,
@@ -305,7 +313,7 @@ def train_task(
     --------
     >>> design = Design(("mesh.stiffness=2e8 N/m:3e8 N/m:3",))
     >>> beams = {"pinion": "euler", "gear": "euler"}
-    >>> task = train_task(Path("geometry/axle_overhung.toml"), design, **beams)
+    >>> task = train_task("geometry/axle_overhung.toml", design, **beams)
     >>> [row["status"] for row in task.rows(range(3))], task.bench.made
     (['ok', 'ok', 'ok'], 2)
     """
@@ -378,7 +386,8 @@ def once(stage: str) -> str:
 @dataclass(frozen=True)
 class TrainVariants(FileVariants[Train]):
     """Points of a sweep of a train; bearings that settle with it have no stiffness yet. Files are named
-    by side, that of the train by an empty name; the last entry may be the operating points.
+    by side, that of the train by an empty name; the last entry may be the operating points. A scene
+    within the train is one more file, called as its shaft.
     """
 
     #: operating point of all rows, by its name or number; the first by default
@@ -420,7 +429,7 @@ class TrainVariants(FileVariants[Train]):
         for entry in self.entries:
             if entry.file == MAIN and entry.keys[-1] == "scene":
                 for word in entry.words:
-                    yield str(word), parse(str(self.path.parent / str(word)))
+                    yield str(word), document_of(self.path.parent / str(word)).tables
 
     def checked_variant(self, index: int) -> Train:
         train = self.variant(index)
@@ -440,7 +449,8 @@ class TrainVariants(FileVariants[Train]):
                 if len(self._scenes) >= SCENES:
                     self._scenes.clear()
                 usual = path == self.path.parent / str(shafts_in(self.files[MAIN])[side]["scene"])
-                tables = self.put(side, varied, row, None if usual else parse(str(path)))
+                other = None if usual else document_of(path).tables
+                tables = self.put(side, varied, row, other)
                 self._scenes[key] = scene_of(tables, path, alone)
             return self._scenes[key]
 
@@ -448,7 +458,7 @@ class TrainVariants(FileVariants[Train]):
 
 
 def train_variants(
-    path: Path,
+    train: Source,
     design: Design,
     *,
     point: str | None = None,
@@ -456,11 +466,17 @@ def train_variants(
     local_harmonics: Sequence[int] = (),
 ) -> TrainVariants:
     """Return the points of a sweep of a train; parameters as of :func:`solidgear.sweep`."""
-    tables = parse(str(path))
-    if isinstance(tables.get("mesh"), list):
-        tables["mesh"] = [*map(_with_name, tables["mesh"])]
+    document = document_of(train)
+    tables, path = document.tables, Path(document.path)
+    if isinstance(meshes := tables.get("mesh"), list):
+        tables = {**tables, "mesh": [*map(_with_name, meshes)]}
     shafts, many = shafts_in(tables), "shaft" in tables
-    files = {MAIN: tables} | {side: _scene(path, table) for side, table in shafts.items()}
+    files = {side: _scene(path, table) for side, table in shafts.items()}
+    for side, table in shafts.items():
+        if isinstance(table, Mapping) and isinstance(table.get("scene"), Mapping):
+            keys = ("shaft", side) if many else (side,)
+            tables = with_entry(tables, (*keys, "scene"), side)
+    files = {MAIN: tables} | files
 
     def points(varied: tuple[Entry, ...]) -> tuple[Entry, ...]:
         return (_every_point(tables, varied, point),) if every_point else ()
@@ -499,11 +515,13 @@ def _with_name(mesh: Any) -> Any:
 
 
 def _scene(path: Path, table: Any) -> Tables:
-    """Return the tables of the scene of a shaft; none where the train file does not name it, which its
-    reader refuses.
+    """Return the tables of the scene of a shaft, of a file of its own or within those of the train;
+    none where the train does not name it, which its reader refuses.
     """
-    name = table.get("scene") if isinstance(table, Mapping) else None
-    return parse(str(path.parent / name)) if isinstance(name, str) else {}
+    scene = table.get("scene") if isinstance(table, Mapping) else None
+    if isinstance(scene, str):
+        return document_of(path.parent / scene).tables
+    return scene if isinstance(scene, Mapping) else {}
 
 
 def _owner(shafts: Sequence[str], many: bool, housed: bool, path: str) -> tuple[str, str]:

@@ -1,0 +1,81 @@
+"""A document: the tables of a scene, of a train or of measured data, wherever they come from.
+
+A file, a dict and an object are one thing: each gives tables with the keys of a file.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Protocol, TypeAlias, runtime_checkable
+
+from solidgear.core.errors import SolidgearError, show
+from solidgear.core.scene.paths import Tables
+from solidgear.core.scene.toml_file import describes_train, parse, place_of
+
+
+@runtime_checkable
+class Documented(Protocol):
+    """A scene, a train or measured data, which gives its tables."""
+
+    def to_dict(self) -> dict[str, Any]: ...
+
+
+@dataclass(frozen=True)
+class Document:
+    """Tables with the folder of the files that they name.
+
+    Examples
+    --------
+    >>> document = document_of("geometry/shaft_stepped.toml")
+    >>> document.describes_train, [*document.tables][:2]
+    (False, ['title', 'source'])
+    """
+
+    tables: Tables
+    #: of the file, or of that which it would be: the folder of the files that it names, and its
+    #: name in messages
+    path: str
+
+    @property
+    def describes_train(self) -> bool:
+        """True for a train of shafts, and not for one shaft."""
+        return describes_train(self.tables)
+
+
+#: what every study begins with
+Source: TypeAlias = str | os.PathLike | Mapping[str, Any] | Document | Documented
+
+
+def document_of(source: Source) -> Document:
+    """Return the document of a path, of tables or of an object; tables name files relative to the
+    folder of work.
+    """
+    if isinstance(source, Document):
+        return source
+    if isinstance(source, str | os.PathLike):
+        return Document(parse(os.fspath(source)), os.fspath(source))
+    if isinstance(source, Mapping):
+        return Document(source, name_of_source(source))
+    if isinstance(source, Documented):
+        return Document(source.to_dict(), name_of_source(source))
+    raise SolidgearError(
+        f"{show(source, 40)}: give the path of a TOML file, its tables as a dict, or a Scene or Train"
+    )
+
+
+def name_of_source(source: Source) -> str:
+    """Return the name of a source in messages: a path, or that of its tables or its object."""
+    if isinstance(source, str | os.PathLike):
+        return place_of(os.fspath(source))
+    if isinstance(source, Document):
+        return place_of(source.path)
+    if isinstance(source, Mapping):
+        return "train" if describes_train(source) else "scene"
+    return getattr(source, "name", "") or "scene"
+
+
+def is_train(source: Source) -> bool:
+    """True for what describes a train."""
+    return document_of(source).describes_train

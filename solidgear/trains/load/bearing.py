@@ -1,0 +1,145 @@
+"""Catalogue bearings of a shaft under its load, or of a train over its operating points, from a path,
+tables or an object.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, ClassVar
+
+from solidgear.bearings import sheet as sheets
+from solidgear.bearings.chart import draw_bearings
+from solidgear.bearings.duty import LivesOverPoints
+from solidgear.bearings.study import BearingFacts, bearing_facts, loaded_by, over_load
+from solidgear.core import (
+    Body,
+    Scene,
+    Sheeted,
+    SolidgearError,
+    Source,
+    as_written,
+    explained,
+    is_train,
+    name_of_source,
+    shaft,
+)
+from solidgear.core.scene.toml_file import name_of
+from solidgear.show.options import speed_of
+from solidgear.show.sheet import Sheet
+from solidgear.show.units import Units
+from solidgear.trains.file.train import Train
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SolvedBearings(Sheeted):
+    """Catalogue bearings of a shaft at its load, or of a train over its operating points."""
+
+    sheeted: ClassVar[str] = "trains.load.bearing:bearings_sheet"
+
+    name: str
+    facts: tuple[BearingFacts, ...] = ()  #: of a shaft
+    lives: tuple[LivesOverPoints, ...] = ()  #: of a train
+    scene: Scene | None = field(default=None, repr=False)  #: of a shaft, under its load
+    body: Body | None = field(default=None, repr=False)  #: on which its bearings settle
+
+    def __getitem__(self, name: str) -> BearingFacts | LivesOverPoints:
+        by_name: dict[str, BearingFacts | LivesOverPoints] = {
+            **{fact.name: fact for fact in self.facts},
+            **{life.name: life for life in self.lives},
+        }
+        return by_name[name]
+
+    def draw(self, path: str | Path) -> None:
+        """Write a chart of stiffness over load, a file that ends in ``.png`` or ``.svg``; of a shaft
+        alone.
+        """
+        if self.scene is None:
+            raise SolidgearError(
+                "--out belongs to a scene; for a train give torque and speed in [operation]"
+            )
+        with explained(self.scene):
+            curves = over_load(self.scene, self.body)
+        draw_bearings(Path(path), self.facts, curves)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain data for JSON."""
+        return dict(self.sheet().data)
+
+
+def bearings_sheet(solved: SolvedBearings, units: Units, chart: Path | None = None) -> Sheet:
+    """Return the sheet of catalogue bearings, which has units of its own; `chart` is drawn already."""
+    if solved.scene is None:
+        return sheets.train_sheet(solved.name, solved.lives)
+    return sheets.scene_sheet(solved.name, solved.facts, chart)
+
+
+def bearing(
+    source: Source | Train,
+    name: str | None = None,
+    *,
+    load: str | None = None,
+    speed: str | None = None,
+) -> SolvedBearings:
+    """Catalogue bearings: stiffness at load, load of every element, pressure, life; of a train with
+    an operation lives over its points.
+
+    Parameters
+    ----------
+    source : path, dict, Scene or Train
+        A scene or train: its file (TOML), the tables of one, or an object.
+    name : str, optional
+        This bearing alone; of a train with its shaft, such as ``"pinion.A"``.
+    load : str, optional
+        Of a shaft: another load, ``"x=2 kN, z=-500 N, thx=10 N*m"``, on the port, or on the bearing.
+    speed : str, optional
+        Of a shaft: its speed, such as ``"3000 rpm"``, for lives in hours.
+
+    Returns
+    -------
+    SolvedBearings
+        ``facts`` of the bearings of a shaft, ``lives`` of those of a train.
+
+    Raises
+    ------
+    SolidgearError
+        Where there are no such bearings, and for a load or a speed given for a train.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> found = sg.bearing("geometry/gearbox_catalogue.toml")
+    >>> [(fact.name, fact.data.kind, round(fact.life.life.basic / 1e9, 1)) for fact in found.facts]
+    [('A', 'cylindrical', 13.8), ('B', 'angular_contact', 23.1)]
+    """
+    if isinstance(source, Train) or is_train(source):
+        for option, value in {"--load": load, "--speed": speed}.items():
+            if value:
+                raise SolidgearError(
+                    f"{option} belongs to a scene; for a train give torque and speed in [operation]"
+                )
+        return _of_train(source, name)
+    turns, scene = speed_of(speed), as_written(source)
+    if load is not None:
+        scene = loaded_by(scene, load, name)
+    with explained(source):
+        body = shaft(scene)
+        facts = [f for f in bearing_facts(scene, body, turns) if name in (None, f.name)]
+        if not facts:
+            raise SolidgearError(f"--bearing {name}: no bearing of catalogue data has this name")
+    return SolvedBearings(scene.name, tuple(facts), scene=scene, body=body)
+
+
+def _of_train(source: Source | Train, name: str | None) -> SolvedBearings:
+    """Return the bearings of a train, or one of them."""
+    # start-up: bearings of a shaft have no use for the equilibrium of trains
+    from solidgear.trains.load.lives import train_lives
+    from solidgear.trains.loading import load_train
+
+    lives = [life for life in train_lives(load_train(source)) if name in (None, life.name)]
+    if not lives:
+        raise SolidgearError(
+            f"--bearing {name}: no bearing of catalogue data has this name; write shaft and name, "
+            "such as pinion.A"
+        )
+    return SolvedBearings(name_of(name_of_source(source)), lives=tuple(lives))

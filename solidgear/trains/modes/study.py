@@ -1,0 +1,95 @@
+"""Natural frequencies of a train from a path, tables or an object."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, ClassVar, Unpack
+
+import numpy as np
+
+from solidgear.core import Sheeted, SolidgearError, Source, listed, nearest
+from solidgear.trains.assembly.assembly import Assembly
+from solidgear.trains.file.train import Train
+from solidgear.trains.modes.modes import TrainMode, TrainModes, train_modes
+from solidgear.trains.options import Models, Reducing, Settings, assembled
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SolvedModes(Sheeted):
+    """Modes of a train, with the train that they are of."""
+
+    sheeted: ClassVar[str] = "trains.modes.sheet:modes_sheet"
+
+    assembly: Assembly
+    solved: TrainModes
+
+    @property
+    def modes(self) -> tuple[TrainMode, ...]:
+        """Modes by frequency, rigid motions first."""
+        return self.solved.modes
+
+    @property
+    def frequency_hz(self) -> np.ndarray:
+        """(n,) natural frequencies, Hz."""
+        return np.array([mode.frequency_hz for mode in self.modes])
+
+    def __iter__(self) -> Iterator[TrainMode]:
+        return iter(self.modes)
+
+    def __getitem__(self, name: str) -> TrainMode:
+        by_name = {mode.name: mode for mode in reversed(self.modes)}
+        if name not in by_name:
+            names = listed([mode.name for mode in self.modes])
+            raise SolidgearError(f"no mode is {name!r}{nearest(name, by_name)}; there are {names}")
+        return by_name[name]
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain data for JSON."""
+        return dict(self.sheet().data)
+
+
+def system_modes(
+    train: Source | Train,
+    models: Models = None,
+    *,
+    settings: Settings = None,
+    **reduced: Unpack[Reducing],
+) -> SolvedModes:
+    """Natural frequencies of a train, each with its name and a proven bound.
+
+    Parameters
+    ----------
+    train : path, dict or Train
+        A train: its file (TOML), the tables of one, or an object.
+    models : str or mapping of str to str, optional
+        Model of all shafts, such as ``"timoshenko"``, or models by shaft; harmonic solids by default.
+    settings : mapping, optional
+        Builder options by shaft, such as ``{"pinion": {"order": 3}}``.
+    **reduced
+        Of every study of a train: `max_frequency` in Hz, by default that of the train;
+        `reduction`, ``"rubin"`` or ``"craig_bampton"``; `kept`, modes of each shaft in its
+        reduction; `local_harmonics` of harmonic solids that teeth drive where they touch, such as
+        ``(2, 3)``; `point`, an operating point by name or number; `tol`, the relative error that
+        meshes of harmonic shafts may leave.
+
+    Returns
+    -------
+    SolvedModes
+        ``modes`` with name, frequency, speed and bound; ``write(folder)`` makes a page.
+
+    Raises
+    ------
+    SolidgearError
+        For an unknown shaft or model, and frequencies beyond those that the reduction resolves.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> found = sg.system_modes("geometry/axle_overhung.toml", "timoshenko", max_frequency=1000.0)
+    >>> [mode.name for mode in found][:2], round(found["load torsion 1"].frequency_hz)
+    (['train rotation', 'load torsion 1'], 16)
+    """
+    assembly, mix = assembled(train, models, settings, reduced)
+    limit, count = reduced.get("max_frequency"), assembly.train.ask.modes
+    return SolvedModes(assembly, train_modes(assembly, *mix, max_frequency=limit, at_most=count))
