@@ -57,6 +57,9 @@ ADDITIONS = {
     "document": {
         "read scene": "core.loading:scene_of",
         "write scene": "core.scene.writing:tables_of",
+        "text of scene": "core.scene.scene_text:toml_of",
+        "text of train": "trains.file.text:toml_of",
+        "segment of words": "core.scene.shapes:segment_of",
         "settle scene": "core.loading:settled",
         "read train": "trains.loading:load_train",
         "write train": "trains.file.writing:tables_of",
@@ -76,6 +79,11 @@ ADDITIONS = {
     "mesh stiffness": {
         "teeth": "teeth.train_teeth:mesh_of_teeth",
         "teeth over points": "teeth.over_points:stiffness_over_points",
+    },
+    # matrices of other programs
+    "matrices": {
+        "read": "exchange.matrices.formats:read_matrices",
+        "write": "exchange.matrices.formats:write_matrices",
     },
     # solvers
     "back end": {"mumps": "petsc.mumps:Mumps"},

@@ -338,7 +338,7 @@ def test_modified_life_from_dirt_to_clean():
     assert sure.life == pytest.approx(0.25 * normal.life, rel=0.01)
     thin = of("normal", viscosity="1 mm^2/s")
     assert thin.modified is None and "no life below 0.1" in thin.without
-    assert life(data, made, motion).without == "no [lubrication] is given"
+    assert life(data, made, motion).without == "no lubrication is given"
     assert life(data, made, np.zeros(6)).without == "it carries nothing"
 
 

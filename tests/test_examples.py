@@ -1,6 +1,7 @@
 """Every example runs, and shows what it says it shows."""
 
 import importlib.util
+import re
 from pathlib import Path
 
 import numpy as np
@@ -33,6 +34,20 @@ def test_shaft_in_python():
     # shear and rotary inertia cost some 2.6 (d / L)^2 of the frequency, and 3D no more than that
     assert 1 - found["timoshenko"] / found["euler"] == pytest.approx(2.6 * (1 / 30) ** 2, rel=0.1)
     assert found["harmonic"] == pytest.approx(found["timoshenko"], rel=1e-5)
+
+
+@pytest.mark.long
+def test_own_design(tmp_path):
+    found = run("own_design", tmp_path)
+    # a thicker seat is stiffer, and weighs as much as is allowed
+    assert list(found["rows"]["C_zz"]) == sorted(found["rows"]["C_zz"], reverse=True)
+    assert found["best"].best.kept and found["best"].gain.relative < -0.01
+    assert sg.load(tmp_path / "shaft.toml") == found["shaft"]
+    for name in ("report/report.html", "search/optimum.html"):
+        assert (tmp_path / name).is_file()
+    text = (FOLDER / "own_design.py").read_text(encoding="utf-8")
+    body = text.partition("def main(folder=None):\n")[2].partition("\n\n\n")[0]
+    assert len(body.splitlines()) <= 30
 
 
 @pytest.mark.long
@@ -146,3 +161,5 @@ def test_every_example_is_tested_and_short():
     for name, text in scripts.items():
         assert f"def test_{name}(" in tests, name
         assert "It illustrates how to:" in text and len(text.splitlines()) < 60, name
+        # what a person writes needs no more than the package
+        assert not re.search(r"(from|import) solidgear\.", text), name

@@ -38,6 +38,7 @@ def test_a_notebook_is_executed_small_and_of_the_format(name):
     assert not any(o["output_type"] == "error" for cell in cells for o in cell["outputs"])
     assert sum(map(notebooks.pictures, (cell["outputs"] for cell in cells))) > 0
     assert path.stat().st_size < 100e3
+    assert not any("from solidgear." in "".join(cell["source"]) for cell in cells)
 
 
 def book(*sources):

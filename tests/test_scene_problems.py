@@ -154,7 +154,6 @@ def test_a_place_for_a_position_is_sent_to_its_key(tmp_path):
         ("position", "at", "position"),
         ("seat_width", "width", "seat_width"),
         ("diameter", "od", "diameter"),
-        ("title", "name", "title"),
         ("seat_width", "kzz", "stiffness.kzz"),
         ("seat_width", "contact_angle", "catalogue.contact_angle"),
         ("seat_width", "seat_widht", "seat_width"),

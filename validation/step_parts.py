@@ -124,7 +124,7 @@ def with_unit(text: str, unit: str) -> str:
 
 def shaft_step() -> tuple[list[Segment], list[Any]]:
     """Segments and features of `geometry/shaft_step.step`."""
-    sizes = (("left", 45, 40, 0), ("collar", 12, 56, 0), ("right", 90, 40, 0), ("end", 33, 30, 0))
+    sizes = (("left", 45, 40, 0), ("collar", 12, 56, 0), ("right", 90, 40, 0), ("tip", 33, 30, 0))
     segments, y = [], 0.0
     for name, length, diameter, bore in sizes:
         made = Segment.cylinder(name, length=length / 1e3, diameter=diameter / 1e3, bore=bore, y0=y)

@@ -22,6 +22,7 @@ COLUMNS = 3
 ORDER = (
     "first_answer",
     "shaft_in_python",
+    "own_design",
     "before_solving",
     "which_model",
     "how_sure",

@@ -112,10 +112,17 @@ def reliefs(target: Path) -> None:
     figure.savefig(target, dpi=160)
 
 
+def searched(target: Path) -> None:
+    """All designs of the search of `own_design`."""
+    importlib.import_module("own_design").main(target.parent)
+    (target.parent / "search" / "designs.png").rename(target)
+
+
 OVERHUNG = "geometry/pinion_overhung.toml"
 DRAWN: dict[str, Callable[[Path], None]] = {
     "first_answer": partial(rendered, f'{OVERHUNG} -f harmonic --mode "bending 1"'),
     "shaft_in_python": rod,
+    "own_design": searched,
     "before_solving": partial(drawn, "pinion_overhung"),
     "which_model": partial(charted, "geometry/shaft_hollow.toml"),
     "how_sure": partial(bars, "how_sure", "error bar, %", 100.0),

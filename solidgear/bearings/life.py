@@ -111,7 +111,7 @@ def life(
     >>> made = catalogued(data)
     >>> found = life(data, made, state(data, made))
     >>> round(found.basic / 1e6), round(found.reference / 1e6), found.without
-    (1000, 999, 'no [lubrication] is given')
+    (1000, 999, 'no lubrication is given')
     """
     rated = ratings(data, made.inside)
     rows, load = made.bearing.contacts(motion), made.bearing.load(motion)
@@ -138,7 +138,7 @@ def life(
     if math.isinf(result.reference):
         return replace(result, without="it carries nothing")
     if lubrication is None:
-        return replace(result, without="no [lubrication] is given")
+        return replace(result, without="no lubrication is given")
     return _modified(result, fatigue_damage, made.inside.pitch, data.balls, lubrication, speed)
 
 

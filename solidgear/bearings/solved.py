@@ -115,7 +115,7 @@ def solved(
             once = " (once for both of a pair)" * data.one_sided
             reason = (
                 "the bearing carries no load, so it has no stiffness: give it load or "
-                f"displacement, a preload{once}, a negative clearance, or a [load] on the port"
+                f"displacement, a preload{once}, a negative clearance, or the port a load"
             )
             raise located(SceneError(reason), k)
     bearings = tuple(_with_stiffness(b, tangent) for b in scene.bearings)

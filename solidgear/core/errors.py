@@ -13,6 +13,8 @@ from typing import Any
 
 #: problems of one file that are written out; the rest are counted
 MOST_PROBLEMS = 20
+#: hint on the brackets that a file has before a table
+BRACKETS = re.compile(r"(, given once)?: write \[+\w+\]+ with \w+ brackets( before each)?")
 #: letters of a line on a terminal
 LONGEST = 1000
 
@@ -153,6 +155,19 @@ class SceneError(SolidgearError, ValueError):
         """
         return type(self).of(
             problem._located(data, where, (*prefix, *problem.path) if path is None else path)
+            for problem in self.problems
+        )
+
+    def of_dict(self) -> SceneError:
+        """The same error without hints on the brackets of a file, for tables given in Python."""
+        return type(self).of(
+            SceneError(
+                BRACKETS.sub("", problem.reason),
+                path=problem.path,
+                value=problem.value,
+                field=problem.field,
+                where=problem.where,
+            )
             for problem in self.problems
         )
 
@@ -374,7 +389,9 @@ def _name_and_value(path: tuple, data: Any) -> tuple[str, Any, bool]:
 
 
 def _child(data: Any, key: Any) -> tuple[bool, Any]:
-    if isinstance(data, Mapping):
+    words = getattr(data, "words", None)  # of what has no place yet
+    if isinstance(data, Mapping) or isinstance(words, Mapping):
+        data = words or data
         return (True, data[key]) if key in data else (False, None)
     if isinstance(key, int):
         inside = isinstance(data, Sequence) and not isinstance(data, str) and key < len(data)

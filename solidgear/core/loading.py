@@ -62,7 +62,7 @@ def load(source: Source) -> Scene:
     if isinstance(source, Scene):
         return source.settled
     document = document_of(source)
-    return scene_of(document.tables, document.path)
+    return scene_of(document.tables, document.path).read_from(document)
 
 
 def as_written(source: Source) -> Scene:
@@ -72,7 +72,7 @@ def as_written(source: Source) -> Scene:
     if isinstance(source, Scene):
         return source
     document = document_of(source)
-    return scene_of(document.tables, document.path, alone=False)
+    return scene_of(document.tables, document.path, alone=False).read_from(document)
 
 
 def scene_of(tables: Mapping[str, Any], path: str | os.PathLike, alone: bool = True) -> Scene:

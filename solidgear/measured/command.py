@@ -33,6 +33,7 @@ from solidgear.show.scales import Axis, in_percent
 from solidgear.show.sheet import Section, Sheet, Terminal, present
 from solidgear.show.table import NUMBER, Column, Table, text
 from solidgear.show.turning import Member, Turned, together
+from solidgear.show.units import ENGINEERING, Units
 from solidgear.show.viewer import viewer_fragment
 from solidgear.show.words import hertz, percent
 from solidgear.trains.response.measured_chart import outline
@@ -71,11 +72,9 @@ def correlate(
     def study(progress: Progress) -> Sheet:
         correlation = correlated(loaded, data, tol, progress)
         if out is None:
-            return correlation_sheet(correlation)
+            return correlation.sheet()
         progress("responses and shapes at the measuring points")
-        bodies = turned_beside(correlation)
-        viewer = viewer_fragment(bodies) if bodies else ""
-        return correlation_sheet(correlation, overlay(correlation), viewer)
+        return overlaid_sheet(correlation, ENGINEERING, out)
 
     present(study, run, out)
 
@@ -104,25 +103,33 @@ def identify(
     run: Run,
 ) -> None:
     data = load_measured(measured)
+    present(
+        lambda progress: identified(
+            scene,
+            data,
+            vary or (),
+            tol=tol,
+            predict=predict,
+            progress=progress,
+            priors=priors,
+        ).sheet(),
+        run,
+        out,
+    )
 
-    def study(progress: Progress) -> Sheet:
-        return identification_sheet(
-            identified(
-                scene,
-                data,
-                vary or (),
-                tol=tol,
-                predict=predict,
-                progress=progress,
-                priors=priors,
-            )
-        )
 
-    present(study, run, out)
+def overlaid_sheet(correlation: Correlation, units: Units, folder: Path) -> Sheet:
+    """Return the sheet of a correlation with responses and shapes at the measuring points."""
+    bodies = turned_beside(correlation)
+    viewer = viewer_fragment(bodies) if bodies else ""
+    return correlation_sheet(correlation, units, overlay(correlation), viewer)
 
 
 def correlation_sheet(
-    correlation: Correlation, overlay: Overlay | None = None, viewer: str = ""
+    correlation: Correlation,
+    units: Units = ENGINEERING,
+    overlay: Overlay | None = None,
+    viewer: str = "",
 ) -> Sheet:
     """Return the sheet of a correlation, with responses where there are any; `viewer` is HTML of
     shapes.
@@ -164,7 +171,7 @@ def correlation_sheet(
     )
 
 
-def identification_sheet(identification: Identification) -> Sheet:
+def identification_sheet(identification: Identification, units: Units = ENGINEERING) -> Sheet:
     """Return the sheet of an identification."""
     lines = {
         "identified": entries(identification),
@@ -193,14 +200,14 @@ _unsigned = partial(percent, signed=False)
 def pairs(correlation: Correlation) -> Table:
     """Return every measured resonance and its mode."""
     columns = [
-        Column("", lambda p: p.number, kind=NUMBER),
+        Column("", lambda p: p.number, kind=NUMBER, name="number"),
         Column("measured\nHz", lambda p: p.measured.frequency, hertz),
         text("mode", lambda p: p.computed and p.computed.name),
         Column("computed\nHz", lambda p: p.computed and p.computed.frequency_hz, hertz),
         Column("off", lambda p: p.relative, percent),
         Column("band", lambda p: p.band, _unsigned),
         Column("sure", lambda p: p.probability, "{:.0%}".format),
-        text("", lambda p: p.verdict),
+        replace(text("", lambda p: p.verdict), name="verdict"),
     ]
     if correlation.mac is not None:
         columns.insert(-1, Column("MAC", lambda p: p.mac, "{:.2f}".format))

@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from solidgear.core import BarredMode, Displayed, ModeName, Source, load, pinned, without_axis
+from solidgear.core import BarredMode, ModeName, Sheeted, Source, load, pinned, without_axis
 from solidgear.core.plain import plain
 from solidgear.measured.alignment import Peak
 from solidgear.measured.computed import Computed, computed_up_to
@@ -77,10 +77,12 @@ class Pair:
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Correlation(Displayed):
+class Correlation(Sheeted):
     """Measured resonances paired with computed modes."""
 
     shown: ClassVar[str] = "measured.command:pairs"
+    sheeted: ClassVar[str] = "measured.command:correlation_sheet"
+    filed: ClassVar[str] = "measured.command:overlaid_sheet"
 
     #: scene, title: of the scene and of the measurement
     scene: str

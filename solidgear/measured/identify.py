@@ -21,9 +21,9 @@ import scipy.linalg as sla
 from scipy.optimize import linear_sum_assignment
 
 from solidgear.core import (
-    Displayed,
     Document,
     Scene,
+    Sheeted,
     SolidgearError,
     Source,
     Supports,
@@ -98,10 +98,11 @@ class Predicted:
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Identification(Displayed):
+class Identification(Sheeted):
     """Entries identified from measured resonances."""
 
     shown: ClassVar[str] = "measured.command:entries"
+    sheeted: ClassVar[str] = "measured.command:identification_sheet"
     plain_names = (
         "kind",
         "scene",

@@ -49,7 +49,7 @@ def load_train(source: Source | Train, point: OperatingPoint | None = None) -> T
         train, settled = source, point is None
     else:
         document = document_of(source)
-        train = train_of(document.tables, document.path, scene)
+        train = train_of(document.tables, document.path, scene).read_from(document)
         settled = point is None and not train.operation
     if settled:
         return train

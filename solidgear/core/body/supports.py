@@ -236,6 +236,7 @@ def as_supports(source: Holding) -> Supports:
     """
     if isinstance(source, Supports):
         return source
+    source = getattr(source, "settled", source)
     housing, around = (getattr(source, key, None) for key in ("housing_axial", "housing"))
     bearings: Iterable = getattr(source, "bearings", source) or ()
     bearings = tuple(bearings)

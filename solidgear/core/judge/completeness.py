@@ -43,7 +43,7 @@ def cut_short(modes: Iterable[Mode], n: int, asked_hz: float | None, option: str
     return [
         f"the list ends with the {n} elastic shapes asked for, at {elastic[-1].frequency_hz:.4g} "
         f"Hz, below the {asked_hz:g} Hz asked for; raise "
-        f"{option + ', or ' if option else ''}modes under [ask]"
+        f"{option + ', or ' if option else ''}modes of its ask"
     ]
 
 

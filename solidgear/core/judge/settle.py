@@ -54,7 +54,10 @@ SAME = 1e-6
 class Settled:
     """A body on the cheapest mesh that answers a question, with error bars."""
 
-    plain_names = ("rung", "setting", "options", "tolerance", "bars", "reached", "judged_on")
+    plain_names = (
+        ("model", "rung"),
+        *("setting", "options", "tolerance", "bars", "reached", "judged_on"),
+    )
 
     scene: str
     tolerance: float
@@ -134,8 +137,7 @@ def settle(
     if without_axis(scene):
         if ask != "modes" and scene.port.patch is None:
             raise SolidgearError(
-                f"{scene.name} has no lumped point: give it a [[port]] with a patch, or ask for "
-                "modes"
+                f"{scene.name} has no lumped point: give it a port with a patch, or ask for modes"
             )
         return _settled_body(scene, tol, ask, (scene.port.name, *points), progress)
     wanted = tuple(q for q in QUANTITIES if q.kind in QUESTIONS[ask])

@@ -12,7 +12,7 @@ from typing import Any, Protocol, TypeAlias, runtime_checkable
 
 from solidgear.core.errors import SolidgearError, show
 from solidgear.core.scene.paths import Tables
-from solidgear.core.scene.toml_file import describes_train, parse, place_of
+from solidgear.core.scene.toml_file import describes_train, place_of, read_text, tables_in
 
 
 @runtime_checkable
@@ -37,11 +37,26 @@ class Document:
     #: of the file, or of that which it would be: the folder of the files that it names, and its
     #: name in messages
     path: str
+    text: str = ""  #: of the file that it was read from
 
     @property
     def describes_train(self) -> bool:
         """True for a train of shafts, and not for one shaft."""
         return describes_train(self.tables)
+
+
+@dataclass(frozen=True, eq=False)
+class Origin:
+    """What a scene or a train was read from, which is no part of what it is: all are equal."""
+
+    document: Document | None = None
+    thing: Any = None  #: as it was read
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Origin)
+
+    def __hash__(self) -> int:
+        return 0
 
 
 #: what every study begins with
@@ -55,11 +70,15 @@ def document_of(source: Source) -> Document:
     if isinstance(source, Document):
         return source
     if isinstance(source, str | os.PathLike):
-        return Document(parse(os.fspath(source)), os.fspath(source))
+        path = os.fspath(source)
+        text = read_text(path)
+        return Document(tables_in(text, path), path, text)
     if isinstance(source, Mapping):
         return Document(source, name_of_source(source))
     if isinstance(source, Documented):
-        return Document(source.to_dict(), name_of_source(source))
+        # what has not changed since means what its file says: a place moves with its segment
+        read = getattr(source, "as_read", None)
+        return read or Document(source.to_dict(), name_of_source(source))
     raise SolidgearError(
         f"{show(source, 40)}: give the path of a TOML file, its tables as a dict, or a Scene or Train"
     )

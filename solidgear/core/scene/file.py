@@ -217,7 +217,7 @@ class _Reading:
         if (table := file.housing) is not None:
             housing = self.problems.read(lambda: read_housing(table, place), ("housing",))
         if not (file.port or {"port", "body"} & self.spoilt):
-            self.problems.append(SceneError("a scene needs a [port]", path=("port",)))
+            self.problems.append(SceneError("a scene needs a port", path=("port",)))
         ports = [self._row(Port, ("port", k), table) for k, table in enumerate(file.port)]
         masses = [self._row(PointMass, ("mass", k), table) for k, table in enumerate(file.mass)]
         features = [row for k, t in enumerate(file.feature) for row in self._feature(k, t)]
@@ -296,7 +296,7 @@ class _Reading:
     def _shaft(self) -> list[Segment]:
         """Return segments end to end, or those of the part."""
         if self.part is None and not self.file.segment:
-            raise SceneError("a scene needs at least one [[segment]]", path=("segment",))
+            raise SceneError("a scene needs at least one segment", path=("segment",))
         if (part := self.part) is not None and (body := self.file.body) is not None:
             usual = self._material()
             segments, path_of = part.lay_out(usual, self.places), self._part_path

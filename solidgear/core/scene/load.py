@@ -27,7 +27,7 @@ class BearingLoad(Model):
         if about:
             raise SceneError(
                 "bearings carry no moment about the axis: write x, y, z, thx and thz alone; give "
-                'a torque by [operation] of a train, or solidgear stress --drive "A=115 N*m"',
+                'a torque by the operation of a train, or solidgear stress --drive "A=115 N*m"',
                 path=(about[0],),
                 value=show(data[about[0]]),
             )

@@ -8,11 +8,11 @@ everywhere in the order (x, y, z, thx, thy, thz); y runs along the shaft from it
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping
-from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
+from collections.abc import Iterable, Iterator, Mapping
+from functools import cached_property, partial
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, TypeAlias
 
-from pydantic import model_validator
+from pydantic import BeforeValidator, PrivateAttr, model_validator
 
 from solidgear.core.display import Displayed
 from solidgear.core.errors import SceneError
@@ -22,25 +22,48 @@ from solidgear.core.scene.ask import Ask
 from solidgear.core.scene.bearing_stiffness import stiffness_entries
 from solidgear.core.scene.blends import Blend
 from solidgear.core.scene.corner import Corner
+from solidgear.core.scene.document import Origin
 from solidgear.core.scene.ends import seat_masses, snap_seats
 from solidgear.core.scene.feature_rules import Feature
 from solidgear.core.scene.housing import ONE_HOUSING, Housing
 from solidgear.core.scene.load import BearingLoad
 from solidgear.core.scene.lubrication import Lubrication
+from solidgear.core.scene.materials import by_name
 from solidgear.core.scene.open_range import Uncertain
 from solidgear.core.scene.outline import Outline
 from solidgear.core.scene.parts import STEEL, Material, Segment
 from solidgear.core.scene.patches import off_patches
 from solidgear.core.scene.point_mass import PointMass
+from solidgear.core.scene.shapes import places_on
 from solidgear.core.scene.stations import Bearing, Port
 from solidgear.core.scene.tables import parts
-from solidgear.core.scene.typed import Model
+from solidgear.core.scene.typed import Model, Problems
 from solidgear.core.scene.units import AxialSpring
 
 if TYPE_CHECKING:
     BodyFile: TypeAlias = Any
 else:
     BodyFile = parts().Body
+
+
+def _several(value: Any) -> tuple:
+    """Return the things of a field of one or of several."""
+    return value if isinstance(value, tuple) else (value,)
+
+
+def _paths_of(bearings: Iterable[str]) -> tuple[str, ...]:
+    """Return how paths of entries of bearings begin."""
+    return tuple(f"bearing.{name}." for name in bearings)
+
+
+def _end_to_end(segments: Iterable[Segment], material: Material | str) -> Iterator[Segment]:
+    """Yield segments at their places, those without one behind each other, and with a material."""
+    y = 0.0
+    for segment in segments:
+        segment = segment.beginning_at(y)
+        y = segment.y1
+        has_material = "material" in segment.model_fields_set
+        yield segment if has_material else segment.with_changes(material=material)
 
 
 class Scene(Displayed, Model):
@@ -100,7 +123,7 @@ class Scene(Displayed, Model):
     name: str = "scene"
     source: str = ""
     segments: tuple[Segment, ...]
-    material: Material = STEEL
+    material: Annotated[Material, BeforeValidator(by_name)] = STEEL
     bearings: tuple[Bearing, ...] = ()
     masses: tuple[PointMass, ...] = ()
     features: tuple[Feature, ...] = ()
@@ -114,11 +137,13 @@ class Scene(Displayed, Model):
     lubrication: Lubrication | None = None
     uncertain: tuple[Uncertain, ...] = ()
     ask: Ask = Ask()
+    _origin: Origin = PrivateAttr(Origin())
 
     @model_validator(mode="after")
     def _hangs_together(self) -> Scene:
         problems = rules.shaft_problems(self.segments)
         if not problems:  # a station can be judged only on a shaft that is sound
+            self._place()
             for name in ("bearings", "masses", "further_ports"):
                 object.__setattr__(self, name, snap_seats(getattr(self, name), self.segments))
             object.__setattr__(self, "port", snap_seats([self.port], self.segments)[0])
@@ -138,11 +163,31 @@ class Scene(Displayed, Model):
             raise SceneError.of(problems)
         return self
 
+    def _place(self) -> None:
+        """Put things made by words of a file on the shaft, bearings first, which others refer to."""
+        kinds = ("bearings", "masses", "features", "blends", "further_ports")
+        things: dict[str, Any] = {key: getattr(self, key) for key in (*kinds, "port", "housing")}
+        things = {key: value for key, value in things.items() if value is not None}
+        if all(t.words is None for value in things.values() for t in _several(value)):
+            return
+        places, problems = places_on(self.segments, self.body), Problems()
+        for key, value in things.items():
+            several = isinstance(value, tuple)
+            placed = []
+            for k, thing in enumerate(_several(value)):
+                path = (key, k) if several else (key,)
+                placed.append(problems.read(partial(thing.placed_on, places, path)))
+                if key == "bearings" and placed[-1] is not None:
+                    places.add(f"bearing.{thing.name}", placed[-1].y)
+            if None not in placed:
+                object.__setattr__(self, key, tuple(placed) if several else placed[0])
+        problems.raise_any()
+
     @classmethod
     def from_parts(
         cls,
         segments: Iterable[Segment],
-        material: Material = STEEL,
+        material: Material | str = STEEL,
         bearings: Iterable[Bearing] = (),
         port: Port | None = None,
         **rest: Any,
@@ -152,14 +197,17 @@ class Scene(Displayed, Model):
         Parameters
         ----------
         segments : iterable of Segment
-            End to end from y = 0. One made without a material takes `material`.
-        material : Material
+            End to end from y = 0. One made without a material takes `material`, and one without a
+            place begins where the one before it ends.
+        material : Material or str
+            Constants, or the name of a material.
         bearings : iterable of Bearing
+            Bearings of catalogue data settle when their stiffness is first asked for.
         port : Port, optional
             Without it, the middle of the longest segment, attached to all of that segment's outer
             surface.
         **rest
-            title, name, source, housing_axial, housing, further_ports, ask.
+            Other fields, such as title, name, masses, features, further_ports, load, ask.
 
         Returns
         -------
@@ -172,17 +220,21 @@ class Scene(Displayed, Model):
 
         Examples
         --------
-        >>> from solidgear import Scene, Segment
+        >>> from solidgear import Port, Scene, Segment
         >>> rod = Segment.cylinder("rod", length=0.3, diameter=0.06)
         >>> scene = Scene.from_parts([rod])
         >>> scene.length, scene.port.y
         (0.3, 0.15)
+        >>> seat = Segment.cylinder("seat", length="40 mm", diameter="50 mm")
+        >>> gear = Port(name="gear", at="rod.middle", attach_to="rod")
+        >>> scene = Scene.from_parts([seat, rod], "42CrMo4", port=gear)
+        >>> scene.segments[1].y0, scene.port.y
+        (0.04, 0.19)
         """
-        segments = tuple(
-            s if "material" in s.model_fields_set else s.with_changes(material=material)
-            for s in segments
-        )
-        if port is None and segments:
+        segments = tuple(_end_to_end(segments, material))
+        if not segments:
+            raise SceneError("a scene needs at least one segment", path=("segments",))
+        if port is None:
             longest = max(segments, key=lambda s: s.length)
             port = Port(y=(longest.y0 + longest.y1) / 2, lo=longest.y0, hi=longest.y1)
         main: dict[str, Any] = {} if port is None else {"port": port}
@@ -226,7 +278,10 @@ class Scene(Displayed, Model):
         (0.3, True)
         """
         path = os.path.normpath(os.path.join(folder, name))
-        return addition("document", "read scene")(tables, path)
+        try:
+            return addition("document", "read scene")(tables, path)
+        except SceneError as error:
+            raise error.of_dict() from None
 
     def to_dict(self) -> dict[str, Any]:
         """Tables of a file that describes the scene, as plain data in SI; `from_dict` reads them back
@@ -247,10 +302,74 @@ class Scene(Displayed, Model):
         """
         return addition("document", "write scene")(self)
 
+    def to_toml(self, path: str | os.PathLike | None = None) -> str:
+        """The file of the scene: that which it was read from with its words and comments, where entries
+        that have changed since are written anew.
+
+        Parameters
+        ----------
+        path : str or path, optional
+            File to write, whole or not at all. Its name is that of the scene, unless the scene has
+            another.
+
+        Returns
+        -------
+        str
+            Text that `solidgear.load` reads back equal.
+
+        Raises
+        ------
+        SolidgearError
+            A file that cannot be written.
+
+        Examples
+        --------
+        >>> import solidgear as sg
+        >>> scene = sg.load("geometry/shaft_stepped.toml")
+        >>> bearing = scene.bearings[0].with_changes(seat_width="22 mm")
+        >>> changed = scene.with_changes(bearings=(bearing, *scene.bearings[1:]))
+        >>> before, after = (s.to_toml().splitlines() for s in (scene, changed))
+        >>> [line for line in after if line not in before]
+        ['seat_width = "22 mm"']
+        """
+        return addition("document", "text of scene")(self, path)
+
+    @property
+    def document(self) -> Any:
+        """Document that the scene was read from, whatever has been changed since; None of one made in
+        Python.
+        """
+        return self._origin.document
+
+    @property
+    def as_read(self) -> Any:
+        """Document that the scene was read from; None of one that has changed since."""
+        return self.document if self._origin.thing == self else None
+
+    def read_from(self, document: Any) -> Scene:
+        """Return the same scene with the document that it was read from."""
+        out = self.unjudged()
+        out._origin = Origin(document, out)
+        return out
+
     @property
     def length(self) -> float:
         """Length of the shaft in m."""
         return self.segments[-1].y1
+
+    def segments_at(self, y: float) -> list[Segment]:
+        """Return the segments at a place along the shaft, m: both where two meet.
+
+        Examples
+        --------
+        >>> import solidgear as sg
+        >>> first = sg.Segment.cylinder("a", length=0.1, diameter=0.03)
+        >>> further = sg.Segment.cylinder("b", y0=0.1, length=0.1, diameter=0.03)
+        >>> scene = sg.Scene.from_parts([first, further])
+        >>> [[s.name for s in scene.segments_at(y)] for y in (0.05, 0.1)]
+        [['a'], ['a', 'b']]
+        """
+        return [segment for segment in self.segments if segment.y0 <= y <= segment.y1]
 
     @property
     def ports(self) -> tuple[Port, ...]:
@@ -272,12 +391,23 @@ class Scene(Displayed, Model):
             return self
         return self.with_changes(features=(), body=None, **off_patches(self))
 
-    @cached_property
+    @property
     def settled(self) -> Scene:
         """The same scene with a stiffness for every bearing, that of catalogue data at their load."""
-        if all(bearing.matrix is not None for bearing in self.bearings):
-            return self
-        return addition("document", "settle scene")(self)
+        waits = any(bearing.matrix is None for bearing in self.bearings)
+        return self._at_load if waits else self
+
+    @cached_property
+    def _at_load(self) -> Scene:
+        try:
+            return addition("document", "settle scene")(self)
+        except SceneError as error:
+            raise SceneError.of(
+                problem.located(self, path=("bearings", *problem.path[1:]))
+                if problem.path[:1] == ("bearing",)
+                else problem
+                for problem in error.problems
+            ) from None
 
     @cached_property
     def outline(self) -> Outline[Segment]:
@@ -320,7 +450,14 @@ class Scene(Displayed, Model):
             )
         if changes.get("load", self.load) != self.load and "bearings" not in changes:
             changes["bearings"] = tuple(b.unsettled for b in self.bearings)
-        return super().with_changes(**changes)
+        if "bearings" in changes:
+            changes["bearings"] = tuple(changes["bearings"])
+            removed = {b.name for b in self.bearings} - {b.name for b in changes["bearings"]}
+            ranges = [u for u in self.uncertain if not u.path.startswith(_paths_of(removed))]
+            changes.setdefault("uncertain", tuple(ranges))
+        out = super().with_changes(**changes)
+        out._origin = self._origin
+        return out
 
     def with_attachment(self, attachment: str) -> Scene:
         """The same scene with ports, bearings and masses attached in one way; faces stay sections.
@@ -416,7 +553,8 @@ class Scene(Displayed, Model):
         SceneError
             A factor that is not above zero.
         """
-        return self.with_changes(bearings=tuple(b.scaled(factor) for b in self.bearings))
+        bearings = self.settled.bearings
+        return self.with_changes(bearings=tuple(b.scaled(factor) for b in bearings))
 
     def with_port(self, **changes: Any) -> Scene:
         """The same scene with fields of the port replaced.

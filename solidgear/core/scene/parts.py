@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import model_serializer, model_validator
+from pydantic import BeforeValidator, model_serializer, model_validator
 
 from solidgear.core.errors import SceneError
+from solidgear.core.registry import addition
 from solidgear.core.scene.limits import TOUCH
+from solidgear.core.scene.materials import by_name
 from solidgear.core.scene.typed import Model
 from solidgear.core.scene.units import (
     Density,
@@ -17,7 +19,6 @@ from solidgear.core.scene.units import (
     PositiveLength,
     Stress,
     Thickness,
-    quantity,
 )
 
 
@@ -111,12 +112,13 @@ class Segment(Model):
     ----------
     name : str
     y0, y1 : float
-        Ends along the shaft, m.
+        Ends along the shaft, m. Without `y0` it begins where the segment before it ends.
     outer0, outer1 : float
         Outer radii at the two ends, m.
     inner0, inner1 : float
         Radii of the bore, m; 0 is solid.
-    material : Material
+    material : Material or str
+        Constants, or the name of a material.
     part : {'shaft', 'frustum', 'backcone'}
 
     Raises
@@ -133,13 +135,13 @@ class Segment(Model):
     """
 
     name: str
-    y0: Position
+    y0: Position = 0.0
     y1: Position
     outer0: PositiveLength
     outer1: PositiveLength
     inner0: Thickness = 0.0
     inner1: Thickness = 0.0
-    material: Material = STEEL
+    material: Annotated[Material, BeforeValidator(by_name)] = STEEL
     part: Literal["shaft", "frustum", "backcone"] = "shaft"
 
     @model_validator(mode="after")
@@ -163,8 +165,8 @@ class Segment(Model):
         length: Any,
         diameter: Any,
         bore: Any = 0.0,
-        y0: float = 0.0,
-        material: Material | None = None,
+        y0: float | str | None = None,
+        material: Material | str | None = None,
     ) -> Segment:
         """A cylinder.
 
@@ -173,10 +175,10 @@ class Segment(Model):
         name : str
         length, diameter, bore : float or str
             m, or texts with units; `bore` is a diameter, 0 is solid.
-        y0 : float
-            Start along the shaft, m.
-        material : Material, optional
-            Without it the segment takes that of the scene it is put into.
+        y0 : float or str, optional
+            Start along the shaft, m; without it, in a scene, the end of the segment before.
+        material : Material or str, optional
+            Constants, or a name; without it the segment takes that of the scene it is put into.
 
         Returns
         -------
@@ -187,15 +189,8 @@ class Segment(Model):
         SceneError
             A length that is not positive, or a bore that leaves no wall.
         """
-        return cls.cone(
-            name,
-            length=length,
-            start_diameter=diameter,
-            end_diameter=diameter,
-            bore=bore,
-            y0=y0,
-            material=material,
-        )
+        words = {"name": name, "length": length, "diameter": diameter, "bore": bore}
+        return addition("document", "segment of words")("cylinder", words, y0, material)
 
     @classmethod
     def cone(
@@ -206,8 +201,8 @@ class Segment(Model):
         start_diameter: Any,
         end_diameter: Any,
         bore: Any = 0.0,
-        y0: float = 0.0,
-        material: Material | None = None,
+        y0: float | str | None = None,
+        material: Material | str | None = None,
     ) -> Segment:
         """A cone with a constant bore.
 
@@ -216,10 +211,10 @@ class Segment(Model):
         name : str
         length, start_diameter, end_diameter, bore : float or str
             m, or texts with units; the outer diameters are those at `y0` and at the far end.
-        y0 : float
-            Start along the shaft, m.
-        material : Material, optional
-            Without it the segment takes that of the scene it is put into.
+        y0 : float or str, optional
+            Start along the shaft, m; without it, in a scene, the end of the segment before.
+        material : Material or str, optional
+            Constants, or a name; without it the segment takes that of the scene it is put into.
 
         Returns
         -------
@@ -237,20 +232,25 @@ class Segment(Model):
         >>> taper.radius_at(0.1)
         (0.0, 0.03)
         """
-        outer0, outer1, inner = (
-            quantity(d, "length") / 2 for d in (start_diameter, end_diameter, bore)
-        )
-        own_material: dict[str, Any] = {} if material is None else {"material": material}
-        return cls(
-            name=name,
-            y0=y0,
-            y1=y0 + quantity(length, "length"),
-            outer0=outer0,
-            outer1=outer1,
-            inner0=inner,
-            inner1=inner,
-            **own_material,
-        )
+        words = {
+            "name": name,
+            "length": length,
+            "start_diameter": start_diameter,
+            "end_diameter": end_diameter,
+            "bore": bore,
+        }
+        return addition("document", "segment of words")("cone", words, y0, material)
+
+    def with_changes(self, **changes: Any) -> Segment:
+        """Return a validated copy with some fields replaced; what a scene decides stays open."""
+        values = {name: getattr(self, name) for name in self.model_fields_set}
+        return type(self)(**{**values, **changes})
+
+    def beginning_at(self, y: float) -> Segment:
+        """Return the segment at its place, or beginning at `y` (m) where it was made without one."""
+        if "y0" in self.model_fields_set:
+            return self
+        return self.with_changes(y0=y, y1=y + self.y1)
 
     @property
     def length(self) -> float:

@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Annotated, Any, ClassVar, Protocol, TypeVar
 
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import AfterValidator, Field, PrivateAttr, model_validator
 from pydantic.fields import FieldInfo
 
 from solidgear.core.errors import SceneError, listed, nearest
@@ -23,6 +23,8 @@ from solidgear.core.scene.units import Length, PositiveLength
 
 #: in place of a place that is not known, m
 SOMEWHERE = 1.0
+#: fields that give a place
+PLACE_FIELDS = ("y", "lo", "hi")
 _Thing = TypeVar("_Thing", bound="Placed")
 
 
@@ -66,6 +68,17 @@ class Places:
         if y is not None:
             self.datums[name] = y
 
+    def enter(self, segment: str, ends: tuple[float, float], datums: Sequence[str]) -> None:
+        """Add the datums of a shape between two ends, m, whose surface is known or all of it."""
+        lo, hi = self.surface.get(segment, ends)
+        places = {
+            "start": ends[0],
+            "end": ends[1],
+            "middle": (ends[0] + ends[1]) / 2,
+            "mid_face": (lo + hi) / 2,
+        }
+        self.datums |= {f"{segment}.{datum}": places[datum] for datum in datums}
+
     def forget(self) -> None:
         """Drop all places of a shaft that is in doubt, and keep the names."""
         self.datums, self.surface = {}, {}
@@ -95,7 +108,7 @@ class Places:
         """
         if not self.of_body:
             raise SceneError(
-                "a seat by diameter is looked for on a part from a file ([body]); on segments "
+                "a seat by diameter is looked for on a part from a file; on segments "
                 f"write {instead}",
                 path=("seat",),
             )
@@ -171,6 +184,67 @@ class Placed(Model):
     #: fields that come from keys of other names in a file, and these keys
     sources: ClassVar[Mapping[str, tuple[str, ...]]] = {"y": ("position",)}
     _aliases: ClassVar[Mapping[str, str]] = {"position": "y"}
+    #: words that wait for a shaft, by which a thing made in Python is placed; None once it is
+    _table: Mapping[str, Any] | None = PrivateAttr(None)
+
+    def __init__(self, /, **data: Any):
+        if not self._are_words(data):
+            super().__init__(**self._by_field(data))
+            return
+        words = by_key(self.Words)
+        fields = {key: value for key, value in data.items() if key not in words}
+        places = Places("average", of_body=True)
+        places.names, places.datums["start"] = None, 0.0
+        word_entries = {key: value for key, value in data.items() if key in words}
+        if "y" in fields and "position" in words:
+            word_entries.setdefault("position", fields.pop("y"))
+        place_fields = self.place(self.Words(**word_entries), fields, places)
+        provisional = {
+            key: SOMEWHERE if value is None else value for key, value in place_fields.items()
+        }
+        super().__init__(**self._by_field(fields | provisional))
+        if None in place_fields.values():
+            self._table = fields | word_entries
+
+    @classmethod
+    def _are_words(cls, data: Mapping[str, Any]) -> bool:
+        """Return True for words of a file that place a thing, False where its fields do."""
+        fields, words = cls.model_fields, by_key(cls.Words)
+        names = {cls._field_name(key, data) for key in data}
+        if isinstance(data.get("patch"), str) or names & {*words} - {*fields} - {*cls._aliases}:
+            return True
+        missing = [key for key in PLACE_FIELDS if key in cls.sources and key not in names]
+        return any(fields[key].is_required() for key in missing)
+
+    @classmethod
+    def _by_field(cls, data: dict[str, Any]) -> dict[str, Any]:
+        """Return data of the constructor by the fields that hold them."""
+        return data
+
+    @property
+    def words(self) -> Mapping[str, Any] | None:
+        """Words that need a shaft, until a scene puts the thing on one; None once it has a place."""
+        return self._table
+
+    def placed_on(self: _Thing, places: Places, path: tuple) -> _Thing:
+        """Return the thing at its place on a shaft; errors are under a path."""
+        if self._table is None:
+            return self
+        try:
+            thing = type(self).read(self._table, places)
+        except SceneError as error:
+            raise error.located(self._table).located(None, prefix=path) from None
+        assert thing is not None  # every place on a shaft is known
+        return thing
+
+    def with_changes(self: _Thing, **changes: Any) -> _Thing:
+        """Return a validated copy with some fields replaced, by name."""
+        if self._table is None:
+            return super().with_changes(**changes)
+        return type(self)(**{**self._table, **changes})
+
+    def __repr_args__(self) -> Any:
+        return super().__repr_args__() if self._table is None else self._table.items()
 
     @classmethod
     def place(cls, words: Any, table: Mapping[str, Any], places: Places) -> dict[str, Any]:

@@ -4,16 +4,25 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Annotated, ClassVar, Literal, NamedTuple, TypeAlias
+from dataclasses import dataclass
+from typing import Annotated, Any, ClassVar, Literal, NamedTuple, TypeAlias
 
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from solidgear.core.errors import SceneError
 from solidgear.core.scene.materials import by_name
 from solidgear.core.scene.parts import Material, Segment, Strength
-from solidgear.core.scene.places import Places, plain_name
-from solidgear.core.scene.typed import Model
-from solidgear.core.scene.units import Angle, Density, Modulus, Poisson, PositiveLength, Thickness
+from solidgear.core.scene.places import Places, Seat, plain_name
+from solidgear.core.scene.typed import Model, Problems
+from solidgear.core.scene.units import (
+    Angle,
+    Density,
+    Modulus,
+    Poisson,
+    PositiveLength,
+    Thickness,
+    quantity,
+)
 
 NANOMETRE = 1e-9
 _WORDS = ("start", "end", "bearing")  # first words of datums, so no segment may be called that
@@ -237,7 +246,7 @@ def lay_out(shapes: Sequence[Shape], usual: Material, places: Places) -> Laid:
         material = shape.material.in_scene_of(usual)
         for frustum in shape.frusta():
             try:
-                segment = _segment(shape, frustum, y, material)
+                segment = _segment(shape, frustum, y, {"y0": y, "material": material})
             except SceneError as error:
                 problems += [
                     problem.located(None, path=("segment", index, shape.key_of(problem.path[0])))
@@ -249,16 +258,39 @@ def lay_out(shapes: Sequence[Shape], usual: Material, places: Places) -> Laid:
             y = segment.y1
             if frustum.part != "backcone" or shape.name.endswith(BEHIND):
                 places.surface[shape.name] = (segment.y0, y)
-        lo, hi = places.surface.get(shape.name, (start, y))
-        datums = {"start": start, "end": y, "middle": (start + y) / 2, "mid_face": (lo + hi) / 2}
-        places.datums |= {f"{shape.name}.{datum}": datums[datum] for datum in shape.datums}
+        places.enter(shape.name, (start, y), shape.datums)
     places.datums["end"] = y
     if problems:
         raise SceneError.of(problems)
     return laid
 
 
-def _segment(shape: Shape, frustum: Frustum, y: float, material: Material) -> Segment:
+def segment_of(
+    kind: str, words: Mapping[str, Any], y0: Any = None, material: Any = None
+) -> Segment:
+    """Return the segment of a cylinder or cone by the words of a file, which begins at `y0` (m), or
+    where a scene puts it, and is of a material of its own or of that of the scene.
+    """
+    shape = SHAPES[kind](**{"kind": kind, **words})
+    (frustum,) = shape.frusta()
+    fields = {"y0": y0, "material": material}
+    problems = Problems()
+    start = 0.0 if y0 is None else problems.read(lambda: quantity(y0, "length"), ("y0",))
+    problems.raise_any()
+    try:
+        return _segment(
+            shape, frustum, start or 0.0, {key: v for key, v in fields.items() if v is not None}
+        )
+    except SceneError as error:
+        raise SceneError.of(
+            problem.located(
+                {**words, **fields}, path=(shape.key_of(problem.path[0]), *problem.path[1:])
+            )
+            for problem in error.problems
+        ) from None
+
+
+def _segment(shape: Any, frustum: Frustum, y: float, fields: Mapping[str, Any]) -> Segment:
     behind = frustum.part == "backcone" and not shape.name.endswith(BEHIND)
     start_bore, end_bore = shape.bores
     if frustum.length <= NANOMETRE:
@@ -267,12 +299,40 @@ def _segment(shape: Shape, frustum: Frustum, y: float, material: Material) -> Se
         raise SceneError(reason, path=(key,))
     return Segment(
         name=shape.name + BEHIND * behind,
-        y0=y,
         y1=y + frustum.length,
         outer0=frustum.outer0,
         outer1=frustum.outer1,
         inner0=start_bore / 2,
         inner1=end_bore / 2,
-        material=material,
         part=frustum.part,
+        **fields,
     )
+
+
+@dataclass
+class Patches:
+    """A part of a scene, which gives places on its faces."""
+
+    body: Any
+
+    def span(self, seat: Seat) -> tuple[float, float]:
+        """Refuse a seat by diameter."""
+        reason = "a seat by diameter is looked for where a file is read: give its place and width"
+        raise SceneError(reason, path=("diameter",))
+
+
+def places_on(segments: Sequence[Segment], body: Any = None) -> Places:
+    """Return the places on segments end to end, as those of the shapes of a file."""
+    part = None if body is None else Patches(body)
+    places = Places("average", of_body=body is not None, part=part)
+    places.datums |= {"start": segments[0].y0, "end": segments[-1].y1}
+    names = {segment.name.removesuffix(BEHIND): segment for segment in segments}
+    for name in names:
+        pieces = [s for s in segments if s.name in (name, name + BEHIND)]
+        head = next((s for s in pieces if s.name == name), pieces[0])
+        places.surface[name] = (head.y0, head.y1)
+        kind = BevelHead if head.part == "frustum" else Cylinder
+        places.enter(name, (pieces[0].y0, pieces[-1].y1), kind.datums)
+        places.segments.append(name)
+    places.names = [*places.datums]
+    return places

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import numpy as np
@@ -40,6 +40,12 @@ if TYPE_CHECKING:
 else:
     Catalogue = addition("table", "catalogue") or Absent
 
+
+def _catalogue_keys() -> Collection[str]:
+    """Return the keys of catalogue data, which in Python may stand beside those of the bearing."""
+    return getattr(Catalogue, "model_fields", ())
+
+
 Attachment = Literal["average", "rigid", "section"]
 Status = Literal["published", "identified", "assumed", "measured", "calculated", "estimated"]
 Face = Literal["start", "end"]
@@ -62,14 +68,16 @@ class Bearing(Placed):
     name : str
         Name in results, loads and sweeps.
     y : float
-        Middle of the seat, m; `position`, as in a file, is the same.
+        Middle of the seat, m; `position`, as in a file, is the same, and with ``from`` counts from
+        another datum of the shaft. ``on="neck"`` is the surface of a segment.
     seat_width : float
         Along the shaft, m.
     matrix : tuple of tuple of float, or None
         6x6 of the bearing alone, SI, order (x, y, z, thx, thy, thz). The constructor also takes it
         as `stiffness`: six rows, or named entries. None as long as catalogue data are not solved.
     catalogue : Catalogue or None
-        Catalogue data that the stiffness comes from, where it is not given.
+        Catalogue data that the stiffness comes from, where it is not given; the constructor also
+        takes their keys beside those of the bearing, such as ``designation="6206"``.
     axial_series : tuple of float
         Springs in series with its axial stiffness, N/m.
     housing : Elastic or None
@@ -114,13 +122,14 @@ class Bearing(Placed):
         """Words for the seat: along the shaft, on a cylinder of a part, or on faces of a body."""
 
         seat: Seat | None = None
+        on: str | None = None
         patch: str | None = None
         point: Point = None
         settled: Settled | Literal[False] | None = None
 
     sources: ClassVar = {
-        "y": ("seat", "face", "position"),
-        "seat_width": ("seat", "seat_width"),
+        "y": ("seat", "on", "face", "position"),
+        "seat_width": ("seat", "on", "seat_width"),
         "matrix": ("matrix", "stiffness"),
     }
 
@@ -141,13 +150,26 @@ class Bearing(Placed):
     patch: Patch | None = None
 
     def __init__(self, /, **data: Any):
+        inside = [key for key in data if key in _catalogue_keys() and key not in self.table_keys()]
+        if inside:
+            if data.get("catalogue") is not None:
+                reason = "belongs to catalogue, which gives it as well; write it in one place"
+                raise SceneError(reason, path=(inside[0],), value=show(data[inside[0]]))
+            data = {key: value for key, value in data.items() if key not in inside} | {
+                "catalogue": {key: data[key] for key in inside}
+            }
+        super().__init__(**data)
+
+    @classmethod
+    def _by_field(cls, data: dict[str, Any]) -> dict[str, Any]:
+        data = dict(data)
         if "stiffness" in data:
             data["matrix"] = data.pop("stiffness")
         if data.get("hold") in tuple(HOLDS) and "matrix" not in data:
             data["matrix"] = held_matrix(data["hold"])
         if data.get("face") is not None:
             data.setdefault("attachment", "section")
-        super().__init__(**data)
+        return data
 
     @classmethod
     def place(cls, words: Any, table: Mapping[str, Any], places: Places) -> dict[str, Any]:
@@ -158,10 +180,11 @@ class Bearing(Placed):
         if words.seat is not None:
             reason = "a seat has its place and width in seat; leave one of them out"
             words.refuse(reason, "position", "from_", "face", "seat_width", table=table)
-            lo, hi = places.span_of_seat(words.seat, "position and seat_width") or (None, None)
-            if lo is None or hi is None:
-                return {"y": None, "seat_width": None}
-            return {"y": (lo + hi) / 2, "seat_width": hi - lo}
+            return _on_surface(places.span_of_seat(words.seat, "position and seat_width"))
+        if words.on is not None:
+            reason = "a bearing on a segment has its place and width; leave one of them out"
+            words.refuse(reason, "position", "from_", "face", "seat_width", table=table)
+            return _on_surface(places.span_of(words.on, "on"))
         if face is None:
             words.require("position", 'write position = "28 mm" with from, or face = "start"')
             return {"y": words.y(places)}
@@ -214,6 +237,15 @@ class Bearing(Placed):
         if problems := [*_support_problems(self), *patch_problems(self)]:
             raise SceneError.of(problems)
         return self
+
+    def with_changes(self, **changes: Any) -> Bearing:
+        """Return a validated copy with some fields replaced; other catalogue data wait for their
+        stiffness.
+        """
+        if not {"matrix", "stiffness"} & {*changes} and "catalogue" in changes:
+            same = changes["catalogue"] == self.catalogue
+            changes["matrix"] = self.matrix if same else None
+        return super().with_changes(**changes)
 
     @property
     def floats(self) -> bool:
@@ -326,9 +358,11 @@ class Port(Placed):
     ----------
     name : str
     y : float
-        Place, m; it need not lie within the span. `position`, as in a file, is the same.
+        Place, m; it need not lie within the span. `position`, as in a file, is the same, and so is
+        ``at="gear.middle"``.
     lo, hi : float
-        Span of the surface that carries it, m.
+        Span of the surface that carries it, m, or ``attach_to="gear"``; ``on="gear"`` is the middle
+        of a segment, attached to all of its surface.
     attachment : {'average', 'rigid', 'section'}
     patch : Patch or None
         Faces that carry it and the point itself, on a body without an axis.
@@ -349,6 +383,7 @@ class Port(Placed):
         """Words for the place of the point, and for the surface that carries it."""
 
         at: str | None = None
+        on: str | None = None
         attach_to: str | None = None
         span: Annotated[list[Length], Field(min_length=2, max_length=2)] | None = None
         seat: Seat | None = None
@@ -356,9 +391,9 @@ class Port(Placed):
         point: Point = None
 
     sources: ClassVar = {
-        "y": ("at", "position"),
-        "lo": ("seat", "span", "attach_to"),
-        "hi": ("seat", "span", "attach_to"),
+        "y": ("at", "on", "position"),
+        "lo": ("seat", "span", "on", "attach_to"),
+        "hi": ("seat", "span", "on", "attach_to"),
     }
 
     name: str = "port"
@@ -378,6 +413,12 @@ class Port(Placed):
     def place(cls, words: Any, table: Mapping[str, Any], places: Places) -> dict[str, Any]:
         if words.patch is not None:
             return fields_on_patch(words, table, places, "lo", "hi")
+        if words.on is not None:
+            reason = "a port on a segment has its place and surface; leave one of them out"
+            words.refuse(reason, "at", "position", "from_", "attach_to", "span", "seat")
+            lo, hi = places.span_of(words.on, "on") or (None, None)
+            middle = None if lo is None or hi is None else (lo + hi) / 2
+            return {"y": middle, "lo": lo, "hi": hi}
         problems = Problems()
         y = problems.read(lambda: cls._y(words, places))
         lo, hi = problems.read(lambda: cls._span(words, places)) or (None, None)
@@ -406,6 +447,13 @@ class Port(Placed):
         hint = 'name the segment whose surface carries the port, or write span = ["0 mm", "58 mm"]'
         words.require_one("attach_to", "span", hint)
         return words.span or places.span_of(words.attach_to, "attach_to")
+
+
+def _on_surface(span: tuple[float, float] | None) -> dict[str, float | None]:
+    """Return place and width of a seat between two ends, m; None where they are not known."""
+    if span is None:
+        return {"y": None, "seat_width": None}
+    return {"y": (span[0] + span[1]) / 2, "seat_width": span[1] - span[0]}
 
 
 def _check_face_words(words: Along, table: Mapping[str, Any]) -> None:

@@ -28,21 +28,36 @@ def parse(file_path: str) -> dict[str, Any]:
     """Read the tables of a TOML file; refuse a missing, odd or too large file, text that is not UTF-8
     and text that is not TOML.
     """
+    return tables_in(read_text(file_path), file_path)
+
+
+def read_text(file_path: str) -> str:
+    """Read the text of a TOML file; refuse a missing, odd or too large file, and text that is not
+    UTF-8.
+    """
     try:
-        text = _text(file_path)
-        return tomllib.loads(text)
+        return _text(file_path)
     except FileNotFoundError:
         reason = "there is no such file"
     except UnicodeDecodeError as error:
         reason = f"not UTF-8 text (byte {error.start}); save the file as UTF-8"
-    except tomllib.TOMLDecodeError as error:
-        reason = _syntax_reason(text, str(error))
-    except RecursionError:
-        reason = "not a scene: its tables are nested too deeply"
     except SceneError as error:
         reason = error.reason
     except (OSError, ValueError) as error:
         reason = f"cannot be read: {getattr(error, 'strerror', None) or error}"
+    raise SceneError(reason, where=place_of(file_path))
+
+
+def tables_in(text: str, file_path: str) -> dict[str, Any]:
+    """Return the tables of the text of a file; refuse text that is not TOML."""
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        reason = _syntax_reason(text, str(error))
+    except RecursionError:
+        reason = "not a scene: its tables are nested too deeply"
+    except ValueError as error:
+        reason = f"cannot be read: {error}"
         if "digits" in str(error):
             reason = "not a scene: a number in it has thousands of digits"
     raise SceneError(reason, where=place_of(file_path))

@@ -189,11 +189,38 @@ def _read_text(text: str, dimension: str) -> float:
         kind_name = dimension.replace("_", " ")
         kind = f"not a unit of {kind_name}" if si else "a unit, but this is a plain ratio"
         raise wrong(f'{show(unit)} is {kind}; write for example "{example}"')
+    return _in_si(number, factor)
+
+
+def _in_si(number: float, factor: float) -> float:
+    """Return a number in units of a factor in SI."""
     # dividing by 1000 is exact where multiplying by 0.001 is not: "208 mm" must be the same float
     # as 0.208
-    return (
-        number / round(1 / factor) if factor < 1 and (1 / factor).is_integer() else number * factor
-    )
+    if factor < 1 and (1 / factor).is_integer():
+        return number / round(1 / factor)
+    return number * factor
+
+
+def with_unit_of(written: Any, value: Any) -> Any:
+    """Return a number in SI as a text with the unit in which an entry is written; as it is where there
+    is none, or where no text of that unit is the same number.
+
+    Examples
+    --------
+    >>> with_unit_of("40 mm", 0.0415), with_unit_of(0.04, 0.0415), with_unit_of("40 mm", 1 / 3)
+    ('41.5 mm', 0.0415, '333.3333333333333 mm')
+    """
+    match = _TEXT.fullmatch(written) if isinstance(written, str) else None
+    factors = si_factor(match["unit"]) if match and match["unit"] else None
+    if factors is None or match is None or isinstance(value, bool | str):
+        return value
+    for digits in range(1, 18):
+        text = f"{value / factors[0]:.{digits}g}"
+        if _in_si(number := float(text), factors[0]) == value:
+            plain = not number or 1e-4 <= abs(number) < 1e6
+            text = repr(number).removesuffix(".0") if plain else re.sub(r"e\+?(-?)0*", r"e\1", text)
+            return f"{text} {match['unit']}"
+    return value
 
 
 @functools.lru_cache(maxsize=256)

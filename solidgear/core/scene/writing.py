@@ -33,7 +33,7 @@ _BESIDE = ("title", "name", "source", "lubrication", "uncertain", "ask")
 
 def tables_of(scene: Scene) -> Table:
     """Return the tables of a file that describes a scene."""
-    tables = _unsettled_tables(scene)
+    tables = unsettled_tables(scene)
     waits = [b for b in scene.bearings if b.catalogue is not None]
     if waits:
         digest = digest_of(tables)
@@ -51,7 +51,7 @@ def digest_of(tables: Mapping[str, Any]) -> str:
 
 def digest_of_scene(scene: Scene) -> str:
     """Return the digest of the tables of a scene, whatever stiffness catalogue bearings have."""
-    return digest_of(_unsettled_tables(scene))
+    return digest_of(unsettled_tables(scene))
 
 
 def _settled(bearing: Bearing, digest: str) -> Any:
@@ -61,7 +61,7 @@ def _settled(bearing: Bearing, digest: str) -> Any:
     return {"under": digest, "stiffness": stiffness_entries(bearing.matrix)}
 
 
-def _unsettled_tables(scene: Scene) -> Table:
+def unsettled_tables(scene: Scene) -> Table:
     """Return the tables of a scene without the stiffness that catalogue data have under its load."""
     tables: Table = {
         "title": scene.title,

@@ -35,6 +35,7 @@ class Cut(OnSegment):
 
     Words: ClassVar[type[Model]] = Along
     sources: ClassVar = {"y": ("position",)}
+    _aliases: ClassVar = {}  # a position counts from the start of the segment
     sort: ClassVar[str] = "cut"
 
     y: Position
@@ -43,7 +44,8 @@ class Cut(OnSegment):
     def place(cls, words: Any, table: Mapping[str, Any], places: Places) -> dict[str, Any]:
         # along the segment, unless another datum is given
         y = words.y(places, f"{table.get('segment')}.start")
-        unknown_segment = words.from_ is None and bool(places.datums)  # refused as such
+        # refused as such
+        unknown_segment = words.from_ is None and places.names is not None
         if y is None and unknown_segment:
             y = words.position or 0.0
         return {"y": y}

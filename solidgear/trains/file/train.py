@@ -14,10 +14,11 @@ from math import pi
 from typing import Any
 
 import numpy as np
-from pydantic import model_validator
+from pydantic import PrivateAttr, model_validator
 
 from solidgear.core import Bearing, Document, Model, Scene, SceneError, SolidgearError, listed
 from solidgear.core.registry import addition
+from solidgear.core.scene.document import Origin
 from solidgear.trains.file.gears import HeadInertia, Member, Shaft
 from solidgear.trains.file.housing import TrainHousing
 from solidgear.trains.file.layout import (
@@ -98,6 +99,7 @@ class Train(Model):
     housing: TrainHousing | None = None
     operation: Operation = ()
     ask: TrainAsk = TrainAsk()
+    _origin: Origin = PrivateAttr(Origin())
 
     @classmethod
     def of(cls, scene: Scene) -> Train:
@@ -179,7 +181,9 @@ class Train(Model):
         if "mesh" in changes:
             self.only()
             changes["meshes"] = (changes.pop("mesh"),)
-        return super().with_changes(**{"shafts": shafts, "rotors": rotors, **changes})
+        out = super().with_changes(**{"shafts": shafts, "rotors": rotors, **changes})
+        out._origin = self._origin
+        return out
 
     @classmethod
     def from_dict(
@@ -214,7 +218,10 @@ class Train(Model):
         True
         """
         path = os.path.normpath(os.path.join(folder, name))
-        return addition("document", "read train")(Document(tables, path))
+        try:
+            return addition("document", "read train")(Document(tables, path))
+        except SceneError as error:
+            raise error.of_dict() from None
 
     def to_dict(self) -> dict[str, Any]:
         """Tables of a file that describes the train with its shafts, as plain data in SI; `from_dict`
@@ -226,6 +233,40 @@ class Train(Model):
             By the keys of a file. Names of files are full paths.
         """
         return addition("document", "write train")(self)
+
+    def to_toml(self, path: str | os.PathLike | None = None) -> str:
+        """The file of the train: that which it was read from with its words and comments, where entries
+        that have changed since are written anew; a scene that has changed stands inside.
+
+        Parameters
+        ----------
+        path : str or path, optional
+            File to write, whole or not at all.
+
+        Returns
+        -------
+        str
+            Text that `solidgear.load_train` reads back equal.
+
+        Raises
+        ------
+        SolidgearError
+            A file that cannot be written.
+        """
+        return addition("document", "text of train")(self, path)
+
+    @property
+    def document(self) -> Document | None:
+        """Document that the train was read from, whatever has been changed since; None of one made in
+        Python.
+        """
+        return self._origin.document
+
+    def read_from(self, document: Document) -> Train:
+        """Return the same train with the document that it was read from."""
+        out = self.unjudged()
+        out._origin = Origin(document)
+        return out
 
     @property
     def called(self) -> str:
@@ -439,6 +480,15 @@ class Train(Model):
     def spring_port(self, name: str) -> str:
         """Return the port of a shaft that the torsional spring of a rotor acts on."""
         return self.rotors[name].spring.at or f"{name} spring"
+
+    def torque_entry(self, side: str, gear: str) -> str | None:
+        """Return the port at which the torque of a gear enters or leaves its shaft: that of a rotor, else
+        of a further gear or a carrier; None where there is none.
+        """
+        rotors = [self.spring_port(name) for name in self.rotors_of(side)]
+        gears = [name for name in self.shafts[side].gears if name != gear]
+        carriers = [stage.ports[1] for stage in self.stages if stage.shafts[1] == side]
+        return next(iter([*rotors, *gears, *carriers]), None)
 
     def shaft(self, side: str) -> Scene:
         """Return the scene of a shaft, with a free station at the place of every torsional spring that

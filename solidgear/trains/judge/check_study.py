@@ -17,11 +17,10 @@ from solidgear.core import (
 )
 from solidgear.guards.check import Check, check_scene
 from solidgear.show.options import MODEL
-from solidgear.trains.file.train import Train
 
 
 def check(
-    source: Source | Train, model: str = MODEL, options: Mapping[str, Any] | None = None
+    source: Source, model: str = MODEL, options: Mapping[str, Any] | None = None
 ) -> Check:
     """Which models hold for a scene or train, which do not, and why; solves light meshes only.
 
@@ -52,7 +51,7 @@ def check(
     ('holds', [])
     """
     usual = model == MODEL and not options
-    if isinstance(source, Train) or is_train(source):
+    if is_train(source):
         # start-up: a shaft has no use for the studies of trains
         from solidgear.trains.judge.check import check_train
         from solidgear.trains.options import Reduced

@@ -28,7 +28,6 @@ from solidgear.core.scene.toml_file import name_of
 from solidgear.show.options import speed_of
 from solidgear.show.sheet import Sheet
 from solidgear.show.units import Units
-from solidgear.trains.file.train import Train
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -75,7 +74,7 @@ def bearings_sheet(solved: SolvedBearings, units: Units, chart: Path | None = No
 
 
 def bearing(
-    source: Source | Train,
+    source: Source,
     name: str | None = None,
     *,
     load: str | None = None,
@@ -112,7 +111,7 @@ def bearing(
     >>> [(fact.name, fact.data.kind, round(fact.life.life.basic / 1e9, 1)) for fact in found.facts]
     [('A', 'cylindrical', 13.8), ('B', 'angular_contact', 23.1)]
     """
-    if isinstance(source, Train) or is_train(source):
+    if is_train(source):
         for option, value in {"--load": load, "--speed": speed}.items():
             if value:
                 raise SolidgearError(
@@ -130,7 +129,7 @@ def bearing(
     return SolvedBearings(scene.name, tuple(facts), scene=scene, body=body)
 
 
-def _of_train(source: Source | Train, name: str | None) -> SolvedBearings:
+def _of_train(source: Source, name: str | None) -> SolvedBearings:
     """Return the bearings of a train, or one of them."""
     # start-up: bearings of a shaft have no use for the equilibrium of trains
     from solidgear.trains.load.lives import train_lives

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Annotated
@@ -15,6 +16,7 @@ from solidgear.show.plot import WIDE, Chart
 from solidgear.show.scales import Axis
 from solidgear.show.sheet import Sheet, Terminal, present
 from solidgear.show.table import NUMBER, Column, Table, text
+from solidgear.show.units import ENGINEERING, Units
 from solidgear.variants.optimise.optimise import Design, Optimum
 from solidgear.variants.optimise.optimise import optimise as optimised
 
@@ -76,27 +78,25 @@ def optimise(
     run: Run,
 ) -> None:
     present(
-        lambda progress: optimum_sheet(
-            optimised(
-                scene,
-                vary or (),
-                goal,
-                keep or (),
-                keep_sum=keep_sum or (),
-                model=None if model == AUTO else str(model),
-                tol=tol,
-                point=point,
-                every_point=every_point,
-                progress=progress,
-            )
-        ),
+        lambda progress: optimised(
+            scene,
+            vary or (),
+            goal,
+            keep or (),
+            keep_sum=keep_sum or (),
+            model=None if model == AUTO else str(model),
+            tol=tol,
+            point=point,
+            every_point=every_point,
+            progress=progress,
+        ).sheet(),
         run,
         out,
     )
 
 
-def optimum_sheet(optimum: Optimum) -> Sheet:
-    """Return the sheet of a search."""
+def optimum_sheet(optimum: Optimum, units: Units = ENGINEERING) -> Sheet:
+    """Return the sheet of a search, whose numbers are in SI as those of the file are."""
     title = f"{optimum.scene}: {optimum.goal}"
     return Sheet(
         name="optimum",
@@ -125,11 +125,11 @@ def designs(optimum: Optimum) -> Table:
     """Return the table of all designs in the order in which they were solved."""
     labels = list(optimum.path[0].values)
     columns = [
-        Column("", kind=NUMBER),
+        Column("", kind=NUMBER, name="design"),
         *(Column(label, write="{:.6g}".format, kind=NUMBER) for label in labels),
         Column(optimum.goal.name, write="{:.6g}".format, kind=NUMBER),
-        Column("bar", write="{:.2g}".format, kind=NUMBER),
-        text(""),
+        Column("bar", write="{:.2g}".format, kind=NUMBER, name=f"{optimum.goal.name} error bar"),
+        replace(text(""), name="status"),
     ]
     rows = [
         [d.number, *d.values.values(), d.value, d.bar, _remark(optimum, d)] for d in optimum.path

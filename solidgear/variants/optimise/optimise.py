@@ -23,7 +23,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from solidgear.core import Displayed, SolidgearError, Source, document_of, nearest
+from solidgear.core import Sheeted, SolidgearError, Source, document_of, nearest
 from solidgear.core.judge.change import Change
 from solidgear.core.plain import plain
 from solidgear.variants.optimise.designs import Designs, scene_designs, train_designs
@@ -47,10 +47,11 @@ class Design:
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Optimum(Displayed):
+class Optimum(Sheeted):
     """Result of a search."""
 
     shown: ClassVar[str] = "variants.optimise.command:designs"
+    sheeted: ClassVar[str] = "variants.optimise.command:optimum_sheet"
 
     scene: str
     goal: Wish
@@ -87,7 +88,7 @@ class Optimum(Displayed):
             "best": None if self.best is None else self.best.number,
             "at_end": list(self.at_end),
             "search": self.how,
-            "bars": self.unbarred or "beside each value",
+            "about_bars": self.unbarred or "beside each value",
             "gain": None if self.gain is None else plain(self.gain),
             "designs": [
                 {

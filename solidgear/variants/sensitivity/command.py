@@ -9,14 +9,14 @@ from typing import Annotated
 
 import typer
 
-from solidgear.show.command import Progress, command
+from solidgear.show.command import command
 from solidgear.show.options import Fixed, SceneFile, Shown, options
 from solidgear.show.panel import Panel, Series, readout, wrapped
 from solidgear.show.plot import NARROW, WIDE, Chart
 from solidgear.show.scales import Axis, in_percent
 from solidgear.show.sheet import Sheet, Terminal, present
-from solidgear.show.table import Column, Table, text
-from solidgear.show.units import Units, units_named
+from solidgear.show.table import Cell, Column, Table, text
+from solidgear.show.units import Units
 from solidgear.show.words import percent
 from solidgear.variants.sensitivity.run import Derivative, OfNumber, Sensitivities
 from solidgear.variants.sensitivity.run import sensitivities as derive
@@ -50,12 +50,13 @@ def sensitivities(
     run: Shown,
 ) -> None:
     builder_options = options(fixed.settings)
-
-    def study(progress: Progress) -> Sheet:
-        result = derive(scene, fixed.name, of, by, progress=progress, **builder_options)
-        return sensitivities_sheet(result, units_named(run.units))
-
-    present(study, run, out)
+    present(
+        lambda progress: derive(
+            scene, fixed.name, of, by, progress=progress, **builder_options
+        ).sheet(run.units),
+        run,
+        out,
+    )
 
 
 def sensitivities_sheet(result: Sensitivities, units: Units) -> Sheet:
@@ -98,8 +99,12 @@ def table(number: OfNumber, units: Units) -> Table:
     columns: list[Column] = [
         text("entry of the file", lambda d: d.path),
         text("as written", lambda d: d.written),
-        Column("for 1 % more", lambda d: d.elasticity / 100, percent),
-        Column("by its unit", lambda d: _by_unit(d, number.unit, units)),
+        Column("for 1 % more", lambda d: d.elasticity / 100, percent, unit="1"),
+        Column(
+            "by its unit",
+            lambda d: Cell(d.by, "", _by_unit(d, number.unit, units)),
+            name="derivative",
+        ),
     ]
     distances = [d.apart / 100 for d in shown if d.apart is not None]
     if max(distances, default=0.0) >= LEAST:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from solidgear.core import (
     Quantity,
     Scene,
     SceneError,
+    Sheeted,
     SolidgearError,
     Source,
     as_supports,
@@ -86,7 +87,7 @@ class OfNumber:
     """Derivatives of one number, the strongest first."""
 
     plain_names = (
-        "name",
+        ("quantity", "name"),
         "value",
         "unit",
         ("from_coarser_mesh", "apart"),
@@ -108,11 +109,13 @@ class OfNumber:
         return by_path[path]
 
 
-@dataclass(frozen=True)
-class Sensitivities:
+@dataclass(frozen=True, repr=False)
+class Sensitivities(Sheeted):
     """Derivatives of some numbers by entries of a scene file."""
 
-    plain_names = ("title", "model", "of", "without", "bars", "notes")
+    sheeted: ClassVar[str] = "variants.sensitivity.command:sensitivities_sheet"
+
+    plain_names = ("title", "model", ("numbers", "of"), "without", ("about_bars", "bars"), "notes")
     bars = BARS
 
     title: str

@@ -1,0 +1,114 @@
+"""Files that scenes and trains write: what has not changed stays as a person wrote it."""
+
+import tomllib
+from difflib import ndiff
+from pathlib import Path
+
+import pytest
+import strategies
+from hypothesis import given, settings
+
+import solidgear as sg
+
+GEOMETRY = Path(__file__).parents[1] / "geometry"
+
+
+def changed_lines(before: str, after: str) -> list[str]:
+    """Lines that went and lines that came."""
+    lines = ndiff(before.splitlines(), after.splitlines())
+    return [line for line in lines if line[:1] in "+-"]
+
+
+@pytest.mark.parametrize("name", ["pinion_overhung", "pinion_filleted", "gearbox_catalogue"])
+def test_a_scene_that_was_read_writes_its_text(name, tmp_path):
+    path = GEOMETRY / f"{name}.toml"
+    scene = sg.load(path)
+    assert scene.to_toml() == path.read_text(encoding="utf-8")
+    for copy in (tmp_path / f"{name}.toml", tmp_path / "other.toml"):
+        scene.to_toml(copy)
+        assert sg.load(copy) == scene
+    made = sg.Scene.from_dict(scene.to_dict())  # remembers no text
+    made.to_toml(copy)
+    assert sg.load(copy) == scene
+
+
+def test_changed_entries_alone_are_written_in_their_units():
+    path = GEOMETRY / "pinion_overhung.toml"
+    text, scene = path.read_text(encoding="utf-8"), sg.load(path)
+    bearing = scene.bearings[0].with_changes(y=scene.bearings[0].y + 2e-3, scale=2.0)
+    changed = scene.with_changes(
+        bearings=(bearing, *scene.bearings[1:]),
+        material=scene.material.with_changes(E="205 GPa"),
+        title="Softer",
+    )
+    after = changed.to_toml()
+    assert changed_lines(text, after) == [
+        '- title = "Overhung pinion on two bearings"',
+        '+ title = "Softer"',
+        '- E = "207 GPa"                   # Table 1: 2.07e11',
+        '+ E = "205 GPa"                   # Table 1: 2.07e11',
+        '- position = "28 mm"              # Table 1: D = 0.028 behind the pinion\'s back face',
+        '+ position = "30 mm"              # Table 1: D = 0.028 behind the pinion\'s back face',
+        "+ scale = 2.0",
+        '- position = "150 mm"             # Table 1: L = 0.150 behind bearing 1',
+        '+ position = "148 mm"             # Table 1: L = 0.150 behind bearing 1',
+    ]
+    assert sg.Scene.from_dict(tomllib.loads(after), GEOMETRY, "pinion_overhung") == changed
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda s: s.with_attachment("rigid"),
+        lambda s: s.with_changes(bearings=s.bearings[1:]),
+        lambda s: s.with_bearing_scale(3.0),
+        lambda s: s.with_seat_width("15 mm"),
+        lambda s: s.with_port(y=0.03, lo=0.0, hi=0.02),
+        lambda s: s.with_changes(segments=[s.segments[0].with_changes(name="x"), *s.segments[1:]]),
+        lambda s: s.with_material(density=7000),
+    ],
+)
+@pytest.mark.parametrize("name", ["shaft_stepped", "pinion_filleted"])
+def test_what_a_file_cannot_say_in_its_words_is_written_anew(name, change):
+    path = GEOMETRY / f"{name}.toml"
+    changed = change(sg.load(path))
+    tables = tomllib.loads(changed.to_toml())
+    assert sg.Scene.from_dict(tables, GEOMETRY, name) == changed
+
+
+@settings(max_examples=10, deadline=None)
+@given(strategies.scenes())
+def test_the_file_of_any_scene_reads_back_equal(scene):
+    assert sg.Scene.from_dict(tomllib.loads(scene.to_toml())) == scene
+
+
+def test_the_file_of_a_catalogue_bearing_made_in_python_reads_back_as_it_is(tmp_path):
+    rod = sg.Segment.cylinder("rod", length=0.3, diameter=0.04)
+    seats = [
+        sg.Bearing(name=n, position=y, seat_width="18 mm", designation="6208")
+        for n, y in (("A", 0.05), ("B", 0.25))
+    ]
+    scene = sg.Scene.from_parts([rod], bearings=seats, load={"z": "1 kN"}, name="rod")
+    for made in (scene, scene.settled):
+        made.to_toml(tmp_path / "rod.toml")
+        assert sg.load(tmp_path / "rod.toml") == made
+
+
+def test_a_train_writes_its_text_with_scenes_that_changed_inside(tmp_path):
+    path = GEOMETRY / "axle_straddle.toml"
+    text, train = path.read_text(encoding="utf-8"), sg.load_train(path)
+    assert train.to_toml() == text
+    softer = train.with_changes(losses=train.losses.with_changes(mesh=0.07))
+    assert [line for line in changed_lines(text, softer.to_toml()) if line.startswith("+")] == [
+        "+ mesh = 0.07                     # published as a damping ratio of 0.06"
+    ]
+    shaft = train.shafts["gear"].scene.with_material(E="200 GPa")
+    other = train.with_changes(gear=train.shafts["gear"].with_changes(scene=shaft))
+    other.to_toml(tmp_path / "axle_straddle.toml")
+    assert sg.load_train(tmp_path / "axle_straddle.toml") == other
+
+
+def test_a_file_that_cannot_be_written_is_refused():
+    scene = sg.load(GEOMETRY / "shaft_stepped.toml")
+    with pytest.raises(sg.SolidgearError, match="cannot be written"):
+        scene.to_toml("/proc/none/shaft_stepped.toml")
