@@ -96,6 +96,20 @@ def _changed(
     return text, current
 
 
+def text_of(
+    document: Document | None,
+    path: str | os.PathLike | None,
+    canonical: Canonical,
+    target: Table,
+) -> str:
+    """Return the text of a file that reads back as canonical tables: that of the document it was
+    read from, as far as that holds, to lie at a path or where it lay.
+    """
+    if document is None or not document.text:
+        return written_anew(target)
+    return rewritten(document, os.fspath(path or document.path), canonical, target)
+
+
 def written_anew(tables: Table) -> str:
     """Return the text of a file that holds tables."""
     import tomlkit  # start-up: not every scene is written
