@@ -13,6 +13,7 @@ import copy
 import os
 import tomllib
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from typing import Any
 
 from solidgear.core.errors import SceneError
@@ -107,6 +108,9 @@ def text_of(
     """
     if document is None or not document.text:
         return written_anew(target)
+    if path is not None:  # files named from a folder are found once it is there
+        with suppress(OSError):
+            os.makedirs(os.path.dirname(os.path.abspath(path)), exist_ok=True)
     return rewritten(document, os.fspath(path or document.path), canonical, target)
 
 
