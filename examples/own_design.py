@@ -35,7 +35,7 @@ def main(folder=None):
     print(best.sentences[0])
     best.write(out / "search")
     sg.compare(shaft, ("timoshenko", "harmonic")).write_report(out / "report", renders=False)
-    (out / "shaft.toml").write_text(shaft.to_toml(), encoding="utf-8")
+    shaft.to_toml(out / "shaft.toml")
     return {"folder": out, "shaft": shaft, "rows": rows, "best": best}
 
 

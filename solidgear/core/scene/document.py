@@ -50,6 +50,7 @@ class Origin:
     """What a scene or a train was read from, which is no part of what it is: all are equal."""
 
     document: Document | None = None
+    thing: Any = None  #: as it was read
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Origin)
@@ -75,7 +76,9 @@ def document_of(source: Source) -> Document:
     if isinstance(source, Mapping):
         return Document(source, name_of_source(source))
     if isinstance(source, Documented):
-        return Document(source.to_dict(), name_of_source(source))
+        # what has not changed since means what its file says: a place moves with its segment
+        read = getattr(source, "as_read", None)
+        return read or Document(source.to_dict(), name_of_source(source))
     raise SolidgearError(
         f"{show(source, 40)}: give the path of a TOML file, its tables as a dict, or a Scene or Train"
     )

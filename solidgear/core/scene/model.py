@@ -341,10 +341,15 @@ class Scene(Displayed, Model):
         """
         return self._origin.document
 
+    @property
+    def as_read(self) -> Any:
+        """Document that the scene was read from; None of one that has changed since."""
+        return self.document if self._origin.thing == self else None
+
     def read_from(self, document: Any) -> Scene:
         """Return the same scene with the document that it was read from."""
         out = self.unjudged()
-        out._origin = Origin(document)
+        out._origin = Origin(document, out)
         return out
 
     @property
