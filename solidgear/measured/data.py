@@ -41,10 +41,9 @@ from solidgear.core import (
     explained,
     show,
 )
-from solidgear.core.machine.whole_file import write_page
 from solidgear.core.scene.document import Origin
-from solidgear.core.scene.model_table import table_of
-from solidgear.core.scene.rewriting import text_of
+from solidgear.core.scene.model_table import entry_of
+from solidgear.core.scene.rewriting import toml_of
 from solidgear.core.scene.units import Frequency, quantity
 from solidgear.measured.alignment import BANDWIDTH
 from solidgear.measured.modal_fit import ResponseFit
@@ -234,7 +233,7 @@ class Measured(Model):
             return dict(self._tables)
         if self._responses is not None or self._on_points is not None:
             raise SolidgearError(f"{self.title}: its data are in no table; name the file itself")
-        table = table_of(self, leave_out=("response_unit",))
+        table = entry_of(self)
         for key in ("uncertainty", "noise", "damping"):
             if key in table:
                 table[key] = _share_or_hertz(getattr(self, key))
@@ -265,10 +264,7 @@ class Measured(Model):
         def canonical(tables: Mapping[str, Any], path: str) -> dict[str, Any]:
             return load_measured(Document(tables, path)).to_dict()
 
-        text = text_of(self._origin.document, path, canonical, self.to_dict())
-        if path is not None:
-            write_page(path, text)
-        return text
+        return toml_of(self._origin.document, path, canonical, self.to_dict())
 
     def with_changes(self, **changes: Any) -> Measured:
         """Return a validated copy with some fields replaced, a list by itself."""

@@ -17,6 +17,7 @@ from contextlib import suppress
 from typing import Any
 
 from solidgear.core.errors import SceneError
+from solidgear.core.machine.whole_file import write_page
 from solidgear.core.scene.document import Document
 from solidgear.core.scene.materials import by_name
 from solidgear.core.scene.units import POSITION_DECIMALS, quantity, with_unit_of
@@ -95,6 +96,19 @@ def _changed(
         if current is None or current.get(key) == target.get(key):
             break
     return text, current
+
+
+def toml_of(
+    document: Document | None,
+    path: str | os.PathLike | None,
+    canonical: Canonical,
+    target: Table,
+) -> str:
+    """Return :func:`text_of`, and write it to a path if one is given."""
+    text = text_of(document, path, canonical, target)
+    if path is not None:
+        write_page(path, text)
+    return text
 
 
 def text_of(

@@ -6,8 +6,7 @@ import os
 from collections.abc import Mapping
 from typing import Any
 
-from solidgear.core.machine.whole_file import write_page
-from solidgear.core.scene.rewriting import text_of
+from solidgear.core.scene import rewriting
 from solidgear.trains.file.reading import train_of
 from solidgear.trains.file.train import SIDES, Train
 from solidgear.trains.file.writing import tables_of
@@ -23,10 +22,7 @@ def toml_of(train: Train, path: str | os.PathLike | None = None) -> str:
     def canonical(tables: Mapping[str, Any], path: str) -> Table:
         return _in_form(tables_of(train_of(tables, path)), short)
 
-    text = text_of(document, path, canonical, _in_form(tables_of(train), short))
-    if path is not None:
-        write_page(path, text)
-    return text
+    return rewriting.toml_of(document, path, canonical, _in_form(tables_of(train), short))
 
 
 def _in_form(tables: Table, short: bool) -> Table:
