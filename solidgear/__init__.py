@@ -29,6 +29,7 @@ What there is, each with an example in its help:
                  MeshVector, BearingSpring, RowSpring, RigidBody, Inertia, PortInertia, Placed
     planetary    PlanetaryTeeth, PlanetaryStage, CentralMember, Planet, carrier_turn, FixedSupport,
                  PlanetError, elastic_ring
+    exchange     export, port_matrices, read_matrices, PortMatrices
     errors       SolidgearError, SceneError
 
 A study takes the path of a file, its tables as a dict, a Scene or a Train. Names are imported when

@@ -15,6 +15,7 @@ from solidgear.core.ladder import build as build
 from solidgear.core.loading import load as load
 from solidgear.core.reduction.craig_bampton import craig_bampton as craig_bampton
 from solidgear.core.reduction.effective_mass import synthesise as synthesise
+from solidgear.core.reduction.port_matrices import PortMatrices as PortMatrices
 from solidgear.core.reduction.rubin import rubin as rubin
 from solidgear.core.reduction.superelement import Superelement as Superelement
 from solidgear.core.scene import (
@@ -94,6 +95,9 @@ from solidgear.core.system.gear_mesh import (
 from solidgear.core.system.gear_mesh import (
     to_gear_frame as to_gear_frame,
 )
+from solidgear.exchange.matrices.export import export as export
+from solidgear.exchange.matrices.formats import read_matrices as read_matrices
+from solidgear.exchange.matrices.source import port_matrices as port_matrices
 from solidgear.measured.correlate import correlate as correlate
 from solidgear.measured.data import Measured as Measured
 from solidgear.measured.data import load_measured as load_measured

@@ -80,6 +80,11 @@ ADDITIONS = {
         "teeth": "teeth.train_teeth:mesh_of_teeth",
         "teeth over points": "teeth.over_points:stiffness_over_points",
     },
+    # matrices of other programs
+    "matrices": {
+        "read": "exchange.matrices.formats:read_matrices",
+        "write": "exchange.matrices.formats:write_matrices",
+    },
     # solvers
     "back end": {"mumps": "petsc.mumps:Mumps"},
     "engine": {"ranks": "petsc.solver:plan_on_ranks"},

@@ -143,7 +143,7 @@ def fixture_results():
             if beam
             else [
                 {
-                    "dofs": int(facts[key][0] / r**2),
+                    "unknowns": int(facts[key][0] / r**2),
                     "h": 0.004 * r,
                     "quantities": {
                         "C_zz": c * (1 + s * 4e-4 * r**1.9),
@@ -187,7 +187,7 @@ def fixture_results():
                     "bending 1": _estimate(FREQUENCY[key]["bending 1"] * 0.9999, 0.0005),
                 },
             },
-            "dofs": dofs,
+            "unknowns": dofs,
             "seconds": {
                 "build": 0.3 * total,
                 "statics": 0.2 * total,
@@ -345,6 +345,6 @@ def fixture_results():
             "shares": [1.0],
         },
         "images": {},
-        "warnings": ["made-up figures: a test fixture, not a run"],
+        "cautions": ["made-up figures: a test fixture, not a run"],
         "seconds_total": 41.2,
     }

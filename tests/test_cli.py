@@ -66,7 +66,7 @@ def test_stiffness_as_json(run, fidelity):
     assert done.code == 0 and done.err == ""
     found = strict(done.out)
     assert (
-        found["fidelity"] == fidelity
+        found["model"] == fidelity
         and found["port"] == "pinion"
         and found["order"] == ORDER
         and found["free"] == ["thy"]
@@ -157,7 +157,7 @@ def test_builder_options(run):
     one, two, three = (each["stiffness"][2][2] for each in (found, same, other))
     # one stiffness matrix, two mass matrices behind its regularisation (measured 1e-13); the head
     # as a cone is 5 % away
-    assert found["dofs"] == same["dofs"] and one == pytest.approx(two, rel=1e-9)
+    assert found["unknowns"] == same["unknowns"] and one == pytest.approx(two, rel=1e-9)
     assert one != pytest.approx(three, rel=0.01)
 
 
@@ -390,7 +390,7 @@ def test_unknown_backend_is_refused(run, tmp_path, monkeypatch):
 def test_modules_run_as_programs(tmp_path):
     done = python("-m", "solidgear", "stiffness", FREE, "-f", "euler", "--json", cwd=tmp_path)
     assert done.returncode == 0 and done.stderr == ""
-    assert strict(done.stdout)["fidelity"] == "euler"
+    assert strict(done.stdout)["model"] == "euler"
     done = python("-m", "solidgear.app", "stiffness", "nowhere.toml", cwd=tmp_path)
     assert (
         done.returncode == 1

@@ -78,7 +78,7 @@ def test_record_has_its_parts(results, overhung):
     assert results["complete"] is True
     assert {g["guard"] for g in results["guards"]} == {"frequency_range", "slenderness", "shoulder"}
     # and what concerns beams that are out anyway is in the record only
-    assert results["warnings"] == []
+    assert results["cautions"] == []
     assert results["scene"] == overhung.as_dict()
     assert (
         results["port"]["name"] == "pinion"
@@ -93,7 +93,7 @@ def test_record_has_its_parts(results, overhung):
 @pytest.mark.parametrize("model", FIDELITIES)
 def test_model_record(results, found, model):
     record = results["models"][model]
-    assert record["dofs"] == found.solutions[model].body.size
+    assert record["unknowns"] == found.solutions[model].body.size
     assert record["backend"] in ("superlu", "pardiso", "cholmod", "mumps")
     assert all(
         count["checked"] for count in record["evidence"]["mode_count"]
@@ -152,8 +152,8 @@ def test_bars_belong_to_the_solids(results):
         levels = record["convergence"]["levels"]
         # every mesh tells its own error, and the first was fine enough
         assert len(levels) == 1
-        assert levels[-1]["dofs"] == record["dofs"]
-        assert [x["dofs"] for x in levels] == sorted({x["dofs"] for x in levels})
+        assert levels[-1]["unknowns"] == record["unknowns"]
+        assert [x["unknowns"] for x in levels] == sorted({x["unknowns"] for x in levels})
 
 
 @pytest.mark.parametrize("model", ["harmonic", "solid"])
@@ -403,7 +403,7 @@ def test_bar_that_cannot_be_made_is_a_warning(overhung, monkeypatch):
         overhung, ("solid",), settings={"solid": {"element": "tet10", "refinement": 0.4}}
     ).results
     assert found["models"]["solid"]["band"] is None
-    assert "3D solid: error bar: the mesh holds very slender cells" in found["warnings"]
+    assert "3D solid: error bar: the mesh holds very slender cells" in found["cautions"]
     assert "no error bar (the mesh holds very slender cells)" in found["verdict"]["sentences"][0]
     assert not found["models"]["solid"]["valid"]
 
@@ -442,7 +442,7 @@ def test_interrupt_between_meshes_keeps_the_coarser_one(rod):
     found = compare(sure, ("harmonic", "solid"), settings=light, progress=stop)
     record = found.results["models"]["solid"]
     assert found.results["complete"] is False and len(record["convergence"]["levels"]) == 1
-    assert record["dofs"] == found.solutions["solid"].body.size
+    assert record["unknowns"] == found.solutions["solid"].body.size
 
 
 def test_interrupt_before_the_first_result(overhung, tmp_path):
@@ -483,7 +483,7 @@ def folder(found, tmp_path_factory):
 def test_without_a_renderer_numbers_and_report_are_there(folder, found):
     stored = strict((folder / "results.json").read_text(encoding="utf-8"))
     assert stored["images"] == {}
-    drawing = [w for w in stored["warnings"] if w.startswith("render of ")]
+    drawing = [w for w in stored["cautions"] if w.startswith("render of ")]
     # said once, not for every model
     assert len(drawing) == 1 and "SOLIDGEAR_RENDERER=none" in drawing[0]
     assert stored["models"] == strict(json.dumps(found.results["models"]))

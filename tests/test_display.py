@@ -110,7 +110,7 @@ def test_a_data_frame_needs_pandas_and_nothing_else_does(told, monkeypatch):
         return real(name, *rest)
 
     monkeypatch.setattr(builtins, "__import__", without)
-    with pytest.raises(ImportError, match="pandas"):
+    with pytest.raises(sg.SolidgearError, match="needs pandas: pip install"):
         told["modes"].to_dataframe()
 
 

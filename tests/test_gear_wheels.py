@@ -67,11 +67,13 @@ def test_a_fillet_runs_from_the_root_to_the_flank_without_a_corner(teeth, shift,
         assert abs(step @ normal) < 0.02 * hypot(step[0], step[1])
 
 
-def test_a_fillet_is_what_the_rack_leaves():
+@pytest.mark.parametrize("shift", [0.2, 1.1])
+def test_a_fillet_is_what_the_rack_leaves(shift):
     """No point of it lies in the rack, which is rolled in small steps: distances to the corner's
-    circle are its radius at least, and somewhere no more.
+    circle are its radius at least, and somewhere no more. A large shift lifts the corner's centre
+    beyond the rolling line.
     """
-    wheel = Wheel(23, 4e-3, radians(15), 0.2)
+    wheel = Wheel(23, 4e-3, radians(15), shift)
     rack, m, angle = wheel.rack, wheel.module, wheel.transverse_angle
     aside = (
         pi * wheel.transverse_module / 4

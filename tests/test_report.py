@@ -178,7 +178,7 @@ def test_same_results_same_page_from_numpy_or_plain(no_charts):
         model["compliance"] = np.array(
             [[np.nan if v is None else v for v in row] for row in model["compliance"]]
         )
-        model["dofs"] = np.int64(model["dofs"])
+        model["unknowns"] = np.int64(model["unknowns"])
     assert render_page(results) == render_page(fixture_results())
 
 
@@ -198,7 +198,7 @@ def test_names_from_a_scene_are_escaped(monkeypatch):
     results["scene"] |= {"title": evil, "source": evil}
     results["scene"]["bearings"][1]["note"] = "<img src=http://x/>"
     results["models"]["harmonic"]["modes"][1]["name"] = evil
-    results["warnings"], results["verdict"]["sentences"] = [evil], [evil]
+    results["cautions"], results["verdict"]["sentences"] = [evil], [evil]
     page = render_page(results)
     page = page.replace(READS, "")
     assert "<script" not in page and "<img" not in page and "&lt;script&gt;" in page
@@ -316,8 +316,8 @@ def test_results_of_another_version_are_refused_in_a_sentence(version):
 
 def test_what_is_no_record_is_refused_with_the_place_of_the_fault():
     results = fixture_results()
-    results["models"]["solid"]["dofs"] = "many"
-    with pytest.raises(SolidgearError, match=r"models\.solid\.dofs") as refused:
+    results["models"]["solid"]["unknowns"] = "many"
+    with pytest.raises(SolidgearError, match=r"models\.solid\.unknowns") as refused:
         as_record(results)
     assert "\n" not in str(refused.value)
 

@@ -126,7 +126,7 @@ def looked_at(folder, page, *flags):
 @pytest.fixture(scope="module")
 def page(made_up_charts):
     results = fixture_results()
-    results["warnings"] = ["a warning with averyveryveryverylongwordthatnobodywouldwrite" * 3]
+    results["cautions"] = ["a warning with averyveryveryverylongwordthatnobodywouldwrite" * 3]
     return render_page(results, drawn=made_up_charts)
 
 

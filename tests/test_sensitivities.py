@@ -238,7 +238,7 @@ def test_the_command_writes_what_it_tells(tmp_path):
     assert "What would move C_zz" in done.output
     data = json.loads((out / "sensitivities.json").read_text())
     rows = (out / "sensitivities.csv").read_text().splitlines()
-    assert len(rows) == 1 + len(data["of"][0]["derivatives"])
+    assert len(rows) == 1 + len(data["numbers"][0]["derivatives"])
     assert (out / "sensitivities_1.svg").exists()
 
 

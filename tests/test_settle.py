@@ -62,15 +62,15 @@ def test_stiffness_is_that_of_the_mesh_it_names_and_the_truth_is_within_its_bars
     code, out, err = run("stiffness", SCENE, "--tol", "0.01", "--json")
     found = json.loads(out)
     assert code == 0 and err == "" and found["reached"]
-    assert found["rung"] == found["fidelity"] == "harmonic"
+    assert found["model"] == "harmonic"
     assert found["setting"].startswith(f"order {found['options']['order']}, ")
     bars = found["bars"]
     assert found["tolerance"] == 0.01 and max(bars.values()) <= 0.01
     assert {"C_zz", "C_thx", "C_yy", "K_z,thx", "C_xx", "K_thz"} <= set(bars)
-    again = solve(scene, found["rung"], 1, **found["options"])
+    again = solve(scene, found["model"], 1, **found["options"])
     stiffness = np.array(found["stiffness"], float)
     compliance = np.array(found["compliance"], float)
-    assert again.body.size == found["dofs"]
+    assert again.body.size == found["unknowns"]
     assert apart(stiffness, again.statics.main.stiffness) < ROUNDING
     assert apart(compliance, again.statics.main.compliance) < ROUNDING
     assert apart(stiffness, truth.statics.main.stiffness) <= max(bars.values()) + REFERENCE
@@ -135,7 +135,7 @@ def test_modes_are_those_of_the_mesh_and_the_first_of_every_family_have_a_bar(ru
     assert code == 0 and found["reached"]
     assert set(found["bars"]) == {q for q in QUANTITIES if q.is_frequency}
     listed = {m["name"]: m["frequency_hz"] for m in found["modes"]}
-    body, highest = sg.build(scene, found["rung"], **found["options"]), scene.ask.max_frequency
+    body, highest = sg.build(scene, found["model"], **found["options"]), scene.ask.max_frequency
     again = sg.modes(body, scene, 14, max_frequency=highest)
     assert list(listed) == list(again.names)
     np.testing.assert_allclose(list(listed.values()), again.frequency_hz, rtol=ROUNDING)
@@ -240,7 +240,7 @@ def test_a_named_3d_solid_is_as_coarse_as_the_tolerance_allows(run, scene):
     code, out, _ = run("modes", SCENE, "-f", "solid", "-n", "4", "--tol", "0.03", "--json")
     coarse = json.loads(out)
     assert code == 0 and coarse["reached"] and 0 < coarse["bars"]["bending 1"] <= 0.03
-    assert coarse["dofs"] < sg.build(scene, "solid").size / 5
+    assert coarse["unknowns"] < sg.build(scene, "solid").size / 5
 
 
 # --------------------------------------------------------------------------- sweep

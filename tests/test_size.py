@@ -328,5 +328,5 @@ def test_a_comparison_stays_below_the_limit(monkeypatch):
     results = sg.compare(
         scene.with_changes(ask=scene.ask.with_changes(tolerance=0.002)), ("timoshenko", "solid")
     ).results
-    assert any("finer mesh" in w and "MB are free" in w for w in results["warnings"])
+    assert any("finer mesh" in w and "MB are free" in w for w in results["cautions"])
     assert results["models"]["solid"]["compliance"]

@@ -38,7 +38,7 @@ def test_bars_beside_numbers_of_a_sweep_of_bearings_hold_a_much_finer_mesh(rows)
     modes = {str(mode.name): mode.frequency_hz for mode in sg.modes(truth, scene, n=6).modes}
     for k in range(1, 5):
         assert abs(row[f"f{k}_hz"] - modes[row[f"mode{k}"]]) <= row[f"f{k}_hz bar"]
-    assert row["bars"] == "of the mesh: the largest over 3 bearing sets"
+    assert row["about_bars"] == "of the mesh: the largest over 3 bearing sets"
 
 
 @pytest.mark.parametrize("vary", ["bearing.A.scale=1,2", "segment.left.diameter=50 mm,52 mm"])
@@ -47,14 +47,14 @@ def test_a_file_of_a_model_that_is_given_says_that_it_has_no_bars(vary, tmp_path
     command("sweep", SHAFT, "--vary", vary, "-f", "timoshenko", "-n", "2", "-o", path)
     with path.open(newline="") as file:
         row = next(csv.DictReader(file))
-    assert row["bars"] == "none: the timoshenko mesh was given; -f auto has error bars"
+    assert row["about_bars"] == "none: the timoshenko mesh was given; -f auto has error bars"
     assert not any(name.endswith(" bar") and name != "mass bar" for name in row)
 
 
 def test_a_design_and_a_derivative_say_what_they_have_no_bar_of():
     found = sg.optimise(SHAFT, ["segment.left.diameter=48 mm:50 mm"], "min C_zz", model="euler")
-    assert found.results["bars"] == "none: the euler mesh was given; -f auto has error bars"
+    assert found.results["about_bars"] == "none: the euler mesh was given; -f auto has error bars"
     moved = sg.sensitivities(SHAFT, "euler", of=["C_zz"], by=["material.E"]).as_dict()
-    (number,) = moved["of"]
+    (number,) = moved["numbers"]
     assert 0 <= number["from_coarser_mesh"] < 1e-3 * number["value"]
-    assert "no proven bound" in moved["bars"]
+    assert "no proven bound" in moved["about_bars"]

@@ -68,7 +68,7 @@ def test_a_6x6_has_a_unit_over_each_block_in_every_medium(units):
     assert re.findall(r'<td colspan="3">(.*?)</td>', table._repr_html_()) == [*over[0], *over[1]]
     assert [cell.value for cell in table.cells[4][1:]] == ["–"] * 6
     # a millionth of a millionth of the diagonal: grey, and without digits where there are no exponents
-    assert table.cells[2][4] == ("1.0000" if units is SI else "0", "faint")
+    assert table.cells[2][4][:2] == ("1.0000" if units is SI else "0", "faint")
     lines = in_terminal(table).splitlines()
     assert [len(line.split()) for line in lines if line.startswith((" x", " thx"))] == [7, 7]
 

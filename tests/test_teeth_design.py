@@ -103,6 +103,12 @@ def test_a_row_with_the_stiffness_of_its_teeth_has_the_modes_of_its_torque():
         assert [row[f"f{k}_hz"] for k in range(1, 5)] == pytest.approx(elastic, rel=1e-6)
 
 
+def test_rows_say_which_command_has_error_bars(task, rows):
+    assert {row["bars"] for row in rows} == {"none: run contact on one variant"}
+    both = task_of(RELIEF, ask=("system-modes", "response", "contact"))
+    assert both.without_bars == "none: run system-modes, response or contact on one variant"
+
+
 def test_contact_without_a_torque_is_refused():
     with pytest.raises(SolidgearError, match="--ask contact: teeth touch under a load"):
         task_of("mesh.stiffness=1e8,2e8", file=AXLE)

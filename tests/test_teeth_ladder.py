@@ -10,12 +10,14 @@ import solidgear as sg
 from solidgear.core import WITHIN
 from solidgear.teeth.bars import error_bars, numbers_of
 from solidgear.teeth.contact.cycle import mesh_cycle
-from solidgear.teeth.ladder import ERROR, FACE, NORM, SOLID, STIFFNESS, energy_share, ladder
+from solidgear.teeth.contact.frame import Frame
+from solidgear.teeth.ladder import ERROR, FACE, NORM, SOLID, STIFFNESS, Solved, energy_share, ladder
 from solidgear.teeth.supports import Carried, with_sections
 from solidgear.teeth.train_teeth import TeethModel, mesh_contact, teeth_of, toothed
 from solidgear.trains.assembly.assembly import Assembly
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
+QUICK = TeethModel(slices=12, positions=8)
 
 
 def narrow(train):
@@ -33,7 +35,7 @@ def carried():
 
 @pytest.fixture(scope="module")
 def by_slices(carried):
-    return ladder(carried, carried.train.pairs[0], 0.02, reference="slices")
+    return ladder(carried, carried.train.pairs[0], 0.02, QUICK, reference="slices")
 
 
 def test_the_norm_has_no_transmission_error_and_the_finest_has_a_bar(by_slices):
@@ -49,19 +51,36 @@ def test_stiffness_counts_by_what_it_does_to_the_frequencies(carried, by_slices)
     """The mode with most strain energy in the teeth, solved again with the stiffness of the norm."""
     norm, slices = by_slices.rungs
     ratio = norm.numbers.tangent / slices.numbers.tangent
-    assert by_slices.share == energy_share(carried, carried.train.pairs[0])
-    assembly = carried.assembly
-    mesh = assembly.train.mesh
+    tangent = slices.numbers.tangent
+    assert by_slices.share == energy_share(carried, carried.train.pairs[0], tangent)
+    mesh = carried.assembly.train.mesh.with_changes(stiffness=tangent)
+    assembly = Assembly(carried.assembly.train.with_changes(mesh=mesh))
     usual = assembly.coupled(assembly.models_by_shaft(["timoshenko"])).modes()
     limit = assembly.train.ask.max_frequency
     wanted = (usual.frequency_hz > 0) & (usual.frequency_hz <= limit)
     share = usual.energy["mesh"][wanted].max()
+    assert share == pytest.approx(by_slices.share, rel=1e-6)
     k = int(np.argmax(np.where(wanted, usual.energy["mesh"], 0)))
     softer = assembly.train.with_changes(mesh=mesh.with_changes(stiffness=mesh.stiffness * 0.999))
     moved = Assembly(softer).coupled(assembly.models_by_shaft(["timoshenko"])).modes()
     change = moved.frequency_hz[k] / usual.frequency_hz[k] - 1
     assert change == pytest.approx(-0.001 * share / 2, rel=0.01)
     assert norm.off[STIFFNESS] == pytest.approx((ratio - 1) * by_slices.share / 2, rel=1e-12)
+
+
+def test_what_is_solved_is_not_solved_again(carried, by_slices, monkeypatch):
+    """The contact of the study and its bars, by as many slices and positions as it has."""
+    mesh = carried.train.pairs[0]
+    contact = mesh_contact(carried, mesh, QUICK)
+    assert (contact.cycle.slices, len(contact.cycle.phases)) == (12, 8)
+    bars = dict.fromkeys(numbers_of(contact), 0.0) | {"face_load_factor": 0.1}
+    by_name = {"slices": Solved(contact, 1.5, bars)}
+    monkeypatch.setattr("solidgear.teeth.ladder.mesh_contact", None)
+    found = ladder(carried, mesh, 0.02, QUICK, reference="slices", solved=by_name)
+    assert found.reference.seconds == 1.5
+    assert found.reference.numbers == by_slices.reference.numbers
+    factor = contact.cycle.face_load_factor
+    assert found.bars == {STIFFNESS: 0.0, ERROR: 0.0, FACE: 0.1 / factor}
 
 
 def test_what_is_within_the_tolerance_with_its_bar_is_enough(by_slices):
@@ -102,7 +121,7 @@ def test_error_bars_hold_against_finer_slices_and_cells(carried):
         ),
     )
     place = carried.place(mesh, teeth)
-    supports = carried.supports(place, place.frame(teeth))
+    supports = carried.supports(place, Frame.of(place, teeth))
     base = teeth.wheels.first.base
     cycle = mesh_cycle(finer, contact.cycle.torque, base, 64, supports, 16)
     found = numbers_of(replace(contact, pair=finer, cycle=cycle))

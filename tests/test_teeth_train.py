@@ -10,12 +10,15 @@ import pytest
 import solidgear as sg
 from solidgear.core import SceneError, SolidgearError
 from solidgear.show.units import ENGINEERING
+from solidgear.teeth.contact.frame import Frame
 from solidgear.teeth.sheet import contact_sheet
 from solidgear.teeth.supports import Carried, with_sections
 from solidgear.teeth.train_teeth import TeethModel, mesh_contact, mesh_of_teeth, teeth_of
 from solidgear.trains.assembly.assembly import Assembly
+from solidgear.trains.assembly.mesh_stiffness import with_usual_meshes
 from solidgear.trains.assembly.stages import mesh_row
 from solidgear.trains.file.operation import OperatingPoint
+from solidgear.trains.response.excitation import excitation
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 QUICK = TeethModel(slices=12, positions=8)
@@ -69,7 +72,7 @@ def test_the_force_on_the_cells_is_along_the_line_of_action_of_the_train(name):
             teeth = teeth_of(pair, point.coast)
             place = carried.place(pair, teeth)
             helix = teeth.wheels.base_helix
-            normal = place.frame(teeth).axes @ [-np.cos(helix), 0, np.sin(helix)]
+            normal = Frame.of(place, teeth).axes @ [-np.cos(helix), 0, np.sin(helix)]
             assert normal == pytest.approx(place.normal, abs=1e-9)
 
 
@@ -90,7 +93,7 @@ def test_planets_touch_where_their_meshes_push():
         for mesh in stage.meshes:
             teeth = teeth_of(mesh, carried.coast(mesh))
             place = carried.place(mesh, teeth)
-            frame = place.frame(teeth)
+            frame = Frame.of(place, teeth)
             # the pitch point lies on the line of centres, the line of action leans by 20 degrees
             first = carried.system.port(place.ends[0]).point
             outward = place.pitch_point - first
@@ -120,7 +123,7 @@ def test_deflection_under_the_load_is_that_of_the_train(contact, carried):
     pair = carried.train.pairs[0]
     teeth = teeth_of(pair, False)
     place = carried.place(pair, teeth)
-    supports = carried.supports(place, place.frame(teeth))
+    supports = carried.supports(place, Frame.of(place, teeth))
     wheel = supports.motion[-6:]  # a rigid wheel: its section is the lumped point
     count = len(supports.motion)
     force = carried.force(place)
@@ -254,6 +257,23 @@ def test_planets_take_the_stiffness_of_their_teeth():
     assert filled.status == "calculated"
     # per face width, N/(mm um): teeth of two and of nearly two pairs, a ring's thicker at their feet
     assert 12 < filled.sun_stiffness / 12e-3 / 1e9 < filled.ring_stiffness / 12e-3 / 1e9 < 40
+    # each mesh is driven by the loaded error of its own teeth, planet by planet in its phase
+    carried = Carried.at_rest(with_sections(with_usual_meshes(asked)), asked.point)
+    for mate in ("sun", "ring"):
+        (mesh,) = (
+            m for m in carried.train.stages[0].meshes if m.mate == mate and m.planets == (1,)
+        )
+        error = mesh_contact(carried, mesh).cycle.line_error
+        orders = getattr(filled, f"{mate}_error").orders
+        assert orders[0] == pytest.approx(2 * abs(np.fft.rfft(error)[1]) / len(error), rel=1e-6)
+    solved = asked.with_changes(planetary={"stage": stage.with_changes(mesh=filled)})
+    assembly = Assembly(solved)
+    together = assembly.train.stages[0].together[0]
+    weights = excitation(assembly, together, together=True).weights()
+    assert len(weights) == 6 and weights["mesh stage sun 1"] == 1.0
+    sizes = {name: abs(weight) for name, weight in weights.items()}
+    share = filled.ring_error.orders[0] / filled.sun_error.orders[0]
+    assert sizes["mesh stage ring 2"] == pytest.approx(share, rel=1e-9)
 
 
 def test_a_train_without_a_torque_is_refused(train):

@@ -75,10 +75,15 @@ def test_contact_ratio_of_standard_gears_outside_and_inside():
     ("teeth", "shift", "more", "words"),
     [
         ((23, 57), (0.0, 0.0), 0.0, ()),
-        ((14, 57), (0.0, 0.0), 0.0, ()),
-        ((11, 57), (0.0, 0.0), 0.0, ("undercut", "at least 0.36")),
-        ((12, 40), (1.4, 0.0), 0.0, ("end in a point",)),
-        ((20, 20), (1.2, 1.2), 0.0, ("tips of the pinion reach",)),
+        ((17, 57), (0.0, 0.0), 0.0, ()),
+        ((14, 57), (0.0, 0.0), 0.0, ("a contact ratio of 1.46 remains of 1.62",)),
+        ((11, 57), (0.0, 0.0), 0.0, ("of 1.18 remains of 1.59", "at least 0.36")),
+        (
+            (20, 20),
+            (1.2, 1.2),
+            0.0,
+            ("tips of the pinion, 61 mm across if they are those of its rack, cut 673",),
+        ),
         ((23, 57), (0.0, 0.0), 1.5e-3, ("contact ratio is 0.6",)),
     ],
 )

@@ -240,12 +240,12 @@ def test_tips_of_planets_and_offsets_of_a_ring_are_held_against_their_neighbours
     train = sg.load_train(GEOMETRY / "reducer.toml")
     (stage,) = train.stages
     side, port = stage.shafts[0], stage.ports[0]
-    gears = train.shafts[side].gears
-    wide = {**gears, port: gears[port].with_changes(face_width=30e-3)}
+    gears, deep = train.shafts[side].gears, {"dedendum": 1.6, "root_radius": 0.2}
+    wide = {**gears, port: gears[port].with_changes(face_width=30e-3, rack=deep)}
     shafts = {**train.shafts, side: train.shafts[side].with_changes(gears=wide)}
 
     def with_table(**changes):
-        table = stage.table.with_changes(**changes)
+        table = stage.table.with_changes(**{"ring_flanks": {"rack": deep}} | changes)
         return train.with_changes(shafts=shafts, planetary={stage.called: table})
 
     # 26 and 34 of 102 teeth apart: axes of planets 51 sin(91.76 deg / 2) = 36.6 modules apart
@@ -268,13 +268,13 @@ def test_tips_that_meet_fillets_are_told():
     """A longer addendum on the gear meets fillets of the pinion, which a usual rack has cut: its straight
     side is 1.25 - 0.38 (1 - sin 20 deg) modules long.
     """
-    fit = WheelPair(Wheel(20, 3e-3), Wheel(57, 3e-3, rack=Rack(addendum=1.2)))
+    fit = WheelPair(Wheel(20, 3e-3), Wheel(57, 3e-3, rack=Rack(addendum=1.135)))
     (caution,) = [c for c in fit_cautions(fit, ("pinion", "gear")) if "fillets" in c]
     assert caution.startswith("tips of the gear meet the fillets of the pinion")
     sine, base = sin(radians(20)), 30 * cos(radians(20))
     start = 30 * sine - 3 * (1.25 - 0.38 * (1 - sine)) / sine
     assert f"end at {hypot(start, base):.6g} mm" in caution
-    tips = 115.5 * sine - ((85.5 + 3.6) ** 2 - (85.5 * cos(radians(20))) ** 2) ** 0.5
+    tips = 115.5 * sine - ((85.5 + 3.405) ** 2 - (85.5 * cos(radians(20))) ** 2) ** 0.5
     assert path_cuts(fit) == pytest.approx((1e-3 * (start - tips), 0.0), rel=1e-6)
     lost = f"{1e6 * path_cuts(fit)[0]:.1f} um of the path lost at fillets"
     assert fit_line(fit).endswith(lost)

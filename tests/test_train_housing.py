@@ -217,6 +217,47 @@ def test_a_housing_that_cannot_move_is_none(bare, still):
     assert elastic[:n] == pytest.approx(usual, rel=1e-6)
 
 
+def test_a_housing_of_nastran_that_cannot_give_is_none(tmp_path, bare):
+    """Springs and mounts of some 1e17 N/m and more beside bearings of 1e8."""
+    mass, stiffness, places = lumps(1e9)
+    path = elastic(tmp_path, mass, stiffness, places)
+    box = sg.read_matrices(tmp_path / "box.npz")
+    box.write(tmp_path / "box.bdf", units="mm-t-N")
+    text = path.read_text().replace("box.npz", "box.bdf")
+    for spring in map(str, SPRING):
+        text = text.replace(f" = {spring}", " = 1e18")
+    path.write_text(text)
+    models, n = ("euler", "rigid/euler", "rigid/euler"), 9
+    usual = Assembly(bare).system(*models).modes(n).frequency_hz[1:]
+    found = Assembly(sg.load_train(path)).system(*models).modes(n).frequency_hz[1:]
+    assert found == pytest.approx(usual, rel=1e-6)
+
+
+def test_points_of_a_deck_are_named_by_nodes_and_doubtful_units_are_told(tmp_path):
+    path = elastic(tmp_path, *lumps())
+    box = sg.read_matrices(tmp_path / "box.npz")
+    box.write(tmp_path / "box.bdf", units="mm-t-N")
+    deck = tmp_path / "box.bdf"
+    # as another program leaves it: no names, no units
+    deck.write_text("\n".join(s for s in deck.read_text().splitlines() if s[0] != "$"))
+    nodes = ", ".join(f'"{name}" = {k}' for k, name in enumerate(box.positions, start=1))
+    points = f'matrices = "box.bdf"\npoints = {{{nodes}}}\n'
+    text = path.read_text()
+    path.write_text(text.replace('matrices = "box.npz"\n', f'{points}units = "mm-t-N"\n'))
+    train = sg.load_train(path)
+    assert train.housing.mass == pytest.approx(box.rigid_mass[0, 0], rel=1e-9)
+    assert not any("unusual" in text for text in Assembly(train).cautions)
+    path.write_text(text.replace('matrices = "box.npz"\n', points))
+    (said,) = (text for text in Assembly(sg.load_train(path)).cautions if "unusual" in text)
+    assert "as of millimetres, tonnes and newtons: units = 'mm-t-N'" in said
+    path.write_text(text.replace('matrices = "box.npz"\n', f'{points}units = "mm"\n'))
+    with pytest.raises(SceneError, match="housing.units = .mm.: use one of m-kg-N"):
+        sg.load_train(path)
+    path.write_text(text.replace('matrices = "box.npz"\n', points.replace("= 1,", "= 99,")))
+    with pytest.raises(SceneError, match="box.bdf: point .*: 99 is no node of the matrices"):
+        sg.load_train(path)
+
+
 def test_on_bearings_that_do_not_hold_a_housing_has_the_modes_of_a_mass_on_its_mounts(bare):
     """Four mounts about the centre of mass; bearings of 1e-6 N/m change 1e-12 of a stiffness."""
     mass, (ix, iy, iz), (kx, ky, kz) = 40.0, (0.7, 0.5, 0.6), (8e5, 9e5, 2e6)

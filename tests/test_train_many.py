@@ -9,6 +9,7 @@ import scipy.linalg as sla
 
 import solidgear as sg
 from solidgear.core.errors import SolidgearError
+from solidgear.strength.deflection.misalignment import misalignment
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.judge.judge import JUDGE, MIXED, mixes_of
 from solidgear.trains.load.operation import Operating
@@ -343,6 +344,12 @@ def test_an_idler_between_two_wheels_is_pushed_across_by_both(tmp_path, told):
     push = sum(state.forces()[f"idler.{b}"][:3] for b in ("b0", "b1"))  # of the bearings
     assert np.abs(push) == pytest.approx([0, 0, 2 * 90 / 0.03], abs=1e-6)
     assert state.outside["load"][4] == pytest.approx(90.0 * 40 / 20, rel=1e-10)
+    # an idler passes on what it takes: the input alone is wound up, by T b / (2 G J), here J of 40 mm
+    askew = misalignment(Assembly(train), state.system)
+    wound = {m.name: m.row @ state.coordinates for m in askew if m.name.startswith("wind-up")}
+    twist = 90 * 0.03 / (2 * 206e9 / 2.6 * np.pi / 2 * 0.02**4)
+    lever = 0.03 * cos(PRESSURE)
+    assert abs(wound["wind-up input-idler"]) == pytest.approx(lever * twist, rel=1e-6)
     if told:
         (tmp_path / "train.toml").write_text(text.replace(told, 'loaded_side = "left"'))
         with pytest.raises(SolidgearError) as refused:

@@ -114,7 +114,7 @@ def test_without_backlash_the_answer_is_the_linear_one(assembly, teeth, highest)
     )
     hz = np.array([300.0, 700.0, 812.0, 1500.0])
     dte = drive.motion(hz, drive.row[None])[:, 0]
-    expected = np.abs(dte - drive.amplitude(hz))
+    expected = np.abs(dte - drive.excitation.amplitude(hz))
     balance = Balance(own, 3)
     found = [balance.solve(balance.linear(w), w) for w in 2 * np.pi * hz]
     size = [abs(complex(m[1], -m[4])) for m in found]

@@ -80,7 +80,7 @@ def test_without_backlash_every_mesh_answers_as_the_response_does(assembly, driv
     hz = np.array([300.0, 812.0, 1500.0, 2176.0])
     rows = np.vstack([drive.rows[one.mesh] for one in teeth.meshes])
     expected = drive.motion(hz, rows)
-    expected[:, 0] -= drive.amplitude(hz)
+    expected[:, 0] -= drive.excitation.amplitude(hz)
     balance = Balance(made, 3)
     found = [balance.solve(balance.linear(w), w) for w in 2 * np.pi * hz]
     size = [np.hypot(*m.reshape(-1, 2)[[1, 4]]) for m in found]

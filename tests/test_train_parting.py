@@ -45,7 +45,7 @@ def test_the_linear_motion_of_backlash_takes_off_the_same_by_orders_and_phases()
     taken = teeth_relief(drive, drive.over_cycle(hz, 1e4))
     # modes above the range give way like springs there: the second order runs twice as fast
     np.testing.assert_allclose(taken, least, rtol=0.03)
-    other = largest_relief(drive.over_cycle(hz, 1e4), drive.error.phases)
+    other = largest_relief(drive.over_cycle(hz, 1e4), drive.excitation.phases)
     assert np.abs(other / least - 1).min() > 0.04  # the other end of the swing is another number
 
 

@@ -53,7 +53,7 @@ def test_power_that_goes_in_is_lost_in_parts_and_links(assembly, damping, at):
     drive = Drive(assembly, *MIX, damping=damping, matched_hz=at)
     g, where = drive.system.strains
     hz = np.array([16.3, 55.0, 400.0, 661.0, 879.0, 3100.0])
-    error = drive.amplitude(hz)
+    error = drive.excitation.amplitude(hz)
     _, force = drive.mesh(hz)
     w = 2 * np.pi * hz
     entering = 0.5 * np.real(np.conj(1j * w * error) * -force)

@@ -124,7 +124,7 @@ def dynamic_orders(case: Case) -> tuple[np.ndarray, float]:
         orders = [
             drive.mesh(np.array([n * resonance / PART]), n)[0][0] for n in range(1, CYCLE + 1)
         ]
-    return np.array(orders) * np.exp(1j * np.array(drive.error.phases)), resonance
+    return np.array(orders) * np.exp(1j * np.array(drive.excitation.error.phases)), resonance
 
 
 def whole_orders(error: np.ndarray) -> np.ndarray:

@@ -27,7 +27,7 @@ from solidgear.teeth.compliance.slices import Slices
 from solidgear.teeth.contact.cycle import mesh_cycle
 from solidgear.teeth.contact.cylindrical import CylindricalPair
 from solidgear.teeth.contact.local import Elasticity, LineContact
-from solidgear.teeth.norm import norm_stiffness
+from solidgear.core.gears.norm import norm_stiffness
 from validation.common import kept
 
 MODULE, FACE, LOAD = 4e-3, 20e-3, 3e5

@@ -25,6 +25,7 @@ class Entry(NamedTuple):
 
     module: str
     help: str
+    function: str = ""  #: by default called as the command
 
 
 #: commands by what they are for, in the order of the work, each in the room of its question
@@ -42,6 +43,15 @@ GROUPS = {
             "trains.judge.check_command",
             "Say which models hold for a scene or train, which do not, and why; solves light "
             "meshes only.",
+        ),
+        "export": Entry(
+            "exchange.matrices.command",
+            "Mass and stiffness of a shaft or a train at its ports, for other programs.",
+        ),
+        "import": Entry(
+            "exchange.rexs.command",
+            "Read a gearbox of another program, in REXS, as a train with its shafts.",
+            function="import_file",
         ),
         "options": Entry(
             "app.files",
@@ -212,7 +222,8 @@ def _imported(name: str) -> Any:
     entry = COMMANDS[name]
     module = import_module(f"solidgear.{entry.module}")
     alone = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
-    alone.command(name, cls=Told, help=entry.help)(getattr(module, name.replace("-", "_")))
+    function = getattr(module, entry.function or name.replace("-", "_"))
+    alone.command(name, cls=Told, help=entry.help)(function)
     return typer.main.get_command(alone)
 
 

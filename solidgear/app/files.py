@@ -13,7 +13,7 @@ import typer
 from solidgear.app.starts import STARTS, start
 from solidgear.core import LADDER, SolidgearError, nearest, show
 from solidgear.core.ladder.model import Model
-from solidgear.core.machine.whole_file import whole_or_refused
+from solidgear.core.machine.whole_file import write_files
 from solidgear.core.models.options import Option, limits
 from solidgear.show.command import command, say
 from solidgear.show.table import Table, text, word
@@ -115,10 +115,7 @@ def _write(files: Mapping[Path, bytes]) -> None:
     for path in files:
         if path.exists():
             raise SolidgearError(f"{path}: there is such a file already; give another name")
-    for path, content in files.items():
-        with whole_or_refused(path) as partial:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            partial.write_bytes(content)
+    write_files(files)
 
 
 #: where a wheel puts them, under the data folder of the installation

@@ -123,15 +123,15 @@ def modes_sheet(modes: ModeSet, judged: Judged, proof: dict[str, Any], counted: 
         reason = NOTHING_BEYOND
     data = {
         "scene": judged.scene.name,
-        "fidelity": model,
-        "dofs": judged.body.size,
+        "model": model,
+        "unknowns": judged.body.size,
         "modes": [
             {
                 "name": m.name,
                 "family": m.family,
                 "frequency_hz": m.frequency_hz,
                 "multiplicity": m.multiplicity,
-                "error": m.error,
+                "solver_error": m.error,
                 "bar": bars.get(m.name),
                 "split": m.split,
             }

@@ -101,8 +101,8 @@ def _points(scene: Scene, port: str | None) -> tuple[str, ...]:
 def stiffness_sheet(statics: Condensed | Coupled, judged: Judged, units: Units) -> Sheet:
     """Return the sheet of one lumped point, or of several."""
     settled, bars = judged.settled, judged.bars
-    data = {"scene": judged.scene.name, "fidelity": judged.body.fidelity} | plain(statics)
-    data |= {"dofs": judged.body.size, "evidence": plain(statics.evidence)}
+    data = {"scene": judged.scene.name, "model": judged.body.fidelity} | plain(statics)
+    data |= {"unknowns": judged.body.size, "evidence": plain(statics.evidence)}
     data |= {"cautions": judged.cautions} | ({"bars": bars} if settled is None else plain(settled))
     data |= {"why_without_bar": judged.reason, "open": plain(judged.open)}
     head = judged.heading

@@ -18,7 +18,7 @@ from solidgear.show.panel import GREY, Panel, Series, curve, lines_legend, read_
 from solidgear.show.plot import NARROW, WIDE, Chart, Make, in_columns
 from solidgear.show.scales import Axis
 from solidgear.show.sheet import Sheet, Terminal
-from solidgear.show.table import Column, Table, numbers, text
+from solidgear.show.table import Column, Table, numbers, quantity, text
 from solidgear.show.units import ENGINEERING, Units, plain
 from solidgear.show.words import DASH, hertz
 from solidgear.trains.judge.comparison import train_data
@@ -113,7 +113,7 @@ def lines(study: BacklashStudy) -> dict[str, Table]:
             name = mesh.backlash.teeth.mesh
             columns[f"{name} dynamic force [N]"] = mesh.force
             columns[f"{name} largest force [N]"] = mesh.run.highest
-        out[_stem(study, run)] = numbers(columns)
+        out[_stem(study, run)] = numbers(columns).counted("cycle")
     return out
 
 
@@ -133,7 +133,7 @@ def _branch_lines(branch: Backlash, teeth: float) -> Table:
         columns[f"{name} dynamic force [N]"] = mesh.force
         columns[f"{name} largest force [N]"] = mesh.highest
         columns[f"{name} share of the cycle in contact"] = mesh.driving
-    return numbers(columns)
+    return numbers(columns).counted("point")
 
 
 def _stem(study: BacklashStudy, run: SpeedRun) -> str:
@@ -143,10 +143,13 @@ def _stem(study: BacklashStudy, run: SpeedRun) -> str:
 
 def mixes(study: BacklashStudy, units: Units = ENGINEERING) -> Table:
     """Return jumps and largest force of every mix."""
-    force, hz = Column(f"largest, {units.unit('N')}"), Column("at, Hz", write=hertz)
-    linear = Column(f"linear, {units.unit('N')}")
+    force = quantity("largest", "N", units, digits=4)
+    hz = Column("at, Hz", write=hertz, name="frequency of the largest")
+    linear = quantity("linear", "N", units, digits=4)
+    linear_hz = Column("at, Hz", write=hertz, name="frequency of the largest linear")
     others = [
-        f"{mesh.mesh.removeprefix('mesh ')}, {units.unit('N')}" for mesh in study.teeth.others
+        quantity(mesh.mesh.removeprefix("mesh "), "N", units, digits=4)
+        for mesh in study.teeth.others
     ]
     rows = []
     for mix in study.mixes:
@@ -156,14 +159,14 @@ def mixes(study: BacklashStudy, units: Units = ENGINEERING) -> Table:
             [
                 mix.label,
                 *jumps,
-                _force(largest.force, units),
+                largest.force,
                 largest.frequency_hz,
-                _force(unbounded.force, units),
+                unbounded.force,
                 unbounded.frequency_hz,
-                *(_force(mesh.worst.loudest.force, units) for mesh in mix.meshes[1:]),
+                *(mesh.worst.loudest.force for mesh in mix.meshes[1:]),
             ]
         )
-    heads = [text("shafts"), *JUMPS, force, hz, linear, hz, *others]
+    heads = [text("shafts"), *JUMPS, force, hz, linear, linear_hz, *others]
     return Table("Jumps and largest dynamic mesh force", heads, rows, style="bare")
 
 
@@ -171,15 +174,17 @@ def over_force(study: BacklashStudy, units: Units = ENGINEERING) -> Table:
     """Return jumps over the mean force of the teeth."""
     rows = [
         [
-            _force(branch.mean_force, units),
-            plain(units.value(branch.mean_force * study.lever, "N m"), 4),
+            branch.mean_force,
+            branch.mean_force * study.lever,
             *_jump_texts(branch.jumps_hz),
-            _force(branch.largest, units),
+            branch.largest,
         ]
         for branch in study.over_force
     ]
-    mean = Column(f"mean force, {units.unit('N')}")
-    heads = [mean, f"torque, {units.unit('N m')}", *JUMPS, f"largest, {units.unit('N')}"]
+    mean, torque = (
+        quantity(head, si, units, digits=4) for head, si in (("mean force", "N"), ("torque", "N m"))
+    )
+    heads = [mean, torque, *JUMPS, quantity("largest", "N", units, digits=4)]
     title = f"Jumps over the torque of the {study.train.reference}, on the branch from low speed"
     return Table(title, heads, rows, style="bare")
 
@@ -190,10 +195,6 @@ def _jump_texts(jumps: Sequence[tuple[float, bool]]) -> list[str]:
         ", ".join(hertz(hz) for hz, rises in jumps if rises is rising) or DASH
         for rising in (True, False)
     ]
-
-
-def _force(value: float, units: Units) -> str:
-    return plain(units.value(value, "N"), 4)
 
 
 STABLE, UNSTABLE, LINEAR, APART = "stable", "unstable", "linear: no backlash", "stable, apart"

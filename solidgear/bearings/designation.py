@@ -42,7 +42,7 @@ _WIDE = _series(
     "160x40 170x43 180x46 200x53 215x58",
     20,
 )
-#: ISO 355:2019, outside diameter x assembled width of the series 302, 303, 320, 322, 323
+#: ISO 355:2019, outside diameter x assembled width of the series 302, 303, 320, 322, 323, 330
 _TAPERED = {
     "302": _series(
         "62x17.25 72x18.25 80x19.75 85x20.75 90x21.75 100x22.75 110x23.75 120x24.75 125x26.25 "
@@ -68,6 +68,11 @@ _TAPERED = {
         "72x28.75 80x32.75 90x35.25 100x38.25 110x42.25 120x45.5 130x48.5 140x51 150x54 160x58 "
         "170x61.5 180x63.5 190x67.5 200x71.5 215x77.5",
         30,
+    ),
+    "330": _series(
+        "47x17 55x20 62x21 68x22 75x24 80x24 90x27 95x27 100x27 110x31 115x31 125x36 130x36 140x39 "
+        "145x39 150x39 160x43 170x47 180x48",
+        25,
     ),
 }
 #: ISO 15:2017, series 03, 22, 23, 30, 31, 32, 40 as spherical rollers are made in
@@ -97,7 +102,7 @@ _THRUST = {
 }
 #: degrees, the middle of what makers give for a series: of ISO 355 the angle, of spherical rollers
 #: ``e = 1.5 tan a`` of ISO 281
-_ANGLES = {"302": 15.0, "303": 12.95, "320": 16.0, "322": 15.0, "323": 12.95}
+_ANGLES = {"302": 15.0, "303": 12.95, "320": 16.0, "322": 15.0, "323": 12.95, "330": 11.2}
 _E = {
     "213": 0.24,
     "2220[4-7]": 0.32,
@@ -147,9 +152,9 @@ _WRITTEN = (
     ),
     (
         "tapered",
-        rf"(?P<series>302|303|320|322|323)(?P<code>\d\d)X?(?P<rest>(?:{_READ}){{0,8}})",
+        rf"(?P<series>302|303|320|322|323|330)(?P<code>\d\d)X?(?P<rest>(?:{_READ}){{0,8}})",
         _TAPERED,
-        "tapered 302, 303, 320, 322, 323",
+        "tapered 302, 303, 320, 322, 323, 330",
     ),
     (
         "spherical",

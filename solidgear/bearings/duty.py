@@ -142,4 +142,4 @@ class LivesOverPoints:
                 "damage": duty.damage,
                 "worst": duty.worst,
             }
-        return plain({"bearing": self.name, "points": points, "duty": over_points})
+        return plain({"name": self.name, "points": points, "duty": over_points})

@@ -18,7 +18,7 @@ from solidgear.bearings.study import BearingFacts
 from solidgear.core import DOF_NAMES
 from solidgear.show.command import caution
 from solidgear.show.sheet import Sheet, Terminal
-from solidgear.show.table import Column, Table
+from solidgear.show.table import Cell, Column, Table
 from solidgear.show.terminal import matrix_table
 from solidgear.show.words import engineering, percent
 
@@ -83,7 +83,9 @@ def _at_load(fact: BearingFacts) -> Iterator[str | Table]:
     yield f"Displacement: {', '.join(motions) or 'none'}"
     scale = np.sqrt(np.abs(np.diag(fact.stiffness)))
     rounding = np.abs(fact.stiffness) <= 1e-12 * np.outer(scale, scale)
-    yield matrix_table(np.where(rounding, 0.0, fact.stiffness), "stiffness")
+    table = matrix_table(np.where(rounding, 0.0, fact.stiffness), "stiffness")
+    table.name = f"stiffness_{fact.name}"
+    yield table
     # a bearing that carries nothing has no stiffness at either end
     if fact.spread is not None and np.any(fact.spread[1] > 0):
         ends = [
@@ -135,8 +137,8 @@ def _life(bearing: BearingLife) -> Iterator[str | Table]:
     for kind, life in bearing.lives.items():
         ends = bearing.range(kind) if bearing.unknown else ()
         numbers = [life, *ends, *([life / to_hours] if to_hours else [])]
-        rows.append([LIVES[kind], *map(_number, numbers)])
-    yield Table("", ["life", *heads], rows)
+        rows.append([LIVES[kind], *map(_cell, numbers)])
+    yield Table("", ["life", *heads], rows, name=f"life_{bearing.name}")
     yield from _sources(bearing.life)
     if bearing.unknown:
         yield _ranges(bearing)
@@ -150,6 +152,11 @@ def _life(bearing: BearingLife) -> Iterator[str | Table]:
 def _number(value: float) -> str:
     """Return a life, or another number that may have no end, in words."""
     return engineering(value, 3) if math.isfinite(value) else "endless"
+
+
+def _cell(value: float) -> Cell:
+    """Return a life, or another number that may have no end."""
+    return Cell(value, "", _number(value))
 
 
 def _ranges(bearing: BearingLife) -> str:
@@ -186,10 +193,10 @@ def _over_points(bearings: Sequence[LivesOverPoints]) -> Iterator[str | Table]:
         for point in bearing.points:
             lives = point.life.lives
             numbers = [lives["basic"], lives["reference"], *point.life.range("reference")]
-            modified = _number(lives["modified"]) if "modified" in lives else None
-            safety = _number(point.life.life.static_safety)
-            rows.append([bearing.name, point.label, *map(_number, numbers), modified, safety])
-    yield Table("", columns, rows)
+            modified = _cell(lives["modified"]) if "modified" in lives else None
+            safety = _cell(point.life.life.static_safety)
+            rows.append([bearing.name, point.label, *map(_cell, numbers), modified, safety])
+    yield Table("", columns, rows, name="lives")
     yield (
         "Lives in revolutions: basic L10 (ISO 281), reference L10r (ISO/TS 16281) with its range, "
         "modified Lnmr (ISO 281, 9.3); static safety C0/P0 (ISO 76)."
@@ -209,12 +216,13 @@ def _duty(bearings: Sequence[LivesOverPoints]) -> Iterator[str | Table]:
         duty = bearing.duty
         if duty is not None:
             worst = bearing.points[duty.worst].label
-            damage = percent(duty.damage[duty.worst], signed=False)
-            lives = map(_number, (duty.hours, duty.revolutions))
+            share = duty.damage[duty.worst]
+            damage = Cell(share, "", percent(share, signed=False))
+            lives = map(_cell, (duty.hours, duty.revolutions))
             rows.append([bearing.name, *lives, bearing.kind, worst, damage])
     if not rows:
         yield "No life over all points: give each point its speed, and its share or hours."
         return
     words = [Column("of", kind="word"), Column("most damage at", kind="text"), "of all"]
-    yield Table("", ["bearing", "hours", "revolutions", *words], rows)
+    yield Table("", ["bearing", "hours", "revolutions", *words], rows, name="duty")
     yield "Damage of all points is added (Palmgren, Miner)."

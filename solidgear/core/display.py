@@ -13,12 +13,15 @@ from typing import Any, ClassVar, Protocol
 
 TABLES = "solidgear.show.shown"
 SHEETS = "solidgear.show.sheet"
+FRAMES = "solidgear.show.frames"
 
 
 class Table(Protocol):
     """A table as the way to show builds it: text of a terminal, of a page, a data frame."""
 
     def to_dataframe(self) -> Any: ...
+
+    def to_xarray(self) -> Any: ...
 
     def _repr_html_(self) -> str: ...
 
@@ -47,9 +50,50 @@ class Displayed:
             raise TypeError(f"a {type(self).__name__} has no picture; table() shows its numbers")
         return draw(self, *args, **kwargs)
 
-    def to_dataframe(self, *args: Any, **kwargs: Any) -> Any:
-        """Return :meth:`table` as a data frame of pandas, which must be installed."""
-        return self.table(*args, **kwargs).to_dataframe()
+    def framed_tables(self) -> dict[str, Table]:
+        """Return all tables of numbers by name, the main one first."""
+        more = _shown(f"{self.shown}_tables")
+        return {"": self.table()} if more is None else more(self)
+
+    def to_dataframe(self, name: str = "") -> Any:
+        """Return a table of numbers as a data frame of pandas, in SI.
+
+        Parameters
+        ----------
+        name : str
+            As :meth:`framed_tables` has it; by default the first.
+
+        Returns
+        -------
+        pandas.DataFrame
+            Columns by names of quantities, error bars beside values; ``attrs["units"]`` has units.
+
+        Raises
+        ------
+        SolidgearError
+            For another name, and where pandas is not installed.
+        """
+        return _frames().chosen(self.framed_tables(), name).to_dataframe()
+
+    def to_xarray(self, name: str = "") -> Any:
+        """Return a table of numbers over its axes as a data set of xarray, in SI.
+
+        Parameters
+        ----------
+        name : str
+            As :meth:`framed_tables` has it; by default the first that has an axis.
+
+        Returns
+        -------
+        xarray.Dataset
+            Columns over those that are axes; ``attrs["units"]`` of each has its unit.
+
+        Raises
+        ------
+        SolidgearError
+            For another name, for a result without axes, and where xarray is not installed.
+        """
+        return _frames().chosen(self.framed_tables(), name, over_axes=True).to_xarray()
 
     def __repr__(self) -> str:
         return repr(self.table())
@@ -101,6 +145,10 @@ class Sheeted(Displayed):
             return super().table(*args, **kwargs)
         return _sheets().main_table(self.sheet())
 
+    def framed_tables(self) -> dict[str, Table]:
+        """Return all tables of numbers by name, the main one first, then those of its files."""
+        return _sheets().tables_of(self.sheet())
+
     def __repr__(self) -> str:
         return super().__repr__() if self.shown else _sheets().as_printed(self.sheet())
 
@@ -108,6 +156,10 @@ class Sheeted(Displayed):
 
     def _repr_html_(self) -> str:
         return super()._repr_html_() if self.shown else _sheets().as_html(self.sheet())
+
+
+def _frames() -> Any:
+    return importlib.import_module(FRAMES)
 
 
 def _sheets() -> Any:

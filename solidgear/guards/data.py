@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from solidgear.core import DOF_NAMES, Scene, listed
+from solidgear.core.scene.support import RIGID
 from solidgear.guards.notice import Notice, Notices, slip_in_units
 
 if TYPE_CHECKING:
@@ -39,9 +40,9 @@ def units(probe: Probe) -> Notices:
             (name, value, f"segment {s.name!r}")
             for name, value in zip(SOUND, (m.E, m.density, np.sqrt(m.E / m.density)))
         ]
-    for b in scene.bearings:
-        if b.catalogue is not None or b.hold:  # worked out at its load, or nothing real
-            continue
+    # others are worked out at their load, or nothing real
+    given_springs = [b for b in scene.bearings if b.catalogue is None and not b.hold]
+    for b in given_springs:
         k = np.diag(b.stiffness)
         local = scene.segments[0].material.E * mean
         if k[1] > 0:
@@ -67,6 +68,8 @@ def units(probe: Probe) -> Notices:
     # What is wrong early moves all that comes after it.
     for numbers in (materials, bearings, first):
         legend = "d: mean diameter" if numbers is bearings else ""
+        if legend and any(np.diag(b.stiffness).max() >= RIGID for b in given_springs):
+            legend += f"; {RIGID:g} N/m and more may stand for rigid"
         if sentence := slip_in_units(numbers, SOUND, legend):
             yield Notice("caution", (), sentence)
             return

@@ -8,6 +8,7 @@ from solidgear.core.judge.record import GuardRecord
 from solidgear.guards.check import BEST, Check
 from solidgear.show.command import FAULTY, caution
 from solidgear.show.sheet import Sheet, Terminal
+from solidgear.show.table import Column, Table
 from solidgear.show.units import ENGINEERING, Units
 
 #: not capitalised where it begins a sentence
@@ -27,9 +28,22 @@ def check_sheet(check: Check, units: Units = ENGINEERING) -> Sheet:
         data=check.as_dict(),
         verdict=_verdicts(check),
         notes=sentences,
+        lines={"verdicts": _table(check)},
         terminal=Terminal(heading=["== train"] if check.shafts else [], lines="hanging"),
         exit_code=FAULTY if check.faulty else 0,
     )
+
+
+def _table(check: Check) -> Table:
+    """Return the verdict on every model of a shaft, or of each shaft of a train."""
+    parts = {side: of_shaft.verdicts for side, of_shaft in check.shafts.items()}
+    rows = [
+        (side, model, verdict.verdict, ", ".join(verdict.reasons))
+        for side, verdicts in (parts or {check.name: check.verdicts}).items()
+        for model, verdict in verdicts.items()
+    ]
+    heads = (Column("shaft", axis=True), Column("model", axis=True), "verdict", "because of")
+    return Table("Verdicts", heads, rows)
 
 
 def _verdicts(check: Check) -> list[str]:

@@ -200,14 +200,14 @@ _unsigned = partial(percent, signed=False)
 def pairs(correlation: Correlation) -> Table:
     """Return every measured resonance and its mode."""
     columns = [
-        Column("", lambda p: p.number, kind=NUMBER),
+        Column("", lambda p: p.number, kind=NUMBER, name="number"),
         Column("measured\nHz", lambda p: p.measured.frequency, hertz),
         text("mode", lambda p: p.computed and p.computed.name),
         Column("computed\nHz", lambda p: p.computed and p.computed.frequency_hz, hertz),
         Column("off", lambda p: p.relative, percent),
         Column("band", lambda p: p.band, _unsigned),
         Column("sure", lambda p: p.probability, "{:.0%}".format),
-        text("", lambda p: p.verdict),
+        replace(text("", lambda p: p.verdict), name="verdict"),
     ]
     if correlation.mac is not None:
         columns.insert(-1, Column("MAC", lambda p: p.mac, "{:.2f}".format))

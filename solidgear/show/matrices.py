@@ -6,7 +6,7 @@ from collections.abc import Collection, Sequence
 
 from solidgear.core import DOF_NAMES
 from solidgear.core.quantity import BLOCK_UNITS
-from solidgear.show.table import Cell, Table
+from solidgear.show.table import Cell, Table, in_units
 from solidgear.show.units import Units
 from solidgear.show.words import is_number
 
@@ -43,11 +43,11 @@ def block(
             return Cell(None, "quiet")
         coupling = i != j or sizes is not None
         if not coupling or not is_nothing(value, across[i], along[j]):
-            return Cell(units.number(value, quarters[i // 3][j // 3]))
+            return in_units(value, quarters[i // 3][j // 3], units)
         digits = 5 if units.exponents else faint_digits
-        return Cell(
-            units.number(value, quarters[i // 3][j // 3], digits) if digits else "0", "faint"
-        )
+        if not digits:
+            return Cell(value, "faint", "0")
+        return in_units(value, quarters[i // 3][j // 3], units, digits, "faint")
 
     return Table(
         title,

@@ -9,7 +9,7 @@ from solidgear.core import OpenNumbers, Quantity
 from solidgear.core.judge.quantities import JUDGED
 from solidgear.core.judge.record import IntervalRecord, OpenRecord
 from solidgear.core.quantity import K_ZZ
-from solidgear.show.table import Column, Table, text
+from solidgear.show.table import Cell, Column, Table, text
 from solidgear.show.units import Units
 from solidgear.show.words import percent, short_percent
 
@@ -103,29 +103,29 @@ def budget(numbers: OpenNumbers, names: Iterable[str] = ()) -> Table:
     chosen = [
         number for name in (tuple(names) or SHOWN) if (number := numbers.of(name)) is not None
     ]
-    rows: list[tuple[str, ...]] = []
+    rows: list[tuple[Any, ...]] = []
     for number in chosen:
         ranges = {i.path: i.said for i in numbers.inputs}
         shares = number.shares or dict.fromkeys(number.by_input, None)
         for k, (path, share) in enumerate(shares.items()):
             whole = "" if share is None else f"{100 * share:.0f} %"
-            rows.append(
-                (
-                    number.quantity if not k else "",
-                    path,
-                    ranges[path],
-                    interval(number.by_input[path]),
-                    whole,
-                )
-            )
-        rows.append(("", ALL, _sampled(number, numbers), interval(number.total), ""))
-    heads = ("number", "open input", "its range", "number by it", "share")
-    return Table(
-        "",
-        [text(head) if k < 3 else Column(head) for k, head in enumerate(heads)],
-        rows,
-        " ".join([*_notes(numbers, chosen)]),
-    )
+            quantity = Cell(number.quantity, "", "" if k else number.quantity)
+            words = quantity, path, ranges[path]
+            rows.append((*words, *_ends(number.by_input[path]), Cell(share, "", whole)))
+        words = Cell(number.quantity, "", ""), ALL, _sampled(number, numbers)
+        rows.append((*words, *_ends(number.total), Cell(None, "", "")))
+    columns = [
+        *map(text, ("number", "open input", "its range")),
+        Column("number by it", name="low", unit="1"),
+        *(Column(head, unit="1", hidden=True) for head in ("high", "deviation")),
+        Column("share", unit="1"),
+    ]
+    return Table("", columns, rows, " ".join([*_notes(numbers, chosen)]), name="budget")
+
+
+def _ends(part: IntervalRecord) -> tuple[Cell, float | None, float | None]:
+    """Return the lower end of a range, shown with the upper one, that one, and the deviation."""
+    return Cell(part.low, "", interval(part)), part.high, part.deviation
 
 
 def _sampled(number: OpenRecord, numbers: OpenNumbers) -> str:

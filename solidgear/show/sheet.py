@@ -128,6 +128,18 @@ def main_table(sheet: Sheet) -> Table:
     return next((table for table in tables if table), conclusions)
 
 
+def tables_of(sheet: Sheet) -> dict[str, Table]:
+    """Return all tables of numbers of a sheet by name, the main one first; those of files have their
+    names.
+    """
+    shown = [*sheet.tables, *(table for s in sheet.sections for table in s.tables)]
+    printed = [block for block in sheet.terminal.tables or () if isinstance(block, Table)]
+    shown = shown if any(shown) else printed
+    tables = {table.key: table for table in shown if table and table.style != "facts"}
+    named = {name: table for name, table in sheet.lines.items() if table}
+    return {**tables, **named} or {"": main_table(sheet)}
+
+
 def as_printed(sheet: Sheet) -> str:
     """Return what a terminal shows of a sheet."""
     from rich.console import Console  # start-up: as in `say`

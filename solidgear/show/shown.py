@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from solidgear.core import DOF_NAMES
-from solidgear.core.quantity import BLOCK_UNITS
+from solidgear.core.quantity import ACROSS, BLOCK_UNITS, QUANTITIES, Quantity
 from solidgear.show.panel import GREY, Panel, Series, curve
 from solidgear.show.plot import Chart, in_columns
 from solidgear.show.scales import Axis
 from solidgear.show.sketch import Sketch, draw
-from solidgear.show.table import Table
+from solidgear.show.table import Cell, Column, Table
 from solidgear.show.words import bar_of, percent
 
 if TYPE_CHECKING:
@@ -103,6 +103,26 @@ def mode_set(modes: ModeSet) -> Table:
     )
 
 
+def mode_set_tables(modes: ModeSet) -> dict[str, Table]:
+    """Return frequencies, and motions of sections in all shapes: those of a pair are two."""
+    shapes = [
+        (f"{mode.name} {letter}".strip(), mode.frequency_hz, y, dof, float(motion))
+        for mode in modes.modes
+        for letter, sections in zip("ab" if mode.multiplicity > 1 else [""], mode.motions)
+        for y, six in zip(modes.stations, sections)
+        for dof, motion in zip(DOF_NAMES, six)
+    ]
+    columns = [
+        Column("shape", axis=True),
+        Column("frequency [Hz]"),
+        Column("y [m]", axis=True),
+        Column("component", axis=True),
+        Column("motion"),
+    ]
+    title = "Motions of sections, of unit modal mass; rotations in rad for translations in m"
+    return {"frequencies": mode_set(modes), "shapes": Table(title, columns, shapes)}
+
+
 def mode_set_figure(modes: ModeSet, names: Sequence[str] = ()) -> Chart:
     """Draw section motions of elastic modes along the shaft: translations, for torsion rotations.
 
@@ -151,6 +171,27 @@ def condensed(statics: Condensed, kind: str = "stiffness") -> Table:
     return _matrix(statics, kind, f"at {statics.port} ({statics.attachment})", DOF_NAMES, "free")
 
 
+def condensed_tables(statics: Condensed | Coupled) -> dict[str, Table]:
+    """Return both matrices as they are shown, and their entries with units."""
+    heads = list(statics.order)
+    rows = [
+        (
+            *(a, b),
+            *(float(getattr(statics, kind)[i, j]) for kind in BLOCK_UNITS),
+            *(of_kind[(i % 6 > 2) + (j % 6 > 2)] for of_kind in BLOCK_UNITS.values()),
+        )
+        for i, a in enumerate(heads)
+        for j, b in enumerate(heads)
+    ]
+    columns = [Column(head, axis=True) for head in ("row", "column")]
+    columns += [*map(Column, BLOCK_UNITS), *(Column(f"unit of {kind}") for kind in BLOCK_UNITS)]
+    shown: dict[str, Any] = {kind: statics.table(kind) for kind in BLOCK_UNITS}
+    return {**shown, "entries": Table("entries", columns, rows)}
+
+
+coupled_tables = condensed_tables
+
+
 def coupled(statics: Coupled, kind: str = "compliance") -> Table:
     """Return the matrix between several ports, a stiffness or a compliance."""
     heads = [f"{port} {name}" for port in statics.ports for name in DOF_NAMES]
@@ -190,9 +231,25 @@ def comparison(compared: Any) -> Table:
     )
 
 
+def comparison_tables(compared: Any) -> dict[str, Table]:
+    """Return the models, and the numbers of each with their error bars."""
+    rows = []
+    for name, model in compared.record.models.items():
+        for quantity in (*QUANTITIES, *ACROSS):
+            if quantity.is_frequency:
+                mode = model.mode(quantity)
+                value = None if mode is None else mode.frequency_hz
+            else:
+                value = model.value(quantity)
+            rows.append((name, str(quantity), value, quantity.unit, model.bars.get(quantity)))
+    axes = [Column(head, axis=True) for head in ("model", "quantity")]
+    numbers = Table("Numbers", [*axes, "value", "unit", Column("error bar", unit="1")], rows)
+    return {"models": comparison(compared), "numbers": numbers}
+
+
 def answered(answer: Answered) -> Table:
     """Return numbers with their error bars."""
-    rows = [(v.quantity, v.value, v.unit, bar_of(v)) for v in answer.values]
+    rows = [(v.quantity, v.value, v.unit, Cell(v.bar, "", bar_of(v))) for v in answer.values]
     words = "within" if answer.reached else "not within"
     return Table(
         f"Answer for {answer.scene}: {answer.rung}, {words} {percent(answer.tolerance, signed=False)}",
@@ -209,6 +266,28 @@ def swept(rows: Any) -> Table:
     columns = [*heads, "status"]
     cells = [tuple(_told(rows.columns, head, k) for head in columns) for k in range(len(rows))]
     return Table("Rows of a sweep, SI", columns, cells)
+
+
+def swept_tables(rows: Any) -> dict[str, Table]:
+    """Return all columns of all rows, over the entries that vary where all combinations are there, else
+    over the variants.
+    """
+    values = {name: rows.columns[name] for name in rows.varied}
+    full = np.prod([len(set(column)) for column in values.values()]) == len(rows)
+    places = len(set(zip(*values.values())))
+    axes = rows.varied if full and places == len(rows) else ("variant",)
+    columns = [
+        Column(name, name=name, unit=_unit(name), axis=name in axes) for name in rows.columns
+    ]
+    return {"rows": Table("Rows of a sweep, SI", columns, list(zip(*rows.columns.values())))}
+
+
+def _unit(column: str) -> str:
+    """Return the unit of a column of a sweep, where its name says so."""
+    name = Quantity(column.removesuffix(" bar"))
+    if not name.is_frequency:
+        return name.unit
+    return "Hz" if name.endswith("_hz") else ""
 
 
 def _told(columns: Mapping[str, list], head: str, k: int) -> str:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import csv
 import io
 import math
+import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -17,8 +18,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from solidgear.core import whole
+from solidgear.show.frames import dataframe, dataset
 from solidgear.show.page_parts import template
-from solidgear.show.units import Units, in_ascii
+from solidgear.show.units import Units, in_ascii, plain_unit
 from solidgear.show.words import DASH, as_text
 
 if TYPE_CHECKING:
@@ -49,6 +51,8 @@ class Cell(NamedTuple):
     #: ``quiet`` (said with less weight), ``faint`` (next to nothing), ``strong``, ``good``, ``bad``
     #: (beyond what was asked), ``unresolved``, or ``mark`` and the status of an input
     look: str = ""
+    #: how it is written, where its column has no rule for it
+    text: str | None = None
 
 
 @dataclass(frozen=True)
@@ -64,6 +68,12 @@ class Column:
     #: ``number``, ``text``, ``word`` or ``mark``; by default a text for the first column, else a
     #: number
     kind: str = ""
+    #: name of the quantity and SI unit of the values in a frame; by default those that the head has,
+    #: as ``force [N]`` or ``force, N``
+    name: str = ""
+    unit: str = ""
+    axis: bool = False  #: whether other columns are over its values, as over a frequency
+    hidden: bool = False  #: whether it is in frames alone
 
     def written(self, value: Any, nothing: str = DASH) -> str:
         """Return a value as this column writes it."""
@@ -86,12 +96,14 @@ def quantity(
     head: str, si: str, units: Units, of: Callable[[Any], Any] | None = None, digits: int = 5
 ) -> Column:
     """Return a column of values of an SI unit, shown in `units`."""
-    return Column(f"{head}, {units.unit(si)}", of, partial(units.number, si=si, digits=digits))
+    write = partial(units.number, si=si, digits=digits)
+    return Column(f"{head}, {units.unit(si)}", of, write, name=head, unit=plain_unit(si))
 
 
 def given(head: str, si: str, units: Units, of: Callable[[Any], Any] | None = None) -> Column:
     """Return a column of values out of a scene, without zeros behind them."""
-    return Column(f"{head}, {units.unit(si)}", of, partial(units.given, si=si))
+    write = partial(units.given, si=si)
+    return Column(f"{head}, {units.unit(si)}", of, write, name=head, unit=plain_unit(si))
 
 
 @dataclass
@@ -119,6 +131,7 @@ class Table:
     #: where the rows are several blocks: for each what stands over equal shares of the columns
     #: behind the first, such as units
     over: Sequence[tuple[str, ...]] = ()
+    name: str = ""  #: of its frame, by default from its title
 
     def __post_init__(self) -> None:
         columns = [c if isinstance(c, Column) else Column(c) for c in self.columns]
@@ -129,19 +142,43 @@ class Table:
             [c.of(item) if c.of else item[k] for k, c in enumerate(self.columns)]
             for item in self.rows
         ]
+        self._framed = self.columns, self.rows
+        if any(c.hidden for c in self.columns):
+            shown = [k for k, c in enumerate(self.columns) if not c.hidden]
+            self.rows = [[row[k] for k in shown] for row in self.rows]
+            self.columns = [self.columns[k] for k in shown]
 
     def __bool__(self) -> bool:
         return bool(self.rows)
+
+    @property
+    def key(self) -> str:
+        """Name of its frame: of the title what stands before a comma, or a colon."""
+        words = re.split(r"[,:(]", self.title)[0]
+        return self.name or "_".join(re.findall(r"\w+", words.lower()))
 
     @property
     def heads(self) -> list[str]:
         """Heads of the columns."""
         return [column.head for column in self.columns]
 
+    def counted(self, name: str) -> Table:
+        """Return the table with the numbers of its rows, from 0, as the axis of its frame."""
+        columns, rows = self._framed
+        numbered = [[*row, k] for k, row in enumerate(rows)]
+        plain = [replace(column, of=None) for column in columns]
+        return replace(self, columns=[*plain, Column(name, axis=True, hidden=True)], rows=numbered)
+
     @property
     def values(self) -> list[list[Any]]:
         """The rows without looks."""
-        return [[v.value if isinstance(v, Cell) else v for v in row] for row in self.rows]
+        return _values(self.rows)
+
+    @property
+    def framed(self) -> tuple[Sequence[Column], list[list[Any]]]:
+        """Columns and values of a frame, with those that are not shown."""
+        columns, rows = self._framed
+        return columns, _values(rows)
 
     @property
     def cells(self) -> list[list[Cell]]:
@@ -155,8 +192,8 @@ class Table:
 
     @staticmethod
     def _cell(column: Column, value: Any) -> Cell:
-        value, look = value if isinstance(value, Cell) else (value, "")
-        return Cell(column.written(value), look)
+        cell = value if isinstance(value, Cell) else Cell(value)
+        return Cell(column.written(cell.value) if cell.text is None else cell.text, cell.look)
 
     @property
     def blocks(self) -> list[tuple[tuple[str, ...], list[list[Cell]]]]:
@@ -214,16 +251,36 @@ class Table:
         return path
 
     def to_dataframe(self) -> Any:
-        """Return the table as a data frame of pandas.
+        """Return the values, in SI, as a data frame of pandas.
+
+        Columns are called by their quantities; ``attrs["units"]`` has their units by name, and
+        ``attrs["title"]`` the title.
 
         Raises
         ------
-        ImportError
+        SolidgearError
             Where pandas is not installed; nothing else of solidgear needs it.
         """
-        import pandas
+        return dataframe(self)
 
-        return pandas.DataFrame(self.values, columns=self.heads)
+    def to_xarray(self) -> Any:
+        """Return the values, in SI, over the columns that are axes, as a data set of xarray.
+
+        Raises
+        ------
+        SolidgearError
+            Where xarray is not installed, or no column is an axis.
+        """
+        return dataset(self)
+
+
+def _values(rows: Iterable[Sequence[Any]]) -> list[list[Any]]:
+    return [[v.value if isinstance(v, Cell) else v for v in row] for row in rows]
+
+
+def in_units(value: float | None, si: str, units: Units, digits: int = 5, look: str = "") -> Cell:
+    """Return a value of SI that is shown in other units, in a column of several."""
+    return Cell(value, look, units.number(value, si, digits))
 
 
 def exact(value: float) -> str:
@@ -231,9 +288,12 @@ def exact(value: float) -> str:
     return f"{value:.9g}"
 
 
-def numbers(columns: Mapping[str, Iterable[float | str | None]]) -> Table:
-    """Return columns of numbers in SI and of texts by their heads, for other programs."""
-    return Table("", [Column(head, write=exact) for head in columns], list(zip(*columns.values())))
+def numbers(columns: Mapping[str, Iterable[float | str | None]], axes: int = 0) -> Table:
+    """Return columns of numbers in SI and of texts by their heads, for other programs; the first
+    `axes` of them are axes.
+    """
+    heads = [Column(head, write=exact, axis=k < axes) for k, head in enumerate(columns)]
+    return Table("", heads, list(zip(*columns.values())))
 
 
 #: what rich is told of the styles of terminals

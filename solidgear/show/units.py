@@ -191,6 +191,17 @@ US = Units(
 SYSTEMS = {units.name: units for units in (ENGINEERING, SI, US)}
 
 
+def plain_unit(si: str) -> str:
+    """Return an SI unit without the word that says what is measured in it.
+
+    Examples
+    --------
+    >>> plain_unit("Pa stressed"), plain_unit("N/m along"), plain_unit("N m/rad")
+    ('Pa', 'N/m', 'N m/rad')
+    """
+    return si.removesuffix(" moved").removesuffix(" stressed").removesuffix(" along")
+
+
 def units_named(name: str | Units) -> Units:
     """Return a choice of units by its name.
 

@@ -10,7 +10,7 @@ strain energy that is in the teeth, times the relative change of their stiffness
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from time import perf_counter
 from typing import Any, Literal
 
@@ -24,6 +24,7 @@ from solidgear.teeth.mesh_contact import MeshContact
 from solidgear.teeth.supports import Carried
 from solidgear.teeth.train_teeth import TeethModel, mesh_contact
 from solidgear.trains.assembly.assembly import Assembly
+from solidgear.trains.assembly.stages import with_mesh_stiffness
 from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.planetary import PlanetMesh
 
@@ -58,6 +59,15 @@ class Judged:
             FACE: (self.face_load_factor, other.face_load_factor),
         }
         return {name: None if a is None or not b else a / b - 1 for name, (a, b) in pairs.items()}
+
+
+@dataclass(frozen=True, eq=False)
+class Solved:
+    """A mesh by one model of its teeth."""
+
+    contact: MeshContact
+    seconds: float
+    bars: Mapping[str, float] | None = None  #: as of :func:`solidgear.teeth.bars.error_bars`
 
 
 @dataclass(frozen=True)
@@ -137,26 +147,33 @@ def ladder(
     carried: Carried,
     mesh: Pair | PlanetMesh,
     tolerance: float,
+    model: TeethModel | None = None,
     reference: Literal["slices", "solid"] = SOLID,
+    solved: Mapping[str, Solved] | None = None,
     progress: Callable[[str], None] = lambda text: None,
 ) -> Ladder:
-    """Solve a mesh with every model of its teeth up to the reference, and judge them."""
-    models: dict[str, TeethModel] = {SLICES: TeethModel()}
+    """Solve a mesh with every model of its teeth up to the reference, and judge them; slices and positions
+    are those of `model`, and what is `solved` by some model is not solved again.
+    """
+    model, solved = model or TeethModel(), dict(solved or {})
+    models: dict[str, TeethModel] = {SLICES: replace(model, name=SLICES)}
     if reference == SOLID:
-        models[SOLID] = TeethModel("solid")
-    solved: dict[str, tuple[MeshContact, float]] = {}
-    for name, model in models.items():
-        progress(f"teeth of the {mesh.name}: {name}")
-        start = perf_counter()
-        contact = mesh_contact(carried, mesh, model)
-        solved[name] = contact, perf_counter() - start
-    finest, _ = solved[reference]
+        models[SOLID] = replace(model, name=SOLID)
+    for name, teeth in models.items():
+        if name not in solved:
+            progress(f"teeth of the {mesh.name}: {name}")
+            start = perf_counter()
+            contact = mesh_contact(carried, mesh, teeth)
+            solved[name] = Solved(contact, perf_counter() - start)
+    finest = solved[reference].contact
     numbers = {NORM: (_norm(finest), 0.0)}
-    numbers |= {name: (Judged.of(contact), time) for name, (contact, time) in solved.items()}
-    judge = Judged.of(finest)
-    progress(f"error bars of the {mesh.name}")
-    bars = _bars(carried, mesh, models[reference], finest)
-    share = energy_share(carried, mesh)
+    numbers |= {name: (Judged.of(solved[name].contact), solved[name].seconds) for name in models}
+    judge, own_bars = Judged.of(finest), solved[reference].bars
+    if own_bars is None:
+        progress(f"error bars of the {mesh.name}")
+        own_bars = error_bars(carried, mesh, models[reference], finest)
+    bars = _bars(finest, own_bars)
+    share = energy_share(carried, mesh, judge.tangent)
     bars[STIFFNESS] *= share / 2
     rungs = []
     for name, (judged, seconds) in numbers.items():
@@ -174,21 +191,22 @@ def _norm(contact: MeshContact) -> Judged:
     return Judged(contact.along_line(contact.norm.mesh), None, contact.norm_face_load_factor)
 
 
-def _bars(
-    carried: Carried, mesh: Pair | PlanetMesh, model: TeethModel, contact: MeshContact
-) -> dict[str, float]:
+def _bars(contact: MeshContact, own_bars: Mapping[str, float]) -> dict[str, float]:
     """Return the error bars of the judged numbers, relative."""
-    numbers, bars = numbers_of(contact), error_bars(carried, mesh, model, contact)
+    numbers = numbers_of(contact)
     names = {STIFFNESS: "tangent", ERROR: "peak_to_peak", FACE: "face_load_factor"}
-    return {judged: bars[name] / (numbers[name] or np.inf) for judged, name in names.items()}
+    return {judged: own_bars[name] / (numbers[name] or np.inf) for judged, name in names.items()}
 
 
-def energy_share(carried: Carried, mesh: Pair | PlanetMesh) -> float:
-    """Return the largest share of the strain energy in the teeth of a mesh, of the modes up to the
-    highest frequency that the train asks for.
+def energy_share(carried: Carried, mesh: Pair | PlanetMesh, tangent: float) -> float:
+    """Return the largest share of the strain energy in the teeth of a mesh, of planets in those of all,
+    with their tangent stiffness, N/m, of the modes up to the highest frequency that the train asks for.
     """
     assembly: Assembly = carried.assembly
-    modes = carried.system.modes()
+    names = [mesh.name]
+    if isinstance(mesh, PlanetMesh):
+        names = [m.name for m in mesh.stage.meshes if m.mate == mesh.mate]
+    modes = with_mesh_stiffness(carried.system, dict.fromkeys(names, tangent)).modes()
     wanted = (modes.frequency_hz > 0) & (modes.frequency_hz <= assembly.train.ask.max_frequency)
-    share = modes.energy[mesh.name][wanted]
+    share = np.sum([modes.energy[name] for name in names], axis=0)[wanted]
     return float(np.max(share, initial=0.0))

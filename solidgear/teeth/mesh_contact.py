@@ -15,13 +15,14 @@ from typing import Any
 
 import numpy as np
 
+from solidgear.core.gears.flank_shape import shape_opening
+from solidgear.core.gears.norm import NormStiffness, norm_face_load_factor, norm_stiffness
 from solidgear.core.gears.wheel_pair import WheelPair
 from solidgear.core.plain import plain
 from solidgear.teeth.contact.cells import ToothedPair
 from solidgear.teeth.contact.cycle import MeshCycle, mesh_cycle
 from solidgear.teeth.contact.cylindrical import CylindricalPair
 from solidgear.teeth.contact.frame import Supports
-from solidgear.teeth.norm import NormStiffness, norm_face_load_factor, norm_stiffness
 
 #: orders of the transmission error that are listed
 ORDERS = 5
@@ -189,8 +190,7 @@ class MeshContact(SolvedMesh):
         """How the flanks lie askew under load."""
         face, wheels = self.wheels.face_width, self.wheels
         ends = np.array([-face / 2, face / 2])
-        gaps = self.pair.shape_gap(np.full(2, wheels.pitch_point), ends)
-        shape = float(gaps[1] - gaps[0])
+        shape = shape_opening(wheels, self.pair.shapes)
         point = np.column_stack([np.zeros(2), np.zeros(2), ends])
         normal = np.tile(self.cycle.positions[0].cells.normal[0], (2, 1))
         rows = self.supports.opening(point, normal)

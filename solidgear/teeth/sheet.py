@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -12,14 +13,16 @@ from solidgear.core.judge.deviations import BEYOND
 from solidgear.show.command import caution
 from solidgear.show.plot import Make
 from solidgear.show.sheet import Sheet, Terminal
-from solidgear.show.table import NUMBER, Cell, Column, Table, numbers, word
-from solidgear.show.units import Units, in_ascii
+from solidgear.show.table import NUMBER, Cell, Column, Table, in_units, numbers, quantity, word
+from solidgear.show.units import SI, Units, in_ascii, plain_unit
 from solidgear.teeth.bevel.train import BevelContact
 from solidgear.teeth.charts import cycle_chart, face_chart, pattern_chart, torque_chart
 from solidgear.teeth.ladder import ERROR, FACE, STIFFNESS, Ladder, Rung
 from solidgear.teeth.mesh_contact import MeshContact, SolvedMesh
 from solidgear.teeth.study import AtTorque, TeethStudy
 
+#: an empty cell
+NOTHING = Cell(None, "", "")
 #: motion that rounding leaves, m
 ROUNDING = 1e-13
 #: orders of the error in the table
@@ -137,11 +140,12 @@ def _teeth_by(study: TeethStudy) -> str:
 def of_mesh(mesh: SolvedMesh, bars: Mapping[str, float], units: Units, note: str) -> Table:
     """Return the numbers of a mesh with their error bars, and their range over the cycle."""
     columns = [
-        word(""),
+        Column("", kind="word", name="quantity"),
         Column("value or mean", kind=NUMBER),
         Column("error bar", kind=NUMBER),
         Column("least", kind=NUMBER),
         Column("largest", kind=NUMBER),
+        Column("unit", hidden=True),
     ]
     rows = [
         *_stiffnesses(mesh, bars, units),
@@ -151,28 +155,39 @@ def of_mesh(mesh: SolvedMesh, bars: Mapping[str, float], units: Units, note: str
     return Table(f"Contact of teeth: {mesh.name}", columns, rows, note)
 
 
-Row = list[str | None]
+Row = list[Cell]
 
 
-def _alone(head: str, value: str, bar: str = "") -> Row:
-    return [head, value, bar, "", ""]
+def _row(head: str, si: str, units: Units, value: Cell, *others: Cell) -> Row:
+    """Return a row in an SI unit: the mean, and what is known of error bar, least and largest."""
+    unit = units.unit(si)
+    name = Cell(head, "", f"{head}, {unit}" if unit else head)
+    more = [*others, *(Cell(None, "", "") for _ in range(3 - len(others)))]
+    return [name, value, *more, Cell(plain_unit(si))]
+
+
+def _plain(head: str, value: float, write: str, bar: Cell = NOTHING) -> Row:
+    """Return a row of a number without a unit."""
+    return _row(head, "", SI, Cell(value, "", format(value, write)), bar)
 
 
 def _stiffnesses(mesh: SolvedMesh, bars: Mapping[str, float], units: Units) -> list[Row]:
     """Return rows of load and stiffness."""
-    cycle, unit = mesh.cycle, units.unit("N/m")
+    cycle = mesh.cycle
 
     def spread(head: str, values: np.ndarray, name: str = "") -> Row:
         mean, low, high = (
-            units.number(float(v), "N/m", 4) for v in (values.mean(), values.min(), values.max())
+            in_units(float(v), "N/m", units, 4) for v in (values.mean(), values.min(), values.max())
         )
-        bar = units.number(bars[name], "N/m", 2) if name in bars else ""
-        return [f"{head}, {unit}", mean, bar, low, high]
+        bar = in_units(bars[name], "N/m", units, 2) if name in bars else NOTHING
+        return _row(head, "N/m", units, mean, bar, low, high)
 
-    torque, force = units.unit("N m"), units.unit("N")
+    def alone(head: str, value: float, si: str) -> Row:
+        return _row(head, si, units, in_units(value, si, units, 4))
+
     rows = [
-        _alone(f"torque on the first wheel, {torque}", units.number(cycle.torque, "N m", 4)),
-        _alone(f"force along the line of action, {force}", units.number(cycle.force, "N", 4)),
+        alone("torque on the first wheel", cycle.torque, "N m"),
+        alone("force along the line of action", cycle.force, "N"),
         spread("stiffness, tangent", cycle.tangent, "tangent"),
         spread("stiffness, secant", cycle.secant, "secant"),
         spread("stiffness, tangent, aligned", mesh.aligned.tangent),
@@ -183,23 +198,21 @@ def _stiffnesses(mesh: SolvedMesh, bars: Mapping[str, float], units: Units) -> l
             "stiffness by ISO 6336-1, one pair": mesh.norm.single,
             "stiffness by ISO 6336-1, mesh": mesh.norm.mesh,
         }
-        rows += [
-            _alone(f"{head}, {unit}", units.number(mesh.along_line(c), "N/m", 4))
-            for head, c in norm.items()
-        ]
-        rows.insert(2, _alone("contact ratio, overlap", _ratios(mesh)))
+        rows += [alone(head, mesh.along_line(c), "N/m") for head, c in norm.items()]
+        ratios = Cell(mesh.wheels.contact_ratio, "", _ratios(mesh))
+        rows.insert(2, _row("contact ratio, overlap", "", units, ratios))
     elif isinstance(mesh, BevelContact):
-        rows.insert(2, _alone("contact ratio", f"{mesh.pair.flanks.contact_ratio:.3f}"))
+        rows.insert(2, _plain("contact ratio", mesh.pair.flanks.contact_ratio, ".3f"))
     return rows
 
 
 def _errors(mesh: SolvedMesh, bars: Mapping[str, float], units: Units) -> list[Row]:
     """Return rows of the transmission error."""
-    cycle, unit = mesh.cycle, units.unit("m moved")
+    cycle = mesh.cycle
 
     def size(head: str, value: float, name: str = "") -> Row:
-        bar = units.number(bars[name], "m moved", 2) if name in bars else ""
-        return _alone(f"{head}, {unit}", _size(value, units), bar)
+        bar = in_units(bars[name], "m moved", units, 2) if name in bars else NOTHING
+        return _row(head, "m moved", units, _size(value, units), bar)
 
     orders = np.abs(cycle.orders(SHOWN_ORDERS))
     return [
@@ -211,31 +224,34 @@ def _errors(mesh: SolvedMesh, bars: Mapping[str, float], units: Units) -> list[R
 
 def _along_the_face(mesh: SolvedMesh, bars: Mapping[str, float], units: Units) -> list[Row]:
     """Return rows of how load lies on the flank."""
-    cycle, unit = mesh.cycle, units.unit("m moved")
-    pressure = units.number(cycle.pressure, "Pa stressed", 4)
-    bar, pressed = "", ""
+    cycle, bar, pressed = mesh.cycle, NOTHING, NOTHING
+    pressure = in_units(cycle.pressure, "Pa stressed", units, 4)
     if bars:
-        bar = f"{bars['face_load_factor']:.2g}"
-        pressed = units.number(bars["pressure"], "Pa stressed", 2)
+        factor = bars["face_load_factor"]
+        bar = Cell(factor, "", f"{factor:.2g}")
+        pressed = in_units(bars["pressure"], "Pa stressed", units, 2)
     rows = [
-        _alone("face load factor KHb", f"{cycle.face_load_factor:.2f}", bar),
-        _alone("largest line load over its mean", f"{cycle.line_load_factor:.2f}"),
-        _alone(f"largest pressure, {units.unit('Pa stressed')}", pressure, pressed),
-        _alone("lines that carry, mean", f"{cycle.mean_lines:.2f}"),
+        _plain("face load factor KHb", cycle.face_load_factor, ".2f", bar),
+        _plain("largest line load over its mean", cycle.line_load_factor, ".2f"),
+        _row("largest pressure", "Pa stressed", units, pressure, pressed),
+        _plain("lines that carry, mean", cycle.mean_lines, ".2f"),
     ]
     if isinstance(mesh, MeshContact):
+        skews = {"bending": mesh.skew.bending, "wind-up": mesh.skew.turning}
         rows[:1] = [
-            _alone(f"misalignment by bending, {unit}", _size(mesh.skew.bending, units)),
-            _alone(f"misalignment by wind-up, {unit}", _size(mesh.skew.turning, units)),
+            *(
+                _row(f"misalignment by {cause}", "m moved", units, _size(skew, units))
+                for cause, skew in skews.items()
+            ),
             *rows[:1],
-            _alone("face load factor by ISO 6336-1", f"{mesh.norm_face_load_factor:.2f}"),
+            _plain("face load factor by ISO 6336-1", mesh.norm_face_load_factor, ".2f"),
         ]
     return rows
 
 
-def _size(value: float, units: Units) -> str:
-    """Write a motion, nothing below what rounding leaves."""
-    return units.number(value if abs(value) > ROUNDING else 0.0, "m moved", 3)
+def _size(value: float, units: Units) -> Cell:
+    """Return a motion, nothing below what rounding leaves."""
+    return in_units(float(value) if abs(value) > ROUNDING else 0.0, "m moved", units, 3)
 
 
 def _ratios(mesh: MeshContact) -> str:
@@ -246,9 +262,8 @@ def over_torque(curve: Sequence[AtTorque], units: Units, name: str, shaft: str) 
     """Return numbers of a mesh over the torque of a shaft."""
 
     def size(head: str, si: str, of: Callable[[AtTorque], float], digits: int = 4) -> Column:
-        return Column(
-            f"{head}, {units.unit(si)}", lambda at: units.number(of(at), si, digits), kind=NUMBER
-        )
+        column = quantity(head, si, units, lambda at: float(of(at)), digits)
+        return replace(column, kind=NUMBER, axis=head == "torque")
 
     columns = [
         size("torque", "N m", lambda at: at.torque),
@@ -256,7 +271,7 @@ def over_torque(curve: Sequence[AtTorque], units: Units, name: str, shaft: str) 
         size("order 1", "m moved", lambda at: float(abs(at.contact.cycle.orders(1)[0])), 3),
         size("order 2", "m moved", lambda at: float(abs(at.contact.cycle.orders(2)[1])), 3),
         size("tangent", "N/m", lambda at: float(at.contact.cycle.tangent.mean())),
-        Column("KHb", lambda at: f"{at.contact.cycle.face_load_factor:.2f}", kind=NUMBER),
+        Column("KHb", lambda at: at.contact.cycle.face_load_factor, "{:.2f}".format, kind=NUMBER),
         size("pressure", "Pa stressed", lambda at: at.contact.cycle.pressure),
     ]
     note = "Error pp: transmission error, peak to peak; KHb: face load factor."
@@ -267,25 +282,23 @@ def over_torque(curve: Sequence[AtTorque], units: Units, name: str, shaft: str) 
 def of_models(ladder: Ladder, units: Units) -> Table:
     """Return models of the teeth side by side."""
 
-    def off(name: str, rung: Rung) -> Cell | str | None:
+    def off(name: str, rung: Rung) -> Cell | None:
         share = rung.off.get(name)
         if share is None:
             return None
         if rung is ladder.reference:
-            return f"+- {100 * ladder.bars[name]:.2g} %"
+            return Cell(0.0, "", f"+- {100 * ladder.bars[name]:.2g} %")
         look = {WITHIN: "good", BEYOND: "bad"}.get(rung.verdict[name], "")
-        return Cell(f"{100 * share:+.2g} %", look)
+        return Cell(share, look, f"{100 * share:+.2g} %")
 
     rows = [
         [
             rung.model,
-            units.number(rung.numbers.tangent, "N/m", 4),
+            rung.numbers.tangent,
             off(STIFFNESS, rung),
-            None
-            if rung.numbers.peak_to_peak is None
-            else units.number(rung.numbers.peak_to_peak, "m moved", 3),
+            rung.numbers.peak_to_peak,
             off(ERROR, rung),
-            f"{rung.numbers.face_load_factor:.3f}",
+            rung.numbers.face_load_factor,
             off(FACE, rung),
             rung.seconds,
         ]
@@ -293,12 +306,12 @@ def of_models(ladder: Ladder, units: Units) -> Table:
     ]
     columns = [
         word("teeth by"),
-        Column(f"tangent, {units.unit('N/m')}"),
-        Column("frequency"),
-        Column(f"error pp, {units.unit('m moved')}"),
-        Column("off"),
-        Column("KHb"),
-        Column("off"),
+        quantity("tangent", "N/m", units, digits=4),
+        Column("frequency", name="frequency off"),
+        quantity("error pp", "m moved", units, digits=3),
+        Column("off", name="error pp off"),
+        Column("KHb", write="{:.3f}".format),
+        Column("off", name="KHb off"),
         Column("s", write=lambda seconds: f"{seconds:.1f}"),
     ]
     note = (
@@ -326,7 +339,8 @@ def cycle_lines(mesh: SolvedMesh) -> Table:
             "tangent [N/m]": cycle.tangent,
             "secant with supports [N/m]": cycle.supported_secant,
             "tangent with supports [N/m]": cycle.supported_tangent,
-        }
+        },
+        axes=1,
     )
 
 

@@ -13,7 +13,7 @@ from solidgear.core import Sheeted, SolidgearError, Source, explained, pinned
 from solidgear.core.plain import plain
 from solidgear.strength.acting import Acting, Given
 from solidgear.teeth.bars import error_bars
-from solidgear.teeth.ladder import Ladder, ladder
+from solidgear.teeth.ladder import Ladder, Solved, ladder
 from solidgear.teeth.mesh_contact import MeshContact, SolvedMesh
 from solidgear.teeth.supports import Carried, with_sections
 from solidgear.teeth.train_teeth import TeethModel, solved_mesh
@@ -191,10 +191,12 @@ def _contact(
     sectioned = with_sections(with_usual_meshes(train))
     carried = Carried.at_rest(sectioned, point)
     teeth = touching(carried.train)
-    meshes = []
+    meshes, took = [], []
     for mesh in teeth:
         progress(f"teeth of the {mesh.name}")
+        begun = perf_counter()
         meshes.append(solved_mesh(carried, mesh, model))
+        took.append(perf_counter() - begun)
     curves: dict[str, list[AtTorque]] = {mesh.name: [] for mesh in teeth} if factors else {}
     for factor in sorted(factors):
         torque = factor * point.torque
@@ -210,9 +212,16 @@ def _contact(
             bars[mesh.name] = error_bars(carried, mesh, model, solved)
     tolerance = train.ask.tolerance
     ladders = [
-        ladder(carried, mesh, tolerance, progress=progress)
-        for mesh in teeth
-        if judge and not _is_bevel(mesh)
+        ladder(
+            carried,
+            mesh,
+            tolerance,
+            model,
+            solved={model.name: Solved(solved, seconds, bars[mesh.name])},
+            progress=progress,
+        )
+        for mesh, solved, seconds in zip(teeth, meshes, took)
+        if judge and isinstance(solved, MeshContact)
     ]
     return TeethStudy(
         title=train.title or train.name,
@@ -226,10 +235,6 @@ def _contact(
         cautions=tuple(carried.state.notes),
         seconds=perf_counter() - start,
     )
-
-
-def _is_bevel(mesh: Pair | PlanetMesh) -> bool:
-    return isinstance(mesh, Pair) and bool(mesh.mesh.shaft_angle)
 
 
 def touching(train: Train) -> list[Pair | PlanetMesh]:

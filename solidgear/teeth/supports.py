@@ -23,8 +23,8 @@ from solidgear.core import Scene, SolidgearError, System
 from solidgear.core.scene.stations import Port
 from solidgear.teeth.contact.cylindrical import CylindricalPair
 from solidgear.teeth.contact.frame import Frame, Stations, Supports
-from solidgear.teeth.mesh_place import MeshPlace, place_of
 from solidgear.trains.assembly.assembly import Assembly
+from solidgear.trains.assembly.mesh_place import MeshPlace, place_of
 from solidgear.trains.file.mesh_teeth import MeshTeeth, wheels_of
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.pairs import Pair
@@ -55,7 +55,7 @@ class Carried:
     >>> carried = Carried.at_rest(with_sections(train), train.point)
     >>> teeth = wheels_of(carried.train.pairs[0])
     >>> place = carried.place(carried.train.pairs[0], teeth)
-    >>> supports = carried.supports(place, place.frame(teeth))
+    >>> supports = carried.supports(place, Frame.of(place, teeth))
     >>> [len(stations.place) for stations in supports.stations]   # the wheel is a rigid mass
     [5, 1]
     """
@@ -148,10 +148,9 @@ class Carried:
         """
         train, ends = self.train, {}
         for side, shaft in train.shafts.items():
-            rotors = [train.spring_port(name) for name in train.rotors_of(side)]
-            further = [name for name in shaft.gears if f"{side}.{name}" not in place.ends]
-            port = [*rotors, *further, *shaft.gears, shaft.scene.port.name][0]
-            ends[side] = f"{side}.{port}"
+            gear = next((name for name in shaft.gears if f"{side}.{name}" in place.ends), "")
+            entry = train.torque_entry(side, gear) or gear or shaft.scene.port.name
+            ends[side] = f"{side}.{entry}"
         for stage in self.assembly.stages.values():
             ends |= {name: f"{name}.centre" for name in stage.planets.values()}
         return ends
@@ -239,6 +238,6 @@ def _points(scene: Scene, name: str, face: Face) -> Iterator[Port]:
     high = min(port.y + offset + width / 2, scene.length)
     for k, y in enumerate(np.linspace(low + half, high - half, SECTIONS)):
         # a seat lies on one segment
-        segment = next(s for s in scene.segments if s.y0 <= y <= s.y1)
+        segment = scene.segments_at(y)[0]
         seat = max(y - half, segment.y0), min(y + half, segment.y1)
         yield port.with_changes(name=f"{name}{MARK}{k}", position=y, lo=seat[0], hi=seat[1])

@@ -21,6 +21,7 @@ from solidgear.teeth.compliance.slices import SPREAD, Slices
 from solidgear.teeth.compliance.solid import SolidTeeth
 from solidgear.teeth.contact.cycle import POSITIONS, harmonics, mesh_cycle
 from solidgear.teeth.contact.cylindrical import CylindricalPair
+from solidgear.teeth.contact.frame import Frame
 from solidgear.teeth.contact.local import Elasticity, LineContact
 from solidgear.teeth.mesh_contact import ORDERS, MeshContact
 from solidgear.teeth.supports import Carried, with_sections
@@ -31,6 +32,7 @@ from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.planetary import PlanetMesh, PlanetMeshes, Stage
 from solidgear.trains.file.tables import TEETH, ErrorTable, Mesh
+from solidgear.trains.file.tip_rules import tip_problems
 from solidgear.trains.file.train import Train
 from solidgear.trains.load.contact import axes_of, other_flank
 
@@ -119,6 +121,11 @@ def teeth_of(mesh: Pair | PlanetMesh, coast: bool) -> MeshTeeth:
         )
     if not teeth.wheels.contact_ratio > 0:
         raise SceneError("has tips that do not reach each other", path=path)
+    cutting = tip_problems(mesh, teeth.wheels, solved=True)
+    if isinstance(mesh, Pair):
+        cutting = mesh.with_file_paths(cutting)
+    for problem in cutting:
+        raise problem if isinstance(mesh, Pair) else problem.located(None, prefix=path)
     return teeth
 
 
@@ -156,9 +163,8 @@ def _gears(mesh: Pair | PlanetMesh) -> list[tuple[Scene | None, bool]]:
 
 
 def _material(scene: Scene) -> Elasticity:
-    y = scene.port.y
-    segment = next((s for s in scene.segments if s.y0 <= y <= s.y1), None)
-    material = scene.material if segment is None else segment.material
+    segments = scene.segments_at(scene.port.y)
+    material = segments[0].material if segments else scene.material
     return Elasticity(material.E, material.nu)
 
 
@@ -167,8 +173,8 @@ def _hold(scene: Scene, wheel: Wheel, rigid: bool) -> float | None:
     part of its shaft, or none where it is solid.
     """
     y = scene.port.y
-    segments = [s for s in scene.segments if s.y0 <= y <= s.y1]
-    inner, outer = (max(values) for values in zip(*(s.radius_at(y) for s in segments)))
+    radii = [segment.radius_at(y) for segment in scene.segments_at(y)]
+    inner, outer = (max(values) for values in zip(*radii))
     radius = outer if rigid else inner
     deepest = wheel.root - 1.5 * wheel.module
     return radius if THINNEST * wheel.root < radius < deepest else None
@@ -187,7 +193,7 @@ def mesh_contact(
         carried.pairs[wheels] = toothed(mesh, teeth, model)
     contact = carried.pairs[wheels].with_shapes(teeth.shapes)
     place = carried.place(mesh, teeth)
-    supports = carried.supports(place, place.frame(teeth))
+    supports = carried.supports(place, Frame.of(place, teeth))
     torque = carried.force(place) * teeth.wheels.first.base * np.cos(teeth.wheels.base_helix)
     base = teeth.wheels.first.base
     return MeshContact(
@@ -253,13 +259,26 @@ def with_teeth(train: Train, carried: Carried, varies: str = "") -> Train:
 
 
 def _of_stage(carried: Carried, stage: Stage, table: PlanetMeshes) -> PlanetMeshes:
-    """Return the table of a stage's meshes with the stiffness of the teeth of its first planet."""
-    stiffness = {
-        f"{mesh.mate}_stiffness": float(mesh_contact(carried, mesh).cycle.tangent.mean())
-        for mesh in stage.meshes
-        if mesh.planets == (1,) and getattr(table, f"{mesh.mate}_stiffness") == TEETH
-    }
-    return table.with_changes(**stiffness, status="calculated") if stiffness else table
+    """Return the table of a stage's meshes with the stiffness and the transmission error of the teeth of
+    its first planet.
+    """
+    changes: dict[str, Any] = {}
+    for mesh in stage.meshes:
+        if mesh.planets != (1,) or getattr(table, f"{mesh.mate}_stiffness") != TEETH:
+            continue
+        cycle = mesh_contact(carried, mesh).cycle
+        changes[f"{mesh.mate}_stiffness"] = float(cycle.tangent.mean())
+        if mesh.error is None or table.status == "assumed":
+            changes[f"{mesh.mate}_error"] = _orders(cycle.line_error)
+    return table.with_changes(**changes, status="calculated") if changes else table
+
+
+def _orders(error: np.ndarray) -> ErrorTable:
+    """Return the orders of a transmission error over a mesh cycle."""
+    orders = harmonics(error, ORDERS)
+    return ErrorTable(
+        orders=tuple(np.abs(orders).tolist()), phases=tuple(np.angle(orders).tolist())
+    )
 
 
 def _point(train: Train) -> OperatingPoint:
@@ -287,10 +306,7 @@ def _filled(carried: Carried, pair: Pair, mesh: Mesh, varies: bool) -> Mesh:
             angle=tuple(angle.tolist()), stiffness=tuple(stiffness.tolist())
         )
     if mesh.transmission_error is None or mesh.transmission_error_status == "assumed":
-        orders = harmonics(error, ORDERS)
-        changes["transmission_error"] = ErrorTable(
-            orders=tuple(np.abs(orders).tolist()), phases=tuple(np.angle(orders).tolist())
-        )
+        changes["transmission_error"] = _orders(error)
         changes["transmission_error_status"] = solved.status
     point, normal = in_pinion_frame(carried, pair, solved)
     place, mean = point.mean(axis=0), normal.mean(axis=0)

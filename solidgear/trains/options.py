@@ -13,6 +13,7 @@ from solidgear.core import LADDER, SceneError, SolidgearError, Source, document_
 from solidgear.show.command import Group
 from solidgear.show.options import MODEL, options_by_name, relative
 from solidgear.trains.assembly.assembly import Assembly
+from solidgear.trains.assembly.matrices_body import MATRICES
 from solidgear.trains.assembly.shaft import checked_model
 from solidgear.trains.file.reading import as_written
 from solidgear.trains.file.tables import FIRST_HARMONIC, LAST_HARMONIC
@@ -24,11 +25,11 @@ TrainFile = Annotated[
     Path, typer.Argument(help="Train file (TOML), such as geometry/axle_overhung.toml.")
 ]
 MODELS = (
-    f"{', '.join(LADDER.bodies)}, rigid, lumped, lumped-bending, lumped-matched, "
+    f"{', '.join(LADDER.bodies)}, matrices (those of the file), rigid, lumped, lumped-bending, lumped-matched, "
     "lumped-old; a lumped one may name its body, lumped/euler."
 )
 MOST_KEPT = 200
-#: a model of all shafts, or models by shaft; harmonic solids where nothing is said
+#: a model of all shafts, or models by shaft; matrices or harmonic solids where nothing is said
 Models: TypeAlias = str | Mapping[str, str] | None
 #: builder options by shaft, or texts such as ``pinion.order=3``
 Settings: TypeAlias = Mapping[str, Mapping[str, Any]] | Iterable[str] | None
@@ -242,8 +243,8 @@ class Driven(Mix):
 
 
 def models_of(shafts: Collection[str], name: str, models: Models) -> dict[str, str]:
-    """Return models of shafts by the name of each; refuse a shaft that the train of that name does
-    not have.
+    """Return models of shafts by the name of each, of one with matrices these unless models say
+    otherwise; refuse a shaft that the train of that name does not have.
     """
     if isinstance(models, str):
         return dict.fromkeys(shafts, models)
@@ -251,7 +252,10 @@ def models_of(shafts: Collection[str], name: str, models: Models) -> dict[str, s
         if side not in shafts:
             names = listed(shafts)
             raise SolidgearError(f"{name} has no shaft {show(side, 40)}; it has {names}")
-    return {side: (models or {}).get(side, MODEL) for side in shafts}
+    usual = dict.fromkeys(shafts, MODEL)
+    if isinstance(shafts, Mapping):
+        usual |= {side: MATRICES for side, shaft in shafts.items() if shaft.matrices is not None}
+    return usual | dict(models or {})
 
 
 def assembled(

@@ -52,6 +52,7 @@ FEATURES = (
     "trains",
     "strength",
     "teeth",
+    "exchange",
     "variants",
     "measured",
     "backlash",

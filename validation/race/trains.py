@@ -35,7 +35,7 @@ def frequencies(heat: Heat) -> np.ndarray:
 
 def one_by_one(drive: Drive, hz: np.ndarray) -> np.ndarray:
     """(f,) mesh force, N, every frequency eliminated by itself, without any modes."""
-    factor, error = drive.steady.factor("mesh", hz), drive.error.orders[0]
+    factor, error = drive.steady.factor("mesh", hz), drive.excitation.error.orders[0]
     unit = drive.steady.solved(hz, drive.load, drive.row[None])[:, 0]
     return drive.stiffness * factor * (unit * error * factor - error)
 

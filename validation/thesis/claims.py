@@ -191,7 +191,7 @@ def damping() -> Claim:
 def near(drive: Drive, low: float, high: float) -> tuple[float, float]:
     """The highest peak of the mesh force in a range: Hz and N per metre of error."""
     grid = drive.grid(4000.0)
-    size = np.abs(drive.mesh(grid)[1]) / drive.amplitude(grid)
+    size = np.abs(drive.mesh(grid)[1]) / drive.excitation.amplitude(grid)
     tops = [k for k in peaks(size) if low < grid[k] < high]
     best = max(tops, key=lambda k: size[k])
     return float(grid[best]), float(size[best])
@@ -246,7 +246,7 @@ def moments() -> Claim:
     for way in WAYS:
         for case in CASES:
             drive = fourteen(case, way)
-            scale = ERROR / drive.amplitude(hz)[0]
+            scale = ERROR / drive.excitation.amplitude(hz)[0]
             row = drive.reactions(hz)["pinion bearing 1"][0, 5]
             bearing = next(b for b in drive.assembly.scenes["pinion"].bearings if b.name == "1")
             tilt = drive.motion(hz, drive.system.motion("pinion.1"))[0, 5]
@@ -296,7 +296,7 @@ def amplitude() -> Claim:
         most = []
         for case in CASES:
             drive = fourteen(case, way)
-            error = drive.amplitude(hz)
+            error = drive.excitation.amplitude(hz)
             most.append(AXES["mesh force"] / (np.abs(drive.mesh(hz)[1]) / error).max())
             moved = np.abs(drive.motion(hz, drive.system.motion("pinion.pinion"))) / error[:, None]
             most += [AXES[name] / moved[:, c].max() for name, c in dofs.items()]

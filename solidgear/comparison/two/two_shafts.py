@@ -169,10 +169,18 @@ def _number(number: NumberChange) -> dict[str, Any]:
 def summary(pair: TwoShafts) -> Table:
     """Return numbers of two shafts, their differences and verdicts."""
     rows = [
-        (n.name, n.change.a, n.change.b, n.unit, percent(n.relative), n.verdict)
+        (
+            *(n.name, n.change.a, n.change.b, n.unit),
+            *(Cell(n.relative, "", percent(n.relative)), n.verdict),
+            *(n.change.bar_a, n.change.bar_b),
+        )
         for n in pair.changes
     ]
-    heads = ("number", "A", "B", "unit", "difference", "")
+    heads = [
+        *("number", "A", "B", "unit", "difference"),
+        Column("", name="verdict"),
+        *(Column(f"{letter} error bar", hidden=True) for letter in "AB"),
+    ]
     return Table(f"{pair.a.label} beside {pair.b.label}", heads, rows)
 
 

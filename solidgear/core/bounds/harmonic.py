@@ -374,6 +374,8 @@ def vibration_energies(
             continue
         # in either plane the same block moves
         basis, shares = _few(block, [fields[k] for k in moving], value, body.scale)
+        if not shares.shape[1]:  # no mode moves it, such as axial motion under spur gears
+            continue
         energies = local_energies(space, block, basis)
         root = np.sqrt(value)
         # the motions of both planes are orthogonal

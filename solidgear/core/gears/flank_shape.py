@@ -22,6 +22,8 @@ from math import cos
 
 import numpy as np
 
+from solidgear.core.gears.wheel_pair import WheelPair
+
 
 @dataclass(frozen=True)
 class Relief:
@@ -153,3 +155,22 @@ class FlankShape:
         """Return the same flank with face places counted the other way."""
         grid = None if self.grid is None else self.grid.reversed()
         return replace(self, middle=-self.middle, slope=-self.slope, grid=grid)
+
+
+def shape_gap(
+    wheels: WheelPair, shapes: tuple[FlankShape, FlankShape], place: np.ndarray, z: np.ndarray
+) -> np.ndarray:
+    """Return what the shapes of both flanks leave between them along the normal, (n,) m, at (n,) places
+    of the path and of the face.
+    """
+    first, second = shapes
+    return first.deviation(place, z) + second.deviation(wheels.second_length(place), z)
+
+
+def shape_opening(wheels: WheelPair, shapes: tuple[FlankShape, FlankShape]) -> float:
+    """Return how far the shapes of both flanks open over the shared face towards larger face places, at
+    the pitch point, m.
+    """
+    ends = np.array([-0.5, 0.5]) * wheels.face_width
+    start, stop = shape_gap(wheels, shapes, np.full(2, wheels.pitch_point), ends)
+    return float(stop - start)

@@ -12,7 +12,7 @@ inv being tan minus angle: the profile shift x counts in *normal* modules.  Its 
 rounded corner of the rack leaves: while the wheel rolls by phi, the centre c of the corner moves along
 the rack's line, and the corner touches the fillet where its normal passes through the pitch point, so
 that the point is ``c + rho m c / |c|``, turned back by phi (Litvin and Fuentes, Gear Geometry and
-Applied Theory, 2004, 5.4).  The corner is a circle in the transverse plane; of helical teeth it is an
+Applied Theory, 2004, 5.4), and ``c - rho m c / |c|`` where a large shift lifts c beyond that line.  The corner is a circle in the transverse plane; of helical teeth it is an
 ellipse, which no stiffness has been seen to feel.
 
 A ring counts its teeth below zero.  Its teeth are the spaces of a wheel, their tips lie inside.  No
@@ -238,7 +238,7 @@ class Wheel:
         """Return the (n, 2) points of tooth 0's right fillet at the (n,) angles of rolling, rad."""
         aside, below = self._corner
         centre = np.column_stack([aside + self.radius * roll, np.full_like(roll, -below)])
-        away = centre / np.hypot(centre[:, 0], centre[:, 1])[:, None]
+        away = np.copysign(1.0, below) * centre / np.hypot(centre[:, 0], centre[:, 1])[:, None]
         x, y = (centre + self.rack.root_radius * self.module * away).T
         y = y + self.radius
         r = np.hypot(x, y)
@@ -301,6 +301,13 @@ class Wheel:
         if self.tip <= self.base:
             return self.module
         return 2 * self.tip * float(self.half_angle(self.tip))
+
+    @property
+    def point(self) -> float:
+        """Radius at which both flanks of a tooth that is pointed before its tip meet, m."""
+        from scipy.optimize import brentq  # slow to import, and seldom needed
+
+        return float(brentq(lambda r: float(self.half_angle(r)), *sorted((self.form, self.tip))))
 
     @property
     def missing_shift(self) -> float:

@@ -58,6 +58,10 @@ class Answered(Displayed):
     """An answer and the way to it."""
 
     shown: ClassVar[str] = "answered"
+    plain_names = (
+        *("scene", "tolerance", "values", "steps", "reached"),
+        *(("model", "rung"), "missing", "seconds"),
+    )
 
     scene: str
     tolerance: float

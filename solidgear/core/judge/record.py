@@ -10,6 +10,7 @@ from __future__ import annotations
 from typing import Annotated, Any, ClassVar
 
 from pydantic import (
+    AliasChoices,
     BaseModel,
     BeforeValidator,
     ConfigDict,
@@ -39,6 +40,11 @@ NAMELESS = "–"
 def relative_change(value: float | None, base: float | None) -> float | None:
     """Return `value` over `base` less one; None where either is missing, or the base is zero."""
     return None if value is None or not base else value / base - 1
+
+
+def _called(key: str, name: str) -> Any:
+    """Return options of a field that JSON of every command calls in another way than its attribute."""
+    return {"validation_alias": AliasChoices(key, name), "serialization_alias": key}
 
 
 class Part(BaseModel):
@@ -135,7 +141,7 @@ class OpenNumbers(Displayed, Part):
 
 
 #: version of this layout; it rises when a field is renamed or removed
-SCHEMA = 4
+SCHEMA = 5
 
 
 class ModeRecord(Part):
@@ -146,7 +152,7 @@ class ModeRecord(Part):
     frequency_hz: Number = None
     multiplicity: int = 1
     captured: Number = None
-    error: Number = 0.0
+    error: Number = Field(0.0, **_called("solver_error", "error"))
 
 
 class BarRecord(Part):
@@ -171,7 +177,7 @@ class BarSummary(Part):
 class LevelRecord(Part):
     """One mesh of a sequence."""
 
-    dofs: int | None = None
+    dofs: int | None = Field(None, **_called("unknowns", "dofs"))
     h: Number = None
     order: int | None = None
     quantities: Quantities = {}
@@ -255,7 +261,7 @@ class ModelRecord(Part):
     modes: list[ModeRecord] = []
     band: BarSummary | None = None
     convergence: ConvergenceRecord | None = None
-    dofs: int | None = None
+    dofs: int | None = Field(None, **_called("unknowns", "dofs"))
     seconds: Quantities = {}
     peak_mb: Number = None
     backend: str | None = None
@@ -517,7 +523,7 @@ class Record(Part):
     open: OpenNumbers = OpenNumbers()
     environment: Facts = {}
     images: dict[str, str] = {}
-    warnings: list[str] = []
+    warnings: list[str] = Field([], **_called("cautions", "warnings"))
     #: of the whole run, with its report, and of all processes; and of the solution alone
     seconds_total: Number = None
     peak_mb_total: Number = None

@@ -54,7 +54,10 @@ SAME = 1e-6
 class Settled:
     """A body on the cheapest mesh that answers a question, with error bars."""
 
-    plain_names = ("rung", "setting", "options", "tolerance", "bars", "reached", "judged_on")
+    plain_names = (
+        ("model", "rung"),
+        *("setting", "options", "tolerance", "bars", "reached", "judged_on"),
+    )
 
     scene: str
     tolerance: float

@@ -45,6 +45,11 @@ class Value:
 class Step:
     """A model or mesh that was tried, or passed over."""
 
+    plain_names = (
+        ("model", "rung"),
+        *("setting", "valid", "why", "bar", "unknowns", "seconds", "chosen", "only", "options"),
+    )
+
     rung: str
     setting: str  #: of the mesh, in words
     valid: bool  #: whether it could be an answer at all

@@ -5,8 +5,8 @@ from __future__ import annotations
 import os
 import sys
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
 from solidgear.core.errors import SolidgearError
@@ -65,6 +65,18 @@ def whole_or_refused(path: Path) -> Iterator[Path]:
         raise SolidgearError(
             f"{path}: cannot be written ({error.strerror or error}); name a file you may write"
         ) from error
+
+
+def write_files(files: Mapping[Path, bytes]) -> list[Path]:
+    """Write files that a user named, and the folders above them, all of them or none; refuse one
+    that cannot be written.
+    """
+    with ExitStack() as stack:
+        for path, content in files.items():
+            partial = stack.enter_context(whole_or_refused(path))
+            path.parent.mkdir(parents=True, exist_ok=True)
+            partial.write_bytes(content)
+    return [*files]
 
 
 def write_page(path: str | os.PathLike, text: str) -> Path:

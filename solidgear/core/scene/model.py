@@ -357,6 +357,20 @@ class Scene(Displayed, Model):
         """Length of the shaft in m."""
         return self.segments[-1].y1
 
+    def segments_at(self, y: float) -> list[Segment]:
+        """Return the segments at a place along the shaft, m: both where two meet.
+
+        Examples
+        --------
+        >>> import solidgear as sg
+        >>> first = sg.Segment.cylinder("a", length=0.1, diameter=0.03)
+        >>> further = sg.Segment.cylinder("b", y0=0.1, length=0.1, diameter=0.03)
+        >>> scene = sg.Scene.from_parts([first, further])
+        >>> [[s.name for s in scene.segments_at(y)] for y in (0.05, 0.1)]
+        [['a'], ['a', 'b']]
+        """
+        return [segment for segment in self.segments if segment.y0 <= y <= segment.y1]
+
     @property
     def ports(self) -> tuple[Port, ...]:
         """All lumped points, the main one first."""

@@ -17,6 +17,9 @@ Support = Literal["locating", "floating"]
 #: radius of 0.1 m and 1e-9 at 1 m. With 1e24 in both statics are as good, but modes drown in
 #: rounding: measured 1e-3 to 0.5 of a frequency.
 HELD, HELD_TURN = 1e22, 1e20
+#: N/m: a given stiffness from there on may stand for rigid: E d of a steel shaft of 0.5 m is 1e11.
+#: Beside it forces of catalogue bearings keep nine digits, and with `HELD` none
+RIGID = 1e15
 #: components that each way of holding stops
 HOLDS: dict[str, tuple[int, ...]] = {"clamped": (0, 1, 2, 3, 4, 5), "pinned": (0, 1, 2)}
 

@@ -14,6 +14,7 @@ import numpy as np
 from solidgear.bearings.bearing_life import left_open
 from solidgear.core import DOF_NAMES, WITHIN, Sheeted, SolidgearError, gap_verdict, listed, pinned
 from solidgear.core.plain import plain
+from solidgear.strength.deflection.face_load import FaceLoad, face_loads
 from solidgear.strength.deflection.misalignment import Measure, misalignment
 from solidgear.strength.deflection.shaft import ShaftDeflection, shaft_deflection
 from solidgear.strength.load import AT_REST, LoadAtPort, load_alone
@@ -80,6 +81,7 @@ class Deflection:
     #: load (6) of the housing on each mount, N and N m
     mounts: dict[str, tuple[Measured, ...]] = field(default_factory=dict)
     turns: tuple[StageTurn, ...] = ()  #: of planetary stages
+    face_loads: tuple[FaceLoad, ...] = ()  #: by the norm, of meshes whose teeth are known
 
     @property
     def model(self) -> str:
@@ -111,6 +113,7 @@ class Deflection:
             "mesh_force": next(iter(self.mesh_forces.values())),
             "mesh_forces": self.mesh_forces,
             "misalignment": _by_name(self.misalignment),
+            "face_load_norm": {load.mesh: load for load in self.face_loads},
             "displacement": by_place,
             "shafts": {shaft.name: shaft for shaft in self.shafts},
             "turns": {turn.stage: turn for turn in self.turns},
@@ -321,6 +324,9 @@ def _solution(
         )
         for side, model in by_shaft.items()
     )
+    on_flank = assembly.on_flank(state.point.coast)
+    askew = measured(misalignment(on_flank, system))
+    skews = {m.name: (m.value, m.bar) for m in askew}
     notes = [*state.notes, *(note for shaft in shafts for note in shaft.notes)]
     if housed:
         notes.append(f"deflection lines of {listed(housed)} are relative to the housing")
@@ -341,13 +347,14 @@ def _solution(
         load=load,
         models=by_shaft,
         mesh_forces=state.mesh_forces,
-        misalignment=measured(misalignment(assembly.on_flank(state.point.coast), system)),
+        misalignment=askew,
         displacement=displacement,
         shafts=shafts,
         notes=tuple(notes),
         seconds=seconds,
         mounts=mounts,
         turns=over_a_turn(assembly, state, by_shaft),
+        face_loads=face_loads(on_flank, system, state.coordinates, skews),
     )
 
 

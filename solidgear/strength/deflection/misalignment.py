@@ -22,16 +22,20 @@ the face width b the equivalent misalignment ``f_sh = b n . (t x e) + w`` (ISO 6
 of the equivalent misalignment by deformations of shafts).  Positive where the flanks open towards
 larger y of the pinion's scene.
 
+Planets mesh so with sun and ring, each by itself; a ring that is part of the ground stands still.
+
 The wind-up w is that of both gears within their face, for the load of the teeth leaves its torque
 along it.  A load that is even winds a gear up by ``int T(s) / (G J) ds``, with the torque T growing
 from nothing at the end far from where it enters the shaft, ``T b / (2 G J)`` of an even section; the
-flank at the far end stands back by as much times the lever.  A gear that is a rigid mass, or on a
-rigid shaft, has none.
+flank at the far end stands back by as much times the lever.  The torque is that of all meshes of the
+gear together, so that an idler has none, and a sun has that of all planets.  A gear that is a rigid
+mass, or on a rigid shaft, has none.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from math import pi, sin
 
 import numpy as np
@@ -40,9 +44,12 @@ from solidgear.core import System
 from solidgear.core.frames import cross_matrix
 from solidgear.core.reduction.superelement import PortMotion
 from solidgear.trains.assembly.assembly import Assembly
+from solidgear.trains.assembly.mesh_place import MeshPlace, place_of_pair, place_of_planet
 from solidgear.trains.assembly.stages import mesh_row
 from solidgear.trains.file.gears import Member
+from solidgear.trains.file.mesh_teeth import wheels_of
 from solidgear.trains.file.pairs import Pair
+from solidgear.trains.file.planetary import PlanetMesh
 from solidgear.trains.file.train import Train
 
 #: axes whose angle has a sine below this are parallel
@@ -74,13 +81,26 @@ def measured_names(train: Train) -> tuple[str, ...]:
     >>> measured_names(sg.load_train("geometry/gearbox_train.toml"))
     ('in plane', 'across', 'wind-up', 'f_sh')
     """
-    return tuple(f"{name}{pair.label}" for pair in train.pairs for name in _names(pair))
+    return tuple(f"{name}{mesh.label}" for mesh in meshes_of(train) for name in _names(mesh))
 
 
-def _names(pair: Pair) -> tuple[str, ...]:
-    if abs(sin(pair.mesh.shaft_angle)) >= PARALLEL:
+def meshes_of(train: Train) -> tuple[Pair | PlanetMesh, ...]:
+    """Return the meshes whose gears can lie askew: those of pairs, and of each planet."""
+    return (*train.pairs, *(mesh for stage in train.stages for mesh in stage.meshes))
+
+
+def _names(mesh: Pair | PlanetMesh) -> tuple[str, ...]:
+    if isinstance(mesh, Pair) and abs(sin(mesh.mesh.shaft_angle)) >= PARALLEL:
         return BEVEL
-    return PARALLELS if any(_widths(pair)) else PARALLELS[:-2]
+    return PARALLELS if face_of(mesh) else PARALLELS[:-2]
+
+
+def face_of(mesh: Pair | PlanetMesh) -> float | None:
+    """Return the width of the face that two gears share, m; None where it is not given."""
+    if isinstance(mesh, PlanetMesh):
+        return mesh.stage.sun.face_width
+    widths = [gear.face_width for gear in mesh.members.values() if gear.face_width is not None]
+    return min(widths, default=None)
 
 
 def misalignment(assembly: Assembly, system: System) -> list[Measure]:
@@ -96,15 +116,15 @@ def misalignment(assembly: Assembly, system: System) -> list[Measure]:
     ['E', 'P', 'G', 'shaft angle']
     """
     out = []
-    for pair in assembly.train.pairs:
-        ports = [system.port(f"{side}.{port}") for side, port in zip(pair.shafts, pair.ports)]
-        along = [_from_apex(member, port) for member, port in zip(pair.members.values(), ports)]
-        if np.linalg.norm(np.cross(along[0], along[1])) < PARALLEL:
-            measures = _parallel(assembly, system, pair, ports)
+    torques = _Torques(assembly, system)
+    for mesh in meshes_of(assembly.train):
+        if _names(mesh) == BEVEL:
+            assert isinstance(mesh, Pair)
+            measures = _bevel(system, mesh)
         else:
-            measures = _bevel(ports, along)
+            measures = _parallel(system, torques, torques.places[mesh.name], face_of(mesh))
         out += [
-            replace(measure, name=f"{measure.name}{pair.label}", mesh=pair.label)
+            replace(measure, name=f"{measure.name}{mesh.label}", mesh=mesh.label)
             for measure in measures
         ]
     return out
@@ -129,7 +149,9 @@ def _nearest(ports: list[PortMotion], along: list[np.ndarray]) -> list[np.ndarra
     return [pinion.point + t[0] * along[0], gear.point + t[1] * along[1]]
 
 
-def _bevel(ports: list[PortMotion], along: list[np.ndarray]) -> list[Measure]:
+def _bevel(system: System, pair: Pair) -> list[Measure]:
+    ports = [system.port(f"{side}.{port}") for side, port in zip(pair.shafts, pair.ports)]
+    along = [_from_apex(member, port) for member, port in zip(pair.members.values(), ports)]
     pinion, gear = (
         _carried_motion(port, point) for port, point in zip(ports, _nearest(ports, along))
     )
@@ -147,24 +169,24 @@ def _bevel(ports: list[PortMotion], along: list[np.ndarray]) -> list[Measure]:
 
 
 def _parallel(
-    assembly: Assembly, system: System, pair: Pair, ports: list[PortMotion]
+    system: System, torques: _Torques, place: MeshPlace, width: float | None
 ) -> list[Measure]:
-    axis = ports[0].axes[:, 1]
-    normal = ports[0].axes @ (assembly.contacts[pair.name].pinion.normal * [1.0, 0.0, 1.0])
+    axis, normal = place.axis, place.normal - (place.normal @ place.axis) * place.axis
     normal = normal / np.linalg.norm(normal)
-    pinion, gear = (_carried_motion(port, ports[0].point) for port in ports)
-    slope = -cross_matrix(axis) @ (pinion[3:] - gear[3:])
+    first, second = (
+        np.zeros(system.size)
+        if end is None
+        else _carried_motion(system.port(end), place.pitch_point)[3:]
+        for end in place.ends
+    )
+    slope = -cross_matrix(axis) @ (first - second)
     in_plane, across, wind_up, skew = PARALLELS
     out = [
         Measure(in_plane, "rad moved", "slope of the axes in the plane of action", normal @ slope),
         Measure(across, "rad moved", "slope across it", np.cross(axis, normal) @ slope),
     ]
-    widths = [width for width in _widths(pair) if width is not None]
-    if widths:
-        width = min(widths)
-        row, stiffness = mesh_row(system, pair.name)
-        # the force of the teeth presses the row together
-        wound = -stiffness * _opening_by_wind_up(assembly, system, pair, width) * row
+    if width:
+        wound = torques.wind_up(place, width)
         meaning = "equivalent misalignment over the face, in the plane of action, wind-up included"
         out += [
             Measure(wind_up, "m moved", "of both gears within their face", wound, face=width),
@@ -173,46 +195,74 @@ def _parallel(
     return out
 
 
-def _opening_by_wind_up(assembly: Assembly, system: System, pair: Pair, width: float) -> float:
-    """Return by how much flanks open over the face towards larger y of the pinion's scene, per force of
-    the teeth, by the wind-up of both gears, m/N.
-    """
-    contact, opening = assembly.contacts[pair.name], 0.0
-    axes = [assembly.places[side][0][:, 1] for side in pair.shafts]
-    for k, (side, port) in enumerate(zip(pair.shafts, pair.ports)):
-        member = (pair.pinion, pair.gear)[k]
-        if member.head is not None or not len(system.parts[side].strain):  # rigid
-            continue
-        vector = (contact.pinion, contact.gear)[k]
-        away, twist = _wind_up(assembly, side, port, width)
-        transverse = vector.lever / np.hypot(vector.normal[0], vector.normal[2])
-        turned = vector.lever * twist * away * float(np.sign(axes[k] @ axes[0]))
-        opening += transverse * turned
-    return opening
+@dataclass(frozen=True, eq=False)
+class _Torques:
+    """Torques of the teeth on every gear, and how they wind up its face."""
+
+    assembly: Assembly
+    system: System
+
+    @cached_property
+    def places(self) -> dict[str, MeshPlace]:
+        """Places of all meshes with parallel axes, by name."""
+        meshes = [mesh for mesh in meshes_of(self.assembly.train) if _names(mesh) != BEVEL]
+        return {mesh.name: self._place(mesh) for mesh in meshes}
+
+    def _place(self, mesh: Pair | PlanetMesh) -> MeshPlace:
+        if isinstance(mesh, Pair):
+            return place_of_pair(self.assembly, self.system, mesh)
+        teeth = wheels_of(mesh)
+        assert teeth is not None  # a stage is refused without a module
+        return place_of_planet(self.assembly, self.system, mesh, teeth)
+
+    @cached_property
+    def rows(self) -> dict[str, np.ndarray]:
+        """Rows (N,) of the torque about y of all teeth on every gear, N m, by end."""
+        torque: dict[str, np.ndarray] = {}
+        for place in self.places.values():
+            loads = place.load(self.system)
+            opening = np.sum([self.system.motion(end).T @ load for end, load in loads], axis=0)
+            _, stiffness = mesh_row(self.system, place.link)
+            for end, load in loads:
+                torque[end] = torque.get(end, 0.0) - stiffness * load[4] * opening
+        return torque
+
+    def wind_up(self, place: MeshPlace, width: float) -> np.ndarray:
+        """Return the row (N,) by which flanks open over the face towards larger y of the first gear's
+        scene, by the wind-up of both gears.
+        """
+        opening = np.zeros(self.system.size)
+        transverse = np.linalg.norm(place.normal - (place.normal @ place.axis) * place.axis)
+        for end, load in place.load(self.system):
+            side, _, port = end.partition(".")
+            if side not in self.assembly.train.shafts or self._is_rigid(side, port):
+                continue
+            away, twist = _wind_up(self.assembly, side, port, width)
+            way = float(np.sign(self.system.port(end).axes[:, 1] @ place.axis))
+            opening += load[4] / transverse * twist * away * way * self.rows[end]
+        return opening
+
+    def _is_rigid(self, side: str, port: str) -> bool:
+        gear = self.assembly.train.shafts[side].gears[port]
+        return gear.head is not None or not len(self.system.parts[side].strain)
 
 
 def _wind_up(assembly: Assembly, side: str, port: str, width: float) -> tuple[float, float]:
     """Return the sense along y in which a gear is far from where its torque enters the shaft, and its
     wind-up over the face per torque, rad/(N m).
     """
-    train, scene = assembly.train, assembly.scenes[side]
-    gear = train.shafts[side].gears[port]
+    scene = assembly.scenes[side]
+    gear = assembly.train.shafts[side].gears[port]
     places = {station.name: station.y for station in scene.stations}
     middle = places[port] + gear.face_offset
-    rotors = [places[train.spring_port(name)] for name in train.rotors_of(side)]
-    further = [places[name] for name in train.shafts[side].gears if name != port]
-    entry = next(iter([*rotors, *further]), middle - width)
-    away = 1.0 if middle >= entry else -1.0
+    entry = assembly.train.torque_entry(side, port)
+    away = 1.0 if entry is None or middle >= places[entry] else -1.0
     share = (np.arange(SLICES) + 0.5) / SLICES  # of the torque, from the far end
     twist = 0.0
     for part in share:
         y = float(np.clip(middle + away * width * (0.5 - part), 0.0, scene.length))
-        segment = next(s for s in scene.segments if s.y0 <= y <= s.y1)
+        segment = scene.segments_at(y)[0]
         inner, outer = segment.radius_at(y)
         shear = segment.material.E / (2 * (1 + segment.material.nu))
         twist += part * width / SLICES / (shear * pi * (outer**4 - inner**4) / 2)
     return away, twist
-
-
-def _widths(pair: Pair) -> list[float | None]:
-    return [member.face_width for member in pair.members.values()]

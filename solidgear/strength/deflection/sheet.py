@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from functools import partial
 from math import degrees, isfinite
+from typing import Any
 
 import numpy as np
 
@@ -14,8 +15,9 @@ from solidgear.show.panel import GREY, Panel, Series, curve, lines_legend, reado
 from solidgear.show.plot import NARROW, WIDE, Chart, Make, in_columns
 from solidgear.show.scales import Axis
 from solidgear.show.sheet import Sheet, Terminal
-from solidgear.show.table import Cell, Column, Table, numbers, quantity, text, word
+from solidgear.show.table import Cell, Column, Table, in_units, numbers, quantity, text, word
 from solidgear.show.units import ENGINEERING, Units
+from solidgear.show.words import DASH
 from solidgear.strength.deflection.at_rest import (
     MOVED,
     WITHOUT_BAR,
@@ -48,6 +50,7 @@ def sheet(deflected: Deflections, units: Units) -> Sheet:
     """Return the sheet of a train at an operating point, or of a shaft under its load."""
     judge = deflected.judge
     skew = misalignment(deflected, units)
+    pressed = face_load(judge, units)
     turning = over_a_turn(judge.turns, units)
     by_point = over_points(deflected.points, units)
     housed = housing(judge, units)
@@ -81,7 +84,7 @@ def sheet(deflected: Deflections, units: Units) -> Sheet:
         name="deflection",
         title=title,
         lead=lead,
-        tables=[skew, *turning, *by_point, *housed, *carried],
+        tables=[skew, *pressed, *turning, *by_point, *housed, *carried],
         data=deflected.as_dict(),
         charts=charts,
         lines=lines,
@@ -89,7 +92,7 @@ def sheet(deflected: Deflections, units: Units) -> Sheet:
         cautions=[*cautions, *judge.notes, *deflected.cautions],
         terminal=Terminal(
             heading=heading,
-            tables=[skew, *carried, *housed, *turning, *by_point],
+            tables=[skew, *pressed, *carried, *housed, *turning, *by_point],
             closing=[*judge.notes, *map(caution, deflected.cautions)],
         ),
         words=words,
@@ -109,24 +112,62 @@ def misalignment(deflected: Deflections, units: Units = ENGINEERING) -> Table:
     """Return misalignment by every model, with error bar and range by bearing data."""
     measures = deflected.judge.misalignment
     columns = [word("of the axes"), *(Column(s.model) for s in deflected.solutions)]
-    columns.append(Column("error bar"))
-    rows: list[list[str | None]] = []
+    has_ranges = any(m.open is not None for m in measures)
+    columns += [
+        Column("error bar"),
+        Column("range", name="least", hidden=not has_ranges),
+        Column("largest", hidden=True),
+        Column("unit", hidden=True),
+    ]
+    rows: list[list[Any]] = []
     for k, m in enumerate(measures):
         values = [s.misalignment[k].value for s in deflected.solutions]
-        share = percent_of(m.bar, m.value)
-        shown = [units.number(value, m.unit, 3) for value in values]
-        rows.append([f"{m.name}, {units.unit(m.unit)}", *shown, share])
+        share = Cell(m.bar, "", percent_of(m.bar, m.value) or DASH)
+        shown = [in_units(value, m.unit, units, 3) for value in values]
+        name = Cell(m.name, "", f"{m.name}, {units.unit(m.unit)}")
+        least, largest = m.open or (None, None)
+        ends = [units.number(end, m.unit, 3) for end in m.open or ()]
+        range_ = Cell(least, "", " to ".join(ends) or DASH)
+        rows.append([name, *shown, share, range_, largest, m.si_unit])
     note = (
         f"{meanings(measures, units)}. Error bar: of the last model's mesh, "
         "by local problems; models differ by what their theory leaves out."
     )
-    if any(m.open is not None for m in measures):
-        columns.append(Column("range"))
-        for row, m in zip(rows, measures):
-            ends = [units.number(end, m.unit, 3) for end in m.open or ()]
-            row.append(" to ".join(ends) or None)
+    if has_ranges:
         note += " Range: by estimated insides and classes of clearance of the bearings."
     return Table("Misalignment", columns, rows, note)
+
+
+def face_load(deflected: Deflection, units: Units = ENGINEERING) -> list[Table]:
+    """Return the face load factor of every mesh by the norm; none without known teeth."""
+    if not deflected.face_loads:
+        return []
+    columns = [
+        word("mesh"),
+        quantity("line load", "N/m along", units, digits=4),
+        quantity("f_sh", "m moved", units, digits=3),
+        quantity("flanks", "m moved", units, digits=3),
+        Column("c_ga, N/(mm um)"),
+        Column("KHb"),
+        Column("error bar"),
+    ]
+    rows = [
+        [
+            load.mesh,
+            load.line_load,
+            load.skew,
+            load.shape,
+            f"{1e-9 * load.stiffness:.3g}",
+            f"{load.factor:.2f}",
+            percent_of(load.bar, load.factor),
+        ]
+        for load in deflected.face_loads
+    ]
+    note = (
+        "By c_ga of steel teeth, f_sh and slopes of the file's flanks, without further deviations and "
+        "running-in; line load: transverse force per face width. solidgear contact solves the teeth."
+    )
+    return [Table("Face load factor by ISO 6336-1", columns, rows, note)]
 
 
 def percent_of(bar: float | None, value: float) -> str | None:
@@ -177,7 +218,7 @@ def turn_lines(turn: StageTurn) -> Table:
     programs.
     """
     forces = {f"planet {k} [N]": force for k, force in enumerate(turn.force.T, start=1)}
-    return numbers({"carrier [rad]": turn.angle, **forces})
+    return numbers({"carrier [rad]": turn.angle, **forces}, axes=1)
 
 
 def over_points(points: Sequence[Deflection], units: Units = ENGINEERING) -> list[Table]:
@@ -198,10 +239,17 @@ def over_points(points: Sequence[Deflection], units: Units = ENGINEERING) -> lis
         if share := percent_of(widest, max(abs(m.value) for m in at_points)):
             bars.append(f"{m.name} {share}")
     note = f"By {first.model}; error bars {', '.join(bars)} at most." if bars else ""
+    lie += [Column(f"KHb{load.mesh.removeprefix('mesh')}") for load in first.face_loads]
     ends = [f"{shaft.name}.{b.name}" for shaft in first.shafts for b in shaft.bearings]
     carried = [text("at"), *(quantity(end, "N", units, digits=4) for end in ends)]
     lie_rows = [
-        [p.point.label, *p.mesh_forces.values(), *(m.value for m in p.misalignment)] for p in points
+        [
+            p.point.label,
+            *p.mesh_forces.values(),
+            *(m.value for m in p.misalignment),
+            *(f"{load.factor:.2f}" for load in p.face_loads),
+        ]
+        for p in points
     ]
     carried_rows = [
         [p.point.label, *(b.radial for shaft in p.shafts for b in shaft.bearings)] for p in points
@@ -269,7 +317,7 @@ def motions(deflected: Deflections, units: Units = ENGINEERING) -> list[Table]:
     return [Table(f"Motion of {port}", [word("model"), *_six(MOVED, units)], rows, note)]
 
 
-def _bars(deflected: Deflection, place: str, units: Units) -> list[list[str | None]]:
+def _bars(deflected: Deflection, place: str, units: Units) -> list[list[Cell]]:
     """Return a row of the error bars of a place, none less than a share of the largest translation
     or rotation; no row where it has none.
     """
@@ -279,10 +327,10 @@ def _bars(deflected: Deflection, place: str, units: Units) -> list[list[str | No
     largest = np.abs([m.value for m in six]).reshape(2, 3).max(axis=1)
     least = np.repeat(LEAST / 100 * largest, 3)
     bars = [
-        None if m.bar is None else units.number(max(m.bar, size), m.unit, 2)
+        Cell(None) if m.bar is None else in_units(float(max(m.bar, size)), m.unit, units, 2)
         for m, size in zip(six, least)
     ]
-    return [["error bar", *bars]]
+    return [[Cell(f"error bar of {place}", "", "error bar"), *bars]]
 
 
 def _six(si_units: Sequence[str], units: Units) -> list[Column]:
@@ -318,7 +366,7 @@ def bearings(shafts: Sequence[ShaftDeflection], units: Units = ENGINEERING) -> l
     ]
     if not inside:
         return [Table("Bearing loads", loads, rows, note)]
-    loads += [Column("C0/P0"), Column("L10r, 1e6")]
+    loads += [Column("C0/P0"), Column("L10r, 1e6", name="L10r", unit="1")]
     for row, (_, bearing) in zip(rows, by_name):
         row += [_rated(bearing.static_safety, 1.0), _rated(bearing.reference_life, 1e6)]
     note += (
@@ -346,10 +394,10 @@ def bearings(shafts: Sequence[ShaftDeflection], units: Units = ENGINEERING) -> l
     ]
 
 
-def _rated(value: float | None, unit: float) -> str | None:
+def _rated(value: float | None, unit: float) -> Cell | None:
     if value is None:
         return None
-    return f"{value / unit:.3g}" if isfinite(value) else "endless"
+    return Cell(value, "", f"{value / unit:.3g}" if isfinite(value) else "endless")
 
 
 def _loaded(bearing: BearingState) -> str | Cell:
@@ -360,7 +408,7 @@ def _loaded(bearing: BearingState) -> str | Cell:
 def line(shaft: ShaftDeflection) -> Table:
     """Return the deflection line of a shaft in SI, for other programs."""
     heads = [f"{dof} [{si.split()[0]}]" for dof, si in zip(DOF_NAMES, MOVED)]
-    return numbers({"y [m]": shaft.stations, **dict(zip(heads, shaft.line.T))})
+    return numbers({"y [m]": shaft.stations, **dict(zip(heads, shaft.line.T))}, axes=1)
 
 
 def turn_chart(turn: StageTurn, units: Units = ENGINEERING, width: float = WIDE) -> Chart:

@@ -15,9 +15,9 @@ from solidgear.show.panel import GREY, Panel, Series, curve, readout
 from solidgear.show.plot import WIDE, Chart
 from solidgear.show.scales import Axis
 from solidgear.show.sheet import Sheet, Terminal
-from solidgear.show.table import Cell, Column, Table, quantity, text, word
+from solidgear.show.table import Cell, Column, Table, exact, quantity, text, word
 from solidgear.show.units import ENGINEERING, Units, plain
-from solidgear.show.words import percent
+from solidgear.show.words import DASH, percent
 from solidgear.strength.load import LoadAtPort
 from solidgear.strength.stress.at_rest import StressAtRest, StressedShaft
 from solidgear.strength.stress.din743 import LOADS, Load
@@ -218,7 +218,7 @@ def components(forces: SectionForces) -> Table:
         [y, name, side, *(float(six[k]) for _, k, _ in COMPONENTS)]
         for y, name, side, six in _sides(forces, forces.names)
     ]
-    return Table("", [Column(head, write=lambda v: f"{v:.9g}") for head in columns], rows)
+    return Table("", [Column(head, write=exact) for head in columns], rows).counted("place")
 
 
 def _sides(forces: SectionForces, names: Sequence[str]) -> list[tuple[float, str, str, np.ndarray]]:
@@ -258,7 +258,8 @@ def nominal_stress(shaft_stress: ShaftStress, units: Units = ENGINEERING) -> Tab
 
 def _stress(head: str, units: Units, digits: int = 4) -> Column:
     """Return a column of stresses for a table with their unit in its title."""
-    return Column(head, write=partial(units.number, si=STRESS, digits=digits))
+    write = partial(units.number, si=STRESS, digits=digits)
+    return Column(head, write=write, unit="Pa")
 
 
 def fillets(stress: ShaftStress, units: Units = ENGINEERING) -> Table:
@@ -303,14 +304,16 @@ def surface_stress(
         }
         ends = open_.get(notch.name, ()) if load == "bending" else ()
         range_ = " to ".join(units.number(end, STRESS, 4) for end in ends)
-        rows.append([notch.name, load, *shown[load], range_ or None])
+        least, largest = ends or (None, None)
+        rows.append([notch.name, load, *shown[load], Cell(least, "", range_ or DASH), largest])
     note = (
         "Surface: largest stress along the meridian: by bending the amplitude of the turning "
         "shaft, shear force included, so that it is not Kt times nominal; by tension and torsion "
         "(shear at the same place) a mean. Error bar: of the harmonic solid around the fillet."
     )
+    columns.append(Column("range", name="least", unit="Pa", hidden=not open_))
+    columns.append(Column("largest", unit="Pa", hidden=True))
     if open_:
-        columns.append(Column("range"))
         note += f" Range: by {open_by} of the bearings."
     title = f"Stress on the fillets, {units.unit(STRESS)}"
     return Table(title, columns, rows, note)
@@ -319,10 +322,11 @@ def surface_stress(
 def form_factors(stress: ShaftStress) -> Table:
     """Return the form factors and fatigue notch factors of the fillets beside published ones."""
     sources = [*dict.fromkeys(source for notch in stress.notches for source in notch.published)]
-    rows: list[list[str | float | None]] = []
+    rows: list[list[Any]] = []
     for notch, load in _by_load(stress.notches):
         factor, fatigue = notch.found.factors[load], notch.fatigue.get(load)
-        bar = percent(factor.bar / factor.value, signed=False)
+        share = factor.bar / factor.value
+        bar = Cell(share, "", percent(share, signed=False))
         published = [notch.published.get(source, {}).get(load) for source in sources]
         norm = [None, None] if fatigue is None else [fatigue.notch, fatigue.norm_notch]
         rows.append([notch.name, load, factor.value, bar, *published, *norm])

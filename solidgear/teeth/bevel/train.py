@@ -25,8 +25,8 @@ from solidgear.teeth.contact.cycle import POSITIONS, mesh_cycle
 from solidgear.teeth.contact.frame import Frame
 from solidgear.teeth.contact.local import Elasticity, LineContact
 from solidgear.teeth.mesh_contact import SolvedMesh
-from solidgear.teeth.mesh_place import place_of_pair
 from solidgear.teeth.supports import Carried
+from solidgear.trains.assembly.mesh_place import place_of_pair
 from solidgear.trains.file.pairs import Pair
 from solidgear.trains.load.contact import axes_of
 

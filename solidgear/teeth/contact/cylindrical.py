@@ -140,17 +140,6 @@ class CylindricalPair:
         high = (last + slope - wheels.pitch_point) / wheels.pitch - phase
         return range(int(np.floor(low)), int(np.ceil(high)) + 1)
 
-    def shape_gap(self, place: np.ndarray, z: np.ndarray) -> np.ndarray:
-        """Return what the shapes of both flanks leave between them along the normal, m, at places of
-        the path and of the face.
-        """
-        wheels = self.wheels
-        lengths = place, wheels.second_length(place)
-        gap = np.zeros(len(place))
-        for shape, length in zip(self.shapes, lengths):
-            gap = gap + shape.deviation(length, z)
-        return gap
-
     def least_gap(self, place: np.ndarray, z: np.ndarray, parted: np.ndarray) -> np.ndarray:
         """Return the least gap beside places of the path, m, where involutes part by so much."""
         wheels = self.wheels

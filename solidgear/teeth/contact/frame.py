@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from solidgear.teeth.contact.cells import Cells
+from solidgear.trains.assembly.mesh_place import MeshPlace
+from solidgear.trains.file.mesh_teeth import MeshTeeth
 
 
 @dataclass(frozen=True, eq=False)
@@ -15,6 +17,17 @@ class Frame:
 
     origin: np.ndarray  #: (3,) m
     axes: np.ndarray  #: (3, 3) u, v, w in columns
+
+    @classmethod
+    def of(cls, place: MeshPlace, teeth: MeshTeeth) -> Frame:
+        """Return the frame of two cylindrical wheels: origin in the pitch point at the middle of the
+        shared face, axes along the transverse line of action and the shafts, so that contact lines run
+        on towards larger w.
+        """
+        transverse = place.normal - (place.normal @ place.axis) * place.axis
+        u = -transverse / np.linalg.norm(transverse)
+        w = teeth.along[0] * place.axis
+        return cls(place.pitch_point, np.column_stack([u, np.cross(w, u), w]))
 
 
 @dataclass(frozen=True, eq=False)

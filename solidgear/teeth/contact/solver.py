@@ -15,7 +15,6 @@ ends for every matrix of positive principal minors (Murty, Linear Complementarit
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -157,7 +156,7 @@ def loads(
     _, tangent = pair.law.compliances(force / cells.length, cells.radius, cells.lean)
     local = np.diag(tangent / cells.length)
     slopes = [
-        _bordered(matrix + local, cells.lever, loaded)(np.zeros(len(loaded)), 1.0)[-1]
+        _solved(matrix + local, cells.lever, loaded, np.zeros(len(loaded)), 1.0)[-1]
         for matrix in (teeth, bulk)
     ]
     return Loads(
@@ -194,23 +193,18 @@ def _newton(
     )
 
 
-def _bordered(
-    matrix: np.ndarray, lever: np.ndarray, cells: np.ndarray
-) -> Callable[[np.ndarray, float], np.ndarray]:
-    """Return what solves for forces of some cells and the rotation from approaches and a torque."""
+def _solved(
+    matrix: np.ndarray, lever: np.ndarray, cells: np.ndarray, approach: np.ndarray, torque: float
+) -> np.ndarray:
+    """Return the forces of some cells, and the rotation behind them, of approaches and a torque."""
     n = len(cells)
     bordered = np.zeros((n + 1, n + 1))
     bordered[:n, :n] = matrix[np.ix_(cells, cells)]
     bordered[:n, n], bordered[n, :n] = -lever[cells], lever[cells]
     # in units in which both blocks are of like size
     scale = np.concatenate([np.ones(n), [float(np.diag(bordered)[:n].mean())]])
-
-    def solve(approach: np.ndarray, torque: float) -> np.ndarray:
-        right = np.concatenate([approach, [torque]])
-        scaled = np.linalg.solve(bordered * scale, right)
-        return scaled * scale
-
-    return solve
+    right = np.concatenate([approach, [torque]])
+    return np.linalg.solve(bordered * scale, right) * scale
 
 
 def _linear(
@@ -225,7 +219,7 @@ def _linear(
     force = np.zeros(len(lever))
     while True:
         cells = np.flatnonzero(touching)
-        result = _bordered(matrix, lever, cells)(-offset[cells], torque)
+        result = _solved(matrix, lever, cells, -offset[cells], torque)
         force[:] = 0.0
         force[cells], rotation = result[:-1], float(result[-1])
         pulling = touching & (force < 0)

@@ -46,6 +46,11 @@ from solidgear.trains.assembly.housing import (
 )
 from solidgear.trains.assembly.layout import contacts, places
 from solidgear.trains.assembly.local import local_teeth, mesh_port
+from solidgear.trains.assembly.matrices_body import (
+    MATRICES,
+    matrices_body,
+    matrices_cautions,
+)
 from solidgear.trains.assembly.mesh_errors import (
     MeshErrors,
     Need,
@@ -176,11 +181,28 @@ class Assembly:
         """Return a shaft by a model, built when it is first requested."""
         if (side, model) not in self._models:
             kind, base = checked_model(model)
-            if base:
+            if kind == MATRICES:
+                self._models[side, model] = self._of_matrices(side)
+            elif base:
                 self._models[side, model] = self._derived_model(side, model, kind, base)
             else:
                 self._set_mesh(side, model, self._first_mesh(side, model))
         return self._models[side, model]
+
+    def _of_matrices(self, side: str) -> ShaftModel:
+        """Return a shaft by the matrices that its table names."""
+        matrices = self.train.shafts[side].matrices
+        if matrices is None:
+            raise SolidgearError(
+                f"the {side} has no matrices; write matrices = a file in its table, or use "
+                f"another of {listed(LADDER.bodies)}"
+            )
+        start = perf_counter()
+        body = matrices_body(matrices, self.scenes[side])
+        seconds = perf_counter() - start
+        return ShaftModel(
+            side=side, model=MATRICES, part=matrices, body=body, unknowns=body.size, seconds=seconds
+        )
 
     def _first_mesh(self, side: str, model: str) -> Meshed | None:
         """Return the mesh that refinement begins with; None where options set it, and for models
@@ -441,6 +463,9 @@ class Assembly:
             sentences += [head + text for text in contact.cautions]
         sentences += gear_cautions(self.train, self.contacts)
         sentences += map(str, overlaps(self.train, self.scenes, self.places))
+        for side, shaft in self.train.shafts.items():
+            if shaft.matrices is not None:
+                sentences += matrices_cautions(side, shaft.matrices, self.scenes[side])
         return (*sentences, *housing_cautions(self.train, self.places))
 
     def on_flank(self, coast: bool) -> Assembly:

@@ -143,7 +143,7 @@ def _body_below_teeth(
 ) -> Iterator[str]:
     """Yield a sentence on a body that ends below the roots of the teeth, or beyond their tips."""
     seat = next(s for s in scene.stations if s.name == port)
-    segments = [s for s in scene.segments if s.y0 <= seat.y <= s.y1]
+    segments = scene.segments_at(seat.y)
     body = max(s.radius_at(seat.y)[1] for s in segments)
     discs = any(
         m.on == port or (m.on is None and m.lo < seat.hi and m.hi > seat.lo) for m in scene.masses

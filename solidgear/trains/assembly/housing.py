@@ -5,13 +5,13 @@ facts and cautions.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from solidgear.core import DOF_NAMES, System
+from solidgear.core.reduction.port_matrices import PortMatrices
 from solidgear.core.reduction.superelement import PortMotion
-from solidgear.core.scene.housing_matrices import HousingMatrices
 from solidgear.core.system.links import BearingSpring, Link, relative_motion
 from solidgear.core.system.parts import Part, Placed, RigidBody
 from solidgear.trains.file.housing import CENTRE, HOUSING, LOSS, TrainHousing
@@ -26,38 +26,10 @@ MOTIONS = [f"along {x}" for x in "xyz"] + [f"about {x}" for x in "xyz"] + ["elas
 ASTRAY = 1e-3
 
 
-@dataclass(frozen=True, eq=False)
-class ElasticHousing:
-    """A part whose coordinates are motions of points and of modes."""
-
-    matrices: HousingMatrices
-
-    @property
-    def mass(self) -> np.ndarray:
-        """Mass matrix (n, n)."""
-        return self.matrices.mass
-
-    @property
-    def strain(self) -> np.ndarray:
-        """Rows (n - 6, n) of the elastic strain."""
-        return self.matrices.elastic[1]
-
-    @property
-    def ports(self) -> Mapping[str, PortMotion]:
-        """Points of the housing, and the mean motion at the centre of mass."""
-        matrices, axes = self.matrices, np.eye(3)
-        rows = np.eye(len(matrices.mass))
-        points = {
-            name: PortMotion(rows[6 * k : 6 * k + 6], place, axes)
-            for k, (name, place) in enumerate(matrices.positions.items())
-        }
-        return {CENTRE: PortMotion(matrices.mean, matrices.centre, axes), **points}
-
-
 def housing_part(housing: TrainHousing) -> Part:
     """Return the housing as a part, in the axes of the train."""
     if housing.matrices is not None:
-        return ElasticHousing(housing.matrices)
+        return housing.matrices
     body = RigidBody(housing.mass_matrix, housing.places)
     return Placed(body, origin=np.array(housing.centre))
 
@@ -158,7 +130,7 @@ def housing_energy(system: System, energy: np.ndarray, shapes: np.ndarray) -> di
 
 def rigid_mass(part: Part) -> np.ndarray:
     """Return the (6, 6) rigid mass of the housing about the centre of mass."""
-    return part.matrices.rigid_mass if isinstance(part, ElasticHousing) else part.mass
+    return part.rigid_mass if isinstance(part, PortMatrices) else part.mass
 
 
 def housing_hz(housing: TrainHousing) -> np.ndarray:
@@ -177,8 +149,7 @@ def housing_facts(train: Train) -> Iterator[str]:
     frequencies = ", ".join(f"{hz:.1f}" for hz in housing_hz(housing))
     kind = "a rigid housing"
     if (matrices := housing.matrices) is not None:
-        first = matrices.elastic[0][0] / (2 * np.pi)
-        kind = f"an elastic housing (free, its first mode is at {first:.1f} Hz)"
+        kind = f"an elastic housing ({matrices.sentence})"
     yield (
         f"{kind} of {housing.mass:.4g} kg carries the bearings of {', '.join(train.housed)} on "
         f"{len(housing.mounts)} mounts; alone on them it has modes at {frequencies} Hz"
@@ -199,6 +170,7 @@ def housing_cautions(
             "error bars; give matrices for them"
         ]
     out = ["error bars and bounds leave out errors in the matrices of the housing"]
+    out += [f"housing: {doubt}" for doubt in matrices.doubts]
     for side in train.housed:
         turn, origin = places[side]
         for bearing in train.shafts[side].scene.bearings:

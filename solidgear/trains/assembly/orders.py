@@ -20,9 +20,10 @@ from solidgear.trains.file.planetary import PlanetMesh
 from solidgear.trains.file.train import PerTurn
 from solidgear.trains.modes.modes import TrainMode, train_modes
 from solidgear.trains.response.drive import Drive
+from solidgear.trains.response.excitation import MOST_ORDERS
 
-#: orders of the mesh at most, and those of shafts that are drawn
-MOST_ORDERS, SHAFT_ORDERS = 20, (1, 2)
+#: orders of shafts that are drawn
+SHAFT_ORDERS = (1, 2)
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,9 +71,10 @@ def order_map(
     mesh_orders: int | None = None,
     shaft_orders: Sequence[int] = SHAFT_ORDERS,
     mesh: str | None = None,
+    together: bool = False,
 ) -> OrderMap:
     """Return the order lines of a train with the shafts by models, up to a frequency that is by
-    default that of the file; damping and mesh are those of
+    default that of the file; damping, mesh and together are those of
     :class:`solidgear.trains.response.drive.Drive`, and orders of other meshes have no force. By
     default there are three orders of the mesh, or as many as the transmission error has.
 
@@ -85,10 +87,12 @@ def order_map(
     >>> first.line, first.mode, round(first.rpm)  # 16.28 Hz and 14 teeth
     ('mesh 1', 'load torsion 1', 70)
     """
-    drive = Drive(assembly, *models, damping=damping, matched_hz=matched_hz, mesh=mesh)
+    drive = Drive(
+        assembly, *models, damping=damping, matched_hz=matched_hz, mesh=mesh, together=together
+    )
     train, driven = assembly.train, drive.pair
     highest = highest_hz or train.ask.max_frequency
-    error_orders = len(drive.error.orders) or 1
+    error_orders = drive.excitation.orders
     count = max(*MESH_ORDERS, error_orders) if mesh_orders is None else mesh_orders
     if not 1 <= count <= MOST_ORDERS:
         raise SolidgearError(f"{count} orders of the mesh; ask for 1 to {MOST_ORDERS}")

@@ -34,13 +34,14 @@ from solidgear.core.frames import shift
 from solidgear.core.reduction.condensed import condensed_shaft
 from solidgear.core.reduction.superelement import Superelement
 from solidgear.core.system.parts import Part
+from solidgear.trains.assembly.matrices_body import MATRICES
 
 RIGID = "rigid"
 LUMPED = ("lumped", "lumped-bending", "lumped-matched", "lumped-old")
 #: body that lumped models come from unless one is named, and the judge of a system
 JUDGE = LADDER.judges[0]
 #: all models of a shaft, bodies in the sequence of the ladder
-MODELS = (*LADDER.bodies, RIGID, *LUMPED)
+MODELS = (*LADDER.bodies, MATRICES, RIGID, *LUMPED)
 
 
 def checked_model(name: str) -> tuple[str, str]:
@@ -58,7 +59,7 @@ def checked_model(name: str) -> tuple[str, str]:
             f"model {show(name, 40)}: write a lumped model and the body it comes from, "
             f"such as lumped/{JUDGE}"
         )
-    if kind in LADDER.bodies:
+    if kind in (*LADDER.bodies, MATRICES):
         return kind, ""
     return kind, body or JUDGE
 

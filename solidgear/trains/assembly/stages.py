@@ -194,6 +194,18 @@ def mesh_row(system: System, name: str) -> tuple[np.ndarray, float]:
     return rows.mean(axis=0), len(rows) * spring.stiffness
 
 
+def with_mesh_stiffness(system: System, stiffness: Mapping[str, float]) -> System:
+    """Return a system with the stiffness of some meshes, N/m, by name."""
+    links = dict(system.links)
+    for name, value in stiffness.items():
+        spring = links[name]
+        assert isinstance(spring, RowSpring)
+        links[name] = replace(
+            spring, stiffness=spring.stiffness * value / mesh_row(system, name)[1]
+        )
+    return System(system.parts, links)
+
+
 def phases_of(mesh: Pair | PlanetMesh, stages: Mapping[str, StageAtWork]) -> dict[str, float]:
     """Return the meshes whose errors drive, each with the angle by which it is behind the first,
     rad.

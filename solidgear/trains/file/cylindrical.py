@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 RADIUS = 5e-3
 #: keys of cylindrical gears, by table
 WORDS = {
-    "pinion": ("module", "helix_angle", "profile_shift", *Flanks.model_fields),
-    "gear": ("module", "helix_angle", "profile_shift", *Flanks.model_fields),
+    "pinion": ("module", "helix_angle", "profile_shift", "angle", *Flanks.model_fields),
+    "gear": ("module", "helix_angle", "profile_shift", "angle", *Flanks.model_fields),
     "mesh": ("centre_distance",),
 }
 #: keys of bevel gears alone, by table
@@ -158,11 +158,11 @@ def rolling_fields(pinion: Member, gear: Member, mesh: Mesh) -> dict[str, Any]:
     if mesh.shaft_angle:
         return {}
     wheels = pinion, gear
-    helix = _first(*(w.helix_angle for w in wheels), *(w.spiral_angle for w in wheels))
+    helix = first_given(*(w.helix_angle for w in wheels), *(w.spiral_angle for w in wheels))
     if helix is None and not any(w.hand for w in wheels):
         helix = 0.0  # straight teeth have no hand
     angle, radii = helix, (pinion.pitch_radius, gear.pitch_radius)
-    pressure, module = mesh.pressure_angle, _first(pinion.module, gear.module)
+    pressure, module = mesh.pressure_angle, first_given(pinion.module, gear.module)
     if module is not None and pressure is not None:
         shift = pinion.profile_shift, gear.profile_shift
         teeth = pinion.teeth, gear.teeth
@@ -191,6 +191,6 @@ def rolling_fields(pinion: Member, gear: Member, mesh: Mesh) -> dict[str, Any]:
     return {"pinion": changed[0], "gear": changed[1], "mesh": working_mesh}
 
 
-def _first(*values: float | None) -> float | None:
+def first_given(*values: float | None) -> float | None:
     """Return the first value that is given."""
     return next((value for value in values if value is not None), None)

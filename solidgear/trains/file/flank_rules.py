@@ -10,10 +10,12 @@ from solidgear.core.gears.wheel import Wheel
 from solidgear.core.gears.wheel_pair import WheelPair
 from solidgear.core.scene.units import TYPED
 from solidgear.trains.file.flanks import Flanks, MeasuredFlank, ReliefTable, radius_at, roll_length
+from solidgear.trains.file.lengths import in_mm
 from solidgear.trains.file.mesh_teeth import wheels_of
 from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.planetary import Stage
 from solidgear.trains.file.tables import TEETH
+from solidgear.trains.file.tip_rules import pointed_problem, tip_problems
 
 #: keys that say how much is missing, all along the face
 ALONG_FACE = ("crowning", "helix_slope")
@@ -27,8 +29,6 @@ def flank_problems(pair: Pair) -> Iterator[SceneError]:
     if pair.mesh.shaft_angle:
         return
     described = [side for side, gear in gears.items() if gear.is_described]
-    if not (solves or described):
-        return
     try:
         teeth = wheels_of(pair)
         if teeth is not None:
@@ -37,19 +37,28 @@ def flank_problems(pair: Pair) -> Iterator[SceneError]:
         return  # told with the fit of the teeth
     if teeth is None and solves:
         yield _needed("module")
-    elif teeth is None:
+    elif teeth is None and described:
         side = described[0]
         key = next(k for k in Flanks.model_fields if getattr(gears[side], k))
         yield SceneError("needs teeth of a size; give the module", path=(side, key))
     if teeth is None:
         return
+    wheels = teeth.wheels
+    if not (solves or described):
+        pointed = [
+            pointed_problem(wheel, gears[side], (side,))
+            for side, wheel in zip(gears, (wheels.first, wheels.second))
+        ]
+        yield from filter(None, pointed)
+        return
     problems = [
         problem
         for k, side in enumerate(gears)
-        for problem in _wheel(teeth.wheels, k, gears[side], (side,))
+        for problem in _wheel(wheels, k, gears[side], (side,))
     ]
-    yield from problems or _reach(teeth.wheels, gears)
-    yield from _faces(teeth.wheels, [(side, "face_offset") for side in gears])
+    problems = problems or [*_reach(wheels, gears)]
+    yield from problems or tip_problems(pair, wheels, solves)
+    yield from _faces(wheels, [(side, "face_offset") for side in gears])
 
 
 def stage_flank_problems(stage: Stage) -> Iterator[SceneError]:
@@ -67,15 +76,21 @@ def stage_flank_problems(stage: Stage) -> Iterator[SceneError]:
         ("ring_flanks",): (table.ring_flanks or Flanks(), 1, 1),
     }
     meshes = [wheels_of(mesh) for mesh in stage.together]
-    for path, (wheel_flanks, mesh, k) in flanks.items():
-        teeth = meshes[mesh]
+    problems: list[SceneError] = []
+    for path, (wheel_flanks, number, k) in flanks.items():
+        teeth = meshes[number]
         if teeth is not None and wheel_flanks.is_described:
-            yield from _wheel(teeth.wheels, k, wheel_flanks, path)
+            problems += _wheel(teeth.wheels, k, wheel_flanks, path)
+    for mesh, teeth in zip(stage.together, meshes):
+        solved = getattr(table.mesh, f"{mesh.mate}_stiffness") == TEETH
+        if teeth is not None and not problems:
+            yield from tip_problems(mesh, teeth.wheels, solved)
+    yield from problems
     planet = meshes[1] and meshes[1].wheels.first
     if planet and table.planet.is_described and 2 * planet.tip >= stage.teeth.spacing:
         yield SceneError(
-            f"lets planets overlap: their tips are {_mm(2 * planet.tip)} across, their axes "
-            f"{_mm(stage.teeth.spacing)} apart",
+            f"lets planets overlap: their tips are {in_mm(2 * planet.tip)} across, their axes "
+            f"{in_mm(stage.teeth.spacing)} apart",
             path=("planet", "tip_diameter" if table.planet.tip_diameter else "rack"),
         )
     for teeth, member in zip(meshes, ("planet", "ring_flanks")):
@@ -93,8 +108,8 @@ def _reach(wheels: WheelPair, gears: Mapping[str, Flanks]) -> Iterator[SceneErro
     given = [side for side, gear in gears.items() if gear.tip_diameter]
     if given and wheels.contact_ratio <= 0:
         yield SceneError(
-            f"is too small: tips at {_mm(wheels.first.tip)} and {_mm(wheels.second.tip)} do not "
-            f"reach each other, with axes {_mm(wheels.distance)} apart; correct it or leave it out",
+            f"is too small: tips at {in_mm(wheels.first.tip)} and {in_mm(wheels.second.tip)} do not "
+            f"reach each other, with axes {in_mm(wheels.distance)} apart; correct it or leave it out",
             path=(given[0], "tip_diameter"),
         )
 
@@ -103,8 +118,8 @@ def _faces(wheels: WheelPair, paths: list[tuple]) -> Iterator[SceneError]:
     """Yield a problem of faces that do not overlap."""
     if min(wheels.first.face_width, wheels.second.face_width) > 0 >= wheels.face_width:
         yield SceneError(
-            f"puts the middles of the faces {_mm(abs(wheels.offset))} apart, so that "
-            f"{_mm(wheels.first.face_width)} and {_mm(wheels.second.face_width)} of face share "
+            f"puts the middles of the faces {in_mm(abs(wheels.offset))} apart, so that "
+            f"{in_mm(wheels.first.face_width)} and {in_mm(wheels.second.face_width)} of face share "
             "nothing; correct the offset",
             path=paths[-1],
         )
@@ -118,13 +133,12 @@ def _wheel(wheels: WheelPair, k: int, flanks: Flanks, path: tuple) -> Iterator[S
         return
     if wheel.sign * (wheel.tip - wheel.form) <= 0:
         yield SceneError(
-            f"leaves no flank: flanks begin at a diameter of {_mm(2 * wheel.form)}",
+            f"leaves no flank: flanks begin at a diameter of {in_mm(2 * wheel.form)}",
             path=(*path, "tip_diameter" if flanks.tip_diameter else "rack"),
         )
         return
-    if flanks.tip_diameter and wheel.tip_thickness < 0:
-        reason = "lies beyond the point in which these teeth end; correct it or leave it out"
-        yield SceneError(reason, path=(*path, "tip_diameter"))
+    if problem := pointed_problem(wheel, flanks, path):
+        yield problem
         return
     for key in ALONG_FACE:
         amount = abs(getattr(flanks, key))
@@ -159,7 +173,7 @@ def _too_deep(wheel: Wheel, amount: float) -> SceneError | None:
     if amount <= max(half, 0.0) or not amount:
         return None
     return SceneError(
-        f"is deeper than half the tooth, {_mm(max(half, 0.0))} at its tip; check the value and its "
+        f"is deeper than half the tooth, {in_mm(max(half, 0.0))} at its tip; check the value and its "
         'unit, such as "10 um"'
     )
 
@@ -178,7 +192,7 @@ def _relief(wheel: Wheel, table: ReliefTable) -> Iterator[SceneError]:
             yield SceneError(f"needs {key}, how much is missing", path=(start_key,))
         elif start is not None and not low < start / 2 < high:
             yield SceneError(
-                f"lies off the flank, whose diameters go from {_mm(2 * low)} to {_mm(2 * high)}; "
+                f"lies off the flank, whose diameters go from {in_mm(2 * low)} to {in_mm(2 * high)}; "
                 "correct it or leave it out",
                 path=(start_key,),
             )
@@ -189,7 +203,7 @@ def _measured(wheel: Wheel, table: MeasuredFlank) -> Iterator[SceneError]:
     furthest = max(abs(table.z[0]), abs(table.z[-1]))
     if furthest > (1 + TYPED) * wheel.face_width / 2:
         yield SceneError(
-            f"reaches {_mm(furthest)} from the middle of a face that is {_mm(wheel.face_width)} wide; "
+            f"reaches {in_mm(furthest)} from the middle of a face that is {in_mm(wheel.face_width)} wide; "
             "z counts from the middle, in metres",
             path=("z",),
         )
@@ -197,13 +211,9 @@ def _measured(wheel: Wheel, table: MeasuredFlank) -> Iterator[SceneError]:
     heights = table.roll or tuple(roll_length(d / 2, wheel.base) for d in table.diameter)
     ends = sorted(roll_length(r, wheel.base) for r in (wheel.form, wheel.tip))
     if heights[0] >= ends[1] or heights[-1] <= ends[0]:
-        size = [_mm(end) for end in ends]
+        size = [in_mm(end) for end in ends]
         if key == "diameter":
-            size = [_mm(2 * radius_at(end, wheel.base)) for end in ends]
+            size = [in_mm(2 * radius_at(end, wheel.base)) for end in ends]
         yield SceneError(
             f"lies off the flank, which goes from {size[0]} to {size[1]}; write metres", path=(key,)
         )
-
-
-def _mm(length: float) -> str:
-    return f"{1e3 * length:.6g} mm"

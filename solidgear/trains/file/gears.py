@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from typing import Annotated, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import Field, InstanceOf, model_validator
 
 from solidgear.core import Model, PositiveLength, Scene, SceneError, listed, nearest
+from solidgear.core.reduction.port_matrices import PortMatrices
 from solidgear.core.scene.stations import Status
 from solidgear.core.scene.units import Inertia, Mass, PitchAngle, SpiralAngle
 from solidgear.trains.file.flanks import Flanks
+from solidgear.trains.file.tables import Azimuth
 
 #: relative, of inertias: the last of three digits
 ROUNDED = 5e-3
@@ -22,6 +24,10 @@ MOST_CURVED = 10.0
 Teeth = Annotated[int, Field(strict=True, ge=FEWEST_TEETH, le=MOST_TEETH)]
 #: of cylindrical gears (ISO 21771)
 FLANKS = ("left", "right")
+
+
+#: of a shaft: mass and stiffness of its free body in the axes of its scene, by another program
+Matrices = Annotated[InstanceOf[PortMatrices] | None, Field(exclude=True, repr=False)]
 
 
 class HeadInertia(Model):
@@ -68,6 +74,9 @@ class Gear(Flanks):
     #: radius, and where the pinion's blade is curved
     cutter_radius: PositiveLength | None = None
     blade_curvature: Annotated[float, Field(ge=-MOST_CURVED, le=MOST_CURVED)] | None = None
+    #: of cylindrical gears, of the middle of a tooth at the lumped point about y of the scene, right-
+    #: handed from x, rad: that of two gears of a shaft ties the phases of their meshes
+    angle: Azimuth | None = None
     apex: Literal["start", "end"] = "start"  #: towards which end of the shaft the pitch apex lies
     head: HeadInertia | None = None
 
@@ -93,6 +102,7 @@ class Shaft(Model):
     #: of a train with an operating point, the [load] of the scene: added to the mesh force, or
     #: replaced by it; where neither is given it must be the mesh force
     scene_load: Literal["added", "replaced"] | None = None
+    matrices: Matrices = None
 
     @model_validator(mode="after")
     def _at_points(self) -> Shaft:
@@ -117,6 +127,7 @@ class Shaft(Model):
         return Member(
             scene=self.scene if main else self.scene.with_main_port(port),
             scene_load=self.scene_load,
+            matrices=self.matrices,
             **{key: getattr(self.gears[port], key) for key in Gear.model_fields},
         )
 
@@ -126,10 +137,13 @@ class Member(Gear):
 
     scene: Scene
     scene_load: Literal["added", "replaced"] | None = None  #: as of `Shaft`
+    matrices: Matrices = None
 
     @property
     def shaft(self) -> Shaft:
         """Shaft that carries this gear alone."""
         gear = Gear(**{key: getattr(self, key) for key in Gear.model_fields})
         gears = {self.scene.port.name: gear}
-        return Shaft(scene=self.scene, gears=gears, scene_load=self.scene_load)
+        return Shaft(
+            scene=self.scene, gears=gears, scene_load=self.scene_load, matrices=self.matrices
+        )

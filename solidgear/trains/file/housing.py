@@ -12,14 +12,14 @@ import numpy as np
 from pydantic import BeforeValidator, Field, InstanceOf, model_validator
 
 from solidgear.core import Model, SceneError, listed, nearest
+from solidgear.core.reduction.port_matrices import CENTRE, PortMatrices
 from solidgear.core.scene.bearing_stiffness import Matrix
-from solidgear.core.scene.housing_matrices import HousingMatrices
 from solidgear.core.scene.stations import Status
 from solidgear.core.scene.units import TYPED, Loss, Mass, quantity
 from solidgear.trains.file.mesh_cycle import Vector
 
-#: names of the housing among the parts of a train, and of the centre of mass among its points
-HOUSING, CENTRE = "housing", "centre"
+#: name of the housing among the parts of a train
+HOUSING = "housing"
 #: loss factor of castings with their joints, where none is given
 LOSS = 0.01
 
@@ -83,7 +83,7 @@ class TrainHousing(Model):
     """
 
     #: of an elastic one: mass, inertia and centre are then theirs
-    matrices: InstanceOf[HousingMatrices] | None = Field(None, exclude=True, repr=False)
+    matrices: InstanceOf[PortMatrices] | None = Field(None, exclude=True, repr=False)
     mass: Mass  #: kg
     #: 3x3 about its centre of mass, kg m^2; the constructor also takes the three on the diagonal
     inertia: Annotated[tuple[tuple[float, ...], ...], BeforeValidator(_inertia)]
@@ -96,7 +96,8 @@ class TrainHousing(Model):
     status: Status = "assumed"  #: of mass and inertia
 
     def __init__(self, /, **data: Any):
-        if isinstance(matrices := data.get("matrices"), HousingMatrices):
+        if isinstance(matrices := data.get("matrices"), PortMatrices):
+            _ = matrices.elastic  # which refuses a body that is held
             rigid_mass = matrices.rigid_mass
             mass_fields = {"mass": float(rigid_mass[0, 0]), "inertia": rigid_mass[3:, 3:].tolist()}
             data |= mass_fields | {"centre": tuple(matrices.centre.tolist()), "points": {}}

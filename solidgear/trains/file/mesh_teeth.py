@@ -14,8 +14,10 @@ from math import ceil, cos, degrees, radians
 from solidgear.core.gears.flank_shape import FlankShape, Relief
 from solidgear.core.gears.wheel import Rack, Wheel
 from solidgear.core.gears.wheel_pair import WheelPair
+from solidgear.trains.file.cylindrical import first_given
 from solidgear.trains.file.flanks import Flanks, RackTable, ReliefTable, roll_length
 from solidgear.trains.file.gears import FLANKS, Gear
+from solidgear.trains.file.lengths import in_mm
 from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.planetary import PlanetMesh
 
@@ -86,10 +88,12 @@ def _of_pair(pair: Pair, coast: bool | None) -> MeshTeeth | None:
     pinion, gear, mesh = pair.pinion, pair.gear, pair.mesh
     if mesh.shaft_angle:
         return None
-    helix = _first(pinion.helix_angle, gear.helix_angle, pinion.spiral_angle, gear.spiral_angle)
+    helix = first_given(
+        pinion.helix_angle, gear.helix_angle, pinion.spiral_angle, gear.spiral_angle
+    )
     helix = helix or 0.0
     assumed = []
-    distance, module = mesh.centre_distance, _first(pinion.module, gear.module)
+    distance, module = mesh.centre_distance, first_given(pinion.module, gear.module)
     if module is None:
         radius = pinion.pitch_radius or (gear.pitch_radius or 0.0) / pair.ratio
         radius = radius or (distance or 0.0) / (1 + pair.ratio)
@@ -97,7 +101,7 @@ def _of_pair(pair: Pair, coast: bool | None) -> MeshTeeth | None:
             return None
         module = 2 * radius * cos(helix) / pinion.teeth
         source = "pitch radius" if pinion.pitch_radius or gear.pitch_radius else "centre distance"
-        assumed.append(f"normal module {_mm(module)}, from {source} and helix angle")
+        assumed.append(f"normal module {in_mm(module)}, from {source} and helix angle")
     pressure = mesh.pressure_angle
     if pressure is None:
         pressure = USUAL_PRESSURE_ANGLE
@@ -135,7 +139,7 @@ def _of_planets(mesh: PlanetMesh, coast: bool) -> MeshTeeth:
     wheels, assumed = _wheels(numbers, sun.module, helix, table.mesh.pressure_angle)
     if mesh.mate == "ring" and numbers[1].flanks.tip_diameter is None:
         # no rack cuts a ring, and fillets of planets may end the path before such tips do
-        assumed = (*assumed, f"tip diameter of the ring {_mm(2 * wheels[1].tip)}")
+        assumed = (*assumed, f"tip diameter of the ring {in_mm(2 * wheels[1].tip)}")
     first, second = (wheel.flanks.face_offset for wheel in numbers)
     pair_wheels = WheelPair(*wheels, offset=way * (second - first))
     return _mesh_teeth(pair_wheels, numbers, (way, way), assumed)
@@ -168,7 +172,7 @@ def _wheels(
         tip_radius = None if tip is None else tip / 2
         wheels.append(Wheel(wheel.teeth, module, helix, wheel.shift, rack, tip_radius, width))
         if wheel.face_width is None and width:
-            assumed.append(f"face width of the {wheel.name} {_mm(width)}, that of its mate")
+            assumed.append(f"face width of the {wheel.name} {in_mm(width)}, that of its mate")
     plain = [wheel.name for wheel in numbers if wheel.flanks.rack is None]
     if plain:
         rack = Rack()
@@ -239,12 +243,3 @@ def _single_contact(wheels: WheelPair, k: int) -> tuple[float, float]:
 
 def _both(names: list[str]) -> str:
     return " and the ".join(names)
-
-
-def _first(*values: float | None) -> float | None:
-    """Return the first value that is given."""
-    return next((value for value in values if value is not None), None)
-
-
-def _mm(length: float) -> str:
-    return f"{1e3 * length:.6g} mm"

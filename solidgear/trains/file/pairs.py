@@ -10,7 +10,7 @@ from solidgear.core import SceneError
 from solidgear.trains.file.cylindrical import rolling_fields
 from solidgear.trains.file.gears import Member
 from solidgear.trains.file.operation import OperatingPoint
-from solidgear.trains.file.tables import Mesh
+from solidgear.trains.file.tables import ErrorTable, Mesh
 
 
 @dataclass(frozen=True)
@@ -29,6 +29,11 @@ class Pair:
     #: true where the second gear is first in a further mesh: it drives there with the flank that the
     #: file names, and is driven here on the flank behind
     idle: bool = False
+
+    @property
+    def error(self) -> ErrorTable | None:
+        """Transmission error of the mesh; None where the file gives none."""
+        return self.mesh.transmission_error
 
     @property
     def members(self) -> dict[str, Member]:

@@ -82,6 +82,9 @@ class PlanetMeshes(Model):
     pressure_angle: PressureAngle  #: normal to the tooth, at the reference cylinder, rad
     #: of each mesh; a single number is a constant amplitude, m; needed where it drives a motion
     transmission_error: Error = None
+    #: sun_error, ring_error: in its place those of the meshes with the sun, and with the ring
+    sun_error: Error = None
+    ring_error: Error = None
     status: Status = "assumed"
 
 
@@ -129,6 +132,12 @@ class PlanetMesh:
     def mesh(self) -> PlanetMeshes:
         """Table of the teeth."""
         return self.stage.table.mesh
+
+    @property
+    def error(self) -> ErrorTable | None:
+        """Transmission error of each planet's mesh; None where the file gives none."""
+        own_error = getattr(self.mesh, f"{self.mate}_error")
+        return own_error if own_error is not None else self.mesh.transmission_error
 
     @property
     def stiffness(self) -> float:
@@ -232,7 +241,7 @@ def stage_of(name: str, table: Planetary, shafts: Mapping[str, Shaft]) -> Stage:
 
 def error_of(driver: Pair | PlanetMesh) -> ErrorTable:
     """Return the transmission error of a mesh that drives a motion; refuse a mesh without one."""
-    if (error := driver.mesh.transmission_error) is not None:
+    if (error := driver.error) is not None:
         return error
     table: tuple
     if isinstance(driver, PlanetMesh):

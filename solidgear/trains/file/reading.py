@@ -8,15 +8,17 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 from pydantic import model_validator
 
-from solidgear.core import Document, Model, Scene, SceneError, near
+from solidgear.core import Document, Model, Scene, SceneError, listed, near
 from solidgear.core import as_written as scene_as_written
-from solidgear.core.scene.housing_matrices import ARRAYS, read_matrices
+from solidgear.core.reduction.matrix_units import MATRIX_UNITS
+from solidgear.core.registry import addition
 from solidgear.core.scene.toml_file import name_of, parse, with_table_paths
 from solidgear.core.scene.typed import Problems
 from solidgear.trains.file.columns import CELL_COLUMNS, read_cells, read_flank
@@ -254,7 +256,10 @@ def _with_scene(
     else:
         reason = 'names the file of the shaft, such as "gear_shaft.toml", or holds its tables'
         raise SceneError(reason, path=(*path, "scene"))
-    return _with_flanks({**table, "scene": scene}, folder, path)
+    fields = {**table, "scene": scene}
+    if "matrices" in table:
+        fields = _matrices_read(fields, folder, path)
+    return _with_flanks(fields, folder, path)
 
 
 def _scene_inside(
@@ -319,10 +324,28 @@ def _with_cells(table: Mapping[str, Any], folder: Path, path: tuple) -> dict[str
 
 
 def _with_matrices(table: Mapping[str, Any], folder: Path) -> dict[str, Any]:
-    for key in ("mass", "inertia", "centre", "points"):
+    for key in ("mass", "inertia", "centre"):
         if key in table:
             raise SceneError("follows from matrices; leave one of the two out", path=(HOUSING, key))
-    if not isinstance(name := table["matrices"], str):
-        reason = "names an .npz file with " + ", ".join(ARRAYS)
-        raise SceneError(reason, path=(HOUSING, "matrices"))
-    return {**table, "matrices": read_matrices(folder / name)}
+    return _matrices_read(table, folder, (HOUSING,))
+
+
+def _matrices_read(table: Mapping[str, Any], folder: Path, path: tuple) -> dict[str, Any]:
+    """Return a table with the file of matrices that it names read, points and units by its keys."""
+    fields = {key: value for key, value in table.items() if key not in ("points", "units")}
+    name, points, units = table["matrices"], table.get("points"), table.get("units", "")
+    read = addition("matrices", "read")
+    if read is None:
+        reason = "is read by a part of solidgear that is not installed"
+        raise SceneError(reason, path=(*path, "matrices"))
+    if not isinstance(name, str):
+        reason = 'names a file of mass and stiffness, such as "box.npz" or "box.bdf"'
+        raise SceneError(reason, path=(*path, "matrices"))
+    if points is not None and not isinstance(points, Mapping):
+        reason = 'holds the node of every point, such as {"input.A" = 101}'
+        raise SceneError(reason, path=(*path, "points"))
+    if not isinstance(units, str) or (units and units not in MATRIX_UNITS):
+        raise SceneError(f"use one of {listed(MATRIX_UNITS)}", path=(*path, "units"))
+    keys = {key: table[key] for key in ("points", "units") if key in table}
+    fields["matrices"] = replace(read(folder / name, points, units), keys=keys)
+    return fields

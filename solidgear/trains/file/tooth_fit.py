@@ -11,12 +11,13 @@ from collections.abc import Iterator
 from solidgear.core import SceneError
 from solidgear.core.gears.wheel import Wheel
 from solidgear.core.gears.wheel_pair import WheelPair
+from solidgear.trains.file.lengths import in_mm, in_um
 from solidgear.trains.file.mesh_teeth import wheels_of
 from solidgear.trains.file.pairs import Pair
+from solidgear.trains.file.tip_rules import ROUNDED, cut_caution, is_cutting
 
-#: modules of overlap that two digits of the profile shifts leave open, and that the usual thinning
-#: of both wheels takes up (DIN 3967, cd25): no caution below the first, refused above the second
-ROUNDED, THINNED = 5e-3, 0.05
+#: modules of overlap that the usual thinning of both wheels takes up (DIN 3967, cd25): refused above
+THINNED = 0.05
 #: modules of backlash above which no drawing asks for it: ISO/TR 10064-2 recommends 0.04 to 0.13
 LOOSE = 0.25
 #: modules of undercut without a caution: that of a wheel of 14 teeth without profile shift
@@ -58,11 +59,11 @@ def fit_problems(pair: Pair) -> Iterator[SceneError]:
     yield from _distance(pair, fit)
     for (side, gear), wheel in zip(pair.members.items(), wheels_in(fit)):
         y, root = gear.scene.port.y, wheel.root
-        bore = min(s.radius_at(y)[0] for s in gear.scene.segments if s.y0 <= y <= s.y1)
+        bore = min(s.radius_at(y)[0] for s in gear.scene.segments_at(y))
         if root <= bore:
             yield SceneError(
-                f"puts the roots of its teeth at {_mm(root)} from the axis, inside the bore of "
-                f"its shaft, {_mm(bore)}; correct the teeth, the module, the profile shift or the "
+                f"puts the roots of its teeth at {in_mm(root)} from the axis, inside the bore of "
+                f"its shaft, {in_mm(bore)}; correct the teeth, the module, the profile shift or the "
                 "bore",
                 path=(side, "teeth"),
             )
@@ -75,20 +76,20 @@ def _distance(pair: Pair, fit: WheelPair) -> Iterator[SceneError]:
     first, second = wheels_in(fit)
     path = ("mesh", "centre_distance")
     teeth_label = (
-        f"{first.count} and {second.count} teeth of {_mm(first.module)} module with profile shifts "
+        f"{first.count} and {second.count} teeth of {in_mm(first.module)} module with profile shifts "
         f"that sum to {first.shift + second.shift:.4g}"
     )
     if fit.backlash < -THINNED * first.module:
         yield SceneError(
-            f"is too short: {teeth_label} overlap there by {_um(-fit.backlash)} along the line of "
-            f"action; they have no backlash at {_mm(fit.tight)}; correct the distance, the teeth, "
+            f"is too short: {teeth_label} overlap there by {in_um(-fit.backlash)} along the line of "
+            f"action; they have no backlash at {in_mm(fit.tight)}; correct the distance, the teeth, "
             "the module, the helix angle or the profile shifts",
             path=path,
         )
     elif fit.contact_ratio <= 0 and first.tip_radius is second.tip_radius is None:
         yield SceneError(
             f"is too long: {teeth_label} do not reach each other, for their tips lie at "
-            f"{_mm(first.tip)} and {_mm(second.tip)}; correct the distance, the teeth, the "
+            f"{in_mm(first.tip)} and {in_mm(second.tip)}; correct the distance, the teeth, the "
             "module, the helix angle or the profile shifts",
             path=path,
         )
@@ -97,31 +98,38 @@ def _distance(pair: Pair, fit: WheelPair) -> Iterator[SceneError]:
 def fit_cautions(fit: WheelPair, sides: tuple[str, str]) -> Iterator[str]:
     """Yield cautions on wheels whose tips reach too far or not far enough; `sides` name the shafts."""
     wheels = wheels_in(fit)
-    for clearance, wheel, side, mate in zip(fit.clearances, wheels, sides, sides[::-1]):
-        if clearance < 0:
-            cause = "profile shifts and centre distance ask for shorter tips"
-            if wheel.tip_radius is not None:
-                cause = f"its tip_diameter is at most {_mm(2 * (wheel.tip + clearance))} there"
-            yield (
-                f"tips of the {side} reach {_um(-clearance)} into the roots of the {mate}, "
-                f"with teeth of ISO 53: {cause}"
-            )
-    for k, cut in enumerate(path_cuts(fit)):
-        wheel, side, mate = wheels[k], sides[k], sides[1 - k]
+    for k in range(2):
         # a ring whose tips the file leaves open is made with shorter ones
-        is_described = wheels[1 - k].sign > 0 or wheels[1 - k].tip_radius is not None
-        if cut > ROUNDED * wheel.module and not wheel.is_undercut and is_described:
-            yield (
-                f"tips of the {mate} meet the fillets of the {side}, whose flanks end at "
-                f"{_mm(wheel.form)} from the axis: {_um(cut)} of the path of contact are lost "
-                f"there; shorten the tips of the {mate}, or give the {side} another rack"
-            )
+        is_described = wheels[k].sign > 0 or wheels[k].tip_radius is not None
+        if is_described and wheels[k].tip_thickness >= 0 and is_cutting(fit, k):
+            yield cut_caution(fit, k, sides)
+        elif is_described:
+            yield from _flank_lost(fit, 1 - k, sides)
     if fit.contact_ratio + fit.overlap_ratio < 1:
         helical = f" and {fit.overlap_ratio:.2f} by their helix" if fit.base_helix else ""
         yield (
             f"the contact ratio is {fit.contact_ratio:.2f}{helical}, below 1: no teeth touch for a "
             "part of each pitch; correct centre distance, profile shifts, module or teeth"
         )
+
+
+def _flank_lost(fit: WheelPair, k: int, sides: tuple[str, str]) -> Iterator[str]:
+    """Yield a caution on used flank of the first or the second wheel that its fillets take."""
+    cut, wheel, side, mate = path_cuts(fit)[k], wheels_in(fit)[k], sides[k], sides[1 - k]
+    if cut <= ROUNDED * wheel.module:
+        return
+    if wheel.is_undercut:
+        whole = fit.contact_ratio + sum(path_cuts(fit)) / fit.pitch
+        yield (
+            f"undercut of the {side} takes {in_um(cut)} of the path of contact that tips of the "
+            f"{mate} would use: a contact ratio of {fit.contact_ratio:.2f} remains of {whole:.2f}"
+        )
+        return
+    yield (
+        f"tips of the {mate} meet the fillets of the {side}, whose flanks end at "
+        f"{in_mm(wheel.form)} from the axis: {in_um(cut)} of the path of contact are lost "
+        f"there; shorten the tips of the {mate}, or give the {side} another rack"
+    )
 
 
 def path_cuts(fit: WheelPair) -> tuple[float, float]:
@@ -139,24 +147,19 @@ def wheel_cautions(wheel: Wheel, side: str) -> Iterator[str]:
             f"the {wheel.count} teeth of the {side} are undercut by their rack: without "
             f"undercut their profile shift is at least {wheel.shift + wheel.missing_shift:.2f}"
         )
-    if wheel.tip_thickness < 0:
-        yield (
-            f"teeth of the {side} end in a point before their tip circle: a profile shift of "
-            f"{wheel.shift:g} is too much for {wheel.count} teeth"
-        )
 
 
 def backlash_cautions(fit: WheelPair, file_backlash: float | None) -> Iterator[str]:
     """Yield cautions on a backlash that is large, or contradicts that of the file, m."""
     gap, module = fit.backlash, fit.first.module
     loose = LOOSE * module
-    place = f"teeth without allowances leave {_um(gap)} along the line of action at"
-    place += f" {_mm(fit.distance)}"
+    place = f"teeth without allowances leave {in_um(gap)} along the line of action at"
+    place += f" {in_mm(fit.distance)}"
     if gap < -ROUNDED * module:
         yield (
-            f"teeth without allowances overlap by {_um(-gap)} along the line of action at "
-            f"{_mm(fit.distance)}: they need allowances larger than that; they have no "
-            f"backlash at {_mm(fit.tight)}"
+            f"teeth without allowances overlap by {in_um(-gap)} along the line of action at "
+            f"{in_mm(fit.distance)}: they need allowances larger than that; they have no "
+            f"backlash at {in_mm(fit.tight)}"
         )
     if gap > loose:
         yield (
@@ -167,12 +170,12 @@ def backlash_cautions(fit: WheelPair, file_backlash: float | None) -> Iterator[s
         return
     if file_backlash < gap - ROUNDED * module:
         yield (
-            f"backlash = {_um(file_backlash)} is less than the teeth have: {place}, and allowances only "
+            f"backlash = {in_um(file_backlash)} is less than the teeth have: {place}, and allowances only "
             "add to it; correct one of them"
         )
     elif file_backlash > max(gap, 0.0) + loose:
         yield (
-            f"backlash = {_um(file_backlash)} is far more than the teeth have: {place}; correct one "
+            f"backlash = {in_um(file_backlash)} is far more than the teeth have: {place}; correct one "
             "of them"
         )
 
@@ -184,18 +187,8 @@ def fit_line(fit: WheelPair) -> str:
         ratio += f" and {fit.overlap_ratio:.3f} by their helix"
     cut = sum(path_cuts(fit))
     if cut > ROUNDED * fit.first.module:
-        ratio += f", {_um(cut)} of the path lost at fillets"
+        ratio += f", {in_um(cut)} of the path lost at fillets"
     return (
-        f"axes {_mm(fit.distance)} apart: backlash of teeth without allowances "
-        f"{_um(fit.backlash)} along the line of action, contact ratio {ratio}"
+        f"axes {in_mm(fit.distance)} apart: backlash of teeth without allowances "
+        f"{in_um(fit.backlash)} along the line of action, contact ratio {ratio}"
     )
-
-
-def _mm(length: float) -> str:
-    return f"{1e3 * length:.6g} mm"
-
-
-def _um(length: float) -> str:
-    if length >= 1e-3:
-        return f"{1e3 * length:.4g} mm"
-    return f"{round(1e6 * length, 1) + 0.0:.4g} um"

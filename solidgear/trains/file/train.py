@@ -481,6 +481,15 @@ class Train(Model):
         """Return the port of a shaft that the torsional spring of a rotor acts on."""
         return self.rotors[name].spring.at or f"{name} spring"
 
+    def torque_entry(self, side: str, gear: str) -> str | None:
+        """Return the port at which the torque of a gear enters or leaves its shaft: that of a rotor, else
+        of a further gear or a carrier; None where there is none.
+        """
+        rotors = [self.spring_port(name) for name in self.rotors_of(side)]
+        gears = [name for name in self.shafts[side].gears if name != gear]
+        carriers = [stage.ports[1] for stage in self.stages if stage.shafts[1] == side]
+        return next(iter([*rotors, *gears, *carriers]), None)
+
     def shaft(self, side: str) -> Scene:
         """Return the scene of a shaft, with a free station at the place of every torsional spring that
         is on no port; attached as all others where these share one attachment.

@@ -7,7 +7,6 @@ full paths.
 
 from __future__ import annotations
 
-import os
 from typing import Any
 
 from solidgear.core import Scene
@@ -56,7 +55,9 @@ def _shaft(shaft: Shaft, settles_with_train: bool) -> Table:
         table |= entry_of(shaft.gears[shaft.scene.port.name])
     else:
         table["gears"] = entry_of(shaft.gears)
-    return table | table_of(shaft, leave_out=("scene", "gears"))
+    if shaft.matrices is not None:
+        table |= shaft.matrices.to_dict()
+    return table | table_of(shaft, leave_out=("scene", "gears", "matrices"))
 
 
 def _scene(scene: Scene, settles_with_train: bool) -> Table:
@@ -82,7 +83,7 @@ def _housing(housing: TrainHousing | None) -> Table | None:
     rigid = ("mass", "inertia", "centre", "points")
     table = table_of(housing, leave_out=("matrices", *(rigid if housing.matrices else ())))
     if housing.matrices is not None:
-        table["matrices"] = os.path.abspath(housing.matrices.source)
+        table |= housing.matrices.to_dict()
     for mount_table, mount in zip(table.get("mount", ()), housing.mounts):
         mount_table["stiffness"] = stiffness_entries(mount.stiffness)
     return table

@@ -19,6 +19,7 @@ from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.housing import housing_facts
 from solidgear.trains.assembly.layout import senses, senses_sentence
 from solidgear.trains.assembly.local import undriven
+from solidgear.trains.assembly.matrices_body import matrices_facts
 from solidgear.trains.assembly.mesh_stiffness import USUAL
 from solidgear.trains.assembly.shaft import JUDGE
 from solidgear.trains.assembly.slips import mesh_unit_slips
@@ -76,7 +77,7 @@ def check_train(assembly: Assembly, max_frequency: float | None = None) -> Check
 def _notices(assembly: Assembly, light: Assembly, limit: float) -> Notices:
     """Yield notices on a train as a whole; `light` has the light solids of the guards."""
     train = assembly.train
-    facts = [*_facts(assembly, limit), *housing_facts(train)]
+    facts = [*_facts(assembly, limit), *housing_facts(train), *matrices_facts(train)]
     facts += [line for contact in assembly.contacts.values() for line in wrench_lines(contact)]
     # those of the shafts stand with their guards
     cautions = [*assembly.cautions, *mesh_unit_slips(assembly), *_loss_cautions(train)]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -14,7 +14,7 @@ from solidgear.show.plot import Make
 from solidgear.show.run_tables import pairs_of
 from solidgear.show.sheet import Section, Sheet, Terminal, write_json
 from solidgear.show.sketch import sketch_svg
-from solidgear.show.table import Column, Table, text
+from solidgear.show.table import Cell, Column, Table, text
 from solidgear.show.units import GROUP, Units, in_ascii
 from solidgear.show.viewer import viewer_fragment
 from solidgear.show.words import capital, grouped, percent, seconds, whole
@@ -221,9 +221,11 @@ def verdict_table(verdict: Verdict) -> Table:
         *_ends(verdict, "modes\n{}", "force\n{}"),
         text("first mode off", off),
         text("by", lambda mix: mix.cause),
-        Column("s", lambda mix: f"{mix.seconds:.1f}"),
+        Column("s", lambda mix: mix.seconds, "{:.1f}".format),
+        Column("first mode off by", lambda mix: mix.error, name="off", unit="1", hidden=True),
     ]
-    return Table("Within the tolerance up to, in Hz", columns, verdict.mixes, style="bare")
+    title = "Within the tolerance up to, in Hz"
+    return Table(title, columns, verdict.mixes, style="bare", name="mixes")
 
 
 def mixes_table(verdict: Verdict) -> Table:
@@ -261,13 +263,17 @@ def _ends(verdict: Verdict, modes: str, force: str) -> list[Column]:
     """Return columns of the frequencies up to which mixes hold, with heads for a tolerance."""
     tolerance, decibels = f"{100 * verdict.tolerance:g} %", f"{verdict.decibels:g} dB"
 
-    def end(hz: float | None) -> str:
-        return f"{verdict.highest_hz:.0f}+" if hz is None else whole(hz)
+    def end(head: str, of: Callable[[Departure], float | None], name: str) -> Column:
+        def cell(mix: Departure) -> Cell:
+            hz = of(mix)
+            return Cell(hz, "", f"{verdict.highest_hz:.0f}+" if hz is None else whole(hz))
+
+        return Column(head, cell, name=name, unit="Hz")
 
     return [
-        Column(modes.format(tolerance), lambda mix: end(mix.modes_to_hz)),
-        Column(force.format(decibels), lambda mix: end(mix.force_to_hz)),
-        Column(force.format(tolerance), lambda mix: end(mix.close_to_hz)),
+        end(modes.format(tolerance), lambda mix: mix.modes_to_hz, f"modes within {tolerance}"),
+        end(force.format(decibels), lambda mix: mix.force_to_hz, f"force within {decibels}"),
+        end(force.format(tolerance), lambda mix: mix.close_to_hz, f"force within {tolerance}"),
     ]
 
 

@@ -5,13 +5,14 @@ contradict.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from math import cos, sin
 
 import numpy as np
 
 from solidgear.core import SceneError, SolidgearError, rotation
+from solidgear.core.gears.wheel import Wheel
 from solidgear.core.system.contact_cells import ContactWrench, contact_wrench
 from solidgear.core.system.gear_mesh import (
     MeshVector,
@@ -92,7 +93,8 @@ def contact(pair: Pair, coast: bool | None = None) -> Contact:
     (3.2143, 'the pitch angle of 0.391 rad does not match')
     """
     try:
-        return _contact(pair.rolling, coast)
+        tips = {side: _tips(pair, side) for side in pair.members}
+        return _contact(pair.rolling, tips, coast)
     except SceneError as error:
         raise SceneError.of(pair.with_file_paths(error.problems)) from None
 
@@ -108,7 +110,7 @@ def axes_of(pair: Pair, side: str) -> np.ndarray:
     return flip @ rotation(1, turned)[:3, :3]
 
 
-def _contact(pair: Pair, coast: bool | None) -> Contact:
+def _contact(pair: Pair, tips: Mapping[str, float], coast: bool | None) -> Contact:
     mesh, cautions = pair.mesh, _contradictions(pair)
     wrench = None
     if mesh.contact_cells:
@@ -134,7 +136,7 @@ def _contact(pair: Pair, coast: bool | None) -> Contact:
     cautions += _cones(pair) + _apexes(pair)
     vectors = {"pinion": pinion, "gear": gear}
     for side, vector in vectors.items():
-        _refuse_point_off_head(pair, side, vector.point)
+        _refuse_point_off_head(pair, side, vector.point, tips[side])
     cautions += _levers(pair, pinion, gear)
     cautions += [line for side in pair.members for line in _scene_load(pair, side, vectors[side])]
     stiffness: float | str | None = mesh.stiffness
@@ -388,12 +390,26 @@ def _apexes(pair: Pair) -> list[str]:
     return out
 
 
-def _refuse_point_off_head(pair: Pair, side: str, point: np.ndarray) -> None:
+def _tips(pair: Pair, side: str) -> float:
+    """Return the tip radius of a cylindrical gear of a known module, m, else 0: teeth with profile shift
+    touch beyond the pitch circle.
+    """
+    member, mate = pair.members[side], pair.members["gear" if side == "pinion" else "pinion"]
+    module = member.module or mate.module
+    if module is None:
+        return 0.0
+    helix = member.helix_angle or mate.helix_angle or 0.0
+    wheel = Wheel(member.teeth, module, helix, member.profile_shift)
+    return wheel.tip if member.tip_diameter is None else member.tip_diameter / 2
+
+
+def _refuse_point_off_head(pair: Pair, side: str, point: np.ndarray, tip: float) -> None:
     scene, apex = pair.members[side].scene, pair.members[side].apex
     port = scene.port
     most = scene.outline.largest_radius
-    # a wheel that is a rigid mass is not among the segments; its pitch radius says how far it goes
-    most = max(most, pair.members[side].pitch_radius or 0.0)
+    # a wheel that is a rigid mass is not among the segments; its pitch radius or its tips say how far
+    # it goes
+    most = max(most, pair.members[side].pitch_radius or 0.0, tip)
     radius = float(np.hypot(point[0], point[2]))
     y = port.y + (point[1] if apex == "start" else -point[1])
     slack = OUTSIDE_LENGTH * (port.hi - port.lo)

@@ -31,6 +31,8 @@ ROUNDING = 1e-9
 class TrainMode:
     """One mode of a train."""
 
+    plain_names = ("name", "frequency_hz", "rpm", "strained", "bound", "driven", ("bar", "mesh"))
+
     name: str
     frequency_hz: float
     #: speed of the engine's shaft at which the teeth of the first mesh pass at this frequency

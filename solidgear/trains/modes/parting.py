@@ -28,7 +28,7 @@ def teeth_relief(drive: Drive, forces: Sequence[np.ndarray]) -> np.ndarray:
     drive it, N.
     """
     sign = 1.0 if isinstance(drive.pair, PlanetMesh) else -1.0
-    return largest_relief([sign * force for force in forces], drive.error.phases)
+    return largest_relief([sign * force for force in forces], drive.excitation.phases)
 
 
 def largest_relief(forces: Sequence[np.ndarray], phases: Sequence[float] = ()) -> np.ndarray:

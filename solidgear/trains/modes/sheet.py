@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from solidgear.show.command import caution
 from solidgear.show.sheet import Sheet, Terminal
-from solidgear.show.table import NUMBER, Column, Table, text, word
+from solidgear.show.table import NUMBER, Cell, Column, Table, text, word
 from solidgear.show.units import Units, in_ascii
 from solidgear.show.words import whole
 from solidgear.trains.assembly.shaft import mix_label
@@ -76,12 +76,19 @@ def _columns(system: TrainModes, nothing: str | None) -> list[Column]:
     return [
         word("mode", lambda mode: mode.name),
         Column("Hz", lambda mode: mode.frequency_hz, lambda hz: f"{hz:.2f}"),
-        Column(f"{system.speeds} rpm", lambda mode: mode.rpm, whole),
+        Column(
+            f"{system.speeds} rpm",
+            lambda mode: mode.rpm,
+            whole,
+            name=f"{system.speeds} speed",
+            unit="rpm",
+        ),
         text("most strain energy", lambda mode: mode.strained or nothing),
-        Column("bound", _bound),
-        Column("mesh", mesh, lambda share: f"{share:.0e}"),
+        Column("bound", _bound, name="error bound of the reduction", unit="1"),
+        Column("mesh", mesh, lambda share: f"{share:.0e}", name="error bar", unit="1"),
     ]
 
 
-def _bound(mode: TrainMode) -> str:
-    return "exact" if mode.frequency_hz == 0 else f"{max(mode.bound, ROUNDING):.0e}"
+def _bound(mode: TrainMode) -> Cell:
+    words = "exact" if mode.frequency_hz == 0 else f"{max(mode.bound, ROUNDING):.0e}"
+    return Cell(mode.bound, "", words)

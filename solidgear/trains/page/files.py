@@ -17,7 +17,7 @@ def over_frequency(response: Any, teeth: float) -> Table:
         quantity, _, unit = name.partition(" [")
         columns[f"{quantity} [{unit}"] = np.abs(value)
         columns[f"{quantity} phase [deg]"] = np.degrees(np.angle(value))
-    return numbers(columns)
+    return numbers(columns, axes=1)
 
 
 def crossings(orders: Any, of: str = "pinion") -> Table:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
 from math import degrees
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
@@ -95,11 +96,13 @@ def housing(response: TrainResponse, units: Units = ENGINEERING) -> Table:
     for column, name in housing_columns(response.columns):
         size = abs(response.columns[column])
         si, top = column.partition(" [")[2].rstrip("]"), int(size.argmax())
-        rows.append((name, units.text(float(size[top]), si, 4), response.frequency_hz[top]))
+        largest = Cell(float(size[top]), "", units.text(float(size[top]), si, 4))
+        rows.append((name, largest, response.frequency_hz[top], si))
     columns = [
         text("of the housing", lambda row: row[0]),
         text("largest", lambda row: row[1]),
         Column("Hz", lambda row: row[2], hertz),
+        Column("unit", lambda row: row[3], hidden=True),
     ]
     note = "Root of the sum of squares of the amplitudes in all three directions."
     return Table("Loads of mounts and accelerations", columns, rows, note)
@@ -154,12 +157,18 @@ def _stage(stage: Mapping[str, Any], units: Units) -> list[list[str]]:
         ["planets", f"at {angles}, pins at {units.text(stage['pin_radius'], 'm', 4)}", ""],
         ["each planet", f"{units.text(planet['mass'], 'kg', 4)} {pin}", f"{name}.planet"],
         ["meshes with sun and ring", " and ".join(stiff), f"{name}.mesh"],
-        ["transmission error of each", _error(mesh["transmission_error"], units), f"{name}.mesh"],
+        ["transmission error of each", _errors(mesh, units), f"{name}.mesh"],
     ]
     support = "fixed"
     if stage["ring"] is not None:
         support = f"{units.text(stage['ring']['mass'], 'kg', 4)} on springs"
     return [*rows, ["ring", support, f"{name}.ring"]]
+
+
+def _errors(mesh: Mapping[str, Any], units: Units) -> str:
+    """Return the transmission errors of planets with sun and ring."""
+    both = (mesh[f"{mate}_error"] or mesh["transmission_error"] for mate in ("sun", "ring"))
+    return " and ".join(dict.fromkeys(_error(error, units) for error in both))
 
 
 def mark(status: str) -> Cell:
@@ -209,17 +218,23 @@ def peaks(
     """
     units = units.fitting([size for _, size, _ in tops], si)
     columns = [
-        text("its mode", lambda peak: peak[2]),
+        replace(text("its mode", lambda peak: peak[2]), name="mode"),
         Column("Hz", lambda peak: peak[0], hertz),
-        Column(f"{turned(teeth)} rpm", lambda peak: 60 * peak[0] / teeth, whole),
+        _speed(turned(teeth), lambda peak: 60 * peak[0] / teeth),
         quantity(name, si, units, lambda peak: peak[1], 4),
     ]
     note = ""
     if bars:
-        columns.append(Column("mesh", lambda peak: bars.get(peak[2]), lambda bar: f"{bar:.0e}"))
+        bar = Column("mesh", lambda peak: bars.get(peak[2]), lambda bar: f"{bar:.0e}")
+        columns.append(replace(bar, name="error bar of the frequency", unit="1"))
         note = MOVED_BY_MESHES
     title = f"Peaks of the {name}{', ' + model if model else ''}"
     return Table(title, columns, tops, note, style="ruled")
+
+
+def _speed(shaft: str, of: Callable[[Any], float]) -> Column:
+    """Return a column of speeds of a shaft."""
+    return Column(f"{shaft} rpm", of, whole, name=f"{shaft} speed", unit="rpm")
 
 
 def turned(teeth: float | None) -> str:
@@ -235,7 +250,7 @@ def crossings(rows: Sequence[Crossing], units: Units = ENGINEERING, shaft: str =
         text("order", lambda crossing: crossing.line),
         text("mode", lambda crossing: crossing.mode),
         Column("Hz", lambda crossing: crossing.frequency_hz, hertz),
-        Column(f"{shaft} rpm", lambda crossing: crossing.rpm, whole),
+        _speed(shaft, lambda crossing: crossing.rpm),
         quantity("mesh force", "N", units, lambda crossing: crossing.force, 4),
     ]
     note = "A dash: the transmission error has no such order."

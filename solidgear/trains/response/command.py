@@ -34,6 +34,13 @@ def response(
             help="Force on a port instead of the transmission error, such as gear.gear:z=100 in N; repeatable.",
         ),
     ] = None,
+    together: Annotated[
+        bool,
+        typer.Option(
+            "--together",
+            help="Drive by all meshes at the frequencies of the mesh, each at its phase.",
+        ),
+    ] = False,
     orders: Annotated[
         int | None,
         typer.Option(
@@ -46,7 +53,13 @@ def response(
 ) -> None:
     present(
         lambda progress: responded(
-            train, **driven.words, forces=force, orders=orders, **vars(at), **reduced.words
+            train,
+            **driven.words,
+            forces=force,
+            together=together,
+            orders=orders,
+            **vars(at),
+            **reduced.words,
         ).sheet(run.units),
         run,
         out,

@@ -22,11 +22,10 @@ from solidgear.trains.assembly.components import FORCE_UNITS, MOTION_UNITS, six_
 from solidgear.trains.assembly.housing import mount_rows, seat_motion
 from solidgear.trains.assembly.stages import mesh_row, phases_of
 from solidgear.trains.file.housing import HOUSING
-from solidgear.trains.file.planetary import error_of
-from solidgear.trains.file.tables import ErrorTable
 from solidgear.trains.file.train import Train
 from solidgear.trains.modes.modes import refuse_unresolved
 from solidgear.trains.modes.naming import mode_names
+from solidgear.trains.response.excitation import Excitation, excitation
 from solidgear.trains.response.response import OrderCurve, Peak
 
 #: unit of accelerations
@@ -49,8 +48,8 @@ TOP = 17
 
 class Drive:
     """A train by models of the shafts with losses and excitation: forces (6,) at ports, N
-    and N m, or the transmission error of a mesh, by default of the first; viscous losses are
-    matched at a frequency, Hz.
+    and N m, or the transmission error of a mesh, by default of the first, with those of all other
+    meshes at the same frequencies if `together`; viscous losses are matched at a frequency, Hz.
     """
 
     def __init__(
@@ -61,6 +60,7 @@ class Drive:
         matched_hz: float = 0.0,
         forces: Mapping[str, np.ndarray] | None = None,
         mesh: str | None = None,
+        together: bool = False,
     ):
         if damping not in DAMPING:
             raise SolidgearError(
@@ -79,16 +79,16 @@ class Drive:
             teeth.name: mesh_row(self.system, teeth.name) for teeth in assembly.train.teeth
         }
         self.rows = {name: row for name, (row, _) in self.meshes.items()}
-        self.phases = phases_of(self.pair, assembly.stages)
-        self.first = next(iter(self.phases))
+        self.together = together
+        self.first = next(iter(phases_of(self.pair, assembly.stages)))
         self.row, self.stiffness = self.meshes[self.first]
         self.forces = dict(forces or {})
         self.load = self._load()
 
     @cached_property
-    def error(self) -> ErrorTable:
-        """Transmission error that drives the train; refused where the file has none."""
-        return error_of(self.pair)
+    def excitation(self) -> Excitation:
+        """Transmission errors that drive the train; refused where the file has none."""
+        return excitation(self.assembly, self.pair, self.together)
 
     def _load(self, order: int = 1) -> np.ndarray:
         """Return the (N,) load of forces, or of an error of 1 m where it drives, each behind by a
@@ -96,18 +96,9 @@ class Drive:
         """
         if self.forces:
             return self.system.load(self.forces)
-        turns = {
-            name: np.exp(-1j * order * angle) if angle else 1.0
-            for name, angle in self.phases.items()
-        }
-        rows = [turn * self.meshes[n][1] * self.meshes[n][0] for n, turn in turns.items()]
+        weights = self.excitation.weights(order)
+        rows = [weight * self.meshes[n][1] * self.meshes[n][0] for n, weight in weights.items()]
         return np.sum(rows, axis=0)
-
-    def amplitude(self, frequency_hz: np.ndarray, order: int = 1) -> np.ndarray:
-        """Return the (f,) transmission error e at a frequency of excitation, m."""
-        if self.error.frequency:
-            return np.interp(frequency_hz, self.error.frequency, self.error.amplitude)
-        return np.full(len(frequency_hz), self.error.orders[order - 1])
 
     def motion(self, frequency_hz: np.ndarray, rows: np.ndarray, order: int = 1) -> np.ndarray:
         """Return (f, q) motions at a frequency of excitation."""
@@ -115,7 +106,9 @@ class Drive:
         unit = self.steady.motion(frequency_hz, load, rows)
         if self.forces:
             return unit
-        scale = self.amplitude(frequency_hz, order) * self.steady.factor(self.first, frequency_hz)
+        scale = self.excitation.amplitude(frequency_hz, order) * self.steady.factor(
+            self.first, frequency_hz
+        )
         return unit * scale[:, None]
 
     def mesh(self, frequency_hz: np.ndarray, order: int = 1) -> tuple[np.ndarray, np.ndarray]:
@@ -126,9 +119,14 @@ class Drive:
     def _teeth(
         self, frequency_hz: np.ndarray, dte: np.ndarray, order: int = 1
     ) -> tuple[np.ndarray, np.ndarray]:
-        error = 0.0 if self.forces else self.amplitude(frequency_hz, order)
+        error = 0.0 if self.forces else self._error(self.first, frequency_hz, order)
         factor = self.stiffness * self.steady.factor(self.first, frequency_hz)
         return dte, factor * (dte - error)
+
+    def _error(self, mesh: str, frequency_hz: np.ndarray, order: int = 1) -> np.ndarray:
+        """Return the (f,) transmission error of a mesh that drives, m; 0 of another."""
+        weight = self.excitation.weights(order).get(mesh, 0.0)
+        return weight * self.excitation.amplitude(frequency_hz, order)
 
     def reactions(self, frequency_hz: np.ndarray) -> dict[str, np.ndarray]:
         """Return (f, 6) forces of every bearing on its shaft, in the axes of that shaft, by ``side
@@ -180,9 +178,8 @@ class Drive:
             out |= six_columns(side, MOTION_UNITS, displacements[:, 6 * k : 6 * k + 6])
         for pair, stretch in zip(other_meshes, displacements.T[6 * len(ports) :]):
             factor = self.meshes[pair.name][1] * self.steady.factor(pair.name, frequency_hz)
-            if pair.name in self.phases and not self.forces:
-                phase = np.exp(-1j * self.phases[pair.name])
-                stretch = stretch - phase * self.amplitude(frequency_hz)
+            if not self.forces:
+                stretch = stretch - self._error(pair.name, frequency_hz)
             out[f"mesh force{pair.label} [N]"] = factor * stretch
         return out | housing_columns(self, frequency_hz)
 
@@ -212,7 +209,8 @@ class Drive:
 
     def _peak_motions(self, frequency_hz: np.ndarray) -> np.ndarray:
         """Return (f, q) motions whose peaks a grid may not miss; orders of one mesh have the same."""
-        orders = range(2, self.orders + 1) if len(self.phases) > 1 else ()
+        several = not self.forces and len(self.excitation.weights()) > 1
+        orders = range(2, self.orders + 1) if several or self.together else ()
         forces = [self.mesh(frequency_hz, order)[1] for order in orders]
         return np.column_stack(
             [*housing_amplitudes(self, frequency_hz), *forces, *self.mesh(frequency_hz)]
@@ -227,7 +225,7 @@ class Drive:
     @property
     def orders(self) -> int:
         """Number of orders that drive the train."""
-        return 1 if self.forces else max(1, len(self.error.orders))
+        return 1 if self.forces else self.excitation.orders
 
     def over_cycle(self, frequency_hz: np.ndarray, highest_hz: float) -> list[np.ndarray]:
         """Return the (f,) mesh force of every order at frequencies of the mesh, N; NaN of an order

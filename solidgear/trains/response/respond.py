@@ -13,6 +13,7 @@ from solidgear.trains.assembly.meshes import mesh_bars
 from solidgear.trains.assembly.spin import spin_cautions
 from solidgear.trains.modes.parting import parting_lines
 from solidgear.trains.response.drive import Drive
+from solidgear.trains.response.excitation import meeting_cautions
 from solidgear.trains.response.response import TrainResponse
 
 LITERAL = (
@@ -31,6 +32,7 @@ def respond(
     forces: Mapping[str, np.ndarray] | None = None,
     frequency_hz: np.ndarray | None = None,
     mesh: str | None = None,
+    together: bool = False,
     turns: float | None = None,
 ) -> TrainResponse:
     """Compute the steady response of a train with the shafts by models, up to a frequency that is
@@ -49,7 +51,13 @@ def respond(
     highest = highest_hz or assembly.highest_hz or assembly.train.ask.max_frequency
     assembly.follow(*models, highest_hz=highest)
     drive = Drive(
-        assembly, *models, damping=damping, matched_hz=matched_hz, forces=forces, mesh=mesh
+        assembly,
+        *models,
+        damping=damping,
+        matched_hz=matched_hz,
+        forces=forces,
+        mesh=mesh,
+        together=together,
     )
     hz = drive.grid(highest) if frequency_hz is None else np.asarray(frequency_hz, float)
     by_name = drive.columns(hz)
@@ -61,6 +69,8 @@ def respond(
     by_shaft = assembly.models_by_shaft(models)
     cautions = [*assembly.cautions, *local_lines(assembly, drive.system)]
     cautions += spin_cautions(assembly, drive.system, by_shaft, highest, turns)
+    if not forces:
+        cautions += meeting_cautions(assembly, drive.pair, together)
     if damping == "literal":
         limit_hz = float(highest)
         cautions.append(LITERAL.format(limit_hz, np.pi * limit_hz * assembly.train.losses.mesh))

@@ -196,7 +196,7 @@ def receptance_sheet(result: Receptances, units: Units) -> Sheet:
             "cautions": cautions,
         },
         charts={"receptance": partial(receptance_chart, receptances, title, teeth, units)},
-        lines={"receptance": numbers(columns)},
+        lines={"receptance": numbers(columns, axes=1)},
         cautions=cautions,
         terminal=Terminal(
             heading=[f"{title}; {first.label}, {damping} losses", *map(caution, slips)],
@@ -233,7 +233,7 @@ def first_lines(lines: Sequence[Line]) -> Table:
         [line.name.removesuffix(" 1"), line.frequency_hz, low, high]
         for line, (low, high) in zip(first, bars)
     ]
-    heads = [text("order"), *(Column(head, write=hertz) for head in ("Hz", "from", "to"))]
+    heads = [text("order"), *(Column(h, write=hertz, unit="Hz") for h in ("Hz", "from", "to"))]
     return Table("First orders at this speed", heads, rows, style="ruled")
 
 
@@ -259,12 +259,19 @@ def coincidences(speed: AtSpeed, most: int | None = None) -> Table:
         text("order"),
         Column("Hz", write=hertz),
         text("mode"),
-        Column("Hz of it", write=hertz),
-        Column("off, %"),
-        Column(f"meet at {speed.shaft} rpm", write=whole),
+        Column("Hz of it", write=hertz, name="frequency of the mode", unit="Hz"),
+        Column("off, %", name="off", unit="1"),
+        Column(f"meet at {speed.shaft} rpm", write=whole, name="speed", unit="rpm"),
     ]
     rows = [
-        [near.line, near.line_hz, near.mode, near.mode_hz, f"{100 * near.off:+.1f}", near.rpm]
+        [
+            near.line,
+            near.line_hz,
+            near.mode,
+            near.mode_hz,
+            Cell(near.off, "", f"{100 * near.off:+.1f}"),
+            near.rpm,
+        ]
         for near in speed.coincidences[:most]
     ]
     title = f"Orders within {100 * speed.within:g} % of a natural frequency"
@@ -293,9 +300,13 @@ def measured(speed: AtSpeed, spectrum: Spectrum, most: int | None = None) -> Tab
     largest = sorted(speed.peaks, key=lambda peak: -peak.amplitude)[:most]
     heads = [
         Column("Hz", write=hertz),
-        Column(f"amplitude, {spectrum.unit or 'unit not given'}"),
+        Column(
+            f"amplitude, {spectrum.unit or 'unit not given'}",
+            name="amplitude",
+            unit=spectrum.unit,
+        ),
         text("order"),
-        Column("Hz of it"),
+        Column("Hz of it", name="frequency of the order", unit="Hz"),
         text("also"),
     ]
     rows = [_peak_row(peak) for peak in sorted(largest, key=lambda peak: peak.frequency_hz)]
@@ -307,7 +318,8 @@ def measured(speed: AtSpeed, spectrum: Spectrum, most: int | None = None) -> Tab
 def _peak_row(peak: MeasuredPeak) -> list[Any]:
     order = Cell(peak.name, "" if peak.line else "quiet")
     place, also = peak.line and peak.line.place, listed(peak.others, 2) or DASH
-    return [peak.frequency_hz, f"{peak.amplitude:.4g}", order, place, also]
+    height = Cell(peak.amplitude, "", f"{peak.amplitude:.4g}")
+    return [peak.frequency_hz, height, order, place, also]
 
 
 def every_peak(speed: AtSpeed, spectrum: Spectrum) -> Table:

@@ -38,6 +38,7 @@ def response(
     *,
     against: Mixes = (),
     forces: Forces = None,
+    together: bool = False,
     orders: int | None = None,
     speed: str | None = None,
     of: str | None = None,
@@ -61,6 +62,8 @@ def response(
     forces : mapping of str to float, optional
         Forces on ports in place of the transmission error, such as ``{"gear.gear:z": 100.0}``, N
         and N m.
+    together : bool
+        Whether all meshes at the frequencies of the mesh drive, each at its phase.
     orders : int, optional
         Orders of the mesh in the map of orders.
     speed, of : str, optional
@@ -87,7 +90,8 @@ def response(
     Raises
     ------
     SolidgearError
-        For unknown shafts, ports, meshes and models.
+        For unknown shafts, ports, meshes and models, and together with forces, or with meshes whose
+        phases the file leaves open.
 
     Examples
     --------
@@ -103,7 +107,10 @@ def response(
     driver = assembly.train.named_mesh(mesh)
     limit = reduced.get("max_frequency")
     on_ports = _forces(forces)
+    if on_ports and together:
+        raise SolidgearError("--together adds up errors of meshes, and --force takes their place")
     options = {"highest_hz": limit, "mesh": driver.name, **_losses(damping, matched_at)}
+    options["together"] = together
     responses = [
         respond(assembly, *names, forces=on_ports, turns=turns or None, **options)
         for names in [first, *map(mix, against)]
@@ -116,7 +123,9 @@ def response(
     if turns:
         given = at_speed(assembly.train, modes, turns, origin, share, spectrum, fit_speed)
     title = assembly.train.called
-    if driver.label and not on_ports:
+    if together:
+        title += f", driven by all meshes at the frequencies of the {driver.name}"
+    elif driver.label and not on_ports:
         title += f", driven by the {driver.name}"
     return Responses(
         assembly=assembly,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Annotated
@@ -124,11 +125,11 @@ def designs(optimum: Optimum) -> Table:
     """Return the table of all designs in the order in which they were solved."""
     labels = list(optimum.path[0].values)
     columns = [
-        Column("", kind=NUMBER),
+        Column("", kind=NUMBER, name="design"),
         *(Column(label, write="{:.6g}".format, kind=NUMBER) for label in labels),
         Column(optimum.goal.name, write="{:.6g}".format, kind=NUMBER),
-        Column("bar", write="{:.2g}".format, kind=NUMBER),
-        text(""),
+        Column("bar", write="{:.2g}".format, kind=NUMBER, name=f"{optimum.goal.name} error bar"),
+        replace(text(""), name="status"),
     ]
     rows = [
         [d.number, *d.values.values(), d.value, d.bar, _remark(optimum, d)] for d in optimum.path

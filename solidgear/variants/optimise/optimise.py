@@ -88,7 +88,7 @@ class Optimum(Sheeted):
             "best": None if self.best is None else self.best.number,
             "at_end": list(self.at_end),
             "search": self.how,
-            "bars": self.unbarred or "beside each value",
+            "about_bars": self.unbarred or "beside each value",
             "gain": None if self.gain is None else plain(self.gain),
             "designs": [
                 {

@@ -15,7 +15,7 @@ from solidgear.show.panel import Panel, Series, readout, wrapped
 from solidgear.show.plot import NARROW, WIDE, Chart
 from solidgear.show.scales import Axis, in_percent
 from solidgear.show.sheet import Sheet, Terminal, present
-from solidgear.show.table import Column, Table, text
+from solidgear.show.table import Cell, Column, Table, text
 from solidgear.show.units import Units
 from solidgear.show.words import percent
 from solidgear.variants.sensitivity.run import Derivative, OfNumber, Sensitivities
@@ -99,8 +99,12 @@ def table(number: OfNumber, units: Units) -> Table:
     columns: list[Column] = [
         text("entry of the file", lambda d: d.path),
         text("as written", lambda d: d.written),
-        Column("for 1 % more", lambda d: d.elasticity / 100, percent),
-        Column("by its unit", lambda d: _by_unit(d, number.unit, units)),
+        Column("for 1 % more", lambda d: d.elasticity / 100, percent, unit="1"),
+        Column(
+            "by its unit",
+            lambda d: Cell(d.by, "", _by_unit(d, number.unit, units)),
+            name="derivative",
+        ),
     ]
     distances = [d.apart / 100 for d in shown if d.apart is not None]
     if max(distances, default=0.0) >= LEAST:

@@ -87,7 +87,7 @@ class OfNumber:
     """Derivatives of one number, the strongest first."""
 
     plain_names = (
-        "name",
+        ("quantity", "name"),
         "value",
         "unit",
         ("from_coarser_mesh", "apart"),
@@ -115,7 +115,7 @@ class Sensitivities(Sheeted):
 
     sheeted: ClassVar[str] = "variants.sensitivity.command:sensitivities_sheet"
 
-    plain_names = ("title", "model", "of", "without", "bars", "notes")
+    plain_names = ("title", "model", ("numbers", "of"), "without", ("about_bars", "bars"), "notes")
     bars = BARS
 
     title: str

@@ -23,7 +23,7 @@ from solidgear.variants.sweep.rows import RowFile
 
 #: columns of rows: the largest relative error that a reduction leaves in natural frequencies, and
 #: words on all other error bars
-BOUND, BARS = "reduction_bound", "bars"
+BOUND, BARS = "reduction_bound", "about_bars"
 
 #: called with the number of rows that are there, of rows in all, and the present step
 Progress = Callable[[int, int, str], None]
@@ -108,7 +108,7 @@ class Swept(Displayed):
     """
 
     shown: ClassVar[str] = "swept"
-    plain_names = ("path", "total", "skipped", "refused", "whys", "seconds")
+    plain_names = (("file", "path"), "total", "skipped", "refused", "whys", "seconds")
 
     #: values of all rows by the names of columns, SI; None where a row has none. Bars stand beside
     #: numbers as ``f1_hz bar``, in the same unit.
@@ -150,12 +150,6 @@ class Swept(Displayed):
     def refused(self) -> int:
         """Number of variants that have no numbers."""
         return sum(self.whys.values())
-
-    def to_dataframe(self) -> Any:
-        """All columns as a data frame of pandas, which must be installed."""
-        import pandas
-
-        return pandas.DataFrame(self.columns)
 
 
 class FileTask(Task[Swept]):

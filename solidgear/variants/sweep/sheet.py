@@ -111,8 +111,11 @@ def train_sheet(task: TrainTask, result: Swept, chart: Path | None, counted: boo
         if JUDGE in task.models.values():
             meshes = "; what the meshes leave, solidgear system-modes tells of one variant"
         notes.append(f"Column reduction_bound: what the reduction leaves, proven{meshes}.")
-    if CONTACT in task.ask and len(task.ask) > 1:
-        notes.append("Teeth: plane slices, on Timoshenko shafts.")
+    if CONTACT in task.ask:
+        model = "" if task.ask == (CONTACT,) else "Teeth: plane slices, on Timoshenko shafts. "
+        notes.append(
+            f"{model}Numbers of teeth have no error bars here; solidgear contact has them."
+        )
     cautions = (*result.cautions, *_caution_on_parting(result))
     shafts = "" if not made else f"{made} shafts meshed and reduced; "
     return _sheet(

@@ -62,8 +62,6 @@ ASKED = (*BY_DEFAULT, CONTACT)
 #: natural frequencies of a row at most, by default and on request
 MOST_MODES = 20
 MOST_SHAPES = 200
-#: words on error bars of a row
-UNBARRED = "none: run system-modes, response or deflect on one variant"
 #: peaks of the mesh force
 PEAKS = 3
 #: column of the lowest frequency at which the dynamic mesh force is larger than the mean one, Hz
@@ -158,6 +156,13 @@ class TrainTask(FileTask):
         return out | {BARS: str}
 
     @property
+    def without_bars(self) -> str:
+        """Words on error bars of a row: the commands that have them."""
+        *first, last = self.ask
+        commands = f"{', '.join(first)} or {last}" if first else last
+        return f"none: run {commands} on one variant"
+
+    @property
     def plan(self) -> dict[str, Any]:
         variants, usual = self.variants, self.usual
         tables = variants.tables(self.first)
@@ -198,7 +203,7 @@ class TrainTask(FileTask):
     def numbers(self, index: int) -> dict[str, Any]:
         train = self.variants.variant(index)
         point = self.variants.operating_point(index, train)
-        numbers: dict[str, Any] = {BARS: UNBARRED}
+        numbers: dict[str, Any] = {BARS: self.without_bars}
         if point is not None:
             train, at_rest = self._at_rest(index, train, point)
             numbers |= at_rest

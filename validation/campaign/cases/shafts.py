@@ -257,7 +257,7 @@ def _model(record: dict, rung) -> dict:
     out["bars"] = {q: float(bar) for q, bar in each.items() if q in values and bar is not None}
     spent = (record.get("seconds") or {}).values()
     out["seconds"] = sum(one for one in spent if isinstance(one, float))
-    out["unknowns"] = record.get("dofs") or 0
+    out["unknowns"] = record.get("unknowns") or 0
     named = ("name", "family", "frequency_hz", "multiplicity")
     out["modes"] = [{key: mode[key] for key in named} for mode in record["modes"]]
     if rung is not None:

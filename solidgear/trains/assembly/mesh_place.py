@@ -8,7 +8,6 @@ from math import cos
 import numpy as np
 
 from solidgear.core import System
-from solidgear.teeth.contact.frame import Frame
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.stages import mesh_row
 from solidgear.trains.file.mesh_teeth import MeshTeeth
@@ -27,16 +26,6 @@ class MeshPlace:
     pitch_point: np.ndarray  #: (3,) of cylindrical gears at the middle of the shared face, m
     normal: np.ndarray  #: (3,) direction of the force on the first wheel
     axis: np.ndarray  #: (3,) unit, y of the first wheel's shaft
-
-    def frame(self, teeth: MeshTeeth) -> Frame:
-        """Return the frame of the pair: origin in the pitch point at the middle of the shared face,
-        axes along the transverse line of action and the shafts, so that contact lines run on towards
-        larger w.
-        """
-        transverse = self.normal - (self.normal @ self.axis) * self.axis
-        u = -transverse / np.linalg.norm(transverse)
-        w = teeth.along[0] * self.axis
-        return Frame(self.pitch_point, np.column_stack([u, np.cross(w, u), w]))
 
     def load(self, system: System) -> list[tuple[str, np.ndarray]]:
         """Return the (6,) load on each end by a unit force of the teeth, in the axes of the end."""
@@ -58,7 +47,7 @@ def place_of(
     first of those that it names.
     """
     if isinstance(mesh, PlanetMesh):
-        return _of_planet(assembly, system, mesh, teeth)
+        return place_of_planet(assembly, system, mesh, teeth)
     place = place_of_pair(assembly, system, mesh)
     # a given mesh point may lie anywhere along the face
     aside = teeth.middles[0] - assembly.contacts[mesh.name].pinion.point[1]
@@ -79,7 +68,10 @@ def place_of_pair(assembly: Assembly, system: System, pair: Pair) -> MeshPlace:
     )
 
 
-def _of_planet(assembly: Assembly, system: System, mesh: PlanetMesh, teeth: MeshTeeth) -> MeshPlace:
+def place_of_planet(
+    assembly: Assembly, system: System, mesh: PlanetMesh, teeth: MeshTeeth
+) -> MeshPlace:
+    """Return where the first of the planets that a mesh names meshes with sun or ring."""
     stage, number = mesh.stage, mesh.planets[0]
     at_work = assembly.stages[stage.name]
     planet = f"{at_work.planets[f'planet {number}']}.centre"
@@ -91,7 +83,8 @@ def _of_planet(assembly: Assembly, system: System, mesh: PlanetMesh, teeth: Mesh
     outward = outward - (outward @ axis) * axis
     outward /= np.linalg.norm(outward)
     rolling = teeth.wheels.first.base / cos(teeth.wheels.working_angle)
-    ring = None if at_work.ring is None else f"{at_work.ring}.centre"
+    ring = None if at_work.holds is None else at_work.holds[0]
+    ring = ring if at_work.ring is None else f"{at_work.ring}.centre"
     ends = (planet, ring) if mesh.mate == "ring" else (sun, planet)
     start = pin if mesh.mate == "ring" else centre
     # the row of the mesh in the system, with the sense in which teeth push the first wheel off

@@ -1,0 +1,80 @@
+"""The command import: a gearbox in REXS as a train file with its shafts."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from solidgear.core import SolidgearError, whole
+from solidgear.exchange.rexs.document import RexsError
+from solidgear.exchange.rexs.importing import Imported, imported, name_of
+from solidgear.exchange.rexs.reading import read
+from solidgear.show.command import NOT_REACHED, command, filled, say
+
+
+@command
+def import_file(
+    file: Annotated[
+        Path, typer.Argument(help="REXS file: .rexs, .rexsj, .rexsz, or a zip of one.")
+    ],
+    out: Annotated[Path, typer.Option(help="Folder for the train and its shafts.")],
+    force: Annotated[bool, typer.Option(help="Replace files that are there.")] = False,
+) -> None:
+    document = read(file)
+    try:
+        gearbox = imported(document, name_of(file))
+    except RexsError as error:
+        raise RexsError(f"{file}: {error}") from None
+    paths = {out / name: text for name, text in gearbox.files.items()}
+    for path in paths:
+        if path.exists() and not force:
+            raise SolidgearError(
+                f"{path}: there is such a file already; give another --out, or --force"
+            )
+    _write(paths)
+    first = next(iter(paths))
+    _report(gearbox, first)
+    if (problem := _problem(first, gearbox)) is not None:
+        typer.echo(f"solidgear: {problem}", err=True)
+        raise typer.Exit(NOT_REACHED)
+
+
+def _write(texts: Mapping[Path, str]) -> None:
+    """Write all files or none."""
+    try:
+        with ExitStack() as stack:
+            for path, text in texts.items():
+                path.parent.mkdir(parents=True, exist_ok=True)
+                stack.enter_context(whole(path)).write_text(text, encoding="utf-8")
+    except OSError as error:
+        reason = error.strerror or error
+        folder = next(iter(texts)).parent
+        raise SolidgearError(
+            f"{folder}: cannot be written ({reason}); name a folder you may write"
+        ) from error
+
+
+def _report(gearbox: Imported, first: Path) -> None:
+    say(f"{first}: {'; '.join(gearbox.facts)}")
+    for heading, lines in gearbox.notes.groups:
+        say("", heading)
+        for line in lines:
+            say("\n".join(f"  {row}" for row in filled(line).split("\n")))
+    next_words = "check" if gearbox.has_train else "answer"
+    say("", f"Next: solidgear {next_words} {first}")
+
+
+def _problem(path: Path, gearbox: Imported) -> SolidgearError | None:
+    """Return why the files cannot be used as they are; None where they can."""
+    from solidgear.core.scene.file import load  # start-up: for files that were written
+    from solidgear.trains.file.reading import load_train  # start-up: as above
+
+    try:
+        load_train(path) if gearbox.has_train else load(path)
+    except SolidgearError as error:
+        return error
+    return None

@@ -1,0 +1,347 @@
+"""A gearbox in a REXS document: shafts in one frame, gears on them, stages between them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from solidgear.exchange.rexs.document import Component, Document, RexsError
+from solidgear.exchange.rexs.frames import Frame, along, frame_of
+from solidgear.exchange.rexs.notes import Notes
+from solidgear.exchange.rexs.shafts import Shaft, plain_name, sections_of
+
+#: difference of places, m, or share of a distance, that digits leave
+NEAR, SHARE = 1e-5, 1e-4
+#: axes u, v, w of a shaft by those of a scene, where the file places nothing
+PLAIN_TURN = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+GEARS = ("cylindrical_gear", "ring_gear")
+
+
+@dataclass(frozen=True)
+class GearOnShaft:
+    """A gear, where it sits on its shaft."""
+
+    name: str
+    component: Component
+    shaft: Shaft
+    y: float  #: middle of the face, m
+
+
+@dataclass(frozen=True)
+class PairStage:
+    """A cylindrical stage between two gears."""
+
+    name: str
+    component: Component
+    gears: tuple[GearOnShaft, GearOnShaft]
+
+
+@dataclass(frozen=True)
+class PlanetStage:
+    """A planetary stage: its parts by what they are."""
+
+    name: str
+    component: Component
+    sun: GearOnShaft
+    ring: Component
+    planets: tuple[GearOnShaft, ...]
+    pins: tuple[Shaft, ...]
+    carrier: Shaft
+    #: other shafts of the carrier, and its side plates
+    carrier_parts: tuple[Component, ...]
+    stages: tuple[Component, ...]  #: cylindrical stages of the planets with sun and ring
+
+
+@dataclass
+class Gearbox:
+    """Shafts, gears and stages of a document, as far as trains have them."""
+
+    document: Document
+    notes: Notes
+    shafts: dict[int, Shaft] = field(default_factory=dict)
+    #: what is wrong with shafts that are none, by number: of no matter unless a stage needs them
+    unsound: dict[int, RexsError] = field(default_factory=dict)
+    gears: dict[int, GearOnShaft] = field(default_factory=dict)
+    pairs: list[PairStage] = field(default_factory=list)
+    planetary: list[PlanetStage] = field(default_factory=list)
+    reference: Frame | None = None  #: of the shaft whose axes are those of the train
+
+    def shaft_of(self, part: Component) -> Shaft | None:
+        """Return the shaft that a component is a part of."""
+        whole = self.document.whole_of(part, "shaft")
+        return None if whole is None else self.shafts.get(whole.id)
+
+    def is_ring_held(self, shaft: Component) -> bool:
+        """Return True where a coupling holds a shaft to the casing."""
+        return any(other.kind == "gear_casing" for _, other in couplings_of(self.document, shaft))
+
+    @property
+    def joined(self) -> list[tuple[Shaft, Shaft]]:
+        """Shafts that stages join, in pairs."""
+        pairs = [(stage.gears[0].shaft, stage.gears[1].shaft) for stage in self.pairs]
+        return pairs + [(stage.sun.shaft, stage.carrier) for stage in self.planetary]
+
+
+def sides_of(document: Document, link: Component) -> tuple[Component, Component] | None:
+    """Return what a bearing or coupling joins, inside and outside; None where the file does not say."""
+    for relation in document.related("side", link, "assembly"):
+        inner, outer = relation.ids("inner_part"), relation.ids("outer_part")
+        if inner and outer:
+            return document.components[inner[0]], document.components[outer[0]]
+    return None
+
+
+def couplings_of(document: Document, part: Component) -> Iterator[tuple[Component, Component]]:
+    """Yield the engaged couplings of a part, each with what is on their other side."""
+    for coupling in document.of_kind("coupling", "switchable_coupling"):
+        sides = sides_of(document, coupling)
+        if sides is None or part not in sides or not is_engaged(document, coupling):
+            continue
+        yield coupling, sides[1] if sides[0] == part else sides[0]
+
+
+def is_engaged(document: Document, coupling: Component) -> bool:
+    """Return True for a coupling that is closed in the gear that the gear unit is in."""
+    attribute = coupling.attribute("is_engaged")
+    if attribute is None:
+        return True
+    words = attribute.value
+    if isinstance(words, str):
+        return words.lower() == "true"
+    units = document.of_kind("gear_unit")
+    index = (units[0].whole("gear_shift_index") or 1) if units else 1
+    if not 1 <= index <= len(words):
+        raise coupling.wrong("is_engaged", f"says nothing of gear {index}")
+    return str(words[index - 1]).lower() == "true"
+
+
+def gearbox_of(document: Document, notes: Notes) -> Gearbox:
+    """Return the gearbox in a document.
+
+    Raises
+    ------
+    RexsError
+        Several gear units, no shaft, sections that are no shaft, a gear in no stage where none is.
+    """
+    units = document.of_kind("gear_unit")
+    if len(units) > 1:
+        names = ", ".join(unit.label for unit in units)
+        raise RexsError(f"holds {len(units)} gear units ({names}); a train is one: export one")
+    gearbox = Gearbox(document, notes)
+    _add_shafts(gearbox)
+    _add_gears(gearbox)
+    in_planets = _add_planetary(gearbox)
+    _add_pairs(gearbox, in_planets)
+    if not (gearbox.pairs or gearbox.planetary) and gearbox.gears:
+        names = ", ".join(gear.component.label for gear in gearbox.gears.values())
+        raise RexsError(
+            f"no stage joins its gears ({names}): a cylindrical_stage with gear_1 and gear_2 is "
+            "missing, or none that a train here has"
+        )
+    return gearbox
+
+
+def _add_shafts(gearbox: Gearbox) -> None:
+    document, notes = gearbox.document, gearbox.notes
+    shafts = document.of_kind("shaft")
+    if not shafts:
+        raise RexsError("holds no component of the type shaft, and no gearbox")
+    frames = {shaft.id: frame_of(document, shaft) for shaft in shafts}
+    placed = [shaft for shaft in shafts if frames[shaft.id] is not None]
+    # that of a shaft with gears, for worms and others may stand at any angle to the train
+    placed.sort(key=lambda shaft: not document.parts_of(shaft, *GEARS))
+    first = gearbox.reference = frames[placed[0].id] if placed else None
+    names: list[str] = []
+    for shaft in shafts:
+        frame = frames[shaft.id]
+        sign, turn = 1, PLAIN_TURN
+        if frame is not None and first is not None:
+            way = along(frame, first, shaft)
+            if way is not None:
+                sign, turn = way, first.train_axes.T @ frame.axes
+        name = plain_name(shaft.name, [*names, "shaft"], f"shaft_{shaft.id}")
+        try:
+            sections, start = sections_of(document, shaft, sign)
+        except RexsError as error:
+            gearbox.unsound[shaft.id] = error
+            continue
+        names.append(name)
+        gearbox.shafts[shaft.id] = Shaft(
+            name, shaft, tuple(sections), frame, sign, np.round(turn, 12), start
+        )
+    if not gearbox.shafts:
+        raise next(iter(gearbox.unsound.values()))
+    for number, problem in gearbox.unsound.items():
+        if gearbox.document.parts_of(document.components[number], *GEARS):
+            raise problem
+        notes.drop(document.components[number], f"no shaft can be made of it ({problem})")
+
+
+def _add_gears(gearbox: Gearbox) -> None:
+    names: list[str] = []
+    for gear in gearbox.document.of_kind("cylindrical_gear"):
+        shaft = gearbox.shaft_of(gear)
+        if shaft is None:
+            gearbox.notes.drop(gear, "sits on no shaft of the train")
+            continue
+        name = plain_name(gear.name, names, f"gear_{gear.id}")
+        names.append(name)
+        y = _middle(gearbox, gear, shaft)
+        gearbox.gears[gear.id] = GearOnShaft(name, gear, shaft, y)
+
+
+def _middle(gearbox: Gearbox, gear: Component, shaft: Shaft) -> float:
+    """Return the place of the middle of a face on its shaft, m: of the frame of the gear, which is
+    there in every version, while the coordinate of 1.0 is that of its beginning.
+    """
+    frame, u = frame_of(gearbox.document, gear), gear.number("u_coordinate_on_shaft")
+    width = gear.number("face_width") or 0.0
+    if frame is None or shaft.frame is None:
+        if u is None:
+            raise RexsError(f"{gear.label}: neither u_coordinate_on_shaft nor support_vector")
+        return shaft.place(u + (width / 2 if gearbox.document.version == "1.0" else 0.0))
+    place = float((frame.origin - shaft.frame.origin) @ shaft.frame.u)
+    if u is None or abs(place - u) <= NEAR:
+        return shaft.place(place)
+    if abs(place - u - width / 2) > NEAR:
+        gearbox.notes.doubt(
+            gear,
+            f"lies at {1e3 * place:.6g} mm of its shaft by its support_vector and at "
+            f"{1e3 * u:.6g} mm by u_coordinate_on_shaft; the first is taken",
+        )
+    return shaft.place(place)
+
+
+def _add_pairs(gearbox: Gearbox, in_planets: set[int]) -> None:
+    document, names = gearbox.document, [stage.name for stage in gearbox.planetary]
+    for stage in document.of_kind("cylindrical_stage"):
+        if stage.id in in_planets:
+            continue
+        ids = stage_gears(document, stage)
+        if ids is None:
+            gearbox.notes.drop(stage, "names no gear_1 and gear_2")
+            continue
+        gears = [gearbox.gears.get(i) for i in ids]
+        if None in gears or gears[0] is gears[1]:
+            others = ", ".join(document.components[i].label for i in ids)
+            gearbox.notes.drop(stage, f"between {others}, which are not two gears on shafts here")
+            continue
+        name = plain_name(stage.name, names, f"stage_{stage.id}")
+        names.append(name)
+        first, second = (gear for gear in gears if gear is not None)
+        frames = first.shaft.frame, second.shaft.frame
+        if None not in frames and along(frames[0], frames[1], stage) is None:
+            gearbox.notes.drop(stage, "its shafts are not parallel")
+            continue
+        if first.shaft is second.shaft:
+            raise RexsError(f"{stage.label}: both gears sit on {first.shaft.component.label}")
+        gearbox.pairs.append(PairStage(name, stage, (first, second)))
+
+
+def stage_gears(document: Document, stage: Component) -> tuple[int, int] | None:
+    """Return the numbers of the two gears of a stage; None where the file does not name them."""
+    for relation in document.related("stage", stage, "stage"):
+        first, second = relation.ids("gear_1"), relation.ids("gear_2")
+        if first and second:
+            return first[0], second[0]
+    return None
+
+
+def _add_planetary(gearbox: Gearbox) -> set[int]:
+    """Add the planetary stages that trains have; return the cylindrical stages of all of them."""
+    document = gearbox.document
+    inside: set[int] = set()
+    names: list[str] = []
+    for stage in document.of_kind("planetary_stage"):
+        parts = document.parts_of(stage, "cylindrical_stage")
+        inside |= {part.id for part in parts}
+        name = plain_name(stage.name, names, f"planetary_{stage.id}")
+        reason = _try_planetary(gearbox, stage, parts, name)
+        if reason:
+            gearbox.notes.drop(stage, reason)
+        else:
+            names.append(name)
+    return inside
+
+
+def _try_planetary(gearbox: Gearbox, stage: Component, parts: list[Component], name: str) -> str:
+    """Add a planetary stage, or return why trains do not have it."""
+    document = gearbox.document
+    roles = {
+        role: [
+            relation.ids("shaft")[0]
+            for relation in document.related(role, stage, "planetary_stage")
+            if relation.ids("shaft")
+        ]
+        for role in ("planet_shaft", "planet_pin", "planet_carrier_shaft")
+    }
+    suns: dict[int, None] = {}
+    rings: dict[int, None] = {}
+    planets: dict[int, None] = {}
+    for part in parts:
+        ids = stage_gears(document, part)
+        for number in ids or ():
+            gear = document.components[number]
+            whole = document.whole_of(gear, "shaft")
+            if gear.kind == "ring_gear":
+                rings[number] = None
+            elif whole is not None and whole.id in roles["planet_shaft"]:
+                planets[number] = None
+            else:
+                suns[number] = None
+    counts = f"{len(suns)} suns, {len(planets)} planets, {len(rings)} rings"
+    if len(suns) != 1 or len(rings) != 1 or not planets:
+        return f"trains have stages of one sun, planets and one ring, and it has {counts}"
+    ring = document.components[next(iter(rings))]
+    ring_shaft = document.whole_of(ring, "shaft")
+    if ring_shaft is not None and not gearbox.is_ring_held(ring_shaft):
+        return f"its ring ({ring.label}) turns, or nothing holds it; rings of trains stand"
+    carriers = [gearbox.shafts[i] for i in roles["planet_carrier_shaft"] if i in gearbox.shafts]
+    if not carriers:
+        return "no planet_carrier_shaft is named"
+    carrier = max(carriers, key=lambda shaft: _supports(document, shaft.component))
+    sun = gearbox.gears.get(next(iter(suns)))
+    if sun is None or sun.shaft is carrier:
+        return "its sun sits on no shaft beside the carrier"
+    more = _carried(document, stage, carrier.component, roles)
+    gearbox.planetary.append(
+        PlanetStage(
+            name,
+            stage,
+            sun,
+            ring,
+            tuple(gearbox.gears[i] for i in planets if i in gearbox.gears),
+            tuple(gearbox.shafts[i] for i in roles["planet_pin"] if i in gearbox.shafts),
+            carrier,
+            tuple(more),
+            tuple(parts),
+        )
+    )
+    return ""
+
+
+def _supports(document: Document, shaft: Component) -> int:
+    """Return how many bearings, loads and gears a shaft has."""
+    sides = (sides_of(document, b) for b in document.components.values() if "bearing" in b.kind)
+    bearings = sum(1 for pair in sides if pair is not None and shaft in pair)
+    return bearings + len(document.parts_of(shaft, "external_load", "cylindrical_gear"))
+
+
+def _carried(
+    document: Document, stage: Component, carrier: Component, roles: dict[str, list[int]]
+) -> list[Component]:
+    """Return side plates, and shafts that couplings join to the carrier, without pins and planets."""
+    frame = [carrier]
+    for whole in document.parts_of(stage, "planet_carrier"):
+        frame += [p for p in document.parts_of(whole, "side_plate") if p not in frame]
+    apart = {*roles["planet_pin"], *roles["planet_shaft"]}
+    k = 0
+    while k < len(frame):
+        for _, other in couplings_of(document, frame[k]):
+            is_frame = other.kind in ("shaft", "side_plate") and other.id not in apart
+            if is_frame and other not in frame:
+                frame.append(other)
+        k += 1
+    return frame[1:]

@@ -1,0 +1,335 @@
+"""Gears and meshes of a REXS document as tables of a train."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import atan2, cos, hypot, pi, radians
+from typing import Any
+
+import numpy as np
+
+from solidgear.exchange.rexs.commented import Sourced, deg, mm, said
+from solidgear.exchange.rexs.document import Component, Document, RexsError
+from solidgear.exchange.rexs.gearbox import NEAR, SHARE, Gearbox, GearOnShaft, PairStage
+from solidgear.exchange.rexs.materials import density_of
+
+#: c_gamma of steel gears (ISO 6336-1), N/m for a metre of face
+USUAL_STIFFNESS = 20e9
+USUAL_PRESSURE_ANGLE = radians(20)
+#: difference of tooth data of both flanks, or of both gears, that digits leave
+SAME = 1e-6
+
+
+def flanks_of(document: Document, gear: Component) -> list[Component]:
+    """Return the left and the right flank of a gear, as far as the file has them."""
+    out = []
+    for relation in document.related("flank", gear, "gear"):
+        out += [document.components[i] for side in ("left", "right") for i in relation.ids(side)]
+    return out
+
+
+def flank_number(gearbox: Gearbox, gear: Component, name: str) -> tuple[float | None, str]:
+    """Return a number of both flanks, and where it came from; note flanks that differ."""
+    flanks = flanks_of(gearbox.document, gear)
+    numbers = {f.label: f.number(name) for f in flanks}
+    values = [value for value in numbers.values() if value is not None]
+    if not values:
+        return None, ""
+    if max(values) - min(values) > SAME:
+        gearbox.notes.doubt(
+            gear,
+            f"{name} of left and right flank are {values[0]:g} and {values[1]:g}: the first is taken",
+        )
+    return values[0], f"{next(k for k, v in numbers.items() if v is not None)}: {name}"
+
+
+def shift_of(gearbox: Gearbox, gear: Component) -> float:
+    """Return the profile shift of a gear, in modules."""
+    return flank_number(gearbox, gear, "addendum_modification_coefficient")[0] or 0.0
+
+
+def gear_table(gearbox: Gearbox, gear: GearOnShaft, loaded_side: str = "") -> dict[str, Any]:
+    """Return the table of a gear."""
+    component, document = gear.component, gearbox.document
+    label = component.label
+    table: dict[str, Any] = {"teeth": Sourced(_teeth(component), f"{label}: number_of_teeth")}
+    helix = component.number("helix_angle_reference_diameter") or 0.0
+    if helix:
+        hand = "right" if (helix > 0) else "left"
+        table["hand"] = Sourced(hand, f"{label}: sign of helix_angle_reference_diameter")
+    if loaded_side:
+        table["loaded_side"] = Sourced(loaded_side, "from the direction of the torque")
+    table["module"] = Sourced(mm(_module(component)), f"{label}: normal_module")
+    if helix:
+        angle = Sourced(deg(abs(helix)), f"{label}: helix_angle_reference_diameter")
+        table["helix_angle"] = angle
+    width = component.number("face_width")
+    if width:
+        table["face_width"] = Sourced(mm(width), f"{label}: face_width")
+    shift, source = flank_number(gearbox, component, "addendum_modification_coefficient")
+    if shift:
+        table["profile_shift"] = Sourced(round(shift, 12), source)
+    table |= _tips(gearbox, component) | _rack(document, component)
+    table |= _modifications(gearbox, component, gear.shaft.sign)
+    if head := _head(gearbox, gear):
+        table["head"] = head
+    return table
+
+
+def _teeth(gear: Component) -> int:
+    teeth = gear.whole("number_of_teeth")
+    if teeth is None or teeth == 0:
+        raise gear.wrong("number_of_teeth", "is missing" if teeth is None else "must not be zero")
+    return abs(teeth)
+
+
+def _module(gear: Component) -> float:
+    module = gear.number("normal_module")
+    if module is None or module <= 0:
+        reason = "is missing" if module is None else "must be greater than zero"
+        raise gear.wrong("normal_module", reason)
+    return module
+
+
+@dataclass(frozen=True)
+class Circles:
+    """Radii of a gear that the basic rack of ISO 53 cuts, m."""
+
+    radius: float  #: of the reference circle
+    tip: float
+    root: float
+
+
+def circles_of(gearbox: Gearbox, gear: Component) -> Circles:
+    """Return the radii of a gear."""
+    module, shift = _module(gear), shift_of(gearbox, gear)
+    helix = gear.number("helix_angle_reference_diameter") or 0.0
+    radius = module * _teeth(gear) / (2 * cos(helix))
+    return Circles(radius, radius + module * (1 + shift), radius - module * (1.25 - shift))
+
+
+def _tips(gearbox: Gearbox, gear: Component) -> dict[str, Any]:
+    tip = gear.number("tip_diameter")
+    if not tip:
+        return {}
+    wheel = circles_of(gearbox, gear)
+    # the thinnest and the thickest teeth that a rack of any standard gives
+    low, high = 2 * wheel.root, 2 * (wheel.tip + _module(gear))
+    if not low < tip < high:
+        gearbox.notes.doubt(
+            gear,
+            f"tip_diameter {1e3 * tip:.6g} mm does not fit its teeth, whose roots lie at "
+            f"{1e3 * low:.6g} mm; that of the basic rack is taken, {2e3 * wheel.tip:.6g} mm",
+        )
+        return {}
+    return {"tip_diameter": Sourced(mm(tip), f"{gear.label}: tip_diameter")}
+
+
+def _rack(document: Document, gear: Component) -> dict[str, Any]:
+    """Return the rack that the tool of a gear makes: what is the tool's addendum is the dedendum of
+    the teeth.
+    """
+    tools = document.referenced(gear, "rack_shaped_tool")
+    flanks = flanks_of(document, gear)
+    for relation in document.relations:
+        if relation.type == "manufacturing_step":
+            cut = [flank.id for flank in flanks if flank.id in relation.ids("workpiece")]
+            tools += [document.components[i] for i in relation.ids("tool") if cut]
+    tools = [tool for tool in tools if tool.kind == "rack_shaped_tool"]
+    if not tools:
+        return {}
+    tool = tools[0]
+    rack = {}
+    dedendum = tool.number("addendum_coefficient_reference_profile")
+    radius = tool.number("tip_radius_factor")
+    if dedendum:
+        rack["dedendum"] = Sourced(
+            dedendum, f"{tool.label}: addendum_coefficient_reference_profile"
+        )
+    if radius:
+        rack["root_radius"] = Sourced(radius, f"{tool.label}: tip_radius_factor")
+    return {"rack": Sourced(rack, tool.label)} if rack else {}
+
+
+def _modifications(gearbox: Gearbox, gear: Component, sign: int) -> dict[str, Any]:
+    """Return relief and crowning, of the first flank that has them."""
+    document, notes = gearbox.document, gearbox.notes
+    kinds = ("tip_relief", "root_relief", "helix_crowning")
+    flanks = flanks_of(document, gear)
+    by_kind = {k: [c for f in flanks for c in document.referenced(f, k)] for k in kinds}
+    out: dict[str, Any] = {}
+    relief: dict[str, Any] = {}
+    for kind, depth, start in (("tip_relief", "tip", "from"), ("root_relief", "root", "root_from")):
+        for component in by_kind[kind][:1]:
+            amount = component.number(f"{kind}_depth")
+            diameter = component.number(f"{kind}_datum_diameter")
+            if amount:
+                source = f"{component.label}: {kind}_depth"
+                relief[depth] = Sourced(said(abs(amount), "um", 1e-6), source)
+                if diameter:
+                    relief[start] = Sourced(mm(diameter), component.label)
+    if relief:
+        source = ", ".join(c.label for k in kinds[:2] for c in by_kind[k][:1])
+        out["relief"] = Sourced(relief, source)
+    for component in by_kind["helix_crowning"][:1]:
+        names = [f"helix_crowning_amount_{face}_face" for face in ("datum", "non_datum")]
+        amounts = [component.number(name) or 0.0 for name in names]
+        if max(amounts) - min(amounts) > 1e-9:
+            notes.assume(component, "crowns both ends of the face alike, by the mean of both")
+        if any(amounts):
+            text = said(abs(sum(amounts)) / 2, "um", 1e-6)
+            out["crowning"] = Sourced(text, f"{component.label}: helix_crowning_amount")
+    if len(flanks) > 1 and any(len(found) == 1 for found in by_kind.values()):
+        notes.assume(gear, "both flanks are modified as the one of which the file says it")
+    return out
+
+
+def _head(gearbox: Gearbox, gear: GearOnShaft) -> dict[str, Any]:
+    """Return the rigid mass of a wheel that is thicker than its shaft: up to the middle of its teeth,
+    or as heavy as the file says.
+    """
+    component, shaft = gear.component, gear.shaft
+    width = component.number("face_width")
+    if not width:
+        return {}
+    wheel = circles_of(gearbox, component)
+    outer = wheel.tip + wheel.root
+    lo, hi = gear.y - width / 2, gear.y + width / 2
+    inner = max(shaft.mean_outer(lo, hi), component.number("inner_diameter") or 0.0)
+    if inner >= outer:
+        return {}
+    density, _ = density_of(gearbox, component, shaft.component)
+    mass, torsional, bending = ring_inertia(outer, inner, width, density)
+    source = f"{component.label}: from {1e3 * inner:.4g} mm of its shaft to the middle of its teeth"
+    given = component.number("mass_of_component")
+    if given:
+        torsional, bending, mass = torsional * given / mass, bending * given / mass, given
+        source = f"{component.label}: mass_of_component"
+    else:
+        gearbox.notes.assume(
+            "wheels without mass_of_component",
+            "are rigid and full, from the shaft to the middle of their teeth",
+        )
+    return {
+        "mass": Sourced(said(round(mass, 9), "kg"), source),
+        "torsional": said(torsional, "kg*m^2"),
+        "bending": said(bending, "kg*m^2"),
+    }
+
+
+def ring_inertia(
+    outer: float, inner: float, width: float, density: float
+) -> tuple[float, float, float]:
+    """Return mass (kg), and inertia about the axis and across it (kg m^2), of a ring by diameters."""
+    mass = density * pi / 4 * (outer**2 - inner**2) * width
+    torsional = mass * (outer**2 + inner**2) / 8
+    return mass, torsional, torsional / 2 + mass * width**2 / 12
+
+
+def mesh_table(gearbox: Gearbox, stage: PairStage, has_torque: bool) -> dict[str, Any]:
+    """Return the table of a mesh; its gears are in the order in which power passes them."""
+    first, second = stage.gears
+    label = stage.component.label
+    a, b = first.component, second.component
+    for name in ("normal_module", "helix_angle_reference_diameter"):
+        values = [abs(gear.number(name) or 0.0) for gear in (a, b)]
+        if abs(values[0] - values[1]) > SAME * (1 + values[0]):
+            raise b.wrong(name, f"is not that of {a.label}, and both are in {label}")
+    table: dict[str, Any] = {
+        "name": stage.name,
+        "between": Sourced([f"{g.shaft.name}.{g.name}" for g in stage.gears], label),
+        "shaft_angle": 0,
+    }
+    angle, source = flank_number(gearbox, a, "normal_pressure_angle")
+    if angle is None:
+        angle, source = USUAL_PRESSURE_ANGLE, "assumed: ISO 53"
+        gearbox.notes.assume(a, "its normal_pressure_angle is 20 deg")
+    table["pressure_angle"] = Sourced(deg(angle), source)
+    table |= _where(gearbox, stage)
+    table |= _stiffness(gearbox, stage, has_torque)
+    return table
+
+
+def _where(gearbox: Gearbox, stage: PairStage) -> dict[str, Any]:
+    """Return centre distance, azimuth and offset along the axes of a mesh."""
+    first, second = stage.gears
+    label, notes = stage.component.label, gearbox.notes
+    out: dict[str, Any] = {}
+    distance = stage.component.number("center_distance")
+    turned = stage.component.number("rotating_angle_around_neg_u_axis")
+    frames = first.shaft.frame, second.shaft.frame
+    if frames[0] is None or frames[1] is None:
+        if distance:
+            out["centre_distance"] = Sourced(mm(distance), f"{label}: center_distance")
+        if turned is not None:
+            azimuth = (pi - turned + pi) % (2 * pi) - pi
+            source = f"{label}: rotating_angle_around_neg_u_axis"
+            out["azimuth"] = Sourced(deg(azimuth), source)
+        return out
+    apart = gear_places(gearbox, second) - gear_places(gearbox, first)
+    across = hypot(apart[0], apart[2])
+    if across < NEAR:
+        raise RexsError(
+            f"{label}: the axes of {first.component.label} and {second.component.label} are one"
+        )
+    if distance and abs(across - distance) > SHARE * distance:
+        notes.doubt(
+            stage.component,
+            f"center_distance {1e3 * distance:.6g} mm, and its shafts lie {1e3 * across:.6g} mm apart: "
+            "the first is taken",
+        )
+    due = distance or across
+    out["centre_distance"] = Sourced(
+        mm(round(due, 12)), f"{label}: center_distance" if distance else "from the places of shafts"
+    )
+    azimuth = atan2(apart[2], -apart[0])
+    if abs(azimuth) > 1e-9:
+        out["azimuth"] = Sourced(deg(round(azimuth, 12)), "from the places of shafts")
+    if abs(apart[1]) > NEAR:
+        place = [mm(-due), mm(round(apart[1], 9)), "0 mm"]
+        out["gear_position"] = Sourced(place, "faces that do not lie beside each other")
+    return out
+
+
+def gear_places(gearbox: Gearbox, gear: GearOnShaft) -> np.ndarray:
+    """Return the place (3,) of a gear in x, y, z of the first shaft, m."""
+    shaft, first = gear.shaft, gearbox.reference
+    assert shaft.frame is not None and first is not None  # asked of placed shafts
+    u = gear.y if shaft.sign > 0 else shaft.length - gear.y
+    place = shaft.frame.origin + (u + shaft.first) * shaft.frame.u - first.origin
+    return first.train_axes.T @ place
+
+
+def _stiffness(gearbox: Gearbox, stage: PairStage, has_torque: bool) -> dict[str, Any]:
+    """Return the stiffness of a mesh: from its contact under a torque, else that of the file or the
+    usual one.
+    """
+    if has_torque and all(g.component.number("face_width") for g in stage.gears):
+        return {"stiffness": Sourced("teeth", "from the contact of the teeth under the torque")}
+    widths = [g.component.number("face_width") or 0.0 for g in stage.gears]
+    width = min(w for w in widths if w) if any(widths) else 0.0
+    return mesh_stiffness(gearbox, stage.component, width, "stiffness")
+
+
+def mesh_stiffness(gearbox: Gearbox, stage: Component, width: float, key: str) -> dict[str, Any]:
+    """Return the stiffness of a mesh by that of a metre of face."""
+    width = stage.number("common_face_width") or width
+    name = "mesh_stiffness_for_load_distribution_along_face_width"
+    each = stage.number(name)
+    if not width:
+        raise RexsError(f"{stage.label}: no gear of it has a face_width")
+    source = f"{stage.label}: {name} times common_face_width"
+    if not each:
+        each, source = USUAL_STIFFNESS, "assumed: 20 N/(mm um), usual of steel (ISO 6336-1)"
+        gearbox.notes.assume(stage, "its mesh is as stiff as usual, 20 N/(mm um) of its face width")
+    return {key: Sourced(said(each * width, "N/m"), source)}
+
+
+def ratio_of(first: GearOnShaft, second: GearOnShaft) -> float:
+    """Return the teeth of the second gear over those of the first."""
+    return _teeth(second.component) / _teeth(first.component)
+
+
+def teeth_of(gear: Component) -> int:
+    """Return the teeth of a gear or a ring, above zero."""
+    return _teeth(gear)
