@@ -12,6 +12,7 @@ import typer
 from typer.core import TyperCommand, TyperGroup
 
 from solidgear.app.options_alone import options_alone
+from solidgear.core.machine.later import loading
 from solidgear.core.machine.memory import one_command
 from solidgear.show.command import Progress
 
@@ -224,7 +225,9 @@ class Door(TyperGroup):
 def _imported(name: str) -> Any:
     """Return a command with its options."""
     entry = COMMANDS[name]
-    module = import_module(f"solidgear.{entry.module}")
+    name_of_module = f"solidgear.{entry.module}"
+    with loading(name_of_module):
+        module = import_module(name_of_module)
     alone = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
     function = getattr(module, entry.function or name.replace("-", "_"))
     alone.command(name, cls=Told, help=entry.help)(function)
