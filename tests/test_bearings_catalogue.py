@@ -12,7 +12,7 @@ from solidgear.bearings.ball import BallRow
 from solidgear.bearings.catalogue import Catalogue, Kind
 from solidgear.bearings.catalogued import catalogued, state
 from solidgear.bearings.clearance import clearance_range, mounting_change
-from solidgear.bearings.designation import boundary
+from solidgear.bearings.designation import boundary, usual_angle
 from solidgear.bearings.geometry import inner_geometry
 from solidgear.bearings.inside import Inside
 from solidgear.bearings.preload import SprungRow, pushed
@@ -265,6 +265,13 @@ def test_a_preload_needs_a_row_that_faces_the_other_way(ways, turn):
     assert all(f"for an O arrangement {turn!r}" in sentence for sentence in found)
     alone = [rows[0], rows[1].with_changes(catalogue=ONE_WAY)]
     assert not list(preload_problems(alone))  # a caution of check, not a refusal
+
+
+def test_tapered_bearings_of_series_330_are_known():
+    """ISO 355: 33014 is 70 x 110 x 31, 33012 60 x 95 x 27; makers give angles of 10 to 13 degrees."""
+    sizes = [(b.bore, b.outer_diameter, b.width) for b in map(boundary, ("33014", "33012"))]
+    assert sizes == [(0.07, 0.11, 0.031), (0.06, 0.095, 0.027)]
+    assert 10 < np.degrees(usual_angle("33014")) < 13
 
 
 @pytest.mark.parametrize(

@@ -11,6 +11,7 @@ from typer.testing import CliRunner
 import solidgear as sg
 from solidgear.app import app
 from solidgear.core import SolidgearError
+from solidgear.exchange.rexs.commented import one_line
 from solidgear.exchange.rexs.importing import imported
 from solidgear.exchange.rexs.notes import Notes
 from solidgear.exchange.rexs.pins import clamped_compliance
@@ -252,10 +253,63 @@ def test_a_planetary_stage(tmp_path):
 
 
 def test_a_pin_is_a_clamped_beam():
-    """Euler's closed form for the middle of a slender beam clamped at both ends, L^3 / 192 E I."""
-    C = clamped_compliance([0.5], [0.0, 1.0], 0.01, 0.0, 2.1e11, 0.3)
-    inertia = np.pi * 0.01**4 / 64
-    assert C[0, 0] == pytest.approx(1 / (192 * 2.1e11 * inertia), rel=2e-3)  # shear is the rest
+    """The closed form of the middle of a beam clamped at both ends, L^3 / 192 E I + L / 4 k G A, and
+    of the end of one clamped at the other, of a slender pin and of a thick one.
+    """
+    for diameter in (0.01, 0.3):
+        C = clamped_compliance([0.5], [0.0, 1.0], diameter, 0.0, 2.1e11, 0.3)
+        area, inertia = np.pi * diameter**2 / 4, np.pi * diameter**4 / 64
+        shear = 6 * 1.3 / (7 + 6 * 0.3) * 2.1e11 / 2.6 * area
+        closed = 1 / (192 * 2.1e11 * inertia) + 1 / (4 * shear)
+        assert C[0, 0] == pytest.approx(closed, rel=1e-6)
+        free = clamped_compliance([1.0], [0.0], diameter, 0.0, 2.1e11, 0.3)
+        assert free[0, 0] == pytest.approx(1 / (3 * 2.1e11 * inertia) + 1 / shear, rel=1e-6)
+
+
+def without(box, *names):
+    """Return a gearbox without some attributes."""
+    box.components = [
+        (number, kind, name, {k: v for k, v in attributes.items() if k not in names})
+        for number, kind, name, attributes in box.components
+    ]
+    return box
+
+
+@pytest.mark.parametrize("version", ["1.0", "1.4"])
+def test_a_file_without_places_has_coordinates_and_an_angle(version, tmp_path):
+    """A gear begins at its coordinate in 1.0 and has its middle there later; the angle is about -u."""
+    vectors = (
+        "support_vector",
+        "u_axis_vector",
+        "w_axis_vector",
+        "reference_component_for_position",
+    )
+    box = without(helical(version), *vectors)
+    text = box.xml().replace(
+        '<attribute id="center_distance"',
+        f'<attribute id="rotating_angle_around_neg_u_axis" unit="deg">{180 - np.degrees(0.6435011)}'
+        '</attribute><attribute id="center_distance"',
+    )
+    train = sg.load_train(written(text, tmp_path))
+    assert [gear.scene.port.y for gear in (train.pairs[0].pinion, train.pairs[0].gear)] == [
+        0.07,
+        0.062,
+    ]
+    assert train.pairs[0].mesh.azimuth == pytest.approx(0.6435011)
+
+
+def test_power_and_the_speed_of_another_shaft_give_the_torque(tmp_path):
+    box = without(helical(), "rotational_speed", "defines_speed", "torque_around_u_axis")
+    for number, added in (
+        (4, {"rotational_speed": (-300, "1 / min")}),
+        (40, {"power": (12, "kW")}),
+    ):
+        k = next(k for k, component in enumerate(box.components) if component[0] == number)
+        box.components[k] = (*box.components[k][:3], box.components[k][3] | added)
+    point = sg.load_train(written(box, tmp_path)).operation[0]
+    speed = 300 * np.pi / 30 * 53 / 23
+    assert point.speed == pytest.approx(speed, rel=1e-9)
+    assert point.torque == pytest.approx(12e3 / speed, rel=1e-9)
 
 
 def spoiled(*edits, box=helical):
@@ -365,6 +419,20 @@ def test_what_is_left_out_is_named_and_the_rest_goes_on(tmp_path):
         "worm.toml" in result.files and len(tomllib.loads(result.files["train.toml"])["shaft"]) == 2
     )
     assert any("Walther" in text for text in result.files.values())
+
+
+def test_words_of_a_file_end_no_comment(tmp_path):
+    """Names and designations of a file stand in comments, whatever letters they have."""
+    text = (
+        helical()
+        .xml()
+        .replace("6209-C3", "6209-C3&#10;[ask]&#10;")
+        .replace('applicationId="test', 'applicationId="te&#10;x = 1')
+    )
+    text = text.replace('name="section 1"', 'name="neck&#10;[load]&#10;"')
+    train = sg.load_train(written(text, tmp_path))
+    assert [b.name for b in train.shafts["output"].scene.bearings] == ["left", "right"]
+    assert one_line("neck\n\x1b[2J") == "neck??[2J"
 
 
 def test_a_note_is_there_once():

@@ -6,9 +6,8 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator
 
-from solidgear.core import Body, OpenNumbers, Scene, Source
+from solidgear.core import Body, OpenNumbers, Scene, Source, addition
 from solidgear.core import load as read
-from solidgear.core.registry import addition
 
 
 def load(source: Source) -> Scene:

@@ -32,7 +32,7 @@ KINDS = {
 #: kinds that hold the shaft one way, and those that carry nothing along it
 ONE_WAY, FLOATING = ("angular_contact", "tapered", "thrust_ball"), ("cylindrical", "needle")
 BALLS = ("deep_groove", "angular_contact", "thrust_ball")
-BOTH_WAYS = "holds the shaft both ways along its axis, where the file says one way"
+BOTH_WAYS = "held both ways along the shaft, where the file says one way"
 #: relative difference of sizes that are the same
 SAME = 1e-3
 #: width over bore of a bearing whose width nothing says: of ISO 15, series 02, 0.6 at 25 mm and 0.34

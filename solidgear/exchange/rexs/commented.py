@@ -57,7 +57,7 @@ def toml_of(tables: Mapping[str, Any], head: Sequence[str] = ()) -> str:
 
     document = tomlkit.document()
     for line in head:
-        document.add(tomlkit.comment(line) if line else tomlkit.nl())
+        document.add(tomlkit.comment(one_line(line)) if line else tomlkit.nl())
     if head:
         document.add(tomlkit.nl())
     _fill(document, tables)
@@ -74,7 +74,7 @@ def _fill(container: Any, tables: Mapping[str, Any]) -> None:
             item = tomlkit.inline_table()
             item.update(plain(value))
         if isinstance(value, Sourced) and value.source:
-            item.comment(value.source)
+            item.comment(one_line(value.source))
         container.add(key, item)
     for key, value in tables.items():
         if key in values:
@@ -90,6 +90,11 @@ def _fill(container: Any, tables: Mapping[str, Any]) -> None:
             _fill(table, row)
             rows.append(table)
         container.add(key, rows)
+
+
+def one_line(text: str) -> str:
+    """Return a text of a file that was read, without letters that would end a comment or move a cursor."""
+    return "".join(letter if letter.isprintable() else "?" for letter in text)
 
 
 def _is_table(value: Any) -> bool:

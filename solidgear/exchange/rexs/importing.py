@@ -16,7 +16,7 @@ from solidgear.exchange.rexs.notes import Notes, unread
 from solidgear.exchange.rexs.planets import stage_table
 from solidgear.exchange.rexs.running import operation_tables, rotor_tables
 from solidgear.exchange.rexs.scenes import scene_table
-from solidgear.exchange.rexs.shafts import Shaft, plain_name
+from solidgear.exchange.rexs.shafts import LONGEST, Shaft, plain_name
 
 
 @dataclass(frozen=True)
@@ -195,4 +195,4 @@ def name_of(path: Path) -> str:
     name = path.name
     for suffix in (".zip", ".rexsz", ".rexsj", ".rexs", ".xml", ".json"):
         name = name.removesuffix(suffix)
-    return plain_name(name, (), "gearbox")
+    return plain_name(name, (), "gearbox", 2 * LONGEST)

@@ -46,7 +46,7 @@ def stage_table(gearbox: Gearbox, stage: PlanetStage, has_torque: bool) -> dict[
     """
     notes = gearbox.notes
     _refuse_shifts(gearbox, stage)
-    first, label = stage.planets[0].component, stage.component.label
+    first = stage.planets[0].component
     table: dict[str, Any] = {
         "sun": Sourced(f"{stage.sun.shaft.name}.{stage.sun.name}", stage.sun.component.label),
         "carrier": Sourced(
@@ -60,7 +60,7 @@ def stage_table(gearbox: Gearbox, stage: PlanetStage, has_torque: bool) -> dict[
         **_planet_mass(gearbox, stage),
         "pin": _pin(gearbox, stage),
     }
-    notes.assume(label, "its ring is fixed, and its planets are rigid")
+    notes.assume(stage.component, "its ring is fixed, and its planets are rigid")
     angle, source = flank_number(gearbox, stage.sun.component, "normal_pressure_angle")
     if angle is None:
         angle, source = USUAL_PRESSURE_ANGLE, "assumed: ISO 53"

@@ -136,7 +136,7 @@ def _bearings(
         names.append(name)
         width, _ = width_of(bearing, shaft, y, gearbox.notes)
         if hi - lo < width - 1e-6:
-            gearbox.notes.assume(bearing, "its seat ends where the shaft has a step or ends")
+            gearbox.notes.assume(bearing, "a shorter seat, for the shaft has a step or ends there")
         if abs((lo + hi) / 2 - y) > 1e-6:
             gearbox.notes.assume(
                 bearing, f"stands {1e3 * ((lo + hi) / 2 - y):+.4g} mm off its place, beside a step"

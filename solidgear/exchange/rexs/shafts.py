@@ -175,7 +175,7 @@ def _size(part: Component, name: str) -> float:
     return size
 
 
-def plain_name(text: str, taken: Collection[str], usual: str) -> str:
+def plain_name(text: str, taken: Collection[str], usual: str, longest: int = LONGEST) -> str:
     """Return a name for a file of TOML and for command lines: letters, digits and underscores.
 
     Examples
@@ -185,8 +185,8 @@ def plain_name(text: str, taken: Collection[str], usual: str) -> str:
     """
     letters = unicodedata.normalize("NFKD", text.lower()).encode("ascii", "ignore").decode()
     name = re.sub(r"[^a-z0-9]+", "_", letters).strip("_") or usual
-    if len(name) > LONGEST:
-        name = name[:LONGEST].rpartition("_")[0] or name[:LONGEST]
+    if len(name) > longest:
+        name = name[:longest].rpartition("_")[0] or name[:longest]
     number, unique = 2, name
     while unique in taken:
         unique, number = f"{name}_{number}", number + 1

@@ -16,8 +16,16 @@ from typing import Any
 import numpy as np
 from pydantic import PrivateAttr, model_validator
 
-from solidgear.core import Bearing, Document, Model, Scene, SceneError, SolidgearError, listed
-from solidgear.core.registry import addition
+from solidgear.core import (
+    Bearing,
+    Document,
+    Model,
+    Scene,
+    SceneError,
+    SolidgearError,
+    addition,
+    listed,
+)
 from solidgear.core.scene.document import Origin
 from solidgear.trains.file.gears import HeadInertia, Member, Shaft
 from solidgear.trains.file.housing import TrainHousing
