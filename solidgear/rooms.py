@@ -28,6 +28,7 @@ ADDITIONS = {
         "long train": "trains.file.reading:LongFile",
         "short train": "trains.file.reading:ShortFile",
     },
+    "further file": {"measured": "measured.data:Measured"},
     # rules and questions of features
     "rule of features": {"meeting": "cuts.features.around:meeting_problems"},
     "question of features": {
@@ -79,6 +80,30 @@ ADDITIONS = {
     "mesh stiffness": {
         "teeth": "teeth.train_teeth:mesh_of_teeth",
         "teeth over points": "teeth.over_points:stiffness_over_points",
+    },
+    # what commands print as JSON
+    "printed": {
+        "answer": "app.printed:ANSWER",
+        "modes": "app.printed:MODES",
+        "stiffness": "app.printed:STIFFNESS",
+        "compare": "app.printed:COMPARE",
+        "check": "guards.printed:CHECK",
+        "chart": "comparison.printed:CHART",
+        "bearing": "bearings.printed:BEARING",
+        "stress": "strength.printed:STRESS",
+        "deflect": "strength.printed:DEFLECT",
+        "sweep": "variants.printed:SWEEP",
+        "sensitivities": "variants.printed:SENSITIVITIES",
+        "optimise": "variants.printed:OPTIMISE",
+        "budget": "variants.printed:BUDGET",
+        "correlate": "measured.printed:CORRELATE",
+        "identify": "measured.printed:IDENTIFY",
+        "system-modes": "trains.printed:SYSTEM_MODES",
+        "response": "trains.printed:RESPONSE",
+        "receptance": "trains.printed:RECEPTANCE",
+        "judge-system": "trains.printed:COMPARISON",
+        "nonlinear": "backlash.printed:NONLINEAR",
+        "contact": "teeth.printed:CONTACT",
     },
     # matrices of other programs
     "matrices": {

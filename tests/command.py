@@ -3,15 +3,41 @@
 import csv
 import json
 import re
+from functools import cache
 
+from jsonschema import Draft7Validator
 from typer.testing import CliRunner
 
 from solidgear.app import app
+from solidgear.core.registry import registered
+from solidgear.exchange.schema.results import schema_of_command
 
 
 def command(*words, **how):
-    """Run `solidgear` with these words: exit code, output and exception."""
-    return CliRunner().invoke(app, [str(word) for word in words], **how)
+    """Run `solidgear` with these words: exit code, output and exception. JSON has its schema."""
+    words = [str(word) for word in words]
+    result = CliRunner().invoke(app, words, **how)
+    hold_to_schema(words, result.stdout)
+    return result
+
+
+def hold_to_schema(words, text):
+    """Hold JSON that a command printed against its schema; nothing where it printed none."""
+    name = next((word for word in words if not word.startswith("-")), "")
+    if "--json" in words and name in registered("printed") and text.startswith("{"):
+        assert against_schema(name, text) == []
+
+
+@cache
+def _validator(name):
+    return Draft7Validator(schema_of_command(name))
+
+
+def against_schema(name, text):
+    """What the schema of a command says against JSON that it printed: places and sentences."""
+    lines = [line for line in text.splitlines() if line.startswith("{")]
+    errors = _validator(name).iter_errors(json.loads(lines[-1]))
+    return [(".".join(map(str, e.absolute_path)), e.message[-300:]) for e in errors]
 
 
 def table(path):

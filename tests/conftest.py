@@ -228,6 +228,8 @@ def no_sudden_end(monkeypatch):
 @pytest.fixture
 def run(monkeypatch, capsys, tmp_path, no_sudden_end):
     """The installed command's entry point, in an empty folder: exit code, standard output and error."""
+    from command import hold_to_schema
+
     from solidgear import app as cli
 
     monkeypatch.chdir(tmp_path)
@@ -242,7 +244,9 @@ def run(monkeypatch, capsys, tmp_path, no_sudden_end):
             cli.main()
         except SystemExit as end:
             code = end.code or 0
-        return code, *capsys.readouterr()
+        out, err = capsys.readouterr()
+        hold_to_schema([*map(str, arguments)], out)
+        return code, out, err
 
     return call
 

@@ -17,7 +17,7 @@ ROOT = Path(__file__).parent.parent
 #: as where libGL and its kin are not installed: the packages are there and cannot be loaded
 DRAWN = ("gmsh", "pyvista", "vtk", "vtkmodules")
 #: free and unfree factors, several processes, spreadsheets: extras
-EXTRAS = ("pypardiso", "sksparse", "mumps", "joblib", "distributed", "pyarrow", "pandas")
+EXTRAS = ("pypardiso", "sksparse", "mumps", "joblib", "distributed", "pyarrow", "pandas", "xarray")
 #: modules and functions that Windows does not have
 POSIX = ("fcntl", "resource", "termios", "pwd", "grp")
 FUNCTIONS = (

@@ -437,7 +437,7 @@ RUN = {
     "check {scene}": "comparison core.bounds.solid show.render",
 }
 IMPORTED = """
-import shlex, sys
+import gc, shlex, sys
 from solidgear.app.application import app
 
 def executed(name):  # a module that waits for its first use is none yet
@@ -451,6 +451,8 @@ for command, unused in {run}.items():
     print(sorted(filter(executed, [*{unused}, *unused])), file=sys.stderr)
 import solidgear.app.compare
 print(sorted(filter(executed, {unused})), file=sys.stderr)
+plugins = sys.modules["pydantic.plugin._loader"]._plugins
+print(plugins, gc.isenabled(), gc.get_freeze_count() > 100_000, file=sys.stderr)
 """
 
 
@@ -462,6 +464,8 @@ def test_commands_import_nothing_that_they_do_not_use(tmp_path):
     done = python("-c", IMPORTED.format(run=run, unused=UNUSED), cwd=tmp_path)
     lists = [line for line in done.stderr.splitlines() if line.startswith("[")]
     assert lists == ["[]"] * (len(RUN) + 1), done.stderr
+    # plugins were not searched, nor modules for garbage; what is made from now on is
+    assert done.stderr.endswith("None True True\n")
 
 
 def test_unknown_name_of_the_package():

@@ -241,8 +241,6 @@ def test_every_command_and_exit_code_is_listed():
 
 def test_the_page_of_bearing_keys_is_that_of_the_models():
     assert bearing_keys.PAGE.read_text() == bearing_keys.page()
-    for model in bearing_keys.TABLES.values():
-        assert bearing_keys.meanings(model).keys() == model.model_fields.keys()
 
 
 def test_every_finding_of_the_stability_scripts_has_a_place():

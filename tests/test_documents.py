@@ -112,6 +112,16 @@ def test_a_study_of_a_train_takes_a_path_tables_or_a_train(study):
             np.testing.assert_allclose(other, path, rtol=1e-7)
 
 
+def test_an_object_that_was_read_has_the_places_of_its_file_until_it_changes():
+    scene, longer = sg.load(SHAFT), "segment.pinion.length=52 mm"
+    of_file, as_read, changed = (
+        sg.sweep(source, longer, model="timoshenko", n=1)["C_zz"][0]
+        for source in (SHAFT, scene, scene.with_changes(title="changed"))
+    )
+    # the port stays in the middle of its segment, or where it is
+    assert as_read == of_file and abs(changed / of_file - 1) > 1e-3
+
+
 def test_studies_leave_tables_as_they_are():
     tables = sg.load_train(GEOMETRY / "gearbox_two_stage.toml").to_dict()
     before = copy.deepcopy(tables)

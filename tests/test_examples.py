@@ -37,15 +37,15 @@ def test_shaft_in_python():
 
 
 @pytest.mark.long
-def test_own_design(tmp_path):
-    found = run("own_design", tmp_path)
+def test_shaft_to_report(tmp_path):
+    found = run("shaft_to_report", tmp_path)
     # a thicker seat is stiffer, and weighs as much as is allowed
     assert list(found["rows"]["C_zz"]) == sorted(found["rows"]["C_zz"], reverse=True)
     assert found["best"].best.kept and found["best"].gain.relative < -0.01
     assert sg.load(tmp_path / "shaft.toml") == found["shaft"]
     for name in ("report/report.html", "search/optimum.html"):
         assert (tmp_path / name).is_file()
-    text = (FOLDER / "own_design.py").read_text(encoding="utf-8")
+    text = (FOLDER / "shaft_to_report.py").read_text(encoding="utf-8")
     body = text.partition("def main(folder=None):\n")[2].partition("\n\n\n")[0]
     assert len(body.splitlines()) <= 30
 

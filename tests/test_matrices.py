@@ -81,6 +81,17 @@ def test_matlab_finds_the_same_arrays(matrices, tmp_path):
     assert "coordinates: x y z thx thy thz of every point" in " ".join(arrays["about"])
 
 
+@pytest.mark.parametrize("to", [*ENDINGS, "calculix"])
+def test_any_name_of_a_point_stays_in_its_line(to, matrices, tmp_path):
+    names = ['a "b" \\ c', "d\n*STEP\nGRID,9,,1.,2.,3.", "Gehäuse  $ # ** % ,"]
+    odd = matrices.with_names(names)
+    files = odd.write(tmp_path / f"part{ENDINGS.get(to, '.inp')}", to)
+    if to == "calculix":
+        assert not any(line == "*STEP" for line in files[0].read_text().splitlines())
+    else:
+        assert [*sg.read_matrices(files[-1]).positions] == names
+
+
 def test_free_interface_modes_are_kept_whole(body):
     part = sg.rubin(body, n=6)
     assert apart(receptance(part), receptance(sg.port_matrices(part))) < 1e-10

@@ -149,14 +149,15 @@ def test_texts_are_read_and_written_in_an_encoding_that_is_said():
         if not re.search(r"\b(open|read_text|write_text)\(", text):
             continue
         for node, name in calls(ast.parse(text)):
-            if name not in ("open", "read_text", "write_text"):
+            is_method = isinstance(node.func, ast.Attribute)
+            if name != "open" and not (is_method and name in ("read_text", "write_text")):
                 continue
             words = [a.value for a in node.args if isinstance(a, ast.Constant)]
             words = [word for word in words if isinstance(word, str)]
             binary = any(re.fullmatch(r"[rwa+]*b[rwa+]*", word) for word in words)
             named = "utf-8" in words or any(key.arg == "encoding" for key in node.keywords)
             # gmsh, images and sessions of programs are opened by functions of their own
-            of_file = name != "open" or isinstance(node.func, ast.Name) or words
+            of_file = name != "open" or not is_method or words
             if of_file and not binary and not named:
                 silent.append(f"{path.relative_to(ROOT)}:{node.lineno}")
     assert silent == []

@@ -1,5 +1,6 @@
 """A 3D solid that checks a reference, and ends when its numbers say enough about it."""
 
+import re
 from functools import cache
 from types import SimpleNamespace
 
@@ -105,6 +106,27 @@ def test_a_mesh_that_statics_rule_out_is_passed_over():
     solid = study(shaft(tolerance=0.01), "solid", evidence=False, reference=reference())
     assert len(solid.levels) == 1 and solid.options["layers"] == 1
     assert solid.worst_bar() <= 0.01 and not solid.check
+
+
+def test_an_interrupt_after_a_mesh_that_was_passed_over_leaves_what_that_mesh_showed(monkeypatch):
+    def studied(scene, model, options, **others):
+        return reference() if model == "harmonic" else study(scene, model, options, **others)
+
+    def interrupt(text):
+        if text.startswith("solid: layers"):
+            meshes.append(text)
+            if len(meshes) == 2:
+                raise KeyboardInterrupt
+
+    meshes = []
+    monkeypatch.setattr("solidgear.comparison.models.study", studied)
+    results = compare(shaft(tolerance=0.01), ("harmonic", "solid"), progress=interrupt).results
+    assert results["complete"] is False and len(meshes) == 2
+    shown = results["models"]["solid"]["why_not"]
+    mesh = meshes[0].removeprefix("solid: ")
+    assert shown.startswith(f"interrupted; its first mesh, {mesh}, was solved for statics alone")
+    off = float(re.search(r"C_\w+ may be ([\d.]+) % from the harmonic solid", shown)[1])
+    assert 1.0 < off < 3.0  # the tolerance, and twice what the shaft's first hexahedra err by
 
 
 @pytest.mark.long

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from solidgear.core import as_written
+from solidgear.core.loading import as_written
 from solidgear.strength.deflection.at_rest import deflect, deflection
 from solidgear.strength.load import AT_REST
 from solidgear.trains.assembly.assembly import Assembly

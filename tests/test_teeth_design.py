@@ -31,6 +31,7 @@ from solidgear.variants.optimise.wish import limit_of, wish_of
 from solidgear.variants.sweep.design import Design
 from solidgear.variants.sweep.error_chart import error_chart
 from solidgear.variants.sweep.error_curves import error_curves
+from solidgear.variants.sweep.file_task import BARS
 from solidgear.variants.sweep.sheet import sweep_table
 from solidgear.variants.sweep.train_task import train_task
 
@@ -104,7 +105,7 @@ def test_a_row_with_the_stiffness_of_its_teeth_has_the_modes_of_its_torque():
 
 
 def test_rows_say_which_command_has_error_bars(task, rows):
-    assert {row["bars"] for row in rows} == {"none: run contact on one variant"}
+    assert {row[BARS] for row in rows} == {"none: run contact on one variant"}
     both = task_of(RELIEF, ask=("system-modes", "response", "contact"))
     assert both.without_bars == "none: run system-modes, response or contact on one variant"
 

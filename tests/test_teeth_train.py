@@ -17,6 +17,7 @@ from solidgear.teeth.train_teeth import TeethModel, mesh_contact, mesh_of_teeth,
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.mesh_stiffness import with_usual_meshes
 from solidgear.trains.assembly.stages import mesh_row
+from solidgear.trains.file.housing import TrainHousing
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.response.excitation import excitation
 
@@ -274,6 +275,37 @@ def test_planets_take_the_stiffness_of_their_teeth():
     sizes = {name: abs(weight) for name, weight in weights.items()}
     share = filled.ring_error.orders[0] / filled.sun_error.orders[0]
     assert sizes["mesh stage ring 2"] == pytest.approx(share, rel=1e-9)
+
+
+def test_a_ring_in_a_housing_moves_with_it():
+    """On mounts so soft that all of the reducer moves, a planet and its ring lie to each other as on
+    ground, and so does what carries them.
+    """
+    train = sg.load_train(GEOMETRY / "reducer.toml")
+    wheel = train.shafts["wheel"]
+    sun = wheel.gears["sun"].with_changes(face_width=12e-3)
+    train = train.with_changes(wheel=wheel.with_changes(gears={**wheel.gears, "sun": sun}))
+    spring = {"kxx": 1e7, "kyy": 1e7, "kzz": 1e7}
+    corners = [(0.2, 0.0, -0.2), (-0.2, 0.0, -0.2), (0.0, 0.3, -0.2)]
+    housing = TrainHousing(
+        mass=20.0,
+        inertia=(0.2, 0.2, 0.2),
+        centre=(0.0, 0.05, 0.0),
+        mount=[{"position": corner, "stiffness": spring} for corner in corners],
+    )
+    gaps = []
+    for housed in (train, train.with_changes(housing=housing)):
+        carried = Carried.at_rest(with_sections(housed), housed.point)
+        (mesh,) = (m for m in carried.train.stages[0].meshes if m.name == "mesh stage ring 1")
+        teeth = teeth_of(mesh, carried.coast(mesh))
+        place = carried.place(mesh, teeth)
+        supports = carried.supports(place, Frame.of(place, teeth))
+        normal = Frame.of(place, teeth).axes.T @ place.normal
+        points = np.column_stack([np.zeros(3), np.zeros(3), [-5e-3, 0.0, 5e-3]])
+        rows = supports.opening(points, np.tile(normal, (3, 1)))
+        gaps.append(rows @ supports.motion)
+    assert place.ends[1].startswith("housing")
+    assert gaps[1] - gaps[1][1] == pytest.approx(gaps[0] - gaps[0][1], abs=2e-9)
 
 
 def test_a_train_without_a_torque_is_refused(train):

@@ -82,3 +82,23 @@ def test_options_for_one_shaft_are_refused_for_a_train(option, tmp_path):
     done = command("compare", TRAIN, "--out", tmp_path / "out", *option)
     assert done.exit_code == 1 and f"{option[0]} is for one shaft" in str(done.exception)
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("others", [[], [ROOT / "geometry/axle_straddle.toml"]], ids=["one", "two"])
+def test_the_tolerance_of_the_meshes_of_trains_is_that_of_the_option(others, monkeypatch):
+    class Asked(Exception):
+        pass
+
+    def assembled(*_, tol, **__):
+        raise Asked(tol)
+
+    monkeypatch.setattr("solidgear.trains.options.Assembly", assembled)
+    done = command("compare", TRAIN, *others, "--tol", "3%")
+    assert isinstance(done.exception, Asked) and done.exception.args == (0.03,), done.output
+
+
+@pytest.mark.parametrize("count, said", [(1, "--tol is for trains"), (2, "--tol does not apply")])
+def test_a_tolerance_of_meshes_is_refused_for_shafts(count, said):
+    shafts = [SHAFT, ROOT / "geometry/shaft_stepped.toml"][:count]
+    done = command("compare", *shafts, "--tol", "0.01")
+    assert done.exit_code == 1 and said in str(done.exception)

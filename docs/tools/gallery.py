@@ -22,7 +22,7 @@ COLUMNS = 3
 ORDER = (
     "first_answer",
     "shaft_in_python",
-    "own_design",
+    "shaft_to_report",
     "before_solving",
     "which_model",
     "how_sure",

@@ -113,8 +113,8 @@ def reliefs(target: Path) -> None:
 
 
 def searched(target: Path) -> None:
-    """All designs of the search of `own_design`."""
-    importlib.import_module("own_design").main(target.parent)
+    """All designs of the search of `shaft_to_report`."""
+    importlib.import_module("shaft_to_report").main(target.parent)
     (target.parent / "search" / "designs.png").rename(target)
 
 
@@ -122,7 +122,7 @@ OVERHUNG = "geometry/pinion_overhung.toml"
 DRAWN: dict[str, Callable[[Path], None]] = {
     "first_answer": partial(rendered, f'{OVERHUNG} -f harmonic --mode "bending 1"'),
     "shaft_in_python": rod,
-    "own_design": searched,
+    "shaft_to_report": searched,
     "before_solving": partial(drawn, "pinion_overhung"),
     "which_model": partial(charted, "geometry/shaft_hollow.toml"),
     "how_sure": partial(bars, "how_sure", "error bar, %", 100.0),

@@ -19,7 +19,6 @@ from solidgear.show.command import Progress, caution, command
 from solidgear.show.open_words import columns as ranges
 from solidgear.show.open_words import remark
 from solidgear.show.options import SceneFile, Shown, relative
-from solidgear.show.plot import check_ending
 from solidgear.show.remarks import bearing_cautions, load, open_ranges
 from solidgear.show.settled import sentences
 from solidgear.show.sheet import Sheet, Terminal, present
@@ -64,6 +63,8 @@ def answer(
     run: Shown,
 ) -> None:
     if picture is not None:
+        from solidgear.show.plot import check_ending  # start-up: for --picture alone
+
         check_ending(picture)  # before anything is solved
     loaded = load(scene)
     for sentence in bearing_cautions(loaded):

@@ -12,6 +12,7 @@ import typer
 from typer.core import TyperCommand, TyperGroup
 
 from solidgear.app.options_alone import options_alone
+from solidgear.core.machine.later import loading
 from solidgear.core.machine.memory import one_command
 from solidgear.show.command import Progress
 
@@ -56,6 +57,10 @@ GROUPS = {
         "options": Entry(
             "app.files",
             "List what --set takes: every builder option with default, limits and meaning.",
+        ),
+        "schema": Entry(
+            "exchange.schema.command",
+            "Print the JSON Schema of files, for editors, or of what a command prints with --json.",
         ),
     },
     "One shaft": {
@@ -220,7 +225,9 @@ class Door(TyperGroup):
 def _imported(name: str) -> Any:
     """Return a command with its options."""
     entry = COMMANDS[name]
-    module = import_module(f"solidgear.{entry.module}")
+    name_of_module = f"solidgear.{entry.module}"
+    with loading(name_of_module):
+        module = import_module(name_of_module)
     alone = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
     function = getattr(module, entry.function or name.replace("-", "_"))
     alone.command(name, cls=Told, help=entry.help)(function)

@@ -11,12 +11,12 @@ from solidgear.comparison.models import check_models, nothing
 from solidgear.comparison.models import compare as compared
 from solidgear.comparison.page.sheet import sheet
 from solidgear.comparison.page.write import Pictures
-from solidgear.core import ELEMENTS, LADDER, is_train, listed
+from solidgear.core import ELEMENTS, LADDER, SolidgearError, is_train, listed
 from solidgear.core import load as read
 from solidgear.core.machine.start import BEGUN
 from solidgear.show.command import Progress, command
 from solidgear.show.folder import held
-from solidgear.show.options import MODEL, SceneFile, Shown, options_by_name, refuse
+from solidgear.show.options import MODEL, SceneFile, Shown, options_by_name, refuse, relative
 from solidgear.show.render import Drawing
 from solidgear.show.sheet import Sheet, present
 
@@ -86,6 +86,14 @@ def compare(
             help="For two trains: the mesh whose transmission error drives; by default the first.",
         ),
     ] = None,
+    tol: Annotated[
+        float | None,
+        relative(
+            "--tol",
+            "For trains: relative error that meshes of harmonic shafts may leave; by default a tenth "
+            "of the file's tolerance.",
+        ),
+    ] = None,
     run: Shown,
 ) -> None:
     of_one_shaft = {
@@ -105,15 +113,21 @@ def compare(
         from solidgear.comparison.two.command import compare_two
         from solidgear.trains.options import Pair
 
-        mix = Pair(pinion or MODEL, gear or MODEL, shafts)
-        compare_two([scene, *more], out, mix, mesh, run, of_one_shaft, of_trains)
+        mix, of_trains["--tol"] = Pair(pinion or MODEL, gear or MODEL, shafts), tol is not None
+        compare_two([scene, *more], out, mix, mesh, tol, run, of_one_shaft, of_trains)
         return
     refuse(of_trains, f"two trains, and {scene} is one, of which every model is solved")
     if is_train(scene):
-        from solidgear.trains.judge.command import compare_train  # start-up: for trains alone
+        # start-up: for trains alone
+        from solidgear.trains.judge.command import compare_train
+        from solidgear.trains.options import Reduced
 
-        compare_train(scene, out, renders, run, of_one_shaft)
+        compare_train(scene, out, Reduced(tol=tol), renders, run, of_one_shaft)
         return
+    if tol is not None:
+        raise SolidgearError(
+            f"--tol is for trains, and {scene} is one shaft: write tolerance under [ask] in the file"
+        )
 
     loaded = read(scene)
     names = tuple(m.strip() for m in models.split(",") if m.strip())

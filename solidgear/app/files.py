@@ -15,6 +15,7 @@ from solidgear.core import LADDER, SolidgearError, nearest, show
 from solidgear.core.ladder.model import Model
 from solidgear.core.machine.whole_file import write_files
 from solidgear.core.models.options import Option, limits
+from solidgear.exchange.schema.files import directive
 from solidgear.show.command import command, say
 from solidgear.show.table import Table, text, word
 
@@ -30,13 +31,18 @@ def new(
         raise SolidgearError(f"new: {name} is a folder; give the name of a file, such as shaft")
     path = name if name.suffix == ".toml" else name.with_name(f"{name.name}.toml")
     contents = {path.parent / file: content for file, content in start(kind, path.stem).items()}
-    _write({file: content.encode() for file, content in contents.items()})
+    _write({file: _with_schema(content).encode() for file, content in contents.items()})
     companions = (
         f" (with {', '.join(str(file) for file in contents if file != path)})"
         if len(contents) > 1
         else ""
     )
     typer.echo(f"{path}: {STARTS[kind]}{companions}. Next: solidgear check {path}")
+
+
+def _with_schema(content: str) -> str:
+    """Return a file with a first line that names its schema to editors."""
+    return f"{directive(tomllib.loads(content))}\n{content}"
 
 
 @command

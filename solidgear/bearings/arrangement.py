@@ -9,10 +9,16 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Annotated, Any, NamedTuple
 
-from pydantic import BeforeValidator
+from pydantic import BeforeValidator, Field
 
-from solidgear.bearings.catalogue import WAYS, Catalogue, arrangement_word
-from solidgear.core import SceneError, listed, nearest, show
+from solidgear.bearings.catalogue import (
+    SPELLINGS,
+    WAYS,
+    Catalogue,
+    PairWord,
+    arrangement_word,
+)
+from solidgear.core import SceneError, Written, listed, nearest, show
 
 #: word and, where there is more than one pair, names of the two bearings
 Words = tuple[tuple[str, tuple[str, ...] | None], ...]
@@ -59,7 +65,12 @@ def _read_words(value: Any) -> Any:
     return tuple(pairs)
 
 
-Arrangement = Annotated[Words, BeforeValidator(_read_words)]
+Names = Annotated[list[str], Field(min_length=2, max_length=2)]
+Arrangement = Annotated[
+    Words,
+    BeforeValidator(_read_words),
+    Written(PairWord | Annotated[dict, Written(dict.fromkeys(SPELLINGS, Names | list[Names]))]),
+]
 
 
 def read_pairs(words: Words, tables: Sequence[Mapping[str, Any]]) -> list[Pair] | None:

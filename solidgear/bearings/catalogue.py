@@ -8,23 +8,34 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
 from solidgear.bearings.designation import boundary
 from solidgear.bearings.kinds import SHARES, Shares
-from solidgear.core import Length, Model, PositiveLength, SceneError, SignedAngle, show
+from solidgear.core import (
+    Length,
+    Model,
+    PositiveLength,
+    Range,
+    SceneError,
+    SignedAngle,
+    Written,
+    show,
+)
 from solidgear.core.scene.load import BearingLoad
 from solidgear.core.scene.units import (
     Angle,
     AxialSpring,
     PositiveLoad,
     RatingFactor,
+    Ratio,
     Speed,
     TemperatureRise,
     quantity,
 )
+from solidgear.core.scene.written import Measure, Word
 
 if TYPE_CHECKING:
     from solidgear.core import Bearing
@@ -54,10 +65,15 @@ FEWEST, MOST = 3, 300
 class BearingDisplacement(Model):
     """Displacement of the inner ring against the outer one, m and rad."""
 
+    #: displacement along x, m
     x: Length = 0.0
+    #: displacement along y, the axis, m
     y: Length = 0.0
+    #: displacement along z, m
     z: Length = 0.0
+    #: tilt about x, rad
     thx: SignedAngle = 0.0
+    #: tilt about z, rad
     thz: SignedAngle = 0.0
 
     @property
@@ -69,9 +85,10 @@ class BearingDisplacement(Model):
 class Preload(Model):
     """Preload of a bearing: by a force or by a displacement."""
 
-    force: float | None = None  #: N along y, felt by every row while the shaft carries nothing else
-    #: m along y by which the rings are pushed together from where they just touch; of a pair, by
-    #: which both rows together are
+    #: force along y that every row feels while the shaft carries nothing else, N
+    force: float | None = None
+    #: distance along y by which the rings, or both rows of a pair together, are pushed from where
+    #: they just touch, m
     displacement: float | None = None
 
 
@@ -114,18 +131,41 @@ def _clearance(value: Any) -> Any:
     return quantity(value, "length")
 
 
+#: of grooves
+GROOVE = Range(
+    "is groove radius over ball diameter: write more than 0.5 and at most 0.6; usual is 0.52",
+    above=0.5,
+    most=0.6,
+)
+
+
 def _conformity(value: Any) -> Any:
     pair = value if isinstance(value, (list, tuple)) else [value, value]
     if len(pair) != 2:
         raise SceneError("write one number, or two: inner and outer ring", value=show(value))
     for ratio in (quantity(v, "dimensionless") for v in pair):
-        if not 0.5 < ratio <= 0.6:
-            raise SceneError(
-                "is groove radius over ball diameter: write more than 0.5 and at most 0.6; usual "
-                "is 0.52",
-                value=show(value),
-            )
+        try:
+            GROOVE.check(ratio)
+        except SceneError as error:
+            raise SceneError(error.reason, value=show(value)) from None
     return tuple(pair)
+
+
+#: other spellings of the words of arrangements
+SPELLINGS = tuple(
+    spelling
+    for word in (*_CALLED, *WAYS)
+    for spelling in dict.fromkeys((word, word.upper(), word.capitalize(), word.replace("_", " ")))
+)
+#: words of pairs, first those of drawings
+PairWord = Annotated[str, Word(("O", "X", *WAYS), "|".join(SPELLINGS))]
+ArrangementWord = Arrangement | PairWord
+PreloadText = (
+    Annotated[str, Measure("load", quantity), Range("", above=0)]
+    | Annotated[str, Measure("length", quantity), Range("", above=0)]
+)
+Groove = Annotated[Ratio, GROOVE]
+Conformity = Groove | Annotated[list[Groove], Field(min_length=2, max_length=2)]
 
 
 class Catalogue(Model):
@@ -134,11 +174,11 @@ class Catalogue(Model):
     Attributes
     ----------
     kind : str
-        deep_groove, angular_contact, cylindrical, tapered, needle, spherical (rollers) or
+        Kind: deep_groove, angular_contact, cylindrical, tapered, needle, spherical (rollers) or
         thrust_ball.
     designation : str
-        Such as ``6208-2RS1/C3``: gives kind, bore, outer_diameter, width and a class of clearance
-        where these are left out; seals, cages and tolerances are read and ignored.
+        Designation such as ``6208-2RS1/C3``: gives kind, bore, outer_diameter, width and a class of
+        clearance where these are left out; seals, cages and tolerances are read and ignored.
     bore, outer_diameter, width : float
         Boundary dimensions, m; the bore of a drawn cup is the diameter under its rollers.
     load_rating, static_rating : float or None
@@ -147,20 +187,20 @@ class Catalogue(Model):
     fatigue_limit : float or None
         Fatigue load limit C_u, N, of one bearing.
     rating_factor : float or None
-        b_m of ISO 281; by default that of its kind.
+        Factor b_m of ISO 281; by default that of its kind.
     elements : int or None
-        Rolling elements of one row.
+        Number of rolling elements in a row.
     element_diameter, element_length, pitch_diameter : float or None
         Dimensions of the rolling elements and their circle, m; for tapered rollers the mean diameter.
     contact_angle : float or None
-        From the radial plane, rad.
+        Angle of the contacts from the radial plane, rad.
     conformity : (float, float) or None
         Groove radius over ball diameter, inner and outer; for spherical rollers over twice the radius
         of their contour.
     profile : {'logarithmic', 'straight'}
-        Of cylindrical, tapered and needle rollers, by ISO/TS 16281.
+        Profile of cylindrical, tapered and needle rollers, by ISO/TS 16281.
     arrangement : str
-        single, double_row (of bearings that hold no shaft along y, or both ways), tandem,
+        Rows: single, double_row (of bearings that hold no shaft along y, or both ways), tandem,
         back_to_back (or "O") or face_to_face (or "X"): two rows in this one bearing.
     row_distance : float or None
         Distance of the rows' middles, m; by default the width.
@@ -172,13 +212,13 @@ class Catalogue(Model):
     shaft_interference, housing_interference : float
         Interference of the fits, on the diameter, m.
     inner_ring_warmer : float
-        K above the outer ring.
+        Temperature of the inner ring above the outer one, K.
     preload : Preload or None
-        Along y; a text with a unit in a file: ``"500 N"`` or ``"10 um"``.
+        Preload along y; a text with a unit in a file: ``"500 N"`` or ``"10 um"``.
     preload_spring : float or None
-        N/m, of the spring that preloads the upper row of a pair.
+        Stiffness of the spring that preloads the upper row of a pair, N/m.
     speed : float
-        Of the inner ring, rad/s; for balls, which then have inertia.
+        Speed of the inner ring, rad/s; for balls, which then have inertia.
     load : BearingLoad or None
         Load at which the stiffness is taken.
     displacement : BearingDisplacement or None
@@ -196,6 +236,8 @@ class Catalogue(Model):
     ('deep_groove', 0.04, ('elements', 'element_diameter', 'pitch_diameter', 'conformity'))
     """
 
+    needs: ClassVar = (("designation", ("kind", "bore", "outer_diameter", "width")),)
+
     kind: Kind
     designation: str = ""
     bore: PositiveLength
@@ -210,16 +252,24 @@ class Catalogue(Model):
     element_length: PositiveLength | None = None
     pitch_diameter: PositiveLength | None = None
     contact_angle: Angle | None = None
-    conformity: Annotated[tuple[float, float], BeforeValidator(_conformity)] | None = None
+    conformity: (
+        Annotated[tuple[float, float], BeforeValidator(_conformity), Written(Conformity)] | None
+    ) = None
     profile: Literal["logarithmic", "straight"] = "logarithmic"
-    arrangement: Annotated[Arrangement, BeforeValidator(arrangement_word)] = "single"
+    arrangement: Annotated[
+        Arrangement, BeforeValidator(arrangement_word), Written(ArrangementWord)
+    ] = "single"
     row_distance: PositiveLength | None = None
     holds: Literal["+y", "-y"] | None = None
-    clearance: Annotated[float | ClearanceClass, BeforeValidator(_clearance)] = 0.0
+    clearance: Annotated[
+        float | ClearanceClass, BeforeValidator(_clearance), Written(Length | ClearanceClass)
+    ] = 0.0
     shaft_interference: Length = 0.0
     housing_interference: Length = 0.0
     inner_ring_warmer: TemperatureRise = 0.0
-    preload: Annotated[Preload | None, BeforeValidator(_preload)] = None
+    preload: Annotated[
+        Preload | None, BeforeValidator(_preload), Written(PreloadText | Preload)
+    ] = None
     preload_spring: AxialSpring | None = None
     speed: Speed = 0.0
     load: BearingLoad | None = None

@@ -299,6 +299,10 @@ def _run(
             findings.failed[model] = str(error) or "not enough memory"
             log.warning("%s failed: %s", model, findings.failed[model])
             continue
+        except KeyboardInterrupt as interrupt:
+            if str(interrupt):
+                findings.failed[model] = str(interrupt)
+            raise
         findings.solutions[model] = solution
         solved(model, solution)
         # A dearer solid's lumped models are those of the cheaper one within error bars, at ten times

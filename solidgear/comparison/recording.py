@@ -11,7 +11,6 @@ from pydantic import ValidationError
 from solidgear.core import (
     COMPLIANCE,
     DOF_NAMES,
-    FIRST_BENDING,
     LADDER,
     OpenNumbers,
     Quantity,
@@ -53,6 +52,7 @@ from solidgear.core.judge.verdict import Judgement, judge, percent, trusted
 from solidgear.core.judge.where import recorded_places
 from solidgear.core.ladder.model import LUMPED, SOLID
 from solidgear.core.machine.environment import environment
+from solidgear.core.quantity import FIRST_BENDING
 from solidgear.core.solve.mixtures import mixtures
 
 

@@ -27,18 +27,18 @@ if TYPE_CHECKING:
     from solidgear.core.ladder.meshes import HARMONIC
     from solidgear.core.ladder.model import BEAM
     from solidgear.core.ladder.registry import LADDER
-    from solidgear.core.loading import as_written, explained, load, shaft
+    from solidgear.core.loading import explained, load
     from solidgear.core.machine.threads import pinned
     from solidgear.core.machine.whole_file import whole
     from solidgear.core.quantity import (
         COMPLIANCE,
-        FIRST_BENDING,
         QUANTITIES,
         STIFFNESS,
         Quantity,
     )
     from solidgear.core.reduction.effective_mass import synthesise
     from solidgear.core.reduction.rubin import rubin
+    from solidgear.core.registry import addition
     from solidgear.core.scene import Bearing, Port, Scene
     from solidgear.core.scene.coned import coned
     from solidgear.core.scene.document import (
@@ -53,12 +53,16 @@ if TYPE_CHECKING:
     from solidgear.core.scene.shaft import without_axis
     from solidgear.core.scene.typed import Model
     from solidgear.core.scene.units import DIMENSIONS, Length, PositiveLength, SignedAngle
+    from solidgear.core.scene.written import Range, Written
     from solidgear.core.solve.condensed import Condensed
     from solidgear.core.solve.modes import Mode, ModeSet, modes
     from solidgear.core.solve.statics import flexibility
     from solidgear.core.system.system import System
 
 __all__ = [
+    "addition",
+    "Written",
+    "Range",
     "BEAM",
     "BarredMode",
     "Bearing",
@@ -71,7 +75,6 @@ __all__ = [
     "Displayed",
     "Document",
     "ELEMENTS",
-    "FIRST_BENDING",
     "HARMONIC",
     "LADDER",
     "Length",
@@ -103,7 +106,6 @@ __all__ = [
     "WITHIN",
     "WhereRecord",
     "as_supports",
-    "as_written",
     "bars_of_modes",
     "build",
     "change",
@@ -123,7 +125,6 @@ __all__ = [
     "rotation",
     "rubin",
     "settle",
-    "shaft",
     "show",
     "size",
     "synthesise",
@@ -166,17 +167,15 @@ _WHERE = {
     "HARMONIC": "solidgear.core.ladder.meshes",
     "BEAM": "solidgear.core.ladder.model",
     "LADDER": "solidgear.core.ladder.registry",
-    "as_written": "solidgear.core.loading",
     "explained": "solidgear.core.loading",
     "load": "solidgear.core.loading",
-    "shaft": "solidgear.core.loading",
     "pinned": "solidgear.core.machine.threads",
     "whole": "solidgear.core.machine.whole_file",
     "COMPLIANCE": "solidgear.core.quantity",
-    "FIRST_BENDING": "solidgear.core.quantity",
     "QUANTITIES": "solidgear.core.quantity",
     "Quantity": "solidgear.core.quantity",
     "STIFFNESS": "solidgear.core.quantity",
+    "addition": "solidgear.core.registry",
     "synthesise": "solidgear.core.reduction.effective_mass",
     "rubin": "solidgear.core.reduction.rubin",
     "Bearing": "solidgear.core.scene",
@@ -197,6 +196,8 @@ _WHERE = {
     "Length": "solidgear.core.scene.units",
     "PositiveLength": "solidgear.core.scene.units",
     "SignedAngle": "solidgear.core.scene.units",
+    "Range": "solidgear.core.scene.written",
+    "Written": "solidgear.core.scene.written",
     "Condensed": "solidgear.core.solve.condensed",
     "Mode": "solidgear.core.solve.modes",
     "ModeSet": "solidgear.core.solve.modes",

@@ -27,6 +27,11 @@ def added(kind: str) -> dict[str, Any]:
     }
 
 
+def registered(kind: str) -> tuple[str, ...]:
+    """Return the names of all additions of a kind, without importing them."""
+    return tuple(_PLACES.get(kind, ()))
+
+
 @cache
 def addition(kind: str, name: str) -> Any:
     """Return one addition; None where nobody registered it or its room is not installed."""

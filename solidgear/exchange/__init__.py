@@ -1,1 +1,1 @@
-"""Files of other programs, in and out."""
+"""Files of other programs, in and out; schemas of files and results."""

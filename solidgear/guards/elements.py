@@ -9,20 +9,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from solidgear.core import (
-    FIRST_BENDING,
-    LADDER,
-    Quantity,
-    SolidgearError,
-    change,
-    listed,
-    without_axis,
-)
+from solidgear.core import LADDER, Quantity, SolidgearError, change, listed, without_axis
 from solidgear.core.elements import SOLVED_AS
 from solidgear.core.judge.quantities import in_words
 from solidgear.core.machine.memory import available_mb
 from solidgear.core.meshing.corners import sharpest_corner
-from solidgear.core.quantity import C_ZZ
+from solidgear.core.quantity import C_ZZ, FIRST_BENDING
 from solidgear.core.solve.backends import BACKENDS, INSTALL, missing
 from solidgear.core.solve.backends.memory_law import law
 from solidgear.core.solve.choice import FASTEST, SMALL

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from solidgear.core import BEAM, FIRST_BENDING, LADDER, SolidgearError, gap_verdict
+from solidgear.core import BEAM, LADDER, SolidgearError, gap_verdict
 from solidgear.core.judge import deviations
 from solidgear.core.judge.lumped import preferred
 from solidgear.core.judge.ties import SCENE
+from solidgear.core.quantity import FIRST_BENDING
 from solidgear.guards.notice import Notice, Notices, against, beams, beyond, sure
 from solidgear.guards.probe import Probe
 

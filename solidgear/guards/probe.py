@@ -15,7 +15,6 @@ import scipy.sparse.linalg as spla
 
 from solidgear.core import (
     BEAM,
-    FIRST_BENDING,
     HARMONIC,
     LADDER,
     TOUCH,
@@ -35,6 +34,7 @@ from solidgear.core.judge.study import study
 from solidgear.core.judge.ties import attached
 from solidgear.core.ladder.model import SOLID
 from solidgear.core.models.size import Size, size_of_body
+from solidgear.core.quantity import FIRST_BENDING
 from solidgear.core.reduction.effective_mass import Synthesis
 from solidgear.core.reduction.lumped_point import LumpedPoint
 from solidgear.guards.notice import LUMPED_ON

@@ -25,13 +25,22 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from pydantic import AfterValidator, BeforeValidator, Field, PrivateAttr, model_validator
 
-from solidgear.core import Model, SceneError, Source, Surface, document_of, explained, show
-from solidgear.core.scene.units import Frequency, quantity
+from solidgear.core import (
+    Model,
+    SceneError,
+    Source,
+    Surface,
+    Written,
+    document_of,
+    explained,
+    show,
+)
+from solidgear.core.scene.units import Frequency, Tolerance, quantity
 from solidgear.measured.alignment import BANDWIDTH
 from solidgear.measured.modal_fit import ResponseFit
 from solidgear.measured.placement import Places, PointsTable
@@ -74,7 +83,10 @@ def _share(value: tuple[float, str]) -> tuple[float, str]:
 
 
 Uncertainty = Annotated[
-    tuple[float, str], BeforeValidator(_uncertainty), AfterValidator(_above_zero)
+    tuple[float, str],
+    BeforeValidator(_uncertainty),
+    AfterValidator(_above_zero),
+    Written(Tolerance | Frequency),
 ]
 
 
@@ -92,17 +104,19 @@ def _response_unit(value: Any) -> tuple[float, int] | None:
     return unit
 
 
-ResponseUnit = Annotated[tuple[float, int] | None, BeforeValidator(_response_unit)]
+ResponseUnit = Annotated[tuple[float, int] | None, BeforeValidator(_response_unit), Written(str)]
 
 
 class MeasuredMode(Model):
     """A measured resonance."""
 
-    frequency: Frequency  #: Hz
-    uncertainty: Uncertainty | None = None  #: one standard deviation
-    #: 1 for a single resonance, 2 for a pair at one frequency; None where nobody looked
+    #: frequency, Hz
+    frequency: Frequency
+    #: one standard deviation, a share or a frequency
+    uncertainty: Uncertainty | None = None
+    #: 1 for a single resonance, 2 for a pair at one frequency; without it nobody looked
     multiplicity: Annotated[int, Field(strict=True, ge=1, le=2)] | None = None
-    #: of the mode where it is known, such as ``bending 1``, or only its family: ``bending``
+    #: name of the mode where it is known, such as `bending 1`, or only its family: `bending`
     name: str = ""
     #: number of its shape among those of the file of shapes, by ascending frequency, from one
     shape: Annotated[int, Field(strict=True, ge=1)] | None = None
@@ -139,19 +153,31 @@ class Measured(Model):
     [1200.0]
     """
 
+    needs: ClassVar = (("mode", "file"),)
+
+    #: title of the measurement
     title: str = ""
+    #: where the measurement comes from
     source: str = ""
-    uncertainty: Uncertainty | None = None  #: of all that say nothing else
-    shapes: str = ""  #: universal file of shapes, beside this one
-    file: str = ""  #: universal file whose resonances are taken in place of a list
-    #: of the responses of that file, ``m/s^2/N``: SI units in one, and derivatives of displacement
+    #: one standard deviation of all resonances that say nothing else, a share or a frequency
+    uncertainty: Uncertainty | None = None
+    #: universal file of shapes, beside this one
+    shapes: str = ""
+    #: universal file whose resonances are taken in place of a list
+    file: str = ""
+    #: unit of the responses of that file, such as `m/s^2/N`
     response_unit: ResponseUnit = None
-    points: PointsTable = PointsTable()  #: where the points of that file lie in the scene
+    #: where the points of that file lie in the scene
+    points: PointsTable = PointsTable()
     #: standard deviation of a component of a shape, relative to the root mean square of the shape
-    noise: Annotated[Uncertainty, AfterValidator(_share)] = NOISE
-    #: ratio; modes nearer to each other than twice that are heard as one peak
-    damping: Annotated[Uncertainty, AfterValidator(_share)] = (BANDWIDTH / 2, "relative")
-    mode: tuple[MeasuredMode, ...] = ()  #: by ascending frequency
+    noise: Annotated[Uncertainty, AfterValidator(_share), Written(Tolerance)] = NOISE
+    #: damping ratio; modes nearer to each other than twice that are heard as one peak
+    damping: Annotated[Uncertainty, AfterValidator(_share), Written(Tolerance)] = (
+        BANDWIDTH / 2,
+        "relative",
+    )
+    #: resonances by ascending frequency
+    mode: tuple[MeasuredMode, ...] = ()
     _on_points: Shapes | None = PrivateAttr(None)
     _responses: ResponseFit | None = PrivateAttr(None)
     _remarks: tuple[str, ...] = PrivateAttr(())

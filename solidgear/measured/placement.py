@@ -42,9 +42,10 @@ KNOWN = {name: UNITS[name] for name in ("m", "mm", "inch", "cm")}
 class PointsTable(Model):
     """The table ``points`` of a file of measured resonances."""
 
-    unit: Unit | None = None  #: of the places
+    #: unit of the places
+    unit: Unit | None = None
     #: axis of the file that is y of the scene
-    axis: Literal["x", "y", "z", "-x", "-y", "-z"] | None = None
+    axis: Literal["x", "-x", "y", "-y", "z", "-z"] | None = None
     #: where y = 0 of the scene lies in the file, m: along that axis, or a point on it
     origin: Origin = None
 

@@ -9,14 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from math import hypot, inf
-from typing import Annotated, Any, Literal, get_args
+from typing import Annotated, Any, ClassVar, Literal, get_args
 
 import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
-from solidgear.core import Model, PositiveLength, SceneError, listed
+from solidgear.core import Length, Model, PositiveLength, SceneError, Written, listed
 from solidgear.core.scene.file_materials import FileMaterial
-from solidgear.core.scene.materials import by_name
+from solidgear.core.scene.materials import MaterialName, by_name
 from solidgear.core.scene.model_table import table_of
 from solidgear.core.scene.outline import Torus
 from solidgear.core.scene.parts import Material
@@ -73,26 +73,43 @@ def _several(value: Any) -> Any:
     return [value] if isinstance(value, str) else value
 
 
-Axis = Annotated[AxisWord | Triple, BeforeValidator(_direction)]
-Origin = Annotated[float | tuple[float, float, float] | None, BeforeValidator(_place)]
+Axis = Annotated[AxisWord | Triple, BeforeValidator(_direction), Written(AxisWord | Triple)]
+Origin = Annotated[
+    float | tuple[float, float, float] | None,
+    BeforeValidator(_place),
+    Written(Length | tuple[Length, Length, Length]),
+]
 
 
 class BodyTable(Model):
     """The [body] of a scene file."""
 
+    needs: ClassVar = (("step", "mesh", "block"),)
+
+    #: name of a STEP file
     step: str | None = None
+    #: name of a mesh file, or up to five of one body, coarse to fine
     mesh: Annotated[
         Annotated[list[str], Field(min_length=1, max_length=MOST_MESHES)] | None,
         BeforeValidator(_several),
+        Written(str | Annotated[list[str], Field(min_length=1, max_length=MOST_MESHES)]),
     ] = None
+    #: edges of a rectangular block along x, y and z, m, in place of a file
     block: list[PositiveLength] | None = None
+    #: unit of length of a file that does not say
     unit: Unit | None = None
+    #: axis of the shaft in the file, or "none" for a body without an axis
     axis: Axis = "y"
+    #: where y = 0 lies in the file, m: along the axis, or a point on it
     origin: Origin = None
+    #: length and largest diameter that the part must have, m
     size_check: Annotated[list[PositiveLength], Field(min_length=2, max_length=2)] | None = None
+    #: mass that the part must have, kg
     mass_check: Mass | None = None
-    #: by the name or number of a group of the file
-    materials: dict[str, Annotated[Material, BeforeValidator(by_name)]] = {}
+    #: materials by the name or number of a group of the file
+    materials: dict[
+        str, Annotated[Material, BeforeValidator(by_name), Written(Material | MaterialName)]
+    ] = {}
 
     @model_validator(mode="after")
     def _one_file(self):

@@ -5,16 +5,14 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
-from pathlib import Path
 
-from solidgear.core import Body, OpenNumbers, Scene
+from solidgear.core import Body, OpenNumbers, Scene, Source, addition
 from solidgear.core import load as read
-from solidgear.core.registry import addition
 
 
-def load(path: Path) -> Scene:
+def load(source: Source) -> Scene:
     """Read a scene and print doubts about the file of its part."""
-    scene = read(path)
+    scene = read(source)
     for sentence in scene.body.doubts(scene.material) if scene.body is not None else ():
         print(f"caution: {sentence}", file=sys.stderr)
     return scene

@@ -10,7 +10,7 @@ import io
 import json
 import os
 from collections.abc import Callable, Collection, Mapping, Sequence
-from contextlib import nullcontext
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
@@ -19,9 +19,6 @@ from solidgear.core import whole
 from solidgear.core.machine.whole_file import write_page as write_whole
 from solidgear.show.command import NOT_REACHED, Progress, caution, filled, say
 from solidgear.show.file_stems import file_stems
-from solidgear.show.folder import begun, held
-from solidgear.show.page_parts import Contents, template
-from solidgear.show.plot import WIDE, Make, page_svg
 from solidgear.show.table import Table
 from solidgear.show.units import Units, in_ascii, units_named
 
@@ -29,6 +26,7 @@ if TYPE_CHECKING:
     from rich.console import Console, RenderableType
 
     from solidgear.show.options import Run
+    from solidgear.show.plot import Make
 
 #: files of a chart
 KINDS = ("png", "svg")
@@ -97,7 +95,7 @@ def present(study: Callable[[Progress], Sheet], run: Run, out: Path | None = Non
     """Solve a study, write its folder if there is one, print its sheet, and exit with the code of
     the sheet, or 3 where the tolerance is not reached.
     """
-    with held(out) if out else nullcontext(), run.progress() as progress:
+    with _held(out) if out else nullcontext(), run.progress() as progress:
         sheet = study(progress)
         files = write_folder(sheet, out) if out else []
     if run.as_json:
@@ -114,6 +112,12 @@ def present(study: Callable[[Progress], Sheet], run: Run, out: Path | None = Non
         import typer  # start-up: pages are written without a command line
 
         raise typer.Exit(exit_code)
+
+
+def _held(folder: str | os.PathLike) -> AbstractContextManager[Any]:
+    from solidgear.show.folder import held  # start-up: for a folder alone
+
+    return held(folder)
 
 
 def sheet_of(result: Any, make: Callable[[Any, Units], Sheet], units: str | Units) -> Sheet:
@@ -169,7 +173,7 @@ def write_result(
 ) -> list[Path]:
     """Write the sheet of a result into a folder that no other run holds, and return the files."""
     chosen = units_named(units)
-    with held(folder) as place:
+    with _held(folder) as place:
         if make_for_folder is None:
             return write_folder(result.sheet(chosen), place)
         return write_folder(make_for_folder(result, chosen, place), place)
@@ -203,6 +207,8 @@ def as_json(sheet: Sheet) -> str:
 
 def write_folder(sheet: Sheet, folder: Path) -> list[Path]:
     """Write a page and its data, tables by file name, and charts; return the paths."""
+    from solidgear.show.folder import begun  # start-up: as in `_held`
+
     with begun(folder) if sheet.json_name else nullcontext():
         return _written(sheet, folder)
 
@@ -233,6 +239,8 @@ def write_page(sheet: Sheet, path: Path) -> Path:
     tables, sections and notes.
     """
     from markupsafe import Markup
+
+    from solidgear.show.page_parts import Contents, template  # start-up: for pages alone
 
     sections = [
         (
@@ -270,6 +278,8 @@ def write_json(path: Path, data: Mapping[str, Any]) -> None:
 
 def write_charts(stem: Path, make: Make) -> list[Path]:
     """Write a chart as PNG and SVG."""
+    from solidgear.show.plot import WIDE  # start-up: for charts alone
+
     chart = make(WIDE)
     if chart is None:
         return []
@@ -283,6 +293,8 @@ def _drawn(
 ) -> list[tuple[str, str]]:
     """Draw charts for the page with their words, without empty ones."""
     from markupsafe import Markup
+
+    from solidgear.show.plot import page_svg  # start-up: as in `write_charts`
 
     drawn = {name: page_svg(name, make) for name, make in charts.items()}
     return [

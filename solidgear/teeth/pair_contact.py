@@ -59,10 +59,10 @@ def pair_contact(
     if not (first.face_width and second.face_width):
         raise SolidgearError("pair_contact: both wheels need a face_width")
     face, base = min(first.face_width, second.face_width), first.base
-    teeth = [Slices(PlaneTeeth(wheel), face, slices) for wheel in (first, second)]
-    steel = tuple(side.plane.elasticity for side in teeth)
-    law = LineContact(steel, tuple(side.depth for side in teeth))
-    tips = [reliefs(wheels, k, ReliefTable(tip=tip))[0] for k in (0, 1)]
-    shapes = tuple(FlankShape(face_width=face, tip=relief) for relief in tips)
-    pair = CylindricalPair(wheels, tuple(teeth), law, shapes, slices=slices)
+    teeth = Slices(PlaneTeeth(first), face, slices), Slices(PlaneTeeth(second), face, slices)
+    steel = teeth[0].plane.elasticity, teeth[1].plane.elasticity
+    law = LineContact(steel, (teeth[0].depth, teeth[1].depth))
+    begin = reliefs(wheels, 0, ReliefTable(tip=tip))[0], reliefs(wheels, 1, ReliefTable(tip=tip))[0]
+    shapes = FlankShape(face_width=face, tip=begin[0]), FlankShape(face_width=face, tip=begin[1])
+    pair = CylindricalPair(wheels, teeth, law, shapes, slices=slices)
     return tuple(mesh_cycle(pair, load * face * base, base, 1) for load in loads)

@@ -174,8 +174,9 @@ class Carried:
         """Return the (6,) motion of a port in the state, without the turning of its part, in its own
         axes.
         """
-        motion = self.state.motion(end).copy()
-        motion[4] -= self.state.motion(held[end.partition(".")[0]])[4]
+        motion, part = self.state.motion(end).copy(), end.partition(".")[0]
+        if part in held:  # a housing does not turn freely
+            motion[4] -= self.state.motion(held[part])[4]
         return motion
 
     def _sections(self, end: str, frame: Frame) -> list[str]:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from solidgear.core import Scene, Source, as_written, document_of, explained, load
+from solidgear.core import Scene, Source, document_of, explained, load
+from solidgear.core.loading import as_written
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.reading import train_of
 from solidgear.trains.file.train import Train
@@ -46,13 +47,16 @@ def load_train(source: Source | Train, point: OperatingPoint | None = None) -> T
         return load(file) if alone and point is None else as_written(file)
 
     if isinstance(source, Train):
-        train, settled = source, point is None
-    else:
-        document = document_of(source)
-        train = train_of(document.tables, document.path, scene).read_from(document)
-        settled = point is None and not train.operation
-    if settled:
-        return train
+        return source if point is None else _settled(source, point, source)
+    document = document_of(source)
+    train = train_of(document.tables, document.path, scene).read_from(document)
+    if point is not None:
+        return _settled(train, point, source)
+    return _settled(train, None, source).read_from(document) if train.operation else train
+
+
+def _settled(train: Train, point: OperatingPoint | None, source: Source | Train) -> Train:
+    """Return a train whose bearings have settled at a point, in place of those that it has."""
     from solidgear.trains.load.operation import at_point  # start-up: not every file needs it
 
     with explained(source):

@@ -18,11 +18,11 @@ from typing import Any, NamedTuple
 from solidgear.comparison.page import charts, tables
 from solidgear.comparison.race.race import race_of
 from solidgear.comparison.race.sheet import section
-from solidgear.core import BEAM, COMPLIANCE, FIRST_BENDING, ModeName, Quantity, Record, whole
+from solidgear.core import BEAM, COMPLIANCE, ModeName, Quantity, Record, whole
 from solidgear.core.judge.record import ModelRecord, VerdictRecord, relative_change
 from solidgear.core.judge.ties import SCENE
 from solidgear.core.ladder.model import LUMPED
-from solidgear.core.quantity import AT
+from solidgear.core.quantity import AT, FIRST_BENDING
 from solidgear.show import open_words
 from solidgear.show.matrices import entry
 from solidgear.show.page_parts import Contents, data_uri, template

@@ -11,9 +11,9 @@ from rich.console import Group
 from rich.text import Text
 
 from solidgear.comparison.page.tables import NOT_RESOLVED, apart
-from solidgear.core import FIRST_BENDING, Quantity, Record
+from solidgear.core import Quantity, Record
 from solidgear.core.judge.record import ModelRecord, VerdictRecord
-from solidgear.core.quantity import C_ZZ, K_ZZ
+from solidgear.core.quantity import C_ZZ, FIRST_BENDING, K_ZZ
 from solidgear.show import open_words
 from solidgear.show.command import caution
 from solidgear.show.sheet import Sheet, Terminal

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from functools import partial
 
-from solidgear.core import BEAM, COMPLIANCE, FIRST_BENDING, STIFFNESS, Quantity, Record
+from solidgear.core import BEAM, COMPLIANCE, STIFFNESS, Quantity, Record
 from solidgear.core.judge.correlation import FOREIGN
 from solidgear.core.judge.record import (
     DeviationRecord,
@@ -20,7 +20,7 @@ from solidgear.core.judge.record import (
 )
 from solidgear.core.judge.ties import SCENE
 from solidgear.core.ladder.model import LUMPED
-from solidgear.core.quantity import C_ZZ, FREQUENCY, K_ZZ
+from solidgear.core.quantity import C_ZZ, FIRST_BENDING, FREQUENCY, K_ZZ
 from solidgear.show.matrices import block, entry
 from solidgear.show.run_tables import pairs_of
 from solidgear.show.table import Cell, Column, Table, quantity, text, word

@@ -11,9 +11,10 @@ from pathlib import Path
 from typing import TypeVar
 
 from solidgear.comparison.page.html import drawn_charts, write_report
-from solidgear.core import FIRST_BENDING, LADDER, ModeSet, Quantity, Record, Solution
+from solidgear.core import LADDER, ModeSet, Quantity, Record, Solution
 from solidgear.core.machine.meter import Meter
 from solidgear.core.machine.processes import family_memory
+from solidgear.core.quantity import FIRST_BENDING
 from solidgear.show.folder import begun
 from solidgear.show.outputs import OUTPUTS
 from solidgear.show.page_parts import data_uri

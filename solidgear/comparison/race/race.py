@@ -18,10 +18,10 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.core import FIRST_BENDING, Quantity
+from solidgear.core import Quantity
 from solidgear.core.machine.environment import environment
 from solidgear.core.plain import plain
-from solidgear.core.quantity import C_ZZ
+from solidgear.core.quantity import C_ZZ, FIRST_BENDING
 from solidgear.show.sheet import write_json
 from solidgear.show.table import Column, Table
 from solidgear.show.words import percent

@@ -7,8 +7,9 @@ from pathlib import Path
 
 from solidgear.comparison.race.figure import race_chart
 from solidgear.comparison.race.race import PICTURE, ROWS, Race, Row, records
-from solidgear.core import FIRST_BENDING, Quantity
+from solidgear.core import Quantity
 from solidgear.core.plain import plain
+from solidgear.core.quantity import FIRST_BENDING
 from solidgear.show.sheet import Section, Sheet, Terminal
 from solidgear.show.table import Column, Table, text, word
 from solidgear.show.words import count, grouped, seconds

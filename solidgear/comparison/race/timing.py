@@ -25,7 +25,6 @@ import numpy as np
 from solidgear.comparison.race.race import AUTOMATIC, CHARTED, WHOLE, Race, Reference, Row
 from solidgear.core import (
     BEAM,
-    FIRST_BENDING,
     LADDER,
     QUANTITIES,
     Body,
@@ -44,6 +43,7 @@ from solidgear.core.judge.solving import Answer, Statics, solve
 from solidgear.core.ladder.model import LUMPED
 from solidgear.core.machine.meter import processor_seconds
 from solidgear.core.machine.patience import Patience
+from solidgear.core.quantity import FIRST_BENDING
 from solidgear.core.solve.families import FAMILIES
 
 log = logging.getLogger(__name__)

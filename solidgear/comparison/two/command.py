@@ -26,6 +26,7 @@ def compare_two(
     out: Path,
     mix: Pair,
     mesh: str | None,
+    tol: float | None,
     run: Shown,
     options: dict[str, bool],
     of_trains: dict[str, bool],
@@ -44,7 +45,8 @@ def compare_two(
         return
 
     def study(progress: Progress) -> Sheet:
-        pair = beside(files[0], files[1], mix.models, mesh=mesh, progress=progress, read=load)
+        first, second = files
+        pair = beside(first, second, mix.models, mesh=mesh, tol=tol, progress=progress, read=load)
         progress("report")
         return pair.sheet(units_named(run.units))
 

@@ -61,8 +61,8 @@ class Difference:
 
 
 def differences(a: Source, b: Source) -> tuple[Difference, ...]:
-    """Return the entries in which two trains or scenes differ, in the order of the first; the [ask]
-    of shafts of a train is left out.
+    """Return the entries in which two trains or scenes differ, in the order of the first, without
+    their names; the [ask] of shafts of a train is left out.
 
     Examples
     --------
@@ -105,7 +105,7 @@ class _Tables:
     def of_files(self) -> Iterator[Difference]:
         """Yield the differences of both files."""
         a, b = self.raw
-        yield from self.differing("", a, b, left_out=("ask",) if self.prefix else ())
+        yield from self.differing("", a, b, left_out=("name", "ask") if self.prefix else ("name",))
 
     def differing(
         self, path: str, a: dict, b: dict, left_out: tuple[str, ...] = ()

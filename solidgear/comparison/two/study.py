@@ -20,11 +20,12 @@ def beside(
     models: Models = None,
     *,
     mesh: str | None = None,
+    tol: float | None = None,
     progress: Callable[[str], None] = lambda text: None,
     read: Callable[[Source], Scene] = load,
 ) -> TwoTrains | TwoShafts:
-    """Compare two trains, by models of their shafts and driven by a mesh, or two shafts, which are
-    read by `read`.
+    """Compare two trains, by models of their shafts, on meshes within a tolerance and driven by a
+    mesh, or two shafts, which are read by `read`.
     """
     names = _names(name_of_source(first), name_of_source(second))
     if not are_trains(first, second):
@@ -33,7 +34,7 @@ def beside(
         in_files = not (isinstance(first, Scene) and isinstance(second, Scene))
         inputs = differences(first, second) if in_files else None
         return two_shafts(scenes, names, inputs, progress)
-    assemblies = [Reduced().assembly(source) for source in (first, second)]
+    assemblies = [Reduced(tol=tol).assembly(source) for source in (first, second)]
     train = assemblies[0].train
     mix = models_of(train.shafts, train.name, models).values()
     for model in mix:

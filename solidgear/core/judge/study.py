@@ -149,6 +149,10 @@ class TiedSolver:
             if self.solution is None or fixed:
                 raise
             self.failed["finer mesh"] = _reason(error)
+        except KeyboardInterrupt:
+            if self.solution is None and refinement.steps:
+                raise KeyboardInterrupt(self._left_at_statics()) from None
+            raise
         assert self.solution is not None
         bar = refinement.largest()
         too_wide = bar is None or bar > refinement.tol
@@ -202,6 +206,18 @@ class TiedSolver:
         if self.check is None or self.passed_over is not None or self.solution or not several:
             return {}
         return self.check.distances_beyond(tied.statics.values())
+
+    def _left_at_statics(self) -> str:
+        """Return in words what an interrupt leaves of a solid whose first mesh was passed over."""
+        refinement, check = self.refinement, self.check
+        assert refinement.last is not None and check is not None
+        distances = refinement.last.distances
+        name = max(distances, key=distances.__getitem__)
+        return (
+            f"interrupted; its first mesh, {refinement.steps[0].setting}, was solved for statics "
+            f"alone, in which {name} may be {100 * distances[name]:.2g} % from the "
+            f"{LADDER[check.reference.model].title}"
+        )
 
     def _judge_mesh(self, solution: Solution) -> np.ndarray | None:
         """Add the error bars of a mesh to its solution; return weights of its cells by those that

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from solidgear.core.errors import SolidgearError, listed, show
+from solidgear.core.scene.written import Word
 
 
 @dataclass(frozen=True)
@@ -54,6 +56,8 @@ MATRIX_UNITS: Mapping[str, MatrixUnits] = {
         MatrixUnits("in-lbf-s", INCH, POUND, "inches, pounds-force and lbf s^2/in of mass"),
     )
 }
+#: type of the name of a system
+UnitsWord = Annotated[str, Word(tuple(MATRIX_UNITS))]
 
 
 def matrix_units(name: str) -> MatrixUnits:

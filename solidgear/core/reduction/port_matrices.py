@@ -133,13 +133,13 @@ class PortMatrices:
     @property
     def matrices(self) -> dict[str, np.ndarray]:
         """The matrices that there are, by name."""
-        named = {
+        by_name = {
             "stiffness": self.stiffness,
             "mass": self.mass,
             "damping": self.damping,
             "gyroscopic": self.gyroscopic,
         }
-        return {name: matrix for name, matrix in named.items() if matrix is not None}
+        return {name: matrix for name, matrix in by_name.items() if matrix is not None}
 
     def in_units(self, units: MatrixUnits) -> dict[str, np.ndarray]:
         """Return the matrices in a system of units."""

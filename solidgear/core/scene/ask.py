@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field
@@ -11,8 +12,21 @@ from solidgear.core.quantity import AT, QUANTITIES, Quantity
 from solidgear.core.scene.limits import MOST_MODES
 from solidgear.core.scene.typed import Model
 from solidgear.core.scene.units import Frequency, Tolerance
+from solidgear.core.scene.written import Word, Written
 
 _KNOWN = ", ".join(f"'{name}'" for name in QUANTITIES[:-1]) + f" or '{QUANTITIES[-1]}'"
+
+
+#: a quantity, or a compliance or stiffness at a point
+QuantityWord = Annotated[
+    str,
+    Word(
+        tuple(map(str, QUANTITIES)),
+        "|".join(
+            re.escape(q) if q.is_frequency else f"{re.escape(q)}({AT}.+)?" for q in QUANTITIES
+        ),
+    ),
+]
 
 
 def _read_quantity(value: Any) -> Quantity:
@@ -30,7 +44,7 @@ def _read_quantity(value: Any) -> Quantity:
     return quantity
 
 
-Asked = Annotated[Quantity, BeforeValidator(_read_quantity)]
+Asked = Annotated[Quantity, BeforeValidator(_read_quantity), Written(QuantityWord)]
 
 
 class Ask(Model):
@@ -39,15 +53,17 @@ class Ask(Model):
     Attributes
     ----------
     modes : int
-        Elastic modes, 1 to `MOST_MODES`.
+        Number of elastic modes, 1 to `MOST_MODES`.
     max_frequency : float or None
-        Hz; None is no limit.
+        Highest frequency, Hz; without it there is no limit.
     tolerance : float
-        Relative, between 0 and 1.
+        Relative error that answers may have, between 0 and 1.
     quantities : tuple of Quantity
         Quantities that models are judged by, from `QUANTITIES`, at a further lumped point as
         ``C_zz@name``; empty is the usual set, compliances at every point with first bending and
         first axial mode.
+    lumped : bool
+        Whether `compare` shows every synthesis of a lumped mass.
 
     Raises
     ------

@@ -9,11 +9,12 @@ from collections.abc import Mapping, Sequence
 from typing import Annotated, Any
 
 import numpy as np
-from pydantic import BeforeValidator
+from pydantic import BeforeValidator, Field
 
 from solidgear.core.errors import MOST_PROBLEMS, SceneError, nearest, show
 from solidgear.core.frames import DOF_NAMES
-from solidgear.core.scene.units import quantity
+from solidgear.core.scene.units import Rows, quantity, quantity_type
+from solidgear.core.scene.written import Written
 
 
 def _entry_names() -> dict[str, tuple[int, int, str]]:
@@ -134,8 +135,20 @@ def checked_matrix(value: Any) -> tuple[tuple[float, ...], ...]:
     return tuple(tuple(row) for row in K.tolist())
 
 
+#: entries of a stiffness by name, as files write them
+ENTRIES = {
+    name: Annotated[
+        quantity_type(dimension),
+        Field(description=f"entry ({DOF_NAMES[i]}, {DOF_NAMES[j]}) of the stiffness"),
+    ]
+    for name, (i, j, dimension) in STIFFNESS_NAMES.items()
+}
 #: a checked 6x6 stiffness
-Matrix = Annotated[tuple[tuple[float, ...], ...], BeforeValidator(checked_matrix)]
+Matrix = Annotated[
+    tuple[tuple[float, ...], ...],
+    BeforeValidator(checked_matrix),
+    Written(Rows | Annotated[dict, Written(ENTRIES)]),
+]
 
 
 def refuse_two_stiffnesses(table: Mapping[str, Any]) -> None:

@@ -15,15 +15,14 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, TypeAlias
 
-from pydantic import BeforeValidator
-
 from solidgear.core.errors import SceneError
 from solidgear.core.scene.corner import Corner, Surface
 from solidgear.core.scene.limits import TOUCH
 from solidgear.core.scene.outline import radii_of
 from solidgear.core.scene.parts import Segment
 from solidgear.core.scene.places import Along, Placed, Places
-from solidgear.core.scene.units import Position, PositiveLength, quantity
+from solidgear.core.scene.units import Position, PositiveLength, SignedAngle
+from solidgear.core.scene.written import Range
 
 Edge = Literal["root", "rim"]
 
@@ -31,6 +30,7 @@ Edge = Literal["root", "rim"]
 class _At(Along):
     """Words for the place of an edge: a datum, or a position."""
 
+    #: place of the edge, such as `NAME.end` of a segment
     at: str | None = None
 
 
@@ -39,13 +39,18 @@ class _Blend(Placed):
 
     Words: ClassVar = _At
     sources: ClassVar = {"y": ("at", "position")}
+    needs: ClassVar = (("at", "position"),)
 
     if TYPE_CHECKING:
         kind: str  # a field of every subclass, in its own order
 
+    #: name in reports; by default its kind and number
     name: str
     y: Position
+    #: surface that the edge lies on
     surface: Surface = "outer"
+    #: root adds material in the corner of a step, rim rounds off the edge; by default the root,
+    #: and the rim at an end face
     edge: Edge | None = None
 
     @classmethod
@@ -158,7 +163,8 @@ class Fillet(_Blend):
     """
 
     kind: Literal["fillet"] = "fillet"
-    radius: PositiveLength  #: m
+    #: radius of the fillet, m
+    radius: PositiveLength
 
     @property
     def extents(self) -> tuple[float, float]:
@@ -169,12 +175,15 @@ class Fillet(_Blend):
         return "radius"
 
 
-def slope(value: Any) -> float:
-    """Return the angle of a chamfer to the axis, rad."""
-    angle = quantity(value, "angle")
-    if not math.radians(5) <= angle <= math.radians(85):
-        raise SceneError("the angle of a chamfer to the axis lies between 5 and 85 deg")
-    return angle
+#: angle of a chamfer to the axis, rad
+Slope = Annotated[
+    SignedAngle,
+    Range(
+        "the angle of a chamfer to the axis lies between 5 and 85 deg",
+        least=math.radians(5),
+        most=math.radians(85),
+    ),
+]
 
 
 class Chamfer(_Blend):
@@ -188,9 +197,10 @@ class Chamfer(_Blend):
     """
 
     kind: Literal["chamfer"] = "chamfer"
-    length: PositiveLength  #: along the shaft, m
-    #: to the axis, rad; 45 degrees by default
-    angle: Annotated[float, BeforeValidator(slope)] = math.pi / 4
+    #: length along the shaft, m
+    length: PositiveLength
+    #: angle to the axis, rad; 45 degrees by default
+    angle: Slope = math.pi / 4
 
     @property
     def extents(self) -> tuple[float, float]:

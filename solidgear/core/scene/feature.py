@@ -12,7 +12,8 @@ from solidgear.core.errors import SceneError, nearest
 from solidgear.core.scene.parts import Segment
 from solidgear.core.scene.places import NoWords, Placed
 from solidgear.core.scene.typed import Model
-from solidgear.core.scene.units import quantity
+from solidgear.core.scene.units import SignedAngle, quantity
+from solidgear.core.scene.written import Range, Written
 
 #: least size of a feature over the radius of the shaft; smaller ones would need endless meshes
 SMALLEST = 1e-2
@@ -23,10 +24,14 @@ MOST_TEETH = 400
 Count = Annotated[int, Field(strict=True, ge=FEWEST, le=MOST_TEETH)]
 
 
+#: of a plain number
+TURN = Range("", least=-2 * math.pi * (1 + 1e-9), most=2 * math.pi * (1 + 1e-9))
+
+
 def _turn(value: Any) -> float:
     """Return an angle within one turn, rad; refuse a plain number beyond it, meant in degrees."""
     angle = quantity(value, "angle")
-    if not isinstance(value, str) and abs(angle) > 2 * math.pi * (1 + 1e-9):
+    if not isinstance(value, str) and abs(angle) > TURN.most:
         raise SceneError(
             f"is more than a turn of 2 pi: a plain number is in rad; for degrees write "
             f'"{angle:.6g} deg"'
@@ -34,7 +39,7 @@ def _turn(value: Any) -> float:
     return angle % (2 * math.pi)
 
 
-Turn = Annotated[float, BeforeValidator(_turn)]
+Turn = Annotated[float, BeforeValidator(_turn), Written(Annotated[SignedAngle, TURN])]
 
 
 class OnSegment(Placed):
@@ -53,8 +58,11 @@ class OnSegment(Placed):
     if TYPE_CHECKING:
         kind: str  # a field of every subclass, in its own order
 
+    #: name in reports; by default its kind and number
     name: str
+    #: name of the segment
     segment: str
+    #: angle around the shaft, rad: 0 is +z, a quarter turn is +x
     angle: Turn = 0.0
 
     def problems(self, segments: Sequence[Segment]) -> Iterator[SceneError]:

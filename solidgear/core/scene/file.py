@@ -10,7 +10,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple, TypeAlias
 
 from pydantic import BeforeValidator, model_validator
 
@@ -24,7 +24,7 @@ from solidgear.core.scene.housing import Housing, read_housing
 from solidgear.core.scene.limits import MOST_BEARINGS, MOST_MASSES, MOST_SEGMENTS
 from solidgear.core.scene.load import BearingLoad
 from solidgear.core.scene.lubrication import Lubrication
-from solidgear.core.scene.materials import by_name
+from solidgear.core.scene.materials import MaterialName, by_name
 from solidgear.core.scene.model import Scene
 from solidgear.core.scene.parts import STEEL, Material, Segment
 from solidgear.core.scene.places import Placed, Places
@@ -43,6 +43,7 @@ from solidgear.core.scene.toml_file import (
 from solidgear.core.scene.typed import Holds, Model, Problems
 from solidgear.core.scene.uncertain import with_ranges
 from solidgear.core.scene.writing import digest_of_scene
+from solidgear.core.scene.written import Kinds, Word, Written
 
 PAIRING, PARTS = pairing(), parts()
 if TYPE_CHECKING:
@@ -59,9 +60,16 @@ Table = dict[str, Any]
 MOST = {"segment": MOST_SEGMENTS, "bearing": MOST_BEARINGS, "mass": MOST_MASSES}
 
 
+#: a table of a cut, teeth, a fillet or a chamfer
+Feature = Annotated[Table, Kinds({**FEATURES, **BLENDS}, given=("name",))]
+#: a range of an entry
+OpenRange = Annotated[str, Word(pattern=r".*(±|\+/-|\+-|:).*")]
+
+
 class _Ask(Ask):
     """The [ask] of a file, which also names the main lumped point."""
 
+    #: name of the main lumped point; by default the first
     port: str | None = None
 
 
@@ -73,23 +81,43 @@ def _several(ports: Any) -> Any:
 class SceneFile(Model):
     """A scene file; tables of stations and features are read later, once the shaft is known."""
 
+    needs: ClassVar = (("segment", "body"), ("material", "body"), ("port", "body"))
+
+    #: title of the shaft in tables and pages
     title: str = ""
-    name: str | None = None  #: by default that of the file
+    #: name of the scene; by default that of the file
+    name: str | None = None
+    #: where the numbers come from
     source: str = ""
+    #: how seats and surfaces follow what they carry, unless their tables say otherwise
     attachment: Attachment = "average"
-    material: Annotated[Material, BeforeValidator(by_name)]
+    #: material of segments without one: a name, or E, nu and density
+    material: Annotated[Material, BeforeValidator(by_name), Written(Material | MaterialName)]
+    #: mounting of two single bearings with a contact angle: "O" or "X", or with their names, {O =
+    #: ["A", "B"]}
     arrangement: Arrangement = ()
+    #: the shaft from a STEP or mesh file, or a block, in place of segments
     body: BodyTable | None = None
+    #: pieces of the shaft, end to end from y = 0
     segment: list[Shape]
     # read once the shaft is known
+    #: bearings, each a stiffness between a seat and ground
     bearing: Annotated[list[Table], Holds(Bearing)] = []
+    #: rigid masses on the shaft: discs, coupling halves, gear blanks
     mass: Annotated[list[Table], Holds(PointMass)] = []
-    feature: list[Table] = []
+    #: keyways, flats, holes, teeth, splines, fillets and chamfers
+    feature: Annotated[list[Table], Written(list[Feature])] = []
+    #: elastic housing of all bearings
     housing: Annotated[Table | None, Holds(Housing)] = None
-    port: Annotated[list[Table], BeforeValidator(_several), Holds(Port)]
+    #: lumped points that numbers are given for, such as the middle of a gear
+    port: Annotated[list[Table], BeforeValidator(_several), Holds(Port), Written(Port | list[Port])]
+    #: load on the shaft at the main lumped point, under which catalogue bearings settle
     load: BearingLoad | None = None
+    #: lubrication of the bearings, for their modified life
     lubrication: Lubrication | None = None
-    uncertain: Table = {}
+    #: ranges of entries by their paths, such as "material.E" = "206 GPa ± 3 %"
+    uncertain: Annotated[Table, Written(dict[str, OpenRange | dict[str, Any]])] = {}
+    #: questions: number of modes, tolerance, quantities
     ask: _Ask = _Ask()
 
 
@@ -101,7 +129,9 @@ class ScenePartFile(SceneFile):
     """A scene file with a part from another file in place of segments."""
 
     # not needed where the groups of the part have all their own
-    material: Annotated[Material | None, BeforeValidator(by_name)] = None  # type: ignore[assignment]
+    material: Annotated[
+        Material | None, BeforeValidator(by_name), Written(Material | MaterialName)
+    ] = None  # type: ignore[assignment]
     body: BodyTable
     segment: list[Shape] = []
 

@@ -7,17 +7,22 @@ a stiffness of ``kyy`` alone mean the same; a motion with zero stiffness is free
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
-from pydantic import model_validator
+from pydantic import Field, model_validator
 
 from solidgear.core.errors import SceneError
 from solidgear.core.frames import DOF_NAMES, shift
-from solidgear.core.scene.bearing_stiffness import STIFFNESS_NAMES, Matrix, stiffness_entries
+from solidgear.core.scene.bearing_stiffness import (
+    ENTRIES,
+    STIFFNESS_NAMES,
+    Matrix,
+    stiffness_entries,
+)
 from solidgear.core.scene.places import Along, Placed, Places
 from solidgear.core.scene.typed import Model
-from solidgear.core.scene.units import SOFTEST, AxialSpring, Factor, Position
+from solidgear.core.scene.units import SOFTEST, AxialSpring, Factor, Position, Rows
 from solidgear.core.springs import in_series
 
 ONE_HOUSING = (
@@ -58,7 +63,8 @@ class Elastic(Model):
     #: 6x6, SI, order (x, y, z, thx, thy, thz). The constructor also takes it as `stiffness`: named
     #: entries, of which those on the diagonal that are left out are rigid, or six rows.
     matrix: Matrix
-    rigid: tuple[str, ...] = ()  #: rigid motions; their rows are zero
+    #: rigid motions; their rows are zero
+    rigid: tuple[str, ...] = ()
 
     def __init__(self, /, **data: Any):
         if "stiffness" in data:
@@ -132,6 +138,14 @@ def elastic(table: Any) -> Any:
         ) from None
 
 
+#: keys of the housing of a bearing in a file
+ELASTIC = {
+    **ENTRIES,
+    "matrix": Annotated[Rows, Field(description="six rows of the 6x6, in place of entries")],
+    "scale": Annotated[Factor, Field(description="factor on all of it")],
+}
+
+
 class Housing(Placed, Elastic):
     """A rigid housing of all bearings on a 6x6 spring to ground.
 
@@ -156,6 +170,7 @@ class Housing(Placed, Elastic):
     class Words(Along):
         """Words for a place, or a spring along the axis alone."""
 
+        #: spring along the axis alone, between the housing and ground, N/m
         axial: AxialSpring | None = None
 
     sources: ClassVar = {
@@ -163,6 +178,8 @@ class Housing(Placed, Elastic):
         "matrix": ("matrix", "stiffness"),
         "rigid": ("stiffness",),
     }
+
+    needs: ClassVar = (("axial", "stiffness", "matrix"), ("axial", "position"))
 
     y: Position = 0.0
 
@@ -223,6 +240,7 @@ def read_housing(table: Mapping[str, Any], places: Places) -> Housing | float | 
 class _Scale(Model):
     """Factor on a housing."""
 
+    #: factor on the whole stiffness
     scale: Factor = 1.0
 
 

@@ -15,11 +15,15 @@ ABOUT_AXIS = ("thy", "my", "ty", "torque", "torsion", "moment")
 class BearingLoad(Model):
     """Load of the shaft on a bearing, or on the port: forces in N, moments in N m."""
 
+    #: force along x, N
     x: Newtons = 0.0
+    #: force along y, the axis, N
     y: Newtons = 0.0
+    #: force along z, N
     z: Newtons = 0.0
-    #: thx, thz: moments; where none is given a bearing's ring is held against tilting
+    #: moment about x, N m; without one the ring of a bearing is held against tilting
     thx: Torque | None = None
+    #: moment about z, N m; without one the ring of a bearing is held against tilting
     thz: Torque | None = None
 
     def __init__(self, /, **data: Any):

@@ -8,7 +8,8 @@ from pydantic import BeforeValidator
 
 from solidgear.core.errors import SceneError, near, show
 from solidgear.core.scene.typed import Model
-from solidgear.core.scene.units import PositiveSpeed, Reliability, Viscosity, quantity
+from solidgear.core.scene.units import PositiveSpeed, Reliability, Share, Viscosity, quantity
+from solidgear.core.scene.written import Word, Written
 
 #: ISO 281:2007, Table 13: e_C from the worst to the best of each word, for pitch diameters below
 #: 100 mm and from there on
@@ -42,20 +43,25 @@ def _cleanliness(value: Any) -> Any:
     return factor
 
 
+#: a word of ISO 281, or the factor e_C
+Cleanliness = Share | Annotated[str, Word(tuple(CLEANLINESS))]
+
+
 class Lubrication(Model):
     """Lubrication of all bearings of a shaft; numbers in SI, or texts with units.
 
     Attributes
     ----------
     viscosity : float
-        Kinematic, of the oil, or of the base oil of a grease, at working temperature, m2/s.
+        Kinematic viscosity of the oil, or of the base oil of a grease, at working temperature,
+        m2/s.
     cleanliness : str or float
         A word of ISO 281 (extreme, high, normal, slight contamination, typical contamination,
         severe contamination, very severe contamination), or the factor e_C itself.
     reliability : float
         Share of bearings that reach the modified life.
     speed : float or None
-        Of the shaft, rad/s, where a bearing does not give one.
+        Speed of the shaft, rad/s, where a bearing does not give one.
 
     Raises
     ------
@@ -70,7 +76,7 @@ class Lubrication(Model):
     """
 
     viscosity: Viscosity
-    cleanliness: Annotated[float | str, BeforeValidator(_cleanliness)]
+    cleanliness: Annotated[float | str, BeforeValidator(_cleanliness), Written(Cleanliness)]
     reliability: Reliability = 0.90
     speed: PositiveSpeed | None = None
 

@@ -8,9 +8,10 @@ Where 2 % of stiffness matter, measure, and give E.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
 
 from solidgear.core.errors import SceneError, nearest, show
+from solidgear.core.scene.written import Word
 
 STEEL_SOURCE = "EN 1993-1-1:2005, 3.2.6, and EN 1991-1-1:2002, table A.4: all structural steels"
 IRON_SOURCE = "EN 1563, informative annex on further properties"
@@ -46,6 +47,8 @@ MATERIALS = {
     "EN-GJS-700": MaterialConstants(176e9, 0.275, 7200.0, IRON_SOURCE),
     "aluminium": _ALUMINIUM,
 }
+#: type of the name of a material
+MaterialName = Annotated[str, Word(tuple(MATERIALS))]
 #: materials without constants, and why
 NONE_OF_ITS_OWN = {
     "lamination": "a laminated stack has no fixed E, since pressing and welding decide; give the E that "

@@ -25,8 +25,10 @@ from solidgear.core.scene.units import (
 class Strength(Model):
     """Strength of a material, for ratings of fatigue only."""
 
-    yield_point: Stress  #: R_e or R_p0.2, Pa
-    ultimate: Stress  #: tensile strength R_m, Pa
+    #: yield point R_e or R_p0.2, Pa
+    yield_point: Stress
+    #: tensile strength R_m, Pa
+    ultimate: Stress
 
     @model_validator(mode="after")
     def _yields_first(self) -> Strength:
@@ -51,9 +53,9 @@ class Material(Model):
     nu : float
         Poisson's ratio, between -1 and 0.5, both excluded.
     density : float
-        kg/m3.
+        Density, kg/m3.
     strength : Strength or None
-        For ratings of fatigue.
+        Yield point and ultimate strength, for ratings of fatigue.
     name : str
         Name in reports, without effect.
 

@@ -147,7 +147,10 @@ class NoWords(Model):
 class Along(Model):
     """Words for a place along the shaft, by the distance from a datum."""
 
+    #: distance from the place `from` along the shaft, m
     position: Length | None = None
+    #: place that the position counts from, such as `start`, `end`, `NAME.end` of a segment or
+    #: `bearing.NAME`
     from_: str | None = Field(None, alias="from")
 
     def y(self, places: Places, datum: str = "start") -> float | None:
@@ -332,8 +335,11 @@ class Placed(Model):
 class Seat(Model):
     """A stretch of a cylinder of the part, counted from the origin of the body."""
 
+    #: diameter of the cylinder of the part, m
     diameter: PositiveLength
+    #: start of the seat from the origin of the body, m
     from_: Length = Field(alias="from")
+    #: end of the seat from the origin of the body, m
     to: Length
 
     @model_validator(mode="after")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from pydantic import model_validator
@@ -23,9 +23,9 @@ class PointMass(Placed):
     Attributes
     ----------
     name : str
-        Without it, the scene makes one.
+        Name in reports; without it, the scene makes one.
     mass : float
-        kg.
+        Mass, kg.
     inertia : tuple of float
         Moments of inertia about axes x, y, z through the centre of mass, kg m^2; y is the polar
         one. Zero for a mass without extent.
@@ -36,7 +36,7 @@ class PointMass(Placed):
     y : float
         Middle of the seat of its own, m.
     seat_width : float or None
-        m.
+        Width of the seat of its own, m.
     attachment : {'average', 'rigid', 'section'}
         How the seat follows the mass.
 
@@ -54,6 +54,8 @@ class PointMass(Placed):
     >>> round(float(disc.matrix[3, 3]), 6), round(float(disc.matrix[2, 3]), 6)
     (0.1, 0.8)
     """
+
+    needs: ClassVar = (("on", "position"), ("on", "seat_width"))
 
     name: str = ""
     mass: Mass

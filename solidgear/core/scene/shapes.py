@@ -10,7 +10,7 @@ from typing import Annotated, Any, ClassVar, Literal, NamedTuple, TypeAlias
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from solidgear.core.errors import SceneError
-from solidgear.core.scene.materials import by_name
+from solidgear.core.scene.materials import MaterialName, by_name
 from solidgear.core.scene.parts import Material, Segment, Strength
 from solidgear.core.scene.places import Places, Seat, plain_name
 from solidgear.core.scene.typed import Model, Problems
@@ -23,6 +23,7 @@ from solidgear.core.scene.units import (
     Thickness,
     quantity,
 )
+from solidgear.core.scene.written import Written
 
 NANOMETRE = 1e-9
 _WORDS = ("start", "end", "bearing")  # first words of datums, so no segment may be called that
@@ -56,10 +57,15 @@ class Frustum(NamedTuple):
 class OtherMaterial(Model):
     """Constants of a segment that are not those of the scene."""
 
+    #: Young's modulus, Pa
     E: Modulus | None = None
+    #: Poisson's ratio
     nu: Poisson | None = None
+    #: density, kg/m^3
     density: Density | None = None
-    strength: Strength | Literal[False] | None = None  #: False for none, whatever the scene has
+    #: strength for ratings of fatigue; false for none, whatever the scene has
+    strength: Strength | Literal[False] | None = None
+    #: name in reports, without effect
     name: str | None = None
 
     def in_scene_of(self, usual: Material) -> Material:
@@ -81,9 +87,14 @@ class _Shape(Model):
     #: places on it that others can be counted from
     datums: ClassVar[tuple[str, ...]] = ("start", "end", "middle")
 
+    #: name that places and reports refer to
     name: Annotated[str, AfterValidator(_segment_name)]
+    #: diameter of the bore, m; 0 is solid
     bore: Thickness = 0.0
-    material: Annotated[OtherMaterial, BeforeValidator(by_name)] = OtherMaterial()
+    #: constants that differ from the material of the shaft, or a name
+    material: Annotated[
+        OtherMaterial, BeforeValidator(by_name), Written(OtherMaterial | MaterialName)
+    ] = OtherMaterial()
 
     @model_validator(mode="after")
     def _behind_a_head(self):
@@ -118,9 +129,12 @@ class Cylinder(_Shape):
     keys: ClassVar = {"outer0": "diameter", "outer1": "diameter", "y1": "length"}
 
     kind: Literal["cylinder"]
+    #: length along the shaft, m
     length: PositiveLength
+    #: outer diameter, m
     diameter: PositiveLength
-    part: Part = "shaft"  #: of a bevel head that is written as its two pieces
+    #: part of a bevel head that is written as its two pieces
+    part: Part = "shaft"
 
     @model_validator(mode="after")
     def _wall(self) -> Cylinder:
@@ -137,13 +151,18 @@ class Cone(_Shape):
     keys: ClassVar = {"outer0": "start_diameter", "outer1": "end_diameter", "y1": "length"}
 
     kind: Literal["cone"]
+    #: length along the shaft, m
     length: PositiveLength
+    #: outer diameter at the start, m
     start_diameter: PositiveLength
+    #: outer diameter at the end, m
     end_diameter: PositiveLength
-    #: of a bore that is a cone as well, in place of `bore`
+    #: diameter of the bore at the start, m, of a bore that is a cone as well, in place of `bore`
     start_bore: Thickness | None = None
+    #: diameter of the bore at the end, m, of a bore that is a cone as well, in place of `bore`
     end_bore: Thickness | None = None
-    part: Part = "shaft"  #: as of :class:`Cylinder`
+    #: part of a bevel head that is written as its two pieces
+    part: Part = "shaft"
 
     @model_validator(mode="after")
     def _wall(self) -> Cone:
@@ -179,10 +198,15 @@ class BevelHead(_Shape):
     datums: ClassVar = ("start", "end", "middle", "mid_face")
 
     kind: Literal["bevel_head"]
+    #: pitch radius at the heel, m
     pitch_radius: PositiveLength
+    #: angle of the pitch cone to the axis, rad
     pitch_angle: Angle
+    #: face width along the pitch cone, m
     face_width: PositiveLength
+    #: length of the cylinder behind the cone, m
     backcone: Thickness = 0.0
+    #: end of the shaft that the small end looks to
     toe: Literal["start", "end"] = "start"
 
     @property

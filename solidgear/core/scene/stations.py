@@ -12,7 +12,7 @@ from solidgear.core.errors import SceneError, show
 from solidgear.core.frames import DOF_NAMES
 from solidgear.core.registry import addition
 from solidgear.core.scene.bearing_stiffness import Matrix, refuse_two_stiffnesses
-from solidgear.core.scene.housing import Elastic, elastic
+from solidgear.core.scene.housing import ELASTIC, Elastic, elastic
 from solidgear.core.scene.patches import Patch, Point, fields_on_patch, patch_problems
 from solidgear.core.scene.places import Along, Placed, Places, Seat
 from solidgear.core.scene.support import (
@@ -34,6 +34,7 @@ from solidgear.core.scene.units import (
     Position,
     PositiveLength,
 )
+from solidgear.core.scene.written import Written
 
 if TYPE_CHECKING:
     from solidgear.core.scene.tables import BearingData as Catalogue
@@ -56,7 +57,9 @@ class Settled(Model):
     not solved yet.
     """
 
-    under: str  #: digest of the tables that it was solved for; with others it is solved anew
+    #: digest of the tables that it was solved for; with others it is solved anew
+    under: str
+    #: 6x6, SI: named entries or six rows
     stiffness: Matrix
 
 
@@ -71,10 +74,10 @@ class Bearing(Placed):
         Middle of the seat, m; `position`, as in a file, is the same, and with ``from`` counts from
         another datum of the shaft. ``on="neck"`` is the surface of a segment.
     seat_width : float
-        Along the shaft, m.
+        Width of the seat along the shaft, m.
     matrix : tuple of tuple of float, or None
-        6x6 of the bearing alone, SI, order (x, y, z, thx, thy, thz). The constructor also takes it
-        as `stiffness`: six rows, or named entries. None as long as catalogue data are not solved.
+        6x6 of the bearing alone, SI, order (x, y, z, thx, thy, thz): six rows, or named entries,
+        also as `stiffness`. None as long as catalogue data are not solved.
     catalogue : Catalogue or None
         Catalogue data that the stiffness comes from, where it is not given; the constructor also
         takes their keys beside those of the bearing, such as ``designation="6206"``.
@@ -121,10 +124,16 @@ class Bearing(Placed):
     class Words(Along):
         """Words for the seat: along the shaft, on a cylinder of a part, or on faces of a body."""
 
+        #: cylinder of a part from a file, in place of position and seat_width
         seat: Seat | None = None
+        #: segment that it sits in the middle of
         on: str | None = None
+        #: faces that it holds, by name, on a body without an axis
         patch: str | None = None
+        #: point in place of the middle of the patch, in the axes of the file, m
         point: Point = None
+        #: stiffness that catalogue data have under the load of the shaft, as `to_dict` writes it;
+        #: false where it is not solved yet
         settled: Settled | Literal[False] | None = None
 
     sources: ClassVar = {
@@ -133,13 +142,19 @@ class Bearing(Placed):
         "matrix": ("matrix", "stiffness"),
     }
 
+    needs: ClassVar = (
+        ("position", "on", "face", "seat", "patch"),
+        ("seat_width", "on", "seat", "patch"),
+        ("stiffness", "matrix", "catalogue", "hold"),
+    )
+
     name: str
     y: Position
     seat_width: PositiveLength
     matrix: Matrix | None = None
     catalogue: Catalogue | None = None
     axial_series: Annotated[tuple[AxialSpring, ...], BeforeValidator(few_springs)] = ()
-    housing: Annotated[Elastic | None, BeforeValidator(elastic)] = None
+    housing: Annotated[Elastic | None, BeforeValidator(elastic), Written(ELASTIC)] = None
     scale: Factor = 1.0
     attachment: Attachment = "average"
     status: Status = "assumed"
@@ -357,6 +372,7 @@ class Port(Placed):
     Attributes
     ----------
     name : str
+        Name in results and sweeps.
     y : float
         Place, m; it need not lie within the span. `position`, as in a file, is the same, and so is
         ``at="gear.middle"``.
@@ -364,6 +380,7 @@ class Port(Placed):
         Span of the surface that carries it, m, or ``attach_to="gear"``; ``on="gear"`` is the middle
         of a segment, attached to all of its surface.
     attachment : {'average', 'rigid', 'section'}
+        How the surface follows the point.
     patch : Patch or None
         Faces that carry it and the point itself, on a body without an axis.
 
@@ -382,12 +399,19 @@ class Port(Placed):
     class Words(Along):
         """Words for the place of the point, and for the surface that carries it."""
 
+        #: place of the point, such as `NAME.middle` of a segment
         at: str | None = None
+        #: segment in whose middle the point lies, and whose surface carries it
         on: str | None = None
+        #: segment whose surface carries the point
         attach_to: str | None = None
+        #: ends of the surface that carries the point, from the start of the shaft, m
         span: Annotated[list[Length], Field(min_length=2, max_length=2)] | None = None
+        #: cylinder of a part from a file that carries the point
         seat: Seat | None = None
+        #: faces that carry the point, by name, on a body without an axis
         patch: str | None = None
+        #: the point in place of the middle of the patch, in the axes of the file, m
         point: Point = None
 
     sources: ClassVar = {
@@ -395,6 +419,11 @@ class Port(Placed):
         "lo": ("seat", "span", "on", "attach_to"),
         "hi": ("seat", "span", "on", "attach_to"),
     }
+
+    needs: ClassVar = (
+        ("at", "on", "position", "seat", "patch"),
+        ("attach_to", "on", "span", "seat", "patch"),
+    )
 
     name: str = "port"
     y: Position

@@ -94,6 +94,9 @@ class Model(BaseModel, metaclass=_Listing):
     model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
     #: words of a file that may stand for fields of other names
     _aliases: ClassVar[Mapping[str, str]] = {}
+    #: groups of keys of a table of a file, of each of which it has one at least; keys in brackets
+    #: stand together
+    needs: ClassVar[tuple[tuple[str | tuple[str, ...], ...], ...]] = ()
 
     def __init__(self, /, **data: Any):
         data = {self._field_name(key, data): value for key, value in data.items()}

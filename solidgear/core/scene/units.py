@@ -9,12 +9,12 @@ import functools
 import math
 import numbers
 import re
-from collections.abc import Callable
 from typing import Annotated, Any
 
-from pydantic import AfterValidator, BeforeValidator
+from pydantic import AfterValidator, Field
 
 from solidgear.core.errors import SceneError, show
+from solidgear.core.scene.written import Measure, Range, Three
 
 #: dimension -> (SI unit, example as text, allowed powers of the radian). pint holds the radian to
 #: be dimensionless, so N, N/rad and N*rad look alike to it; the power is what sets an angle apart
@@ -271,53 +271,42 @@ def _registry():
 POSITION_DECIMALS = 12
 
 
-def _in(dimension: str) -> BeforeValidator:
-    return BeforeValidator(lambda value: quantity(value, dimension))
+def _in(dimension: str) -> Measure:
+    return Measure(dimension, quantity)
 
 
-def _must(test: Callable[[float], bool], reason: str) -> AfterValidator:
-    def check(value):
-        if not test(value):
-            raise SceneError(reason)
-        return value
-
-    return AfterValidator(check)
-
-
-def _between(low: float, high: float, words: str) -> AfterValidator:
-    return _must(lambda v: low <= v <= high, f"must lie between {words}")
+def _between(low: float, high: float, words: str) -> Range:
+    return Range(f"must lie between {words}", least=low, most=high)
 
 
 def _loss(value: float) -> float:
-    if value > 1:
-        percent = f"; {value:g} per cent is written {value / 100:g}" if value <= 100 else ""
-        raise SceneError(f"a loss factor lies between 0 and 1{percent}")
-    if value < 0:
-        raise SceneError("a loss factor must not be negative")
+    if 1 < value <= 100:
+        reason = (
+            f"a loss factor lies between 0 and 1; {value:g} per cent is written {value / 100:g}"
+        )
+        raise SceneError(reason)
     return value
 
 
-def three(dimension: str, example: str) -> BeforeValidator:
-    """Return a validator that reads three quantities of one dimension."""
-
-    def read(value: Any) -> tuple[float, ...]:
-        if not isinstance(value, (list, tuple)) or len(value) != 3:
-            raise SceneError(f"must be three quantities, {example}")
-        return tuple(_one_of_three(k, entry, dimension) for k, entry in enumerate(value))
-
-    return BeforeValidator(read)
+def three(dimension: str, example: str) -> Three:
+    """Return a mark of three quantities of one dimension."""
+    return Three(dimension, example, quantity)
 
 
-def _one_of_three(place: int, entry: Any, dimension: str) -> float:
-    try:
-        return quantity(entry, dimension)
-    except SceneError as error:
-        raise error.located(None, path=(place,)) from None
+_POSITIVE = Range("must be greater than zero", above=0)
+_NOT_NEGATIVE = Range("must not be negative", least=0)
 
 
-_POSITIVE = _must(lambda v: v > 0, "must be greater than zero")
-_NOT_NEGATIVE = _must(lambda v: v >= 0, "must not be negative")
+def quantity_type(dimension: str) -> Any:
+    """Return the type of a number in the SI unit of a dimension."""
+    return Annotated[float, _in(dimension)]
 
+
+#: six rows of a 6x6, plain numbers in SI
+Rows = Annotated[
+    list[Annotated[list[float], Field(min_length=6, max_length=6)]],
+    Field(min_length=6, max_length=6),
+]
 Length = Annotated[float, _in("length")]
 Position = Annotated[
     float, _in("length"), AfterValidator(lambda v: round(v, POSITION_DECIMALS) + 0.0)
@@ -327,42 +316,37 @@ Thickness = Annotated[Length, _NOT_NEGATIVE]
 Angle = Annotated[
     float,
     _in("angle"),
-    _must(lambda v: 0 < v < math.pi / 2, "must lie between 0 and 90 degrees (0 and 1.571 rad)"),
+    Range("must lie between 0 and 90 degrees (0 and 1.571 rad)", above=0, below=math.pi / 2),
 ]
 Modulus = Annotated[
     float,
     _in("pressure"),
     _POSITIVE,
-    _must(lambda v: v >= 1, "is below 1 Pa, softer than any solid: probably wrong units"),
+    Range("is below 1 Pa, softer than any solid: probably wrong units", least=1),
 ]
 Stress = Annotated[
-    Modulus, _must(lambda v: v >= 1e6, "is below 1 MPa, weak for a metal: probably wrong units")
+    Modulus, Range("is below 1 MPa, weak for a metal: probably wrong units", least=1e6)
 ]
 Density = Annotated[
     float,
     _in("density"),
     _POSITIVE,
-    _must(
-        lambda v: v >= 1e-6, "is below 1e-6 kg/m^3, lighter than any solid: probably wrong units"
-    ),
-    _must(
-        lambda v: v <= 1e8,
+    Range("is below 1e-6 kg/m^3, lighter than any solid: probably wrong units", least=1e-6),
+    Range(
         "is above 1e8 kg/m^3, denser than any solid (osmium has 22600): probably wrong units",
+        most=1e8,
     ),
 ]
 Poisson = Annotated[
     float,
     _in("dimensionless"),
-    _must(lambda v: -1 < v < 0.5, "must lie between -1 and 0.5, both excluded; steel is 0.3"),
+    Range("must lie between -1 and 0.5, both excluded; steel is 0.3", above=-1, below=0.5),
 ]
 AxialSpring = Annotated[
     float,
     _in("force_per_length"),
     _POSITIVE,
-    _must(
-        lambda v: v >= SOFTEST,
-        f"is softer than {SOFTEST:g} N/m, too soft for a spring: leave it out",
-    ),
+    Range(f"is softer than {SOFTEST:g} N/m, too soft for a spring: leave it out", least=SOFTEST),
 ]
 Newtons = Annotated[float, _in("load")]
 PositiveLoad = Annotated[Newtons, _POSITIVE]
@@ -374,9 +358,10 @@ Viscosity = Annotated[
     float,
     _in("viscosity"),
     _POSITIVE,
-    _must(
-        lambda v: 1e-7 <= v <= 1e-1,
+    Range(
         "is outside 1 to 10000 mm^2/s, the viscosities of oils at work: probably wrong units",
+        least=1e-7,
+        most=1e-1,
     ),
 ]
 PositiveSpeed = Annotated[Speed, _POSITIVE]
@@ -386,22 +371,30 @@ Reliability = Annotated[
 RatingFactor = Annotated[
     float,
     _in("dimensionless"),
-    _must(lambda v: 0.5 <= v <= 2, "is b_m of ISO 281, 1.0 to 1.3: must lie between 0.5 and 2"),
+    Range("is b_m of ISO 281, 1.0 to 1.3: must lie between 0.5 and 2", least=0.5, most=2),
 ]
+Ratio = Annotated[float, _in("dimensionless")]
+Share = Annotated[float, _in("dimensionless"), _between(0, 1, "0 and 1")]
 Frequency = Annotated[float, _in("frequency"), _POSITIVE]
 Mass = Annotated[float, _in("mass"), _POSITIVE]
 Factor = Annotated[float, _in("dimensionless"), _POSITIVE]
 Tolerance = Annotated[
     float,
     _in("dimensionless"),
-    _must(lambda v: 0 < v < 1, "must lie between 0 and 1; 0.05 is five per cent"),
+    Range("must lie between 0 and 1; 0.05 is five per cent", above=0, below=1),
 ]
 
 # Quantities of a train.
+Product = Annotated[float, _in("inertia")]
 Inertia = Annotated[float, _in("inertia"), _POSITIVE]
 TorsionSpring = Annotated[float, _in("moment"), _POSITIVE]
 MeshSpring = Annotated[float, _in("force_per_length"), _POSITIVE]
-Loss = Annotated[float, _in("dimensionless"), AfterValidator(_loss)]
+Loss = Annotated[
+    float,
+    _in("dimensionless"),
+    AfterValidator(_loss),
+    _between(0, 1, "0 and 1, as a loss factor does"),
+]
 SpiralAngle = Annotated[float, _in("angle"), _between(0.0, 1.4, "0 and 80 degrees (0 and 1.4 rad)")]
 PitchAngle = Annotated[
     float, _in("angle"), _between(0.0, 1.56, "0 (cylindrical gears) and 89 degrees (1.56 rad)")

@@ -94,13 +94,13 @@ def _shapes(moved: np.ndarray, strain: np.ndarray, names: list[str], modes: int 
         raise SolidgearError(
             f"the ports {listed(together)} cannot all move independently; leave one out with --ports"
         )
-    held = vt[len(s) :].T
+    still = vt[len(s) :].T
     moving = vt[: len(s)].T @ ((u.T / s[:, None]) / size)
-    stretch, sigma, turn = np.linalg.svd(strain @ held)
-    sigma = np.r_[sigma, np.zeros(held.shape[1] - len(sigma))][: held.shape[1]]
+    stretch, sigma, turn = np.linalg.svd(strain @ still)
+    sigma = np.r_[sigma, np.zeros(still.shape[1] - len(sigma))][: still.shape[1]]
     largest = max(sigma.max(initial=0.0), np.linalg.norm(strain, 2) if strain.size else 0.0)
     free = int((sigma <= FREE * largest).sum())
-    count = held.shape[1] if modes is None else min(modes, held.shape[1])
+    count = still.shape[1] if modes is None else min(modes, still.shape[1])
     if free > count:
         raise SolidgearError(
             f"{free} motions stay free with all ports held, and {count} modes are kept; ask for "
@@ -108,7 +108,7 @@ def _shapes(moved: np.ndarray, strain: np.ndarray, names: list[str], modes: int 
         )
     # singular values descend: the softest come last
     stiff = len(sigma) - free
-    basis = held @ turn.T
+    basis = still @ turn.T
     static = moving
     if stiff:
         work = stretch[:, :stiff].T @ (strain @ moving)

@@ -17,11 +17,16 @@ class BoltCircle(OnSegment):
     sort: ClassVar[str] = "cyclic"
 
     kind: Literal["bolt_circle"] = "bolt_circle"
-    count: Count  #: 3 to 400
-    diameter: PositiveLength  #: of a hole, m
-    circle: PositiveLength  #: diameter of the circle of their middles, m
-    depth: PositiveLength | None = None  #: m; None for holes through the whole segment
-    side: Literal["start", "end"] = "start"  #: the face of the segment that they are drilled from
+    #: number of holes
+    count: Count
+    #: diameter of a hole, m
+    diameter: PositiveLength
+    #: diameter of the circle of their middles, m
+    circle: PositiveLength
+    #: depth of the holes, m; without one they go through the whole segment
+    depth: PositiveLength | None = None
+    #: face of the segment that they are drilled from
+    side: Literal["start", "end"] = "start"
 
     def _fits(self, segment: Segment, segments: Sequence[Segment]) -> Iterator[SceneError]:
         middle, radius = self.circle / 2, self.diameter / 2

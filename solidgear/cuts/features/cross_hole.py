@@ -7,9 +7,8 @@ from collections.abc import Iterator
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import AfterValidator
 
-from solidgear.core import Length, PositiveLength, SceneError, SignedAngle
+from solidgear.core import Length, PositiveLength, Range, SceneError, SignedAngle
 from solidgear.core.scene.feature import SMALLEST
 from solidgear.core.scene.parts import Segment
 from solidgear.cuts.features.cut import Cut, Frame
@@ -19,15 +18,6 @@ from solidgear.cuts.features.cut import Cut, Frame
 STEEPEST = math.radians(60)
 #: places across a hole at which its ends are looked for; the largest of them is off by their square
 PLACES = 2001
-
-
-def _not_steep(value: float) -> float:
-    if abs(value) > STEEPEST * (1 + 1e-9):
-        raise SceneError(
-            "must lie between -60 and 60 degrees (-1.047 and 1.047 rad): the angle of the hole to "
-            "the plane at right angles to the shaft"
-        )
-    return value
 
 
 class CrossHole(Cut):
@@ -47,13 +37,22 @@ class CrossHole(Cut):
     notched: ClassVar[bool] = False
 
     kind: Literal["cross_hole"] = "cross_hole"
-    diameter: PositiveLength  #: m
+    #: diameter of the hole, m
+    diameter: PositiveLength
 
-    #: of its axis to the plane at right angles to the shaft, rad: where it looks to, it leans
-    #: towards the end of the shaft
-    inclination: Annotated[SignedAngle, AfterValidator(_not_steep)] = 0.0
-    #: by which its axis passes that of the shaft, m, a quarter turn on from where it looks to: at
-    #: the angle 0 towards +x
+    #: angle of its axis to the plane at right angles to the shaft, rad: where it looks to, it
+    #: leans towards the end of the shaft
+    inclination: Annotated[
+        SignedAngle,
+        Range(
+            "must lie between -60 and 60 degrees (-1.047 and 1.047 rad): the angle of the hole to "
+            "the plane at right angles to the shaft",
+            least=-STEEPEST * (1 + 1e-9),
+            most=STEEPEST * (1 + 1e-9),
+        ),
+    ] = 0.0
+    #: distance by which its axis passes that of the shaft, m, a quarter turn on from where it
+    #: looks to: at the angle 0 towards +x
     offset: Length = 0.0
 
     def reach(self, radius: float) -> tuple[float, float]:

@@ -138,6 +138,7 @@ class Long(Cut):
     if TYPE_CHECKING:
         depth: float  # a field of every subclass, in its own order
 
+    #: length along the shaft, round ends included, m
     length: PositiveLength
 
     def reach(self, radius: float) -> tuple[float, float]:

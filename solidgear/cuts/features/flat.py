@@ -15,7 +15,8 @@ class Flat(Long):
     """A flat cut across a cylinder, with place, length and angle as of :class:`Keyway`."""
 
     kind: Literal["flat"] = "flat"
-    depth: PositiveLength  #: below the crown of the cylinder, m
+    #: depth below the crown of the cylinder, m
+    depth: PositiveLength
 
     def _sized(self, segment: Segment) -> Iterator[SceneError]:
         yield from self._deep(segment)

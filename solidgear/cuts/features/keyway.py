@@ -28,9 +28,11 @@ class Keyway(Long):
     """
 
     kind: Literal["keyway"] = "keyway"
-    #: width, depth: m; the depth is that below the crown of the cylinder (t1 of DIN 6885)
+    #: width, m
     width: PositiveLength
+    #: depth below the crown of the cylinder, m (t1 of DIN 6885)
     depth: PositiveLength
+    #: shape of both ends
     ends: Literal["round", "square"] = "round"
 
     def _sized(self, segment: Segment) -> Iterator[SceneError]:

@@ -9,15 +9,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import Field, model_validator
 
-from solidgear.core import SceneError, SignedAngle
+from solidgear.core import Range, SceneError, SignedAngle
 from solidgear.core.scene.feature import SMALLEST, Count, OnSegment
 from solidgear.core.scene.parts import Segment
-from solidgear.core.scene.units import quantity
+from solidgear.core.scene.units import Ratio
 
 #: least land between two teeth, and least top of a tooth, in pitches; smaller ones would need
 #: endless meshes
@@ -27,17 +27,10 @@ LEAST_LAND = 0.02
 LONGEST_CHORD = 0.15
 
 
-def _ratio(low: float, high: float, unit: str) -> Any:
-    def read(value):
-        number = quantity(value, "dimensionless")
-        if not low <= number <= high:
-            raise SceneError(f"must lie between {low:g} and {high:g} {unit}")
-        return number
-
-    return BeforeValidator(read)
-
-
-Height = Annotated[float, _ratio(0.0, 3.0, "modules")]
+Height = Annotated[Ratio, Range("must lie between 0 and 3 modules", least=0, most=3)]
+HalfThickness = Annotated[
+    Ratio, Range("must lie between 0.1 and 0.4 of the pitch", least=0.1, most=0.4)
+]
 
 
 def arc(half: float) -> np.ndarray:
@@ -65,19 +58,21 @@ class Toothed(OnSegment):
     #: whether a cone may have them, and not only a cylinder
     on_cones: ClassVar[bool] = True
 
-    count: Count  #: 3 to 400
-    #: addendum, dedendum: modules
+    #: number of teeth
+    count: Count
+    #: height above the pitch radius, modules
     addendum: Height = 1.0
+    #: depth below the pitch radius, modules
     dedendum: Height = 1.2
-    #: of a tooth at the pitch radius, in pitches
-    half_thickness: Annotated[float, _ratio(0.1, 0.4, "of the pitch")] = 0.25
-    #: between a flank and the middle of the tooth, rad
+    #: half of the thickness of a tooth at the pitch radius, in pitches
+    half_thickness: HalfThickness = 0.25
+    #: angle between a flank and the middle of the tooth, rad
     flank_angle: Annotated[SignedAngle, Field(ge=0.0, le=0.7)] = math.radians(15)
-    #: between a tooth and a meridian, the same everywhere, rad
+    #: angle between a tooth and a meridian, the same everywhere, rad
     spiral_angle: Annotated[SignedAngle, Field(ge=0.0, le=1.05)] = 0.0
-    #: a tooth with a right hand turns about +y as it goes along +y
+    #: hand of the spiral: a tooth with a right hand turns about +y as it goes along +y
     hand: Literal["left", "right"] = "right"
-    #: smeared, so that the segment of revolution replaces them, or resolved
+    #: smeared, so that the segment of revolution replaces them, or resolved by a sector
     model: Literal["pitch_cone", "sector"] = "pitch_cone"
 
     @model_validator(mode="after")

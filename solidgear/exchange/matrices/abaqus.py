@@ -2,8 +2,8 @@
 
 Read are lines ``node, direction, node, direction, value`` under ``*MATRIX INPUT`` or alone
 (``*MATRIX GENERATE`` with ``*MATRIX OUTPUT``, files of one matrix each), the lower triangles of
-``*USER ELEMENT`` (``*SUBSTRUCTURE MATRIX OUTPUT`` of both programs), and the ``.sti`` and ``.mas`` of
-CalculiX with the ``.dof`` beside them (``*FREQUENCY, SOLVER=MATRIXSTORAGE``).
+``*USER ELEMENT`` (``*SUBSTRUCTURE MATRIX OUTPUT`` of both programs), and the ``.sti`` and ``.mas``
+of CalculiX with the ``.dof`` beside them (``*FREQUENCY, SOLVER=MATRIXSTORAGE``).
 """
 
 from __future__ import annotations
@@ -41,12 +41,12 @@ def write(matrices: PortMatrices, path: Path, units: MatrixUnits) -> dict[Path, 
     for name, matrix in matrices.in_units(units).items():
         shape = "UNSYMMETRIC" if name == SQUARE else "SYMMETRIC"
         lines.append(f"*MATRIX INPUT, NAME={name.upper()}, TYPE={shape}")
-        kept = matrix if name == SQUARE else np.tril(matrix)
-        for row, column in np.argwhere(kept):
+        half = matrix if name == SQUARE else np.tril(matrix)
+        for row, column in np.argwhere(half):
             (node, direction), (to, to_direction) = node_of(row, points), node_of(column, points)
-            lines.append(f"{node}, {direction}, {to}, {to_direction}, {real(kept[row, column])}")
-    taken = [f"{key}={name.upper()}" for name, key in KEYS.items() if name in matrices.matrices]
-    lines.append(f"*MATRIX ASSEMBLE, {', '.join(taken)}")
+            lines.append(f"{node}, {direction}, {to}, {to_direction}, {real(half[row, column])}")
+    keys = [f"{key}={name.upper()}" for name, key in KEYS.items() if name in matrices.matrices]
+    lines.append(f"*MATRIX ASSEMBLE, {', '.join(keys)}")
     return {path: ("\n".join(lines) + "\n").encode()}
 
 

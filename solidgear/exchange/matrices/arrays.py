@@ -21,9 +21,9 @@ ARRAYS = ("mass", "stiffness", "points", "positions")
 def arrays_of(matrices: PortMatrices, units: MatrixUnits) -> dict[str, Any]:
     """Return the arrays of a file."""
     places = np.array([*matrices.positions.values()]) / units.length
-    named = {"points": [*matrices.positions], "positions": places}
+    fields = {"points": [*matrices.positions], "positions": places}
     words = {"coordinates": matrices.coordinates, "units": units.name}
-    return matrices.in_units(units) | named | words | {"about": header(matrices, units)}
+    return matrices.in_units(units) | fields | words | {"about": header(matrices, units)}
 
 
 def write_npz(matrices: PortMatrices, path: Path, units: MatrixUnits) -> dict[Path, bytes]:
@@ -34,8 +34,8 @@ def write_npz(matrices: PortMatrices, path: Path, units: MatrixUnits) -> dict[Pa
 
 
 def write_mat(matrices: PortMatrices, path: Path, units: MatrixUnits) -> dict[Path, bytes]:
-    """Return a ``.mat`` file of level 5, lists of words as cells; none is read, for the reader of SciPy
-    1.17 ends the program on damaged ones.
+    """Return a ``.mat`` file of level 5, lists of words as cells; none is read, for the reader of
+    SciPy 1.17 ends the program on damaged ones.
     """
     from scipy.io import savemat  # start-up: for this format alone
 
@@ -56,7 +56,7 @@ def read_npz(path: Path, source: str) -> Mapping[str, Any]:
 
 
 def from_arrays(arrays: Mapping[str, Any], source: str, units: str) -> PortMatrices:
-    """Return the matrices of named arrays."""
+    """Return the matrices of arrays by name."""
     missing = [name for name in ARRAYS if name not in arrays]
     if missing:
         reason = f"has no array {missing[0]!r}; it holds {', '.join(ARRAYS)}"

@@ -1,9 +1,10 @@
 """CalculiX: matrices as unit masses on springs, tied to the points by equations.
 
-CalculiX reads no matrix of six directions a node in all its versions, but masses, springs and linear
-equations in each.  In the modes of the free body, ``K = diag(w^2)`` and ``M = 1`` are exact as
-``*SPRING`` and ``*MASS``; points move by their shares of the modes in ``*EQUATION``.  A point is two
-nodes, as ``*RIGID BODY`` takes them: REF NODE with x y z, and ROT NODE, whose x y z are rotations.
+CalculiX reads no matrix of six directions a node in all its versions, but masses, springs and
+linear equations in each.  In the modes of the free body, ``K = diag(w^2)`` and ``M = 1`` are exact
+as ``*SPRING`` and ``*MASS``; points move by their shares of the modes in ``*EQUATION``.  A point is
+two nodes, as ``*RIGID BODY`` takes them: REF NODE with x y z, and ROT NODE, whose x y z are
+rotations.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ import scipy.linalg as sla
 from solidgear.core import SolidgearError
 from solidgear.core.reduction.matrix_units import MatrixUnits
 from solidgear.core.reduction.port_matrices import PortMatrices, not_free
-from solidgear.exchange.matrices.header import header
+from solidgear.exchange.matrices.header import header, quoted
 from solidgear.exchange.matrices.nodes import real
 
 #: share of the largest motion of a point that is rounding, and of stiffness that is a free motion
@@ -36,7 +37,7 @@ def write(matrices: PortMatrices, path: Path, units: MatrixUnits) -> dict[Path, 
     moved = (shapes / unit[:, None] * root)[: 6 * count]
     lines = [f"** {line}" for line in header(matrices, units) if "is node" not in line]
     for k, name in enumerate(matrices.positions):
-        lines.append(f"** point {name}: REF NODE {2 * k + 1}, ROT NODE {2 * k + 2}")
+        lines.append(f"** point {quoted(name)}: REF NODE {2 * k + 1}, ROT NODE {2 * k + 2}")
     lines.append("** a node of a mode has up to three of them, along its directions")
     lines.append("*NODE, NSET=POINTS")
     for k, place in enumerate(matrices.positions.values()):

@@ -134,8 +134,8 @@ def read(path: Path, source: str) -> NodeMatrices:
 
 def _meaning(label: str) -> str:
     """Return what a matrix is, by its name."""
-    for name, mine in NAMES.items():
-        if label == mine:
+    for name, deck_name in NAMES.items():
+        if label == deck_name:
             return name
     return next((name for start, name in FIRST.items() if label.startswith(start)), label)
 
@@ -146,7 +146,7 @@ def _refuse_complex(out: NodeMatrices, label: str, card: list[str]) -> None:
 
 
 def _cards(text: str) -> Iterator[list[str]]:
-    """Yield cards as fields, continuations joined: the name, then 8 small or 4 large fields a line."""
+    """Yield cards as fields, continuations joined: the name, then 8 small or 4 large ones a line."""
     card: list[str] = []
     for line in text.splitlines():
         line = line.split("$")[0].rstrip()

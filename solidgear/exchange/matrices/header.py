@@ -28,8 +28,7 @@ def header(matrices: PortMatrices, units: MatrixUnits) -> list[str]:
     lines.append(f"coordinates: {' '.join(DOF_NAMES)} of every point, then modes that move none")
     for k, (name, place) in enumerate(matrices.positions.items(), start=1):
         x, y, z = (format(v / units.length, ".9g") for v in place)
-        quoted = json.dumps(name, ensure_ascii=False)
-        lines.append(f"point {k} {quoted} at x {x}, y {y}, z {z}")
+        lines.append(f"point {k} {quoted(name)} at x {x}, y {y}, z {z}")
     for k in range(matrices.modes):
         row = 6 * count + k
         ratio = matrices.stiffness[row, row] / matrices.mass[row, row]
@@ -39,7 +38,13 @@ def header(matrices: PortMatrices, units: MatrixUnits) -> list[str]:
         "damping": "damping is structural: stiffness is K + i damping at every frequency",
         "gyroscopic": "gyroscopic is times velocities, antisymmetric",
     }
-    return lines + [text for name, text in kinds.items() if name in matrices.matrices]
+    lines += [text for name, text in kinds.items() if name in matrices.matrices]
+    return [" ".join(line.splitlines()) for line in lines]
+
+
+def quoted(name: str) -> str:
+    """Return a name on one line, whatever is in it."""
+    return json.dumps(name)
 
 
 @dataclass

@@ -1,4 +1,4 @@
-"""Matrix Market: a file for every matrix, and a sidecar in JSON with points, units and coordinates."""
+"""Matrix Market: a file for every matrix, and a sidecar in JSON with points and units."""
 
 from __future__ import annotations
 
@@ -61,8 +61,8 @@ def read(path: Path, source: str) -> Mapping[str, Any]:
 
 
 def _matrix(path: Path) -> np.ndarray:
-    """Read a real matrix of coordinates; the reader of SciPy 1.17 ends the program where a row is out
-    of range.
+    """Read a real matrix of coordinates; the reader of SciPy 1.17 ends the program where a row is
+    out of range.
     """
     with path.open(encoding="utf-8", errors="replace") as file:
         words = file.readline().lower().split()

@@ -2,8 +2,8 @@
 
 What moves beside the points is either a coordinate of a mode already, as where the program has
 condensed its body, or it is condensed here (Craig and Bampton 1968), with the static fields of the
-inertia of its static shapes beside the modes, a Krylov step: modes alone converge slowly where a rigid
-face ends.
+inertia of its static shapes beside the modes, a Krylov step: modes alone converge slowly where a
+rigid face ends.
 """
 
 from __future__ import annotations
@@ -64,15 +64,15 @@ class NodeMatrices:
         return SceneError(reason, where=self.source)
 
     def matrices(self, points: Mapping[str, Any] | None, units: str) -> PortMatrices:
-        """Return the matrices by points, named as the user or else the file has it, and modes."""
+        """Return the matrices by points, called as the user or else the file has it, and modes."""
         labels, tables = self.stored or self._assembled()
         rows = {label: k for k, label in enumerate(labels)}
         nodes: dict[int, int] = {}
         for node, _ in labels:
             nodes[node] = nodes.get(node, 0) + 1
-        named = self._named(points, nodes)
+        point_nodes = self._named(points, nodes)
         chosen = []
-        for name, (node, turned) in named.items():
+        for name, (node, turned) in point_nodes.items():
             motions = [(node, d) for d in (1, 2, 3)]
             motions += [(turned, d if turned != node else d + 3) for d in (1, 2, 3)]
             for label in motions:
@@ -87,7 +87,7 @@ class NodeMatrices:
         order = np.r_[np.array(chosen, int), others]
         arrays = {name: table[order][:, order] for name, table in tables.items()}
         system = matrix_units(units or self.head.units or "m-kg-N")
-        places = self._places(points, named, system)
+        places = self._places(points, point_nodes, system)
         arrays, notes = self._with_modes(arrays, places)
         return checked_matrices(self.source, arrays, places, system, notes)
 
@@ -109,9 +109,9 @@ class NodeMatrices:
         with a place and six directions.
         """
         if not points:
-            named = {name: (k, k) for k, name in self.head.names.items() if k in nodes}
+            point_nodes = {name: (k, k) for k, name in self.head.names.items() if k in nodes}
             alone = (k for k in sorted(nodes) if k in self.places and nodes[k] == 6)
-            return named or {str(k): (k, k) for k in alone}
+            return point_nodes or {str(k): (k, k) for k in alone}
         out: dict[str, tuple[int, int]] = {}
         for name, entry in points.items():
             node: Any = entry.get("node") if isinstance(entry, Mapping) else entry
@@ -131,12 +131,12 @@ class NodeMatrices:
     def _places(
         self,
         points: Mapping[str, Any] | None,
-        named: Mapping[str, tuple[int, int]],
+        point_nodes: Mapping[str, tuple[int, int]],
         units: MatrixUnits,
     ) -> dict[str, np.ndarray]:
         """Return positions by name, in the units of the file."""
         out = {}
-        for name, (node, _) in named.items():
+        for name, (node, _) in point_nodes.items():
             entry = (points or {}).get(name)
             if isinstance(entry, Mapping) and "position" in entry:
                 position = entry["position"]
@@ -156,7 +156,7 @@ class NodeMatrices:
     def _with_modes(
         self, tables: Mapping[str, sp.csr_matrix], places: Mapping[str, np.ndarray]
     ) -> tuple[dict[str, np.ndarray], tuple[str, ...]]:
-        """Return dense matrices of points and modes, condensed where the file has other unknowns."""
+        """Return dense matrices of points and modes, condensed where there are other unknowns."""
         p = 6 * len(places)
         stiffness = tables.get("stiffness")
         if not places or stiffness is None or "mass" not in tables:
@@ -206,10 +206,10 @@ def _with_fields(stiffness, mass, modes: np.ndarray, fields: np.ndarray) -> np.n
     for _ in range(2):
         fields = fields - modes @ (modes.T @ (mass @ fields))
     share, mix = np.linalg.eigh(fields.T @ (mass @ fields))
-    kept = share > NEW**2
-    both = np.hstack([modes, fields @ (mix[:, kept] / np.sqrt(share[kept]))])
-    gram, energy = both.T @ (mass @ both), both.T @ (stiffness @ both)
-    return both @ sla.eigh((energy + energy.T) / 2, (gram + gram.T) / 2)[1]
+    new = share > NEW**2
+    basis = np.hstack([modes, fields @ (mix[:, new] / np.sqrt(share[new]))])
+    gram, energy = basis.T @ (mass @ basis), basis.T @ (stiffness @ basis)
+    return basis @ sla.eigh((energy + energy.T) / 2, (gram + gram.T) / 2)[1]
 
 
 def real(value: float) -> str:

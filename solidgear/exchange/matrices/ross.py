@@ -1,4 +1,4 @@
-"""ROSS: a Python file with the rotor of the beam, and the shaft condensed to one point as an element.
+"""ROSS: a Python file with the rotor of the beam, and the shaft condensed to a point as an element.
 
 The axis of a rotor in ROSS is z; x, y, z there are z, x, y here, a turn of the axes, so that a 6x6 of
 a point keeps its signs.  ROSS has no bearing with tilt or with couplings of six motions, but takes
@@ -61,15 +61,16 @@ def write_ross(source: Any, path: str | os.PathLike, units: str, **wanted: Any) 
     ports = [*wanted.pop("ports", ())] or [scene.port.name]
     if len(ports) > 1:
         raise SolidgearError(f"an element of ROSS is at one node, not at {', '.join(ports)}")
-    held = wanted.pop("bearings", None)
-    bearings = True if held is None else held
+    bearings = wanted.pop("bearings", None)
+    bearings = True if bearings is None else bearings
     condensed = port_matrices(scene, ports=ports, bearings=bearings, **wanted)
     supports = as_supports(scene)
-    lines = ['"""Rotor of ROSS (6 motions a node, axis z), in SI.', "", *header(condensed, SI)]
+    lines = ["Rotor of ROSS (6 motions a node, axis z), in SI.", *header(condensed, SI)]
     lines.append("axes: z, x, y here are x, y, z there; every bearing is at one node")
     if grounded(SHAFT, supports).keys() & {f"{SHAFT}.bearings"}:
         lines.append("the housing that couples the bearings is in the condensed point alone")
-    lines += ['"""', "", HEAD, "", *_rotor(scene, supports), "", ""]
+    lines = [f"# {line}" for line in lines]
+    lines += ["", HEAD, "", *_rotor(scene, supports), "", ""]
     lines += [*_condensed(condensed, ports[0])]
     lines += [
         "",
@@ -122,7 +123,7 @@ def _rotor(scene: Scene, supports: Supports) -> Iterator[str]:
 def _condensed(matrices: PortMatrices, port: str) -> Iterator[str]:
     """Yield the function that makes the condensed point."""
     yield "def condensed(n):"
-    yield f'    """Return the shaft condensed to {port!r} as an element of node n."""'
+    yield '    """Return the shaft condensed to a point as an element of node n."""'
     yield f"    stiffness = {_turned(matrices.stiffness)}"
     yield f"    mass = {_turned(matrices.mass)}"
     yield f"    return PointElement(n, stiffness, mass, tag={port!r})"

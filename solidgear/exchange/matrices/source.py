@@ -70,7 +70,7 @@ class Wanted:
             raise SolidgearError(f"loss = {self.loss}: a loss factor lies between 0 and 1")
 
     @property
-    def kept(self) -> int | None:
+    def most_modes(self) -> int | None:
         """Modes with the ports held; None to keep every coordinate of the basis."""
         return None if self.method == FREE_INTERFACE else self.modes
 
@@ -201,7 +201,7 @@ def _of_shaft(body: Body, supports: Supports, wanted: Wanted, name: str) -> Port
     """Return the matrices of a shaft with what holds it and the masses on it."""
     names = [port.name for port in body.ports]
     chosen = _chosen(wanted.ports or names, dict.fromkeys(names), name)
-    held = bool(np.any(supports.stiffness))
+    springs = bool(np.any(supports.stiffness))
     needed = list(dict.fromkeys([*chosen, *supports.ports]))
     if wanted.method == FREE_INTERFACE:
         part = rubin(body, wanted.modes, needed)
@@ -210,7 +210,7 @@ def _of_shaft(body: Body, supports: Supports, wanted: Wanted, name: str) -> Port
     system = System({SHAFT: part}, grounded(SHAFT, supports))
     notes = [f"shaft by the model {body.fidelity}, {wanted.words(part)}"]
     notes.append(
-        "held: stiffness of its bearings is included" if held else "free: without its bearings"
+        "held: stiffness of its bearings is included" if springs else "free: without its bearings"
     )
     if supports.inertia is not None:
         notes.append("rigid masses on it are included")
@@ -227,7 +227,7 @@ def _of_shaft(body: Body, supports: Supports, wanted: Wanted, name: str) -> Port
         swirl = 2 * wanted.speed * coupling
         notes.append(f"gyroscopic at {wanted.speed:.6g} rad/s about y")
     ends = {port: f"{SHAFT}.{port}" for port in chosen}
-    return port_coordinates(system, ends, wanted.kept, losses, swirl, name, notes)
+    return port_coordinates(system, ends, wanted.most_modes, losses, swirl, name, notes)
 
 
 def _unit_shapes(part: Superelement) -> list[dict[int, np.ndarray]]:
@@ -245,7 +245,7 @@ def _of_train(train: Train, wanted: Wanted, options: dict) -> PortMatrices:
     if wanted.loss:
         raise SolidgearError("loss is for one shaft; a train has [losses] in its file")
     reduction = "rubin" if wanted.method == FREE_INTERFACE else "craig_bampton"
-    kept = max(wanted.modes, KEPT) if wanted.method == CRAIG_BAMPTON else wanted.modes
+    shaft_modes = max(wanted.modes, KEPT) if wanted.method == CRAIG_BAMPTON else wanted.modes
     models = wanted.model or MODEL
     by_shaft = (
         {side: models for side in train.shafts}
@@ -255,15 +255,15 @@ def _of_train(train: Train, wanted: Wanted, options: dict) -> PortMatrices:
     settings: dict[str | tuple[str, str], dict[str, Any]] = {
         model: LADDER[model].checked(options) for model in {*by_shaft.values()} if options
     }
-    assembly = Assembly(train, reduction, kept, settings)
+    assembly = Assembly(train, reduction, shaft_modes, settings)
     system = assembly.system(*by_shaft.values(), bearings=wanted.bearings is not False)
     ends = {
         f"{side}.{station.name}": f"{side}.{station.name}"
         for side, scene in assembly.scenes.items()
         for station in scene.stations
     }
-    known = {end: end for part in system.parts for end in _all_ports(part, system.parts[part])}
-    chosen = _chosen(wanted.ports or ends, known, train.name)
+    all_ports = {end: end for part in system.parts for end in _all_ports(part, system.parts[part])}
+    chosen = _chosen(wanted.ports or ends, all_ports, train.name)
     notes = [
         f"train: {', '.join(f'{side} {model}' for side, model in by_shaft.items())}, {wanted.words()}",
         "axes of the first shaft's scene",
@@ -273,19 +273,19 @@ def _of_train(train: Train, wanted: Wanted, options: dict) -> PortMatrices:
     ]
     losses = assembly.loss_factors()
     chosen_ends = {end: end for end in chosen}
-    return port_coordinates(system, chosen_ends, wanted.kept, losses, None, train.name, notes)
+    return port_coordinates(system, chosen_ends, wanted.most_modes, losses, None, train.name, notes)
 
 
 def _of_system(
     system: System, ends: dict[str, str], wanted: Wanted, modes: int | None
 ) -> PortMatrices:
     """Return the matrices of a system that is assembled already."""
-    known = ends or {
+    all_ports = ends or {
         end: end for name, part in system.parts.items() for end in _all_ports(name, part)
     }
-    chosen = _chosen(wanted.ports or known, known, "the system")
+    chosen = _chosen(wanted.ports or all_ports, all_ports, "the system")
     notes = [wanted.words() if modes is not None else "every coordinate of the superelement"]
-    return port_coordinates(system, {name: known[name] for name in chosen}, modes, notes=notes)
+    return port_coordinates(system, {name: all_ports[name] for name in chosen}, modes, notes=notes)
 
 
 def _all_ports(part: str, body: Any) -> dict[str, str]:
@@ -295,14 +295,14 @@ def _all_ports(part: str, body: Any) -> dict[str, str]:
     return {f"{part}.{name}": f"{part}.{name}" for name in body.ports}
 
 
-def _chosen(wanted: Iterable[str], known: Mapping[str, Any], name: str) -> list[str]:
+def _chosen(wanted: Iterable[str], all_ports: Mapping[str, Any], name: str) -> list[str]:
     """Return wanted ports, each once; refuse one that there is not."""
     out = list(wanted)
     for port in out:
-        if port not in known:
+        if port not in all_ports:
             raise SolidgearError(
-                f"{name} has no port {show(port, 40)}{nearest(port, known)}; it has "
-                f"{listed(known, 12)}"
+                f"{name} has no port {show(port, 40)}{nearest(port, all_ports)}; it has "
+                f"{listed(all_ports, 12)}"
             )
         if out.count(port) > 1:
             raise SolidgearError(f"the port {port!r} is given twice; give it once")

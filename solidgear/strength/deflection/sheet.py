@@ -147,8 +147,8 @@ def face_load(deflected: Deflection, units: Units = ENGINEERING) -> list[Table]:
         quantity("line load", "N/m along", units, digits=4),
         quantity("f_sh", "m moved", units, digits=3),
         quantity("flanks", "m moved", units, digits=3),
-        Column("c_ga, N/(mm um)"),
-        Column("KHb"),
+        Column("c_ga, N/(mm um)", write=_tooth_stiffness, name="c_ga", unit="N/m²"),
+        Column("KHb", write="{:.2f}".format),
         Column("error bar"),
     ]
     rows = [
@@ -157,9 +157,9 @@ def face_load(deflected: Deflection, units: Units = ENGINEERING) -> list[Table]:
             load.line_load,
             load.skew,
             load.shape,
-            f"{1e-9 * load.stiffness:.3g}",
-            f"{load.factor:.2f}",
-            percent_of(load.bar, load.factor),
+            load.stiffness,
+            load.factor,
+            Cell(load.bar, "", percent_of(load.bar, load.factor) or DASH),
         ]
         for load in deflected.face_loads
     ]
@@ -221,6 +221,10 @@ def turn_lines(turn: StageTurn) -> Table:
     return numbers({"carrier [rad]": turn.angle, **forces}, axes=1)
 
 
+def _tooth_stiffness(value: float) -> str:
+    return f"{1e-9 * value:.3g}"
+
+
 def over_points(points: Sequence[Deflection], units: Units = ENGINEERING) -> list[Table]:
     """Return misalignment and radial bearing loads over several operating points; none for one
     point.
@@ -239,7 +243,10 @@ def over_points(points: Sequence[Deflection], units: Units = ENGINEERING) -> lis
         if share := percent_of(widest, max(abs(m.value) for m in at_points)):
             bars.append(f"{m.name} {share}")
     note = f"By {first.model}; error bars {', '.join(bars)} at most." if bars else ""
-    lie += [Column(f"KHb{load.mesh.removeprefix('mesh')}") for load in first.face_loads]
+    lie += [
+        Column(f"KHb{load.mesh.removeprefix('mesh')}", write="{:.2f}".format)
+        for load in first.face_loads
+    ]
     ends = [f"{shaft.name}.{b.name}" for shaft in first.shafts for b in shaft.bearings]
     carried = [text("at"), *(quantity(end, "N", units, digits=4) for end in ends)]
     lie_rows = [
@@ -247,7 +254,7 @@ def over_points(points: Sequence[Deflection], units: Units = ENGINEERING) -> lis
             p.point.label,
             *p.mesh_forces.values(),
             *(m.value for m in p.misalignment),
-            *(f"{load.factor:.2f}" for load in p.face_loads),
+            *(load.factor for load in p.face_loads),
         ]
         for p in points
     ]

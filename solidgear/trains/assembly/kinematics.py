@@ -21,7 +21,8 @@ from solidgear.bearings.catalogued import Catalogued
 from solidgear.bearings.geometry import Geometry, inner_geometry
 from solidgear.bearings.passing import passing, working_angle
 from solidgear.bearings.solved import solved
-from solidgear.core import Scene, shaft
+from solidgear.core import Scene
+from solidgear.core.loading import shaft
 from solidgear.trains.file.planetary import Stage
 from solidgear.trains.file.train import Train
 

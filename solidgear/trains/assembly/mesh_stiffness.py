@@ -10,8 +10,7 @@ stiffness stands in.
 
 from __future__ import annotations
 
-from solidgear.core import SolidgearError
-from solidgear.core.registry import addition
+from solidgear.core import SolidgearError, addition
 from solidgear.trains.file.mesh_teeth import wheels_of
 from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.tables import TEETH

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from solidgear.core.registry import addition
+from solidgear.core import addition
 from solidgear.show.units import Units
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.file.operation import OperatingPoint

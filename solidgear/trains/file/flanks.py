@@ -7,7 +7,7 @@ from typing import Annotated, Self
 
 from pydantic import Field, model_validator
 
-from solidgear.core import Length, Model, PositiveLength, SceneError
+from solidgear.core import Length, Model, PositiveLength, SceneError, Written
 from solidgear.core.gears.flank_shape import FlankGrid
 from solidgear.core.gears.wheel import Rack
 from solidgear.core.scene.units import Thickness
@@ -21,8 +21,11 @@ LEAST_OF_GRID = 2
 class RackTable(Model):
     """The basic rack that cuts the teeth (ISO 53 A unless given), in normal modules."""
 
+    #: addendum of the rack, in normal modules
     addendum: Annotated[float, Field(gt=0, le=2)] = 1.0
+    #: dedendum of the rack, in normal modules
     dedendum: Annotated[float, Field(gt=0, le=2.5)] = 1.25
+    #: radius of the fillet of the rack, in normal modules
     root_radius: Annotated[float, Field(gt=0, le=0.8)] = 0.38
 
     def with_angle(self, pressure_angle: float) -> Rack:
@@ -33,12 +36,15 @@ class RackTable(Model):
 class ReliefTable(Model):
     """Material missing at tip and root, growing evenly along the roll length."""
 
-    #: tip, root: at the tip and where the flank ends above the root, m
+    #: material missing at the tip, m
     tip: Thickness = 0.0
+    #: material missing where the flank ends above the root, m
     root: Thickness = 0.0
-    #: from, root_from: diameters at which they begin, m; by default where a single pair of teeth
+    #: diameter at which the relief of the tip begins, m; by default where a single pair of teeth
     #: carries (long relief)
     from_: PositiveLength | None = Field(None, alias="from")
+    #: diameter at which the relief of the root begins, m; by default where a single pair of teeth
+    #: carries (long relief)
     root_from: PositiveLength | None = None
 
 
@@ -94,18 +100,22 @@ def radius_at(roll: float, base: float) -> float:
 class Flanks(Model):
     """Rack, tips, face and flanks of a cylindrical gear; of both flanks of each tooth alike."""
 
+    #: basic rack that cuts the teeth; by default ISO 53 A
     rack: RackTable | None = None
-    tip_diameter: PositiveLength | None = None  #: of a ring the inner one, m
-    #: of the middle of its face from its lumped point along its shaft, m
+    #: tip diameter, of a ring the inner one, m
+    tip_diameter: PositiveLength | None = None
+    #: distance of the middle of the face from the lumped point along the shaft, m
     face_offset: Length = 0.0
+    #: relief of tip and root
     relief: ReliefTable | None = None
-    crowning: Thickness = 0.0  #: missing at both ends of the face, m
-    #: missing at the end of the face that lies nearer to the end of the shaft more than at the
+    #: material missing at both ends of the face, m
+    crowning: Thickness = 0.0
+    #: material missing at the end of the face nearer to the end of the shaft more than at the
     #: other, on the flank that carries, m
     helix_slope: Length = 0.0
     #: a CSV file with the columns z, roll or diameter, and deviation, in m: more material is
     #: positive
-    measured_flank: MeasuredFlank | None = None
+    measured_flank: Annotated[MeasuredFlank | None, Written(str)] = None
 
     @property
     def is_modified(self) -> bool:

@@ -6,11 +6,12 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, InstanceOf, model_validator
 
-from solidgear.core import Model, PositiveLength, Scene, SceneError, listed, nearest
+from solidgear.core import Model, PositiveLength, Scene, SceneError, Written, listed, nearest
 from solidgear.core.reduction.port_matrices import PortMatrices
 from solidgear.core.scene.stations import Status
 from solidgear.core.scene.units import Inertia, Mass, PitchAngle, SpiralAngle
 from solidgear.trains.file.flanks import Flanks
+from solidgear.trains.file.matrix_keys import WithMatrices
 from solidgear.trains.file.tables import Azimuth
 
 #: relative, of inertias: the last of three digits
@@ -27,16 +28,19 @@ FLANKS = ("left", "right")
 
 
 #: of a shaft: mass and stiffness of its free body in the axes of its scene, by another program
-Matrices = Annotated[InstanceOf[PortMatrices] | None, Field(exclude=True, repr=False)]
+Matrices = Annotated[InstanceOf[PortMatrices] | None, Field(exclude=True, repr=False), Written(str)]
 
 
 class HeadInertia(Model):
     """A rigid body of revolution at the lumped point of a shaft, added to the mass of the segments."""
 
-    mass: Mass  #: kg
-    #: torsional, bending: about the shaft and across it, at the lumped point, kg m^2
+    #: mass, kg
+    mass: Mass
+    #: moment of inertia about the shaft, at the lumped point, kg m^2
     torsional: Inertia
+    #: moment of inertia across the shaft, at the lumped point, kg m^2
     bending: Inertia
+    #: source of these numbers
     status: Status = "assumed"
 
     @model_validator(mode="after")
@@ -52,32 +56,39 @@ class HeadInertia(Model):
 class Gear(Flanks):
     """The teeth of one gear of a shaft."""
 
+    #: number of teeth
     teeth: Teeth
+    #: hand of the teeth
     hand: Literal["left", "right"] | None = None
-    #: of parallel shafts also the left or right flank: as seen from the side of the apex (the start
-    #: of the shaft unless ``apex`` says otherwise), a tooth with its tip upwards (ISO 21771)
+    #: flank that carries; on parallel shafts left or right, as seen from the side of the apex (the
+    #: start of the shaft unless `apex` says otherwise), a tooth with its tip upwards (ISO 21771)
     loaded_side: Literal["concave", "convex", "left", "right"] | None = None
-    #: pitch_radius, face_width: at the heel and along the cone, m
+    #: pitch radius at the heel, m
     pitch_radius: PositiveLength | None = None
+    #: face width along the cone, m
     face_width: PositiveLength | None = None
-    #: pitch_angle, spiral_angle: rad
+    #: angle of the pitch cone to the axis, rad
     pitch_angle: PitchAngle | None = None
+    #: spiral angle of bevel gears, rad
     spiral_angle: SpiralAngle | None = None
-    #: module, helix_angle: of cylindrical gears instead: normal module, m, and helix angle at the
-    #: reference cylinder, rad; radii follow from the teeth
+    #: normal module of a cylindrical gear, m; radii follow from the teeth
     module: PositiveLength | None = None
+    #: helix angle of a cylindrical gear at the reference cylinder, rad
     helix_angle: SpiralAngle | None = None
-    #: of cylindrical gears, in modules
+    #: profile shift of a cylindrical gear, in modules
     profile_shift: Annotated[float, Field(gt=-1.5, lt=2.5)] = 0.0
-    #: of bevel gears: radius of the cutter at the pitch plane, m, and curvature of its blade, 1/m;
-    #: flanks open away from their middle where the one that cuts the concave flank has the larger
-    #: radius, and where the pinion's blade is curved
+    #: radius of the cutter of a bevel gear at the pitch plane, m; flanks open away from their
+    #: middle where the cutter of the concave flank has the larger radius
     cutter_radius: PositiveLength | None = None
+    #: curvature of the blade of the cutter of a bevel gear, 1/m; where the pinion's blade is
+    #: curved, flanks open away from their middle
     blade_curvature: Annotated[float, Field(ge=-MOST_CURVED, le=MOST_CURVED)] | None = None
-    #: of cylindrical gears, of the middle of a tooth at the lumped point about y of the scene, right-
-    #: handed from x, rad: that of two gears of a shaft ties the phases of their meshes
+    #: angle of the middle of a tooth of a cylindrical gear at the lumped point about y of the
+    #: scene, right-handed from x, rad: that of two gears of a shaft ties the phases of their meshes
     angle: Azimuth | None = None
-    apex: Literal["start", "end"] = "start"  #: towards which end of the shaft the pitch apex lies
+    #: end of the shaft that the pitch apex lies towards
+    apex: Literal["start", "end"] = "start"
+    #: rigid mass and inertia of the gear body at the lumped point
     head: HeadInertia | None = None
 
     @property
@@ -94,14 +105,17 @@ class Gear(Flanks):
         return self.hand if self.loaded_side == "concave" else FLANKS[self.hand == "left"]
 
 
-class Shaft(Model):
+class Shaft(WithMatrices):
     """A shaft and the gears that it carries."""
 
-    scene: Scene
-    gears: dict[str, Gear] = {}  #: by the lumped point of the scene at which each sits
-    #: of a train with an operating point, the [load] of the scene: added to the mesh force, or
-    #: replaced by it; where neither is given it must be the mesh force
+    #: file of the shaft, or the tables of its scene
+    scene: Annotated[Scene, Written(str | dict)]
+    #: gears by the lumped points of the scene at which they sit
+    gears: dict[str, Gear] = {}
+    #: whether the [load] of the scene is added to the mesh force or replaced by it, in a train
+    #: with an operating point; without this key it must be the mesh force
     scene_load: Literal["added", "replaced"] | None = None
+    #: file of matrices of the free body by another program
     matrices: Matrices = None
 
     @model_validator(mode="after")
@@ -132,11 +146,15 @@ class Shaft(Model):
         )
 
 
-class Member(Gear):
+class Member(WithMatrices, Gear):
     """A gear and its shaft, whose main lumped point is that of the gear."""
 
-    scene: Scene
-    scene_load: Literal["added", "replaced"] | None = None  #: as of `Shaft`
+    #: file of the shaft, or the tables of its scene
+    scene: Annotated[Scene, Written(str | dict)]
+    #: whether the [load] of the scene is added to the mesh force or replaced by it, in a train
+    #: with an operating point; without this key it must be the mesh force
+    scene_load: Literal["added", "replaced"] | None = None
+    #: file of matrices of the free body by another program
     matrices: Matrices = None
 
     @property

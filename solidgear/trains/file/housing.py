@@ -6,16 +6,17 @@ Everything is in the axes of the train, which are those of the first shaft's sce
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from pydantic import BeforeValidator, Field, InstanceOf, model_validator
 
-from solidgear.core import Model, SceneError, listed, nearest
+from solidgear.core import Model, SceneError, Written, listed, nearest
 from solidgear.core.reduction.port_matrices import CENTRE, PortMatrices
 from solidgear.core.scene.bearing_stiffness import Matrix
 from solidgear.core.scene.stations import Status
-from solidgear.core.scene.units import TYPED, Loss, Mass, quantity
+from solidgear.core.scene.units import TYPED, Loss, Mass, Product, quantity
+from solidgear.trains.file.matrix_keys import WithMatrices
 from solidgear.trains.file.mesh_cycle import Vector
 
 #: name of the housing among the parts of a train
@@ -50,14 +51,26 @@ def _inertia(value: Any) -> tuple[tuple[float, ...], ...]:
     return tuple(tuple(row) for row in tensor.tolist())
 
 
+#: three moments, or a row of three
+Triple = Annotated[list[Product], Field(min_length=3, max_length=3)]
+
+
 class Mount(Model):
     """A spring between the housing and ground."""
 
-    name: str = ""  #: by default its number, counted from one
-    position: Vector | None = None  #: of a rigid housing, m
-    at: str | None = None  #: a point of the housing instead
-    stiffness: Matrix  #: 6x6 about its place, SI; the constructor also takes named entries
-    loss: Loss = 0.1  #: loss factor, twice a damping ratio
+    needs: ClassVar = (("at", "position"),)
+
+    #: name; by default its number, counted from one
+    name: str = ""
+    #: place of the mount on a rigid housing, m
+    position: Vector | None = None
+    #: point of the housing that it stands at, in place of a position
+    at: str | None = None
+    #: 6x6 about its place, SI; named entries or six rows
+    stiffness: Matrix
+    #: loss factor, twice a damping ratio
+    loss: Loss = 0.1
+    #: source of the stiffness
     status: Status = "assumed"
 
     @model_validator(mode="after")
@@ -71,7 +84,7 @@ class Mount(Model):
         return self
 
 
-class TrainHousing(Model):
+class TrainHousing(WithMatrices):
     """A body that carries the bearings of shafts, on mounts to ground: rigid, or of matrices.
 
     Examples
@@ -82,18 +95,32 @@ class TrainHousing(Model):
     (['1'], array([85. , 85. , 85. ,  3.1,  2.2,  2.9]))
     """
 
-    #: of an elastic one: mass, inertia and centre are then theirs
-    matrices: InstanceOf[PortMatrices] | None = Field(None, exclude=True, repr=False)
-    mass: Mass  #: kg
-    #: 3x3 about its centre of mass, kg m^2; the constructor also takes the three on the diagonal
-    inertia: Annotated[tuple[tuple[float, ...], ...], BeforeValidator(_inertia)]
-    centre: Vector  #: its centre of mass, m
-    loss: Loss | None = None  #: loss factor of an elastic one, 0.01 by default
+    needs: ClassVar = (("matrices", ("mass", "inertia", "centre")),)
+
+    #: file of the matrices of an elastic housing; mass, inertia and centre are then theirs
+    matrices: Annotated[InstanceOf[PortMatrices] | None, Written(str)] = Field(
+        None, exclude=True, repr=False
+    )
+    #: mass of a rigid housing, kg
+    mass: Mass
+    #: moments of inertia about x, y and z through its centre of mass, kg m^2, or three rows of
+    #: three
+    inertia: Annotated[
+        tuple[tuple[float, ...], ...], BeforeValidator(_inertia), Written(Triple | list[Triple])
+    ]
+    #: centre of mass, m
+    centre: Vector
+    #: loss factor of an elastic housing, 0.01 by default
+    loss: Loss | None = None
     #: shafts whose bearings stand in it, and with them rings of planetary stages; all by default
     carries: Annotated[tuple[str, ...], Field(min_length=1)] | None = None
-    mounts: tuple[Mount, ...] = Field((), alias="mount")  #: ``mount`` in a file
-    points: dict[str, Vector] = {}  #: places of a rigid one whose motion is given, by name, m
-    status: Status = "assumed"  #: of mass and inertia
+    #: springs between the housing and ground
+    mounts: tuple[Mount, ...] = Field((), alias="mount")
+    #: places of a rigid housing whose motion is given, by name, m, or the nodes of the file of
+    #: matrices
+    points: Annotated[dict[str, Vector], Written(dict[str, Any])] = {}
+    #: source of mass and inertia
+    status: Status = "assumed"
 
     def __init__(self, /, **data: Any):
         if isinstance(matrices := data.get("matrices"), PortMatrices):

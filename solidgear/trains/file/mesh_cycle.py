@@ -23,7 +23,7 @@ Vector = Annotated[
 class Cycle(Model):
     """Base of tables over one mesh cycle."""
 
-    #: of the pinion, ascending over one tooth pitch with both ends, rad; linear between
+    #: angles of the pinion, ascending over one tooth pitch with both ends, rad; linear between
     angle: tuple[SignedAngle, ...]
 
     @property
@@ -44,7 +44,8 @@ class Cycle(Model):
 class StiffnessCycle(Cycle):
     """Mesh stiffness over one mesh cycle; its mean is the stiffness of the mesh."""
 
-    stiffness: tuple[MeshSpring, ...]  #: N/m, at each angle
+    #: stiffness at each angle, N/m
+    stiffness: tuple[MeshSpring, ...]
 
     @model_validator(mode="after")
     def _periodic(self):
@@ -62,8 +63,9 @@ class StiffnessCycle(Cycle):
 class LineCycle(Cycle):
     """Mesh point and line of action over a mesh cycle, in the pinion's frame from the lumped point."""
 
-    point: tuple[Vector, ...]  #: mesh point at each angle, m
-    #: unit, the direction of the force on the pinion
+    #: mesh point at each angle, m
+    point: tuple[Vector, ...]
+    #: unit vectors, the direction of the force on the pinion
     normal: tuple[tuple[float, float, float], ...]
 
     @model_validator(mode="after")

@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from solidgear.core import DOF_NAMES, Model, SceneError
+from solidgear.core import DOF_NAMES, Model, SceneError, Written
 from solidgear.core.scene.load import BearingLoad
 from solidgear.core.scene.model_table import table_of
 from solidgear.core.scene.units import Speed, Torque
@@ -23,7 +23,7 @@ MOST_POINTS = 1000
 class OutsideForce(BearingLoad):
     """A load on a shaft from neither teeth nor bearings, such as of a belt."""
 
-    #: shaft and port, such as ``pinion.A``; components are along the axes of that shaft's scene
+    #: shaft and port, such as `pinion.A`; components are along the axes of that shaft's scene
     at: str
 
 
@@ -37,21 +37,29 @@ class OperatingPoint(Model):
     (115.0, 314.159, False)
     """
 
+    #: name of the operating point
     name: str = ""
-    #: N m, of the shaft `of`; positive where the flank that the file names carries it (drive),
-    #: negative where the other one does (coast)
+    #: torque of the shaft `of`, N m; positive where the flank that the file names carries it
+    #: (drive), negative where the other one does (coast)
     torque: Torque
-    of: str = "pinion"  #: by default, in a train, the shaft that the engine turns with
-    speed: Speed | None = None  #: rad/s, of the shaft `of`
-    #: output_torque, output_speed: of the shaft that the load turns with, or of the engine's where
-    #: `of` is the load's; checked against the teeth
+    #: shaft that torque and speed belong to; by default, in a train, the shaft that the engine
+    #: turns with
+    of: str = "pinion"
+    #: speed of the shaft `of`, rad/s
+    speed: Speed | None = None
+    #: torque of the shaft that the load turns with, or of the engine's where `of` is the load's, N
+    #: m; checked against the teeth
     output_torque: Torque | None = None
+    #: speed of the shaft that the load turns with, or of the engine's where `of` is the load's,
+    #: rad/s; checked against the teeth
     output_speed: Speed | None = None
-    #: direction in which weight acts, in the axes of the first shaft's scene, such as ``-z``
+    #: direction in which weight acts, in the axes of the first shaft's scene, such as `-z`
     weight: Direction | None = None
+    #: further forces on shafts, such as of a belt
     force: tuple[OutsideForce, ...] = ()
-    #: share, hours: of a duty table: share of the time, or hours; of every point or of none
+    #: share of the time of a duty table; of every point or of none
     share: Annotated[float, Field(gt=0, le=1)] | None = None
+    #: hours of a duty table; of every point or of none
     hours: Annotated[float, Field(gt=0)] | None = None
 
     @model_validator(mode="after")
@@ -117,5 +125,8 @@ def _as_points(value: Any) -> Any:
 
 
 Operation = Annotated[
-    tuple[OperatingPoint, ...], BeforeValidator(_as_points), Field(max_length=MOST_POINTS)
+    tuple[OperatingPoint, ...],
+    BeforeValidator(_as_points),
+    Field(max_length=MOST_POINTS),
+    Written(OperatingPoint | list[OperatingPoint]),
 ]

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from math import atan, cos, tan
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 from pydantic import Field, model_validator
 
@@ -29,10 +29,12 @@ MOST_PLANETS = 20
 class Seat(Model):
     """Springs on which a body turns freely: pin and bearing of a planet."""
 
-    #: radial, axial: N/m
+    #: radial stiffness, N/m
     radial: MeshSpring
+    #: axial stiffness, N/m
     axial: MeshSpring
-    tilting: TorsionSpring  #: N m/rad
+    #: tilting stiffness, N m/rad
+    tilting: TorsionSpring
 
     @property
     def diagonal(self) -> list[float]:
@@ -43,6 +45,7 @@ class Seat(Model):
 class HeldSeat(Seat):
     """Springs that also hold a body against turning, with torsional stiffness in N m/rad."""
 
+    #: torsional stiffness, N m/rad
     turning: TorsionSpring
 
     @property
@@ -56,8 +59,12 @@ class HeldSeat(Seat):
 class PlanetTable(HeadInertia, Flanks):
     """A planet, rigid; all are alike."""
 
+    needs: ClassVar = (("pin",),)
+
+    #: number of teeth of a planet
     teeth: Teeth
-    pin: Seat | None = None  #: between planet and carrier
+    #: stiffness of pin and planet bearing, between planet and carrier
+    pin: Seat | None = None
 
     @model_validator(mode="after")
     def _on_a_pin(self) -> PlanetTable:
@@ -70,44 +77,58 @@ class PlanetTable(HeadInertia, Flanks):
 class RingTable(HeadInertia):
     """A ring that is no part of the ground, rigid, on springs that keep it from turning."""
 
+    #: springs that hold the ring
     support: HeldSeat
 
 
 class PlanetMeshes(Model):
     """Meshes of every planet with sun and ring."""
 
-    #: sun_stiffness, ring_stiffness: of the meshes with sun and ring, N/m, or ``teeth``
+    #: stiffness of the mesh of each planet with the sun, N/m, or `teeth`
     sun_stiffness: MeshStiffness
+    #: stiffness of the mesh of each planet with the ring, N/m, or `teeth`
     ring_stiffness: MeshStiffness
-    pressure_angle: PressureAngle  #: normal to the tooth, at the reference cylinder, rad
-    #: of each mesh; a single number is a constant amplitude, m; needed where it drives a motion
+    #: angle normal to the tooth, at the reference cylinder, rad
+    pressure_angle: PressureAngle
+    #: amplitude of the transmission error of each mesh, m, or a table of orders or over frequency;
+    #: needed where it drives a motion
     transmission_error: Error = None
-    #: sun_error, ring_error: in its place those of the meshes with the sun, and with the ring
+    #: transmission error of the meshes with the sun, in place of that of each
     sun_error: Error = None
+    #: transmission error of the meshes with the ring, in place of that of each
     ring_error: Error = None
+    #: source of these numbers
     status: Status = "assumed"
 
 
 class Planetary(Model):
     """A planetary stage as a file describes it."""
 
-    #: a gear of a shaft, as in ``between`` of a mesh; its module, helix angle and face width are
-    #: those of the stage
+    needs: ClassVar = (("planets", "angles"),)
+
+    #: gear of a shaft, as in `between` of a mesh; its module, helix angle and face width are those
+    #: of the stage
     sun: str
-    #: a shaft, at its main lumped point or at the one after a dot; it carries pins rigidly there
+    #: shaft that carries the pins rigidly, at its main lumped point or at the one after a dot
     carrier: str
+    #: number of teeth of the ring
     ring_teeth: Teeth
     #: turns of the sun in one of the carrier, where a source gives it
     ratio: Annotated[float, Field(gt=0)] | None = None
-    #: of them, at equal angles, unless `angles` are given
+    #: number of planets at equal angles, unless `angles` are given
     planets: Annotated[int, Field(strict=True, ge=1, le=MOST_PLANETS)] | None = None
-    #: of every planet, rad
+    #: angle of every planet, rad
     angles: Annotated[tuple[Azimuth, ...], Field(max_length=MOST_PLANETS)] = ()
-    position: Azimuth = 0.0  #: of the carrier, which planets are turned by, rad
+    #: angle of the carrier, which planets are turned by, rad
+    position: Azimuth = 0.0
+    #: teeth, mass and pin of a planet; all are alike
     planet: PlanetTable
+    #: meshes of every planet with sun and ring
     mesh: PlanetMeshes
-    ring: RingTable | None = None  #: one that gives way; without it the ring is fixed
-    ring_flanks: Flanks | None = None  #: teeth of the ring, with offsets along the sun's shaft
+    #: a ring that gives way; without it the ring is fixed
+    ring: RingTable | None = None
+    #: teeth of the ring, with offsets along the sun's shaft
+    ring_flanks: Flanks | None = None
 
     @model_validator(mode="after")
     def _so_many(self) -> Planetary:

@@ -11,14 +11,13 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, ClassVar
 
 from pydantic import model_validator
 
-from solidgear.core import Document, Model, Scene, SceneError, listed, near
-from solidgear.core import as_written as scene_as_written
+from solidgear.core import Document, Model, Scene, SceneError, Written, addition, listed, near
+from solidgear.core.loading import as_written as scene_as_written
 from solidgear.core.reduction.matrix_units import MATRIX_UNITS
-from solidgear.core.registry import addition
 from solidgear.core.scene.toml_file import name_of, parse, with_table_paths
 from solidgear.core.scene.typed import Problems
 from solidgear.trains.file.columns import CELL_COLUMNS, read_cells, read_flank
@@ -51,14 +50,23 @@ def load_train(path: str | os.PathLike, shaft: ReadShaft = _as_written) -> Train
 class _Tables(Model):
     """Tables that every train file has."""
 
+    #: title of the train in tables and pages
     title: str = ""
+    #: name of the train; by default that of the file
     name: str = "train"
+    #: where the numbers come from
     source: str = ""
-    engine: dict[str, Rotor] = {}
-    load: dict[str, Rotor] = {}
+    #: inertia and torsional spring of what brings torque; several by name
+    engine: Annotated[dict[str, Rotor], Written(Rotor | dict[str, Rotor])] = {}
+    #: inertia and torsional spring of what takes torque; several by name
+    load: Annotated[dict[str, Rotor], Written(Rotor | dict[str, Rotor])] = {}
+    #: loss factors, twice a damping ratio
     losses: Losses = Losses()
+    #: body that carries the bearings of shafts, on mounts to ground
     housing: TrainHousing | None = None
+    #: operating points: torque, speed, weight, further forces
     operation: Operation = ()
+    #: questions: frequency range and tolerances
     ask: TrainAsk = TrainAsk()
 
     @model_validator(mode="before")
@@ -92,8 +100,11 @@ class _Tables(Model):
 class ShortFile(_Tables):
     """File of a train of two shafts."""
 
+    #: shaft and teeth of the driving gear
     pinion: Member
+    #: shaft and teeth of the driven gear
     gear: Member
+    #: teeth in contact
     mesh: Mesh
 
     def build_train(self) -> Train:
@@ -113,9 +124,15 @@ class ShortFile(_Tables):
 class LongFile(_Tables):
     """File of a train of any number of shafts."""
 
-    shaft: dict[str, Shaft]
+    needs: ClassVar = (("mesh", "planetary"),)
+
+    #: shafts by name, each with its file and its gears
+    shaft: Annotated[dict[str, Shaft], Written(dict[str, Shaft | Member])]
+    #: meshes, each between two gears
     mesh: tuple[Mesh, ...] = ()
+    #: planetary stages by name
     planetary: dict[str, Planetary] = {}
+    #: further inertias behind torsional springs, by name
     rotor: dict[str, Rotor] = {}
 
     def build_train(self) -> Train:

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 from math import pi
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import AfterValidator, BeforeValidator, Field, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
 from solidgear.core import (
     MOST_MODES,
     Length,
     Model,
     PositiveLength,
+    Range,
     SceneError,
     SignedAngle,
     SolidgearError,
+    Written,
 )
 from solidgear.core.scene.stations import Status
 from solidgear.core.scene.units import (
@@ -22,6 +24,7 @@ from solidgear.core.scene.units import (
     Frequency,
     Inertia,
     Loss,
+    MeshSpring,
     PressureAngle,
     ShaftAngle,
     Thickness,
@@ -36,17 +39,16 @@ FIRST_HARMONIC, LAST_HARMONIC = 2, 32
 Harmonic = Annotated[int, Field(strict=True, ge=FIRST_HARMONIC, le=LAST_HARMONIC)]
 
 
-def _within_a_turn(value: float) -> float:
-    if abs(value) > 2 * pi * (1 + TYPED):
-        raise SceneError(
-            "is more than one turn, 360 deg; a number without a unit is in rad, and degrees are "
-            'written as "120 deg"'
-        )
-    return value
-
-
 #: rad, of a place around an axis
-Azimuth = Annotated[SignedAngle, AfterValidator(_within_a_turn)]
+Azimuth = Annotated[
+    SignedAngle,
+    Range(
+        "is more than one turn, 360 deg; a number without a unit is in rad, and degrees are "
+        'written as "120 deg"',
+        least=-2 * pi * (1 + TYPED),
+        most=2 * pi * (1 + TYPED),
+    ),
+]
 
 
 #: in place of a stiffness, which then follows from the contact of the teeth
@@ -63,7 +65,11 @@ def _number_or_teeth(value: Any) -> float | str:
 
 
 #: of a mesh, N/m, or ``teeth``
-MeshStiffness = Annotated[float | Literal["teeth"], BeforeValidator(_number_or_teeth)]
+MeshStiffness = Annotated[
+    float | Literal["teeth"],
+    BeforeValidator(_number_or_teeth),
+    Written(MeshSpring | Literal["teeth"]),
+]
 
 
 def solved(stiffness: float | str) -> float:
@@ -79,12 +85,19 @@ def solved(stiffness: float | str) -> float:
 class TorsionSpringTable(Model):
     """Torsional spring between a shaft and a rotor, and where on the shaft it sits."""
 
-    stiffness: TorsionSpring  #: N m/rad
-    at: str | None = None  #: a port of the shaft: its lumped point or a bearing
+    needs: ClassVar = (("at", "position"),)
+
+    #: torsional stiffness, N m/rad
+    stiffness: TorsionSpring
+    #: port of the shaft that the spring sits at: its lumped point or a bearing
+    at: str | None = None
+    #: distance of the spring from the place `from` along the shaft, m
     position: Length | None = None
+    #: place that the position counts from
     from_: str = Field("start", alias="from")
-    #: at that place, m
+    #: width of the seat at that position, m
     seat_width: PositiveLength | None = None
+    #: source of the stiffness
     status: Status = "assumed"
 
     @model_validator(mode="after")
@@ -100,23 +113,31 @@ class TorsionSpringTable(Model):
 class Rotor(Model):
     """The engine, the load or another inertia behind a torsional spring."""
 
-    shaft: str = ""  #: that it turns with
-    inertia: Inertia  #: about the shaft, kg m^2
+    #: shaft that it turns with
+    shaft: str = ""
+    #: moment of inertia about the shaft, kg m^2
+    inertia: Inertia
+    #: torsional spring between the rotor and its shaft
     spring: TorsionSpringTable
     #: share of the power that one of several engines or loads brings or takes
     share: Annotated[float, Field(gt=0, le=1)] | None = None
+    #: source of the inertia
     status: Status = "assumed"
 
 
 class ErrorTable(Model):
     """A transmission error that is not the same everywhere."""
 
-    #: ascending, Hz; amplitudes between are linear, and constant beyond
+    needs: ClassVar = (("orders", "frequency"),)
+
+    #: ascending frequencies, Hz; amplitudes between are linear, and constant beyond
     frequency: tuple[Frequency, ...] = ()
-    amplitude: tuple[Thickness, ...] = ()  #: m, at each frequency
+    #: amplitude at each frequency, m
+    amplitude: tuple[Thickness, ...] = ()
+    #: amplitudes of the orders of the mesh frequency, m
     orders: tuple[Thickness, ...] = ()
-    #: of each of those where the mesh cycle begins, rad: ``sum A cos(n x angle + phase)``, positive
-    #: where teeth stand back; of nonlinear motion alone
+    #: phases of the orders where the mesh cycle begins, rad: `sum A cos(n x angle + phase)`,
+    #: positive where teeth stand back; for nonlinear motion alone
     phases: tuple[SignedAngle, ...] = ()
 
     @model_validator(mode="after")
@@ -143,7 +164,9 @@ def constant_or_table(value: Any) -> Any:
 
 
 #: of a mesh; a single number is a constant amplitude, m
-Error = Annotated[ErrorTable | None, BeforeValidator(constant_or_table)]
+Error = Annotated[
+    ErrorTable | None, BeforeValidator(constant_or_table), Written(Thickness | ErrorTable)
+]
 
 
 class Cell(Model):
@@ -157,50 +180,66 @@ class Cell(Model):
 class Mesh(Model):
     """The teeth in contact."""
 
+    needs: ClassVar = (
+        ("pressure_angle", "line_of_action", "contact_cells"),
+        ("stiffness", ("contact_cells", "loaded_error", "unloaded_error")),
+    )
+
+    #: name of the mesh
     name: str = ""
-    #: shafts of the two gears, the first of which is called pinion here whatever its size; of a
-    #: shaft with several gears with the lumped point, such as ``middle.wheel``
+    #: shafts of the two gears, the first of which is called pinion here whatever its size; for a
+    #: shaft with several gears with the lumped point, such as `middle.wheel`
     between: tuple[str, str] = ("pinion", "gear")
-    #: of the mesh about the pinion's axis from -x, right-handed about y, and of parallel shafts
-    #: about the gear's as well, so that their scenes keep parallel axes, rad
+    #: angle of the mesh about the pinion's axis from -x, right-handed about y, and of parallel
+    #: shafts about the gear's as well, so that their scenes keep parallel axes, rad
     azimuth: Azimuth = 0.0
-    #: N/m, or ``teeth``, whose contact gives it; with contact cells it may follow from
-    #: ``loaded_error`` and ``unloaded_error``
+    #: stiffness of the mesh, N/m, or `teeth`, whose contact gives it; with contact cells it may
+    #: follow from `loaded_error` and `unloaded_error`
     stiffness: MeshStiffness | None = None
-    status: Status = "assumed"  #: of the stiffness
-    shaft_angle: ShaftAngle = pi / 2  #: rad
+    #: source of the stiffness
+    status: Status = "assumed"
+    #: angle between the shafts, rad; 0 for parallel ones
+    shaft_angle: ShaftAngle = pi / 2
     #: teeth of the gear over teeth of the pinion, where a source gives it
     ratio: Annotated[float, Field(gt=0)] | None = None
-    #: inner, outer: normal to the tooth, for a line of action from gear geometry, rad; where there
-    #: is a module, at the reference cylinder
+    #: angle normal to the tooth, for a line of action from gear geometry, rad; where there is a
+    #: module, at the reference cylinder
     pressure_angle: PressureAngle | None = None
-    #: of parallel shafts, m; by default that without backlash
+    #: distance of parallel shafts, m; by default that without backlash
     centre_distance: PositiveLength | None = None
-    #: of bevel gears: gap of both flanks at their corners, m, by the radii of the cutters, where
+    #: gap of both flanks of bevel gears at their corners, m, by the radii of the cutters, where
     #: these are not both given
     ease_off: Thickness | None = None
-    #: of bevel gears: addendum of the gear over the working depth, and this in mean normal modules
+    #: addendum of a bevel gear over the working depth
     gear_share: Annotated[float, Field(gt=0, lt=1)] | None = None
+    #: working depth of bevel gears, in mean normal modules
     working_depth: Annotated[float, Field(gt=0, le=3)] | None = None
-    #: given instead, in the pinion's frame, from its lumped point
+    #: direction of the force on the pinion, in the pinion's frame, in place of a pressure angle
     line_of_action: tuple[float, float, float] | None = None
+    #: source of the line of action
     line_of_action_status: Status = "assumed"
-    point: Vector | None = None  #: given instead, in the pinion's frame, from its lumped point
-    contact_cells: tuple[Cell, ...] = ()  #: given instead: contact cells
+    #: mesh point in the pinion's frame from its lumped point, m, with `line_of_action`
+    point: Vector | None = None
+    #: a CSV file of contact cells with the columns x, y, z, nx, ny, nz and force, in place of a
+    #: pressure angle or a line of action
+    contact_cells: Annotated[tuple[Cell, ...], Written(str)] = ()
     #: the gear's lumped point from the pinion's, in the pinion's frame, m; by default both lie at
     #: the middle of the face
     gear_position: Vector | None = None
-    #: loaded_error, unloaded_error: static transmission error under the load of the cells and
-    #: without it, m
+    #: static transmission error under the load of the cells, m
     loaded_error: Thickness | None = None
+    #: static transmission error without load, m
     unloaded_error: Thickness | None = None
-    #: a single number is a constant amplitude, m; needed where it drives a motion
+    #: amplitude of the transmission error, m, or a table of orders or over frequency; needed where
+    #: it drives a motion
     transmission_error: Error = None
+    #: source of the transmission error
     transmission_error_status: Status = "assumed"
-    #: stiffness over a mesh cycle; of nonlinear motion alone
+    #: stiffness over a mesh cycle; for nonlinear motion alone
     stiffness_cycle: StiffnessCycle | None = None
+    #: mesh point and line of action over a mesh cycle; for nonlinear motion alone
     line_cycle: LineCycle | None = None
-    #: width of the gap between both flanks along the line of action, m; of nonlinear motion alone
+    #: width of the gap between both flanks along the line of action, m; for nonlinear motion alone
     backlash: Thickness | None = None
     #: harmonics n >= 2 of harmonic solids that the force of the teeth drives where it acts, on one
     #: tooth pitch of the lumped point's seat; by default none, the mean of the seat alone
@@ -242,12 +281,15 @@ class Mesh(Model):
 class Losses(Model):
     """Loss factors eta, dissipated energy over ``2 pi`` times the stored: twice a damping ratio."""
 
-    #: shafts, bearings, mesh, springs: of the material of all shafts, all bearings, the teeth, and
-    #: the torsional springs
+    #: loss factor of the material of all shafts
     shafts: Loss = 0.04
+    #: loss factor of all bearings
     bearings: Loss = 0.04
+    #: loss factor of the teeth
     mesh: Loss = 0.12
+    #: loss factor of the torsional springs
     springs: Loss = 0.04
+    #: source of the loss factors
     status: Status = "assumed"
 
 
@@ -256,6 +298,9 @@ class TrainAsk(Model):
 
     #: elastic modes that system-modes lists; by default all up to `max_frequency`
     modes: Annotated[int, Field(strict=True, ge=1, le=MOST_MODES)] | None = None
-    max_frequency: Frequency = 4000.0  #: Hz
-    tolerance: Tolerance = 0.02  #: of natural frequencies, relative
-    decibels: Annotated[float, Field(gt=0, le=60)] = 3.0  #: of the mesh force
+    #: highest frequency, Hz
+    max_frequency: Frequency = 4000.0
+    #: relative error that natural frequencies may have
+    tolerance: Tolerance = 0.02
+    #: decibels by which the mesh force may differ
+    decibels: Annotated[float, Field(gt=0, le=60)] = 3.0

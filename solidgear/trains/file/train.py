@@ -16,8 +16,16 @@ from typing import Any
 import numpy as np
 from pydantic import PrivateAttr, model_validator
 
-from solidgear.core import Bearing, Document, Model, Scene, SceneError, SolidgearError, listed
-from solidgear.core.registry import addition
+from solidgear.core import (
+    Bearing,
+    Document,
+    Model,
+    Scene,
+    SceneError,
+    SolidgearError,
+    addition,
+    listed,
+)
 from solidgear.core.scene.document import Origin
 from solidgear.trains.file.gears import HeadInertia, Member, Shaft
 from solidgear.trains.file.housing import TrainHousing
@@ -262,10 +270,15 @@ class Train(Model):
         """
         return self._origin.document
 
+    @property
+    def as_read(self) -> Document | None:
+        """Document that the train was read from; None of one that has changed since."""
+        return self.document if self._origin.thing == self else None
+
     def read_from(self, document: Document) -> Train:
         """Return the same train with the document that it was read from."""
         out = self.unjudged()
-        out._origin = Origin(document)
+        out._origin = Origin(document, out)
         return out
 
     @property

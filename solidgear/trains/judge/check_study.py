@@ -19,9 +19,7 @@ from solidgear.guards.check import Check, check_scene
 from solidgear.show.options import MODEL
 
 
-def check(
-    source: Source, model: str = MODEL, options: Mapping[str, Any] | None = None
-) -> Check:
+def check(source: Source, model: str = MODEL, options: Mapping[str, Any] | None = None) -> Check:
     """Which models hold for a scene or train, which do not, and why; solves light meshes only.
 
     Parameters

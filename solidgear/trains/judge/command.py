@@ -38,7 +38,12 @@ def judge_system(
 
 
 def compare_train(
-    train: Path, out: Path, renders: bool, run: Shown, options: dict[str, bool]
+    train: Path,
+    out: Path,
+    reduced: Reduced,
+    renders: bool,
+    run: Shown,
+    options: dict[str, bool],
 ) -> None:
     """Compare models of a train.
 
@@ -51,7 +56,7 @@ def compare_train(
         "every mix of its models is judged; add further ones by solidgear judge-system --against"
     )
     refuse(options, f"one shaft, and {train} is a train: {instead}")
-    _judged(train, out, Reduced(), run, renders=renders)
+    _judged(train, out, reduced, run, renders=renders)
 
 
 def _judged(

@@ -22,9 +22,8 @@ from solidgear.core import (
     Source,
     Supports,
     as_supports,
-    shaft,
 )
-from solidgear.core.loading import scene_of
+from solidgear.core.loading import scene_of, shaft
 from solidgear.core.scene import PointMass, Segment
 from solidgear.core.scene.feature import OnSegment
 from solidgear.core.scene.paths import Keys, Tables, entries, entry

@@ -1,0 +1,11 @@
+"""The schema files of the package, from the types that read files.
+
+    python docs/tools/schemas.py
+
+Writes `solidgear/exchange/schema/*.json`.
+"""
+
+from solidgear.exchange.schema.files import write
+
+if __name__ == "__main__":
+    write()

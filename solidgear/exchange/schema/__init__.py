@@ -1,0 +1,1 @@
+"""Schemas of files and of results, from the types that read and hold them."""

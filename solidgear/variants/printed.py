@@ -1,0 +1,43 @@
+"""What variants of a file print as JSON."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+from solidgear.core import OpenNumbers, Settled
+from solidgear.show.printed import Printed
+from solidgear.variants.sensitivity.run import Sensitivities
+from solidgear.variants.sweep.bearing_task import SweptBearings
+from solidgear.variants.sweep.file_task import Swept
+
+Number = float | None
+
+SENSITIVITIES = Printed((Sensitivities,))
+BUDGET = Printed((OpenNumbers,), {"scene": str})
+SWEEP = (
+    Printed((SweptBearings,), optional=(Settled,)),
+    Printed(
+        (Swept,),
+        {"cautions": list[str]},
+        sometimes={"bodies": int, "cut": Any, "title": str},
+    ),
+)
+#: numbers of the entries that vary stand by their paths
+DESIGN = Printed(
+    keys={"number": int, "value": Number, "bar": Number, "kept": Any, "status": str}, named=Number
+)
+OPTIMISE = Printed(
+    keys={
+        "kind": Literal["optimum"],
+        "scene": str,
+        "goal": str,
+        "keep": list[str],
+        "best": int | None,
+        "at_end": list[str],
+        "search": str,
+        "about_bars": str,
+        "gain": Any,
+        "designs": list[DESIGN],  # type: ignore[valid-type]
+        "sentences": list[str],
+    }
+)
