@@ -14,7 +14,8 @@ import json
 import math
 import sys
 from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager, nullcontext, suppress
+from contextlib import closing, contextmanager, nullcontext, suppress
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -36,6 +37,41 @@ CREATE TABLE facts (name TEXT PRIMARY KEY, value TEXT NOT NULL);
 CREATE TABLE rows (variant INTEGER PRIMARY KEY, line TEXT NOT NULL);
 """
 DAMAGED = (sqlite3.SQLITE_NOTADB, sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_ERROR)
+
+
+class ColumnsOfRows(Mapping[str, list[Any]]):
+    """Values of all rows of a database by the names of columns, read when they are first asked for: a
+    million rows are not held for a sweep that shows none of them.
+    """
+
+    def __init__(self, database: Path, kinds: Mapping[str, type]):
+        self.database, self.kinds = database, dict(kinds)
+
+    @cached_property
+    def _values(self) -> dict[str, list[Any]]:
+        with closing(sqlite3.connect(self.database.absolute())) as db:
+            return _by_column(_lines(db), self.kinds)
+
+    def __getitem__(self, name: str) -> list[Any]:
+        return self._values[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.kinds)
+
+    def __len__(self) -> int:
+        return len(self.kinds)
+
+
+def _lines(db: sqlite3.Connection) -> Iterator[str]:
+    return (line for (line,) in db.execute("SELECT line FROM rows ORDER BY variant"))
+
+
+def _by_column(lines: Iterable[str], kinds: Mapping[str, type]) -> dict[str, list[Any]]:
+    table = list(csv.reader(lines))
+    return {
+        name: [kind(row[k]) if row[k] else None for row in table]
+        for k, (name, kind) in enumerate(kinds.items())
+    }
 
 
 class RowFile:
@@ -222,14 +258,14 @@ class RowFile:
 
     def by_column(self) -> dict[str, list[Any]]:
         """Return the values of all rows that are there, in order; None where a row has none."""
-        table = list(csv.reader(self._lines()))
-        return {
-            name: [kind(row[k]) if row[k] else None for row in table]
-            for k, (name, kind) in enumerate(self.columns.items())
-        }
+        return _by_column(self._lines(), self.columns)
+
+    def later(self) -> ColumnsOfRows:
+        """Return the same values, read when they are first asked for."""
+        return ColumnsOfRows(self._database, self.columns)
 
     def _lines(self) -> Iterator[str]:
-        return (line for (line,) in self._db.execute("SELECT line FROM rows ORDER BY variant"))
+        return _lines(self._db)
 
     # --------------------------------------------------------------------------------- refusals
     @contextmanager
