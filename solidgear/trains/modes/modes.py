@@ -282,7 +282,7 @@ def refuse_unresolved(assembly: Assembly, system: System, limit: float) -> None:
     if limit >= 0.9 * cut:
         raise SolidgearError(
             f"{limit:g} Hz is beyond the reduction, which leaves out modes from {cut:.0f} Hz on; "
-            f"keep more modes (--kept), or ask for less than {0.9 * cut:.0f} Hz"
+            f"keep more modes (`kept`), or ask for less than {0.9 * cut:.0f} Hz"
         )
     for side in assembly.scenes:
         highest = mesh_limit(assembly, side, system.parts[side])

@@ -62,7 +62,7 @@ class SweptBearings(Swept):
     refusals are those of this run.
     """
 
-    plain_names = (
+    plain_names: ClassVar[tuple[Any, ...]] = (
         *(("file", "path"), "total", "skipped", "refused", "full", "unknowns", "seats", "basis"),
         *("seconds_once", "seconds_each", "whys", "settling"),
     )

@@ -110,7 +110,7 @@ class Swept(Sheeted):
     shown: ClassVar[str] = "swept"
     sheeted: ClassVar[str] = "variants.sweep.sheet:sweep_sheet"
     filed: ClassVar[str] = "variants.sweep.sheet:filed_sheet"
-    plain_names = (("file", "path"), "total", "skipped", "refused", "whys", "seconds")
+    plain_names: ClassVar[tuple[Any, ...]] = (("file", "path"), "total", "skipped", "refused", "whys", "seconds")
 
     #: values of all rows by the names of columns, SI; None where a row has none. Bars stand beside
     #: numbers as ``f1_hz bar``, in the same unit.
@@ -236,13 +236,13 @@ def workers(jobs: int = 1, dask: str | None = None) -> Workers:
     most = 8 * usable_cores()
     if jobs > most:
         raise SolidgearError(
-            f"--jobs {jobs}: give a whole number up to {most}, eight for each processor here"
+            f"`jobs` {jobs}: give a whole number up to {most}, eight for each processor here"
         )
     try:
         from joblib import Parallel, delayed
     except ImportError:
         raise SolidgearError(
-            f"--jobs {jobs} needs joblib: pip install 'solidgear[sweep]', or use --jobs 1"
+            f"`jobs` {jobs} needs joblib: pip install 'solidgear[sweep]', or use `jobs` 1"
         ) from None
     # the task is sent with every part as places fall free, with a basis enlarged meanwhile
     return lambda task, parts: Parallel(n_jobs=jobs, return_as="generator")(
@@ -255,13 +255,13 @@ def _dask(address: str) -> Workers:
         from distributed import Client
     except ImportError:
         raise SolidgearError(
-            f"--dask {address} needs Dask: pip install 'solidgear[dask]'"
+            f"`dask` {address} needs Dask: pip install 'solidgear[dask]'"
         ) from None
     try:
         client = Client(address, timeout=10, set_as_default=False)
     except (OSError, TimeoutError, ValueError) as error:
         raise SolidgearError(
-            f"--dask {address}: no Dask scheduler answers there ({type(error).__name__})"
+            f"`dask` {address}: no Dask scheduler answers there ({type(error).__name__})"
         ) from None
 
     def rows_of(task: Task, parts: Sequence[Sequence[int]]) -> Iterator[Rows]:

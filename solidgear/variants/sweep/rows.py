@@ -89,7 +89,7 @@ class RowFile:
     ):
         self.path, self.columns, self.total = Path(path), dict(columns), total
         if self.path.suffix not in (".csv", ".parquet"):
-            raise SolidgearError(f"--out {self.path}: the name must end in .csv or .parquet")
+            raise SolidgearError(f"`out` {self.path}: the name must end in .csv or .parquet")
         self._parquet = self.path.suffix == ".parquet"
         if self._parquet:
             _pyarrow()
@@ -101,7 +101,7 @@ class RowFile:
             for place in (self.path, self._database):
                 if place.exists() and not place.is_file():
                     raise SolidgearError(
-                        f"--out {self.path}: {place} is not a file; choose another name"
+                        f"`out` {self.path}: {place} is not a file; choose another name"
                     )
             self._db = self._locked(overwrite)
             try:
@@ -157,7 +157,7 @@ class RowFile:
         elif marks != [APPLICATION, SCHEMA]:
             raise SolidgearError(
                 f"{self._database}: is no database of rows that this version of solidgear reads; "
-                "choose another --out, or add --overwrite"
+                "choose another `out`, or add `overwrite`"
             )
         self._db.execute("PRAGMA journal_mode = WAL")
         # synced now and then: a failure of the machine may cost the last batches, of the process none
@@ -172,7 +172,7 @@ class RowFile:
         if self.path.exists():
             raise SolidgearError(
                 f"{self.path}: is there already and not from this sweep (no rows in "
-                f"{self._database.name}); choose another --out, or add --overwrite"
+                f"{self._database.name}); choose another `out`, or add `overwrite`"
             )
         self._db.execute("DELETE FROM facts")
         self._db.execute("INSERT INTO facts VALUES ('plan', ?)", (plan,))
@@ -193,7 +193,7 @@ class RowFile:
         names = [name for name in differing if name != "columns"] or differing
         raise SolidgearError(
             f"{self.path}: holds the rows of another sweep (it differs in: {', '.join(names)}); "
-            "choose another --out, or add --overwrite"
+            "choose another `out`, or add `overwrite`"
         )
 
     def _value(self, query: str) -> Any:
@@ -279,19 +279,19 @@ class RowFile:
             if self.done:
                 rows = f"{len(self.done)} of {self.total} rows"
                 kept = f"; {rows} are kept, and the same command goes on from there"
-            raise SolidgearError(f"--out {self.path}: cannot be written ({reason}){kept}") from None
+            raise SolidgearError(f"`out` {self.path}: cannot be written ({reason}){kept}") from None
 
     def _refusal(self, error: BaseException) -> BaseException:
         """Return an error of opening as a sentence, where it is one of the database."""
         if _has_code(error, sqlite3.SQLITE_BUSY):
             return SolidgearError(
                 f"{self._database}: is in use by another process, perhaps the same sweep; "
-                "wait for it to end, or choose another --out"
+                "wait for it to end, or choose another `out`"
             )
         if _has_code(error, *DAMAGED):
             return SolidgearError(
                 f"{self._database}: is damaged beyond repair ({error}); put back a copy, "
-                "or add --overwrite to solve all rows again"
+                "or add `overwrite` to solve all rows again"
             )
         return error
 

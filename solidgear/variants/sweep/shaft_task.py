@@ -14,7 +14,7 @@ from solidgear.variants.sweep.bearing_task import (
 )
 from solidgear.variants.sweep.bearing_variants import BearingVariants, bearing_variants
 from solidgear.variants.sweep.design import Design
-from solidgear.variants.sweep.file_task import Swept, Task
+from solidgear.variants.sweep.file_task import Task
 from solidgear.variants.sweep.scene_task import scene_task
 from solidgear.variants.sweep.train_task import train_task
 
@@ -28,7 +28,7 @@ def task_of(
     *,
     progress: Callable[[str], None] = lambda _: None,
     **how: Any,
-) -> Task[Swept]:
+) -> Task[Any]:
     """Return the task of a sweep of a shaft or train; parameters as of :func:`solidgear.sweep`, and
     `progress`, called with a sentence at every step before the rows.
     """
@@ -48,7 +48,7 @@ def shaft_task(
     n: int | None = None,
     reduction_tolerance: float | None = None,
     progress: Callable[[str], None] = lambda _: None,
-) -> Task[Swept]:
+) -> Task[Any]:
     """Return the task of a sweep of a shaft: one body does for all where bearings alone vary."""
     if not (design.one_at_a_time or design.table or design.keep_sum):
         sets = bearing_variants(source, design.vary, design.sample, design.seed)
@@ -57,7 +57,7 @@ def shaft_task(
             return _one_body(sets, model, tolerance, options or {}, n, reduced, progress)
     if reduction_tolerance is not None:
         raise SolidgearError(
-            "`reduction_tolerance` is that of one body for many bearing sets; give `tolerance`"
+            "`reduction_tolerance` is that of one body for many bearing sets, and here more varies"
         )
     return scene_task(source, design, model=model, tolerance=tolerance, options=options, n=n)
 

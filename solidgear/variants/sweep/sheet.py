@@ -20,6 +20,7 @@ from solidgear.show.scales import Axis
 from solidgear.show.settled import over_the_sweep
 from solidgear.show.sheet import Sheet, Terminal
 from solidgear.show.table import NUMBER, Column, Table, text
+from solidgear.show.shown import swept_tables
 from solidgear.show.units import ENGINEERING, Units
 from solidgear.show.units import plain as digits
 from solidgear.trains.assembly.shaft import JUDGE, mix_label
@@ -65,7 +66,7 @@ def filed_sheet(result: Swept, units: Units, folder: Path) -> Sheet:
         sheet,
         lead=sheet.lead.replace(result.path.name, ROWS.name),
         data={**sheet.data, "file": ROWS.name},
-        lines={rows: result.framed_tables()["rows"]},
+        lines={rows: swept_tables(result)["rows"]},
     )
 
 
