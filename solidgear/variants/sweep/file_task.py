@@ -110,7 +110,14 @@ class Swept(Sheeted):
     shown: ClassVar[str] = "swept"
     sheeted: ClassVar[str] = "variants.sweep.sheet:sweep_sheet"
     filed: ClassVar[str] = "variants.sweep.sheet:filed_sheet"
-    plain_names: ClassVar[tuple[Any, ...]] = (("file", "path"), "total", "skipped", "refused", "whys", "seconds")
+    plain_names: ClassVar[tuple[Any, ...]] = (
+        ("file", "path"),
+        "total",
+        "skipped",
+        "refused",
+        "whys",
+        "seconds",
+    )
 
     #: values of all rows by the names of columns, SI; None where a row has none. Bars stand beside
     #: numbers as ``f1_hz bar``, in the same unit.
