@@ -19,8 +19,8 @@ from solidgear.show.plot import NARROW, WIDE, Chart, Make, in_columns
 from solidgear.show.scales import Axis
 from solidgear.show.settled import over_the_sweep
 from solidgear.show.sheet import Sheet, Terminal
-from solidgear.show.table import NUMBER, Column, Table, text
 from solidgear.show.shown import swept_tables
+from solidgear.show.table import NUMBER, Column, Table, text
 from solidgear.show.units import ENGINEERING, Units
 from solidgear.show.units import plain as digits
 from solidgear.trains.assembly.shaft import JUDGE, mix_label
