@@ -453,8 +453,8 @@ class Scene(Displayed, Model):
         ----------
         **changes
             Fields by name; constants of a new `material` also replace those of the old one in the
-            segments that have them from it, and under a new `load` bearings of catalogue data wait
-            for their stiffness again.
+            segments that have them from it, and with a new one or under a new `load` bearings of
+            catalogue data wait for their stiffness again.
 
         Returns
         -------
@@ -470,7 +470,9 @@ class Scene(Displayed, Model):
                 s.with_changes(material=s.material.following(self.material, changes["material"]))
                 for s in self.segments
             )
-        if changes.get("load", self.load) != self.load and "bearings" not in changes:
+        loaded = changes.get("load", self.load) != self.load
+        anew = "material" in changes and by_name(changes["material"]) != self.material
+        if (loaded or anew) and "bearings" not in changes:
             changes["bearings"] = tuple(b.unsettled for b in self.bearings)
         if "bearings" in changes:
             changes["bearings"] = tuple(changes["bearings"])
