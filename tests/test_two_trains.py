@@ -353,3 +353,11 @@ def test_one_file_given_twice_is_told_so_and_nothing_is_solved(tmp_path):
     told = json.loads(command("compare", OVERHUNG, OVERHUNG, "--json").stdout)
     assert told["differences"] == [] and "nothing differs" in told["sentences"][0]
     assert not (tmp_path / "out").exists()
+
+
+def test_frames_of_two_trains_hold_numbers(mountings):
+    modes = mountings.to_dataframe("natural_frequencies")
+    change = (modes["B"] - modes["A"]) / modes["A"]
+    assert np.allclose(modes["difference"].dropna(), change.dropna(), rtol=1e-12)
+    shares = mountings.to_dataframe("strain_energy").drop(columns=["mode", "frequency"])
+    assert np.allclose(shares.sum(axis=1), 1.0)

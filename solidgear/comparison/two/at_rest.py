@@ -11,8 +11,8 @@ from math import degrees
 from solidgear.comparison.two.beside import NumberChange, band
 from solidgear.core.judge.change import Change
 from solidgear.show.sheet import Section
-from solidgear.show.table import Cell, Column, Table, quantity, word
-from solidgear.show.units import Units
+from solidgear.show.table import WORD, Cell, Column, Table, in_units, quantity, word
+from solidgear.show.units import Units, plain_unit
 from solidgear.strength.deflection.at_rest import Deflection
 from solidgear.strength.deflection.shaft import BearingState
 from solidgear.strength.deflection.sheet import meanings
@@ -96,8 +96,8 @@ def misalignment(
     """Return the misalignment of both trains."""
     columns = [
         word("of the axes", lambda n: f"{n.name}, {units.unit(n.unit)}"),
-        Column("A", lambda n: units.number(n.change.a, n.unit, 3)),
-        Column("B", lambda n: units.number(n.change.b, n.unit, 3)),
+        Column("A", lambda n: in_units(n.change.a, n.unit, units, 3)),
+        Column("B", lambda n: in_units(n.change.b, n.unit, units, 3)),
         Column("difference", partial(_difference, units)),
     ]
     shown = [
@@ -107,7 +107,7 @@ def misalignment(
     note = "".join(f"{meanings([*by_name.values()], units)}." for by_name in shown[:1])
     if any(n.change.band is not None for n in changes):
         columns.append(Column("both error bars", lambda n: band(n.change)))
-        columns.append(word("", lambda n: n.verdict))
+        columns.append(Column("", lambda n: n.verdict, kind=WORD, name="verdict"))
         note += " Both error bars: sum of both mesh errors, relative to A."
     ranges = [
         {name: m.open for name, m in by_name.items() if m.open is not None} for by_name in shown
@@ -120,12 +120,13 @@ def misalignment(
             " Range: by estimated insides and classes of clearance of bearings, which both trains "
             "may share."
         )
+    columns.append(Column("unit", lambda n: plain_unit(n.unit), hidden=True))
     return Table("Misalignment", columns, changes, note)
 
 
-def _difference(units: Units, number: NumberChange) -> str | Cell:
-    difference = units.number(number.change.difference, number.unit, 3)
-    return Cell(difference, "unresolved") if number.verdict == "not resolved" else difference
+def _difference(units: Units, number: NumberChange) -> Cell:
+    look = "unresolved" if number.verdict == "not resolved" else ""
+    return in_units(number.change.difference, number.unit, units, 3, look)
 
 
 def _range(

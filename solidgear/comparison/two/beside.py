@@ -21,9 +21,9 @@ from solidgear.core.machine.environment import environment
 from solidgear.core.plain import plain
 from solidgear.show.command import caution
 from solidgear.show.sheet import Section, Sheet, Terminal, write_folder
-from solidgear.show.table import Cell, Column, Table, text, word
+from solidgear.show.table import WORD, Cell, Column, Table, text
 from solidgear.show.units import ENGINEERING, Units, in_ascii, units_named
-from solidgear.show.words import DASH, hertz, percent, seconds
+from solidgear.show.words import hertz, percent, seconds
 
 #: entries of the input that are named in a sentence, and letters of each
 NAMED, WIDTH = 3, 30
@@ -288,7 +288,7 @@ def mode_table(pair: Beside[S, M]) -> Table:
     note = f"Paired {pair.pairing}. "
     if any(p.change is not None and p.change.band is not None for p in pair.modes):
         columns.append(Column("both error bars", lambda p: p.change and band(p.change)))
-        columns.append(word("", lambda p: p.verdict))
+        columns.append(Column("", lambda p: p.verdict, kind=WORD, name="verdict"))
         note += (
             "Both error bars: their sum, relative to A; a smaller difference is not resolved, "
             "which is not agreement. "
@@ -312,17 +312,19 @@ def names(a: str, b: str, of_b: str = "B: ") -> str:
     return a if a == b else f"{a} ({of_b}{b})"
 
 
-def relative(change: Change, scale: float) -> str | Cell:
-    """Return the difference in per cent of a scale, marked where it is within the error bars."""
-    share = percent(change.difference / scale) if scale else DASH
-    return Cell(share, "unresolved") if change.verdict == "not resolved" else share
+def relative(change: Change, scale: float) -> Cell:
+    """Return the difference over a scale, in per cent, marked where it is within the error bars."""
+    share = change.difference / scale if scale else None
+    look = "unresolved" if change.verdict == "not resolved" else ""
+    return Cell(share, look, percent(share))
 
 
-def band(change: Change) -> str | None:
-    """Return the sum of both error bars in per cent of A."""
+def band(change: Change) -> Cell | None:
+    """Return the sum of both error bars over A, in per cent."""
     if change.band is None or not change.a:
         return None
-    return percent(change.band / abs(change.a), signed=False)
+    share = change.band / abs(change.a)
+    return Cell(share, "", percent(share, signed=False))
 
 
 def decibels(a: float, b: float) -> float | None:

@@ -10,8 +10,8 @@ from typing import Any, NamedTuple
 from solidgear.show.panel import INK, Panel, Series, readout, wrapped
 from solidgear.show.plot import NARROW, WIDE, Chart
 from solidgear.show.scales import Axis, in_percent
-from solidgear.show.table import Column, Table, text
-from solidgear.show.words import hertz
+from solidgear.show.table import Cell, Column, Table, text
+from solidgear.show.words import DASH, hertz
 
 #: in the order of shares, the colours in turn; shafts are dark, what they rest on is light
 COLOURS = ("#8a6d3b", "#0072b2", "#9cc9e6", "#b3305c", "#9fd3bf", "#00805e", "#5a3e8c")
@@ -115,11 +115,11 @@ def shares_table(bars: Sequence[Bar]) -> Table:
     columns = [
         text("mode", lambda bar: f"{bar.letter}: {bar.name}"),
         Column("Hz", lambda bar: bar.hz, hertz),
-        *(Column(f"{place}, %", partial(_share, place)) for place in places),
+        *(Column(f"{place}, %", partial(_share, place), name=place, unit="1") for place in places),
     ]
     return Table("Strain energy", columns, bars)
 
 
-def _share(place: str, bar: Bar) -> str | None:
+def _share(place: str, bar: Bar) -> Cell:
     share = bar.shares.get(place, 0.0)
-    return f"{100 * share:.1f}" if share >= LEAST_SHARE else None
+    return Cell(share, "", f"{100 * share:.1f}" if share >= LEAST_SHARE else DASH)

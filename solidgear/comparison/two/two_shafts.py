@@ -41,8 +41,8 @@ from solidgear.show.run_tables import pairs_of
 from solidgear.show.scales import Axis
 from solidgear.show.sheet import Section, Sheet
 from solidgear.show.sketch import extent, sketch_svg
-from solidgear.show.table import Cell, Column, Table, text, word
-from solidgear.show.units import ENGINEERING, Units
+from solidgear.show.table import WORD, Cell, Column, Table, in_units, text, word
+from solidgear.show.units import ENGINEERING, Units, plain_unit
 from solidgear.show.words import hertz, is_number, percent
 from solidgear.trains.page.chart import PAIR
 from solidgear.variants.budget.budget import beside as open_numbers
@@ -431,7 +431,8 @@ def _open(numbers: OpenNumbers, number: NumberChange) -> str | None:
 
 def numbers_table(pair: TwoShafts, units: Units = ENGINEERING) -> Table:
     """Return the mass, compliances, stiffnesses and first frequencies side by side."""
-    columns = [*_columns(units), word("", lambda n: None if _alike(n) else n.verdict)]
+    verdict = Column("", lambda n: None if _alike(n) else n.verdict, kind=WORD, name="verdict")
+    columns = [*_columns(units), verdict]
     note = (
         "Differences and error bars are relative to A, for couplings to the geometric mean of "
         "both diagonal entries of A. Resolved: more than the sum of both error bars; not resolved "
@@ -446,7 +447,7 @@ def _columns(units: Units) -> list[Column]:
         text("number", lambda n: n.name + (f" (B: {n.partner})" if n.partner else "")),
         Column("A", lambda n: _value(n, n.change.a, units)),
         Column("B", lambda n: _value(n, n.change.b, units)),
-        text("unit", lambda n: units.unit(n.unit)),
+        text("unit", lambda n: Cell(plain_unit(n.unit), "", units.unit(n.unit))),
         Column("difference", _difference),
         Column("error bar of A", lambda n: _bar(n, n.change.bar_a)),
         Column("error bar of B", lambda n: _bar(n, n.change.bar_b)),
@@ -458,21 +459,24 @@ def _alike(number: NumberChange) -> bool:
     return number.name == "mass" and number.change.difference == 0
 
 
-def _difference(number: NumberChange) -> str | Cell:
+def _difference(number: NumberChange) -> Cell:
     if _alike(number):
-        return percent(0.0)
+        return Cell(0.0, "", percent(0.0))
     return beside.relative(number.change, number.scale or abs(number.change.a))
 
 
-def _value(number: NumberChange, value: float, units: Units) -> str:
+def _value(number: NumberChange, value: float, units: Units) -> Cell:
     # a coupling that symmetry forbids is nothing but rounding
-    return "0" if abs(value) <= SAME * number.scale else units.number(value, number.unit, 6)
+    if abs(value) <= SAME * number.scale:
+        return Cell(0.0, "", "0")
+    return in_units(value, number.unit, units, 6)
 
 
-def _bar(number: NumberChange, width: float | None) -> str | None:
+def _bar(number: NumberChange, width: float | None) -> Cell | None:
     if number.name == "mass" or not is_number(width) or not number.scale:
         return None
-    return percent(width / number.scale, signed=False)
+    share = width / number.scale
+    return Cell(share, "", percent(share, signed=False))
 
 
 def _solution(shaft: OneShaft) -> Table:

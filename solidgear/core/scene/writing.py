@@ -93,7 +93,9 @@ def unsettled_tables(scene: Scene) -> Table:
 def material_entry(material: Material) -> Table | str:
     """Return the name of a material that has the constants of that name, or its table."""
     table = table_of(material)
-    return material.name if material.name in MATERIALS and by_name(material.name) == table else table
+    return (
+        material.name if material.name in MATERIALS and by_name(material.name) == table else table
+    )
 
 
 def _segment(segment: Segment, usual: Material) -> Table:
