@@ -166,7 +166,9 @@ def _abandon(job: _Job) -> None:
     _worker.put(None)  # its last one
     _worker = None
     _lost.append(job)
-    # Its threads (those of MKL, for instance) are not known: all but this one step back (Linux).
+    # Its threads (those of MKL, for instance) are not known: all but this one step back.  Priorities
+    # of single threads are Linux's: psutil sets those of processes alone, and where there is no
+    # /proc an abandoned call runs on beside the next one as it is.
     main = threading.get_native_id()
     for place in Path("/proc/self/task").glob("*"):
         if int(place.name) != main:
