@@ -276,9 +276,8 @@ def test_every_command_that_prints_json_has_a_schema():
         )
         if "as_json" in inspect.signature(function).parameters:
             printing.add(name)
-    # what export says beside its files has no schema yet
-    assert printing == {*registered("printed"), "export"}
-    for name in printing - {"export"}:
+    assert printing == {*registered("printed")}
+    for name in printing:
         schema = json.loads(command("schema", "--json", name).stdout)
         forms = schema.get("anyOf", [schema])
         assert all(form["type"] == "object" and form["properties"] for form in forms), name
@@ -299,6 +298,8 @@ CATALOGUE = ROOT / "geometry" / "gearbox_catalogue.toml"
         ("bearing", CATALOGUE),
         ("deflect", TRAIN, "--torque", "100 N*m", "-f", "timoshenko"),
         ("deflect", CATALOGUE, "-f", "timoshenko"),
+        ("export", SHAFT, "-f", "timoshenko", "--modes", 2, "--out", "a.npz"),
+        ("export", SHAFT, "--to", "ross", "--out", "a.py"),
     ],
 )
 def test_what_a_command_prints_is_what_its_schema_says(words, tmp_path, monkeypatch):

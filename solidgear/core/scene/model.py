@@ -247,9 +247,7 @@ class Scene(Displayed, Model):
         if port is None:
             longest = max(segments, key=lambda s: s.length)
             port = Port(y=(longest.y0 + longest.y1) / 2, lo=longest.y0, hi=longest.y1)
-        bearings, pairs = tuple(bearings), []
-        if arrangement is not None:
-            bearings, pairs = paired(bearings, arrangement)
+        bearings, pairs = paired(tuple(bearings), arrangement)
         scene = cls(segments=segments, material=material, bearings=bearings, port=port, **rest)
         turned = {
             k: scene.bearings[k].held_towards(way)

@@ -53,9 +53,10 @@ def _width_of(data: Any) -> float | None:
     """
     if not isinstance(data, Mapping):
         return getattr(data, "seat_width", None)
+    kind: Any = Catalogue
     for known in dict[str, Any](), {"holds": "+y"}:
         try:
-            return Catalogue(**{**data, **known}).seat_width
+            return kind(**{**data, **known}).seat_width
         except (SceneError, TypeError):
             continue
     return SOMEWHERE

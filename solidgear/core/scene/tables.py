@@ -100,8 +100,10 @@ def pairing() -> Pairing:
 
 def paired(bearings: Sequence[Any], arrangement: Any) -> tuple[tuple[Any, ...], Sequence[Any]]:
     """Return bearings made in Python with a provisional direction where an arrangement mounts them, and
-    their pairs.
+    their pairs; as they are without one.
     """
+    if arrangement is None:
+        return tuple(bearings), ()
     reader = pairing()
     try:
         words = TypeAdapter(reader.Words).validate_python(arrangement)

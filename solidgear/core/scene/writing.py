@@ -115,10 +115,10 @@ def _segment(segment: Segment, usual: Material) -> Table:
         table["part"] = segment.part
     if segment.material != usual:
         entry = material_entry(segment.material)
-        no_strength = segment.material.strength is None and usual.strength is not None
-        if no_strength or not isinstance(entry, str):
-            entry = {"name": segment.material.name, **table_of(segment.material)}
-        table["material"] = {**entry, "strength": False} if no_strength else entry
+        whole: Table = {"name": segment.material.name, **table_of(segment.material)}
+        table["material"] = entry if isinstance(entry, str) else whole
+        if segment.material.strength is None and usual.strength is not None:
+            table["material"] = {**whole, "strength": False}
     return table
 
 

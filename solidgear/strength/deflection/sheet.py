@@ -273,7 +273,7 @@ def displacements(deflected: Deflection, units: Units = ENGINEERING) -> Table:
     and of all places of a shaft alone.
     """
     note = "Relative to the unloaded state, in the axes of each shaft's scene, y along it."
-    rows: list[Sequence[object]] = []
+    rows: list[list[Any]] = []
     for shaft in deflected.shafts:
         for name, six in shaft.ports.items():
             rows.append([f"{shaft.name}.{name}", *_rounded(six)])

@@ -1,0 +1,22 @@
+"""What the export of matrices prints as JSON."""
+
+from __future__ import annotations
+
+from solidgear.show.printed import Printed
+
+EXPORT = (
+    Printed(
+        keys={
+            "source": str,
+            "notes": list[str],
+            "coordinates": list[str],
+            "positions": dict[str, tuple[float, float, float]],
+            "units": str,
+            "mass": float | None,
+            "free": bool,
+            "files": list[str],
+        }
+    ),
+    # a rotor of another program is its own account
+    Printed(keys={"files": list[str]}),
+)
