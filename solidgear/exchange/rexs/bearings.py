@@ -180,7 +180,7 @@ def _operating_stiffness(bearing: Component, shaft: Shaft) -> dict[str, float] |
     K *= np.sign(K[1, 1] + K[2, 2]) or 1.0
     turned = np.kron(np.eye(2), shaft.turn)
     K = turned @ ((K + K.T) / 2) @ turned.T
-    return {k: float(f"{v:.12g}") for k, v in stiffness_entries(K).items()}
+    return stiffness_entries(K)
 
 
 def _catalogue(

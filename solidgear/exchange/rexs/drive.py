@@ -58,7 +58,10 @@ def cases_of(gearbox: Gearbox) -> list[Case]:
                 base = document.components[component.id]
                 components[component.id] = base.with_attributes(component.attributes)
             share = _share(components)
+            units = [c for c in case.components if document.components[c.id].kind == "gear_unit"]
             name = f"case {case.id}"
+            if document.is_ours and units and units[0].name:
+                name = units[0].name
             if len(document.spectra) > 1:
                 name = f"spectrum {spectrum.id} {name}"
             out.append(Case(name, share, components))

@@ -14,6 +14,7 @@ from solidgear.exchange.rexs.gearbox import Gearbox, couplings_of, gearbox_of
 from solidgear.exchange.rexs.gears import gear_table, mesh_table
 from solidgear.exchange.rexs.notes import Notes, unread
 from solidgear.exchange.rexs.planets import stage_table
+from solidgear.exchange.rexs.rest import read_rest, restored
 from solidgear.exchange.rexs.running import operation_tables, rotor_tables
 from solidgear.exchange.rexs.scenes import scene_table
 from solidgear.exchange.rexs.shafts import LONGEST, Shaft, plain_name
@@ -57,6 +58,7 @@ def imported(document: Document, name: str) -> Imported:
         tables, ports = scene_table(gearbox, shaft, cases, drive)
         loads |= ports
         files[f"{shaft.name}.toml"] = tables
+    _restore_shafts(gearbox, files)
     head = [f"Made from REXS {document.version} of {document.header.get('applicationId', '?')}."]
     if not shafts:
         texts = {file: toml_of(tables, head) for file, tables in files.items()}
@@ -74,7 +76,12 @@ def imported(document: Document, name: str) -> Imported:
     if drive is not None:
         train |= rotor_tables(gearbox, drive, cases, loads)
         train["operation"] = operation_tables(gearbox, drive, cases, loads)
-    notes.ask("the transmission_error of every mesh, which response needs: no file of REXS has it")
+    if not document.is_ours:
+        notes.ask(
+            "the transmission_error of every mesh, which response needs: no file of REXS has it"
+        )
+    for unit in document.of_kind("gear_unit"):
+        train = _restored(gearbox, train, unit)
     train_file = f"{name}.toml"
     if train_file in files:
         train_file = f"{name}_train.toml"
@@ -83,6 +90,22 @@ def imported(document: Document, name: str) -> Imported:
     return Imported(
         texts, {train_file: plain(train)} | plain(files), notes, _facts(gearbox, shafts)
     )
+
+
+def _restored(gearbox: Gearbox, tables: dict[str, Any], component: Component) -> dict[str, Any]:
+    """Return tables with what the rest of a component says of them."""
+
+    def doubt(reason: str) -> None:
+        gearbox.notes.doubt(component, reason)
+
+    return restored(tables, read_rest(component), doubt)
+
+
+def _restore_shafts(gearbox: Gearbox, files: dict[str, Any]) -> None:
+    """Put what REXS has no place for into the scenes."""
+    for shaft in gearbox.shafts.values():
+        if (scene := files.get(f"{shaft.name}.toml")) is not None:
+            files[f"{shaft.name}.toml"] = _restored(gearbox, scene, shaft.component)
 
 
 def _shaft_tables(

@@ -38,25 +38,26 @@ def rotor_tables(
         is_here = behind is not None or gearbox.shaft_of(load) is shaft
         port = ports.get(load.id) if is_here else None
         port = port or next(g.name for g in gearbox.gears.values() if g.shaft is shaft)
-        stiffness, source = torque / abs(ratio) / TWIST, "assumed: twists by 3 deg under the torque"
+        inertia = float(f"{polar_inertia(gearbox, shaft):.4g}")
+        stiffness, source = float(f"{torque / abs(ratio) / TWIST:.4g}"), "assumed: twists by 3 deg under the torque"
         rotor, rotor_source = shaft, "assumed: as that of its shaft"
         if behind is not None:
             rotor, rotor_source = behind.shaft, f"of {behind.shaft.component.label}"
+            inertia = _own_inertia(gearbox, rotor)
             if given := behind.coupling.number("rotational_stiffness"):
                 stiffness = min(given, RIGID_TURN)
                 source = f"{behind.coupling.label}: rotational_stiffness"
-        inertia = said(float(f"{polar_inertia(gearbox, rotor):.4g}"), "kg*m^2")
         out[role] = {
             "shaft": Sourced(shaft.name, load.label),
-            "inertia": Sourced(inertia, rotor_source),
+            "inertia": Sourced(said(inertia, "kg*m^2"), rotor_source),
             "status": "assumed",
             "spring": {
-                "stiffness": Sourced(said(float(f"{stiffness:.4g}"), "N*m/rad"), source),
+                "stiffness": Sourced(said(stiffness, "N*m/rad"), source),
                 "at": Sourced(port, load.label if behind is None else behind.coupling.label),
                 "status": "assumed",
             },
         }
-        if behind is not None:
+        if behind is not None and not gearbox.document.is_ours:
             gearbox.notes.assume(
                 behind.shaft.component,
                 f"is the inertia of the {role}, behind its coupling; it bends nothing, and its machine "
@@ -70,6 +71,14 @@ def rotor_tables(
         "3 deg under the largest torque"
     )
     return out
+
+
+def _own_inertia(gearbox: Gearbox, shaft: Shaft) -> float:
+    """Return the inertia of a shaft about its axis with the masses on it, kg m^2."""
+    masses = gearbox.document.parts_of(shaft.component, "additional_mass")
+    given = fsum(mass.number("moment_of_inertia_u_axis") or 0.0 for mass in masses)
+    sections = polar_inertia(gearbox, shaft)
+    return given + (sections if masses else float(f"{sections:.4g}"))
 
 
 def polar_inertia(gearbox: Gearbox, shaft: Shaft) -> float:
@@ -121,7 +130,7 @@ def operation_tables(
         if side is not drive.sides[0]:
             table["of"] = side.name
         if speed:
-            rpm = said(float(f"{abs(speed) * 30 / pi:.12g}"), "rpm")
+            rpm = said(abs(speed), "rpm", pi / 30)
             table["speed"] = Sourced(rpm, "rotational_speed")
         else:
             notes.ask("no shaft has a rotational_speed: write speed under [[operation]]")
@@ -187,13 +196,14 @@ def lubrication_table(gearbox: Gearbox, shaft_bearings: list[Component]) -> dict
     case = cases_of(gearbox)[0].components
     casings = [c for c in case.values() if c.kind == "gear_casing"]
     viscosity = next((v for c in casings if (v := c.number("operating_viscosity"))), None)
-    source = "operating_viscosity"
+    source, digits = "operating_viscosity", 12
     if viscosity is None and lubricants:
         oil = lubricants[0]
         cold, hot = (oil.number(f"viscosity_at_{t}_degree_celsius") for t in (40, 100))
         temperature = next((t for c in casings if (t := c.number("temperature_lubricant"))), None)
         if cold and hot and temperature is not None:
             viscosity = viscosity_at(temperature, cold, hot)
+            digits = 6
             source = f"{oil.label} at {temperature:g} C, by Walther (ASTM D341)"
     if not viscosity or not shaft_bearings:
         return {}
@@ -206,7 +216,7 @@ def lubrication_table(gearbox: Gearbox, shaft_bearings: list[Component]) -> dict
         )
     cleanliness = Sourced(factor if factor is not None else "normal", "contamination factor")
     return {
-        "viscosity": Sourced(said(float(f"{viscosity:.6g}"), "mm^2/s", 1e-6), source),
+        "viscosity": Sourced(said(float(f"{viscosity:.{digits}g}"), "mm^2/s", 1e-6), source),
         "cleanliness": cleanliness,
     }
 
