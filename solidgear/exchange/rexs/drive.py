@@ -42,7 +42,7 @@ class Drive:
     torque: Component  #: the load whose torque the file gives
     torque_side: Shaft
     turns: dict[int, float]  #: of every shaft in one of the engine's, by the number of the shaft
-    engine_sign: float  #: of the torque of the engine in the first case, about y
+    engine_sign: float  #: of the torque of the engine in the first case, about y; 0 for no torque
     #: shafts behind couplings that loads of the drive sit on, by the number of the load
     coupled: dict[int, Coupled] = field(default_factory=dict)
 
@@ -118,6 +118,8 @@ def drive_of(gearbox: Gearbox, cases: list[Case]) -> Drive | None:
             loads.append((first[load.id], behind.inside))
             coupled[load.id] = behind
     given = [(x, side) for x, side in loads if any(torque_in(gearbox, c, x, side) for c in cases)]
+    if not given and document.is_ours:
+        given = [(x, side) for x, side in loads if x.flag("defines_torque")]
     if not given:
         notes.ask("no load of the file has a torque: write [engine], [load] and [[operation]]")
         return None
@@ -125,7 +127,8 @@ def drive_of(gearbox: Gearbox, cases: list[Case]) -> Drive | None:
     load, shaft = defining
     turns = turns_from(gearbox, shaft)
     speed = speed_on(gearbox, cases[0], shaft)
-    torque = next(t for c in cases if (t := torque_in(gearbox, c, load, shaft)))
+    torques = (torque_in(gearbox, c, load, shaft) for c in cases)
+    torque = next((t for t in torques if t), 0.0)
     others = [
         (other, side)
         for other, side in loads

@@ -90,6 +90,8 @@ def _bevel_table(gear: Component) -> dict[str, Any]:
     for key, name in (("pitch_angle", "pitch_angle"), ("spiral_angle", "mean_spiral_angle")):
         if (angle := gear.number(name)) is not None:
             table[key] = Sourced(deg(angle), f"{gear.label}: {name}")
+    if mass := gear.number("mass_of_component"):
+        table["head"] = {"mass": Sourced(said(mass, "kg"), f"{gear.label}: mass_of_component")}
     return table
 
 
@@ -319,7 +321,7 @@ def _where(gearbox: Gearbox, stage: PairStage) -> dict[str, Any]:
     )
     azimuth = atan2(apart[2], -apart[0])
     if abs(azimuth) > 1e-9:
-        out["azimuth"] = Sourced(deg(round(azimuth, 12)), "from the places of shafts")
+        out["azimuth"] = Sourced(deg(azimuth), "from the places of shafts")
     if abs(apart[1]) > NEAR:
         place = [mm(-due), mm(round(apart[1], 9)), "0 mm"]
         out["gear_position"] = Sourced(place, "faces that do not lie beside each other")

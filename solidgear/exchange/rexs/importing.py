@@ -15,7 +15,7 @@ from solidgear.exchange.rexs.gears import gear_table, mesh_table
 from solidgear.exchange.rexs.notes import Notes, unread
 from solidgear.exchange.rexs.planets import stage_table
 from solidgear.exchange.rexs.rest import read_rest, restored
-from solidgear.exchange.rexs.running import operation_tables, rotor_tables
+from solidgear.exchange.rexs.running import load_table, operation_tables, rotor_tables
 from solidgear.exchange.rexs.scenes import scene_table
 from solidgear.exchange.rexs.shafts import LONGEST, Shaft, plain_name
 
@@ -57,6 +57,8 @@ def imported(document: Document, name: str) -> Imported:
     for shaft in [*shafts, *_alone(gearbox, shafts)]:
         tables, ports = scene_table(gearbox, shaft, cases, drive)
         loads |= ports
+        if document.is_ours and not shafts and (load := load_table(gearbox, shaft, cases[0], ports)):
+            tables["load"] = load
         files[f"{shaft.name}.toml"] = tables
     _restore_shafts(gearbox, files)
     head = [f"Made from REXS {document.version} of {document.header.get('applicationId', '?')}."]
@@ -64,18 +66,20 @@ def imported(document: Document, name: str) -> Imported:
         texts = {file: toml_of(tables, head) for file, tables in files.items()}
         return Imported(texts, files, notes, ("no stage: shafts alone",), False)
     flanks = ordered(gearbox, drive)
+    has_torque = drive is not None and drive.engine_sign != 0
     train: dict[str, Any] = {"title": name, "source": head[0]}
     train["shaft"] = _shaft_tables(gearbox, shafts, flanks)
     if flanks:
-        train["mesh"] = [mesh_table(gearbox, stage, drive is not None) for stage, _ in flanks]
+        train["mesh"] = [mesh_table(gearbox, stage, has_torque) for stage, _ in flanks]
     if gearbox.planetary:
         train["planetary"] = {
-            stage.name: stage_table(gearbox, stage, drive is not None)
+            stage.name: stage_table(gearbox, stage, has_torque)
             for stage in gearbox.planetary
         }
     if drive is not None:
         train |= rotor_tables(gearbox, drive, cases, loads)
-        train["operation"] = operation_tables(gearbox, drive, cases, loads)
+        if has_torque:
+            train["operation"] = operation_tables(gearbox, drive, cases, loads)
     if not document.is_ours:
         notes.ask(
             "the transmission_error of every mesh, which response needs: no file of REXS has it"

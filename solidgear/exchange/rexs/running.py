@@ -30,7 +30,7 @@ def rotor_tables(
     out = {}
     side = drive.torque_side
     torques = [torque_in(gearbox, c, drive.torque, side) for c in cases]
-    torque = max(abs(t) for t in torques if t)
+    torque = max((abs(t) for t in torques if t), default=0.0)
     here = drive.turns[drive.torque_side.component.id]
     for role, load, shaft in zip(("engine", "load"), (drive.engine, drive.load), drive.sides):
         ratio = drive.turns[shaft.component.id] / here
@@ -186,6 +186,17 @@ def _forces(gearbox: Gearbox, case: Case, ports: dict[int, str]) -> list[Any]:
         if len(entry) > 1:
             out.append(Sourced(entry, load.label))
     return out
+
+
+def load_table(gearbox: Gearbox, shaft: Shaft, case: Case, ports: dict[int, str]) -> dict[str, Any]:
+    """Return the load of a shaft that stands alone, at its first lumped point."""
+    for number in list(ports)[:1]:
+        load = case.components[number]
+        force, moment = load_vector(load, shaft)
+        moment[1] = load.number("torque_around_u_axis") or 0.0
+        table: dict[str, Any] = {k: said(float(v), "N") for k, v in zip("xyz", force) if v}
+        return table | {f"th{k}": said(float(v), "N*m") for k, v in zip("xyz", moment) if v}
+    return {}
 
 
 def lubrication_table(gearbox: Gearbox, shaft_bearings: list[Component]) -> dict[str, Any]:
