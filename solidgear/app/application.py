@@ -46,7 +46,7 @@ GROUPS = {
             "meshes only.",
         ),
         "export": Entry(
-            "exchange.matrices.command",
+            "exchange.command",
             "Mass and stiffness of a shaft or a train at its ports, for other programs.",
         ),
         "import": Entry(

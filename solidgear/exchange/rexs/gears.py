@@ -323,7 +323,7 @@ def _where(gearbox: Gearbox, stage: PairStage) -> dict[str, Any]:
     if abs(azimuth) > 1e-9:
         out["azimuth"] = Sourced(deg(azimuth), "from the places of shafts")
     if abs(apart[1]) > NEAR:
-        place = [mm(-due), mm(round(apart[1], 9)), "0 mm"]
+        place = [mm(-due), mm(round(apart[1], 9)), mm(0.0)]
         out["gear_position"] = Sourced(place, "faces that do not lie beside each other")
     return out
 

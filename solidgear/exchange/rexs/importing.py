@@ -60,6 +60,10 @@ def imported(document: Document, name: str) -> Imported:
         if document.is_ours and not shafts and (load := load_table(gearbox, shaft, cases[0], ports)):
             tables["load"] = load
         files[f"{shaft.name}.toml"] = tables
+    if document.is_ours:
+        # what stands in place of what REXS has not is replaced by what the file had
+        notes.assumed.clear()
+        notes.contradictory.clear()
     _restore_shafts(gearbox, files)
     head = [f"Made from REXS {document.version} of {document.header.get('applicationId', '?')}."]
     if not shafts:

@@ -89,7 +89,12 @@ def stage_table(gearbox: Gearbox, stage: PlanetStage, has_torque: bool) -> dict[
 
 def point_of(stage: PlanetStage) -> str:
     """Return the name of the lumped point of the carrier that holds the pins."""
-    return f"pins_{stage.name}"[:40]
+    return pins_name(stage.name)
+
+
+def pins_name(stage: str) -> str:
+    """Return the name of the lumped point that holds the pins of a stage."""
+    return f"pins_{stage}"[:40]
 
 
 def _is_of_ring(gearbox: Gearbox, part: Component) -> bool:

@@ -17,7 +17,11 @@ from solidgear.exchange.rexs.units import REST
 
 #: relative; numbers that went through the units of a file, and back
 SAME = 4e-15
+#: relative; a number of the file in other digits, as the arithmetic between its places leaves it
+DIGITS = 1e-9
 Table = dict[str, Any]
+#: entries that an import makes up from names and numbers of components
+MADE_UP = frozenset(("title", "source"))
 #: entries that REXS has in other words, by the key of the file
 CARRIED = frozenset(
     "pitch_radius spiral_angle between sun carrier of scene_load kind span at position seat_width "
@@ -42,19 +46,23 @@ def by_key(rows: list[Any]) -> dict[str, Any] | None:
     return keyed if len(keyed) == len(rows) else None
 
 
-def same(value: Any, other: Any) -> bool:
+def same(value: Any, other: Any, tolerance: float = SAME) -> bool:
     """Return True for values that a file says alike, to the last digits of its units."""
     if isinstance(value, Said) and isinstance(other, Mapping) and len(other) == 1:
         # a preload is a force or a displacement, by its unit
         other = next(iter(other.values()))
     value, other = (v.number if isinstance(v, Said) else v for v in (value, other))
     if isinstance(value, (list, tuple)) and isinstance(other, (list, tuple)):
-        return len(value) == len(other) and all(map(same, value, other))
+        return len(value) == len(other) and all(
+            same(v, w, tolerance) for v, w in zip(value, other)
+        )
     if isinstance(value, Mapping) and isinstance(other, Mapping):
-        return value.keys() == other.keys() and all(same(value[k], other[k]) for k in value)
+        return value.keys() == other.keys() and all(
+            same(value[k], other[k], tolerance) for k in value
+        )
     numbers = [v for v in (value, other) if isinstance(v, (int, float)) and not isinstance(v, bool)]
     if len(numbers) == 2:
-        return abs(numbers[0] - numbers[1]) <= SAME * abs(numbers[1])
+        return abs(numbers[0] - numbers[1]) <= tolerance * abs(numbers[1])
     return value == other
 
 
@@ -77,7 +85,7 @@ def rest_of(
             continue
         else:
             out["set"][key] = value
-            out["was"] |= {key: given} if key in tables else {}
+            out["was"] |= {key: given} if key in tables and key not in MADE_UP else {}
     out["without"] = [key for key in tables if key not in due]
     out["was"] |= {key: tables[key] for key in out["without"]}
     out["in"] = {key: part for key, part in out["in"].items() if part}
@@ -188,8 +196,9 @@ def _is_rest(rest: Any) -> bool:
 
 def lost(rest: Mapping[str, Any], name: str) -> Iterator[tuple[str, list[str]]]:
     """Yield components of a rest, by what they are called, each with its keys that REXS lacks."""
-    keys = [*rest.get("set", {})]
-    if keys := [key for key in keys if key not in CARRIED]:
+    was = rest.get("was", {})
+    values = {k: v for k, v in rest.get("set", {}).items() if k not in CARRIED}
+    if keys := [k for k, v in values.items() if not (k in was and same(was[k], v, DIGITS))]:
         yield name, keys
     for key, part in rest.get("in", {}).items():
         yield from lost(part, f"{name} {key}")

@@ -50,6 +50,15 @@ UNITS: dict[str, tuple[str, float]] = {
 OURS, REST = "solidgear", "custom_solidgear_rest"
 
 
+#: attributes that are whole numbers, or numbers of components, by their type in JSON
+WHOLE = {
+    "number_of_teeth": "integer",
+    "number_of_rolling_elements": "integer",
+    "number_of_bearing_rows": "integer",
+    "reference_component_for_position": "reference_component",
+}
+
+
 def scaled(number: float, factor: float) -> float:
     """Return a number in a unit in SI: dividing by 1000 is exact where multiplying by 0.001 is not."""
     inverse = round(1 / factor) if factor < 1 else 0
@@ -65,7 +74,7 @@ _IN_UNITS = {
         "inner_diameter outer_diameter width face_width normal_module tip_diameter root_diameter "
         "center_distance common_face_width width_of_external_load diameter_of_rolling_element "
         "length_of_rolling_element raceway_radius_of_inner_ring raceway_radius_of_outer_ring "
-        "outer_pitch_diameter reference_diameter_rolling_bearing distance_between_bearing_rows tip_relief_depth "
+        "outer_pitch_diameter reference_diameter reference_diameter_rolling_bearing distance_between_bearing_rows tip_relief_depth "
         "tip_relief_datum_diameter root_relief_depth root_relief_datum_diameter "
         "helix_crowning_amount_datum_face helix_crowning_amount_non_datum_face helix_slope"
     ),
