@@ -130,7 +130,8 @@ def _rexs_sheet(result: Exported, file: Path, out: Path) -> Sheet:
     notes = [f"Written: {out}"]
     if rows:
         notes.insert(
-            0, f"What has no place stands in {REST}, which solidgear import reads and others pass over."
+            0,
+            f"What has no place stands in {REST}, which solidgear import reads and others pass over.",
         )
     data = {
         "files": [str(out)],

@@ -235,9 +235,7 @@ def _fits(standard: Boundary, sizes: list[float | None]) -> bool:
     return all(size is None or abs(size - due) <= SAME * due for size, due in pairs)
 
 
-def _clearance(
-    bearing: Component, kind: str, notes: Notes, is_ours: bool
-) -> dict[str, Any]:
+def _clearance(bearing: Component, kind: str, notes: Notes, is_ours: bool) -> dict[str, Any]:
     """Return the clearance of a bearing; none written by another program says nothing."""
     if kind == "thrust_ball":
         return {}

@@ -57,7 +57,11 @@ def imported(document: Document, name: str) -> Imported:
     for shaft in [*shafts, *_alone(gearbox, shafts)]:
         tables, ports = scene_table(gearbox, shaft, cases, drive)
         loads |= ports
-        if document.is_ours and not shafts and (load := load_table(gearbox, shaft, cases[0], ports)):
+        if (
+            document.is_ours
+            and not shafts
+            and (load := load_table(gearbox, shaft, cases[0], ports))
+        ):
             tables["load"] = load
         files[f"{shaft.name}.toml"] = tables
     if document.is_ours:
@@ -77,8 +81,7 @@ def imported(document: Document, name: str) -> Imported:
         train["mesh"] = [mesh_table(gearbox, stage, has_torque) for stage, _ in flanks]
     if gearbox.planetary:
         train["planetary"] = {
-            stage.name: stage_table(gearbox, stage, has_torque)
-            for stage in gearbox.planetary
+            stage.name: stage_table(gearbox, stage, has_torque) for stage in gearbox.planetary
         }
     if drive is not None:
         train |= rotor_tables(gearbox, drive, cases, loads)
@@ -88,6 +91,8 @@ def imported(document: Document, name: str) -> Imported:
         notes.ask(
             "the transmission_error of every mesh, which response needs: no file of REXS has it"
         )
+    if document.is_ours:
+        notes.assumed.clear()  # as above, of the tables since
     for unit in document.of_kind("gear_unit"):
         train = _restored(gearbox, train, unit)
     train_file = f"{name}.toml"

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterator, Mapping
-from typing import Any
+from typing import Any, TypeGuard
 
 from solidgear.exchange.rexs.commented import Said, Sourced, plain
 from solidgear.exchange.rexs.document import Component
@@ -35,7 +35,7 @@ def key_of(table: Mapping[str, Any], place: int) -> str:
     return name or f"#{place}"
 
 
-def is_rows(value: Any) -> bool:
+def is_rows(value: Any) -> TypeGuard[list[Any]]:
     """Return True for a list of tables."""
     return isinstance(value, list) and bool(value) and all(isinstance(v, Mapping) for v in value)
 
@@ -53,9 +53,7 @@ def same(value: Any, other: Any, tolerance: float = SAME) -> bool:
         other = next(iter(other.values()))
     value, other = (v.number if isinstance(v, Said) else v for v in (value, other))
     if isinstance(value, (list, tuple)) and isinstance(other, (list, tuple)):
-        return len(value) == len(other) and all(
-            same(v, w, tolerance) for v, w in zip(value, other)
-        )
+        return len(value) == len(other) and all(same(v, w, tolerance) for v, w in zip(value, other))
     if isinstance(value, Mapping) and isinstance(other, Mapping):
         return value.keys() == other.keys() and all(
             same(value[k], other[k], tolerance) for k in value
@@ -109,7 +107,9 @@ def _rows_rest(rows: list[Any], due: list[Any], usual: Callable[[Any, Any], Tabl
     return {key: part for key, part in out.items() if part}
 
 
-def restored(tables: Mapping[str, Any], rest: Mapping[str, Any], doubt: Callable[[str], None]) -> Table:
+def restored(
+    tables: Mapping[str, Any], rest: Mapping[str, Any], doubt: Callable[[str], None]
+) -> Table:
     """Return tables with what REXS has no place for; `doubt` is called with what changed since."""
     out = dict(tables)
     for key, value in rest.get("was", {}).items():

@@ -39,7 +39,10 @@ def rotor_tables(
         port = ports.get(load.id) if is_here else None
         port = port or next(g.name for g in gearbox.gears.values() if g.shaft is shaft)
         inertia = float(f"{polar_inertia(gearbox, shaft):.4g}")
-        stiffness, source = float(f"{torque / abs(ratio) / TWIST:.4g}"), "assumed: twists by 3 deg under the torque"
+        stiffness, source = (
+            float(f"{torque / abs(ratio) / TWIST:.4g}"),
+            "assumed: twists by 3 deg under the torque",
+        )
         rotor, rotor_source = shaft, "assumed: as that of its shaft"
         if behind is not None:
             rotor, rotor_source = behind.shaft, f"of {behind.shaft.component.label}"
