@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from solidgear.core.ladder.meshes import HARMONIC
     from solidgear.core.ladder.model import BEAM
     from solidgear.core.ladder.registry import LADDER
-    from solidgear.core.loading import as_written, explained, load
+    from solidgear.core.loading import explained, load
     from solidgear.core.machine.threads import pinned
     from solidgear.core.machine.whole_file import whole
     from solidgear.core.quantity import (
@@ -106,7 +106,6 @@ __all__ = [
     "WITHIN",
     "WhereRecord",
     "as_supports",
-    "as_written",
     "bars_of_modes",
     "build",
     "change",
@@ -168,7 +167,6 @@ _WHERE = {
     "HARMONIC": "solidgear.core.ladder.meshes",
     "BEAM": "solidgear.core.ladder.model",
     "LADDER": "solidgear.core.ladder.registry",
-    "as_written": "solidgear.core.loading",
     "explained": "solidgear.core.loading",
     "load": "solidgear.core.loading",
     "pinned": "solidgear.core.machine.threads",

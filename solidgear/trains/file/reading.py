@@ -16,7 +16,7 @@ from typing import Annotated, Any, ClassVar
 from pydantic import model_validator
 
 from solidgear.core import Document, Model, Scene, SceneError, Written, addition, listed, near
-from solidgear.core import as_written as scene_as_written
+from solidgear.core.loading import as_written as scene_as_written
 from solidgear.core.reduction.matrix_units import MATRIX_UNITS
 from solidgear.core.scene.toml_file import name_of, parse, with_table_paths
 from solidgear.core.scene.typed import Problems
