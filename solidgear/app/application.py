@@ -47,7 +47,7 @@ GROUPS = {
         ),
         "export": Entry(
             "exchange.command",
-            "Mass and stiffness of a shaft or a train at its ports, for other programs.",
+            "Mass and stiffness of a shaft or a train at its ports, or a gearbox in REXS.",
         ),
         "import": Entry(
             "exchange.rexs.command",

@@ -22,7 +22,7 @@ class Sourced:
 
 
 #: relative; what the arithmetic between two files leaves, which twelve digits may leave out
-NOISE = 4e-15
+NOISE = 1e-15
 
 
 class Said(str):
@@ -31,7 +31,7 @@ class Said(str):
     number: float
 
 
-def said(length: float, unit: str, factor: float = 1.0) -> Said:
+def said(length: float, unit: str, factor: float = 1.0, noise: float = NOISE) -> Said:
     """Return a quantity as a file has it, from its number in SI and the SI units in one unit: in
     twelve digits where these say it.
 
@@ -41,7 +41,7 @@ def said(length: float, unit: str, factor: float = 1.0) -> Said:
     '80 mm'
     """
     text = f"{length / factor:.12g}"
-    if abs(scaled(float(text), factor) - length) > NOISE * abs(length):
+    if abs(scaled(float(text), factor) - length) > noise * abs(length):
         text = repr(float(length / factor))
     out = Said(f"{text} {unit}")
     out.number = scaled(float(text), factor)

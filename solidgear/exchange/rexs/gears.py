@@ -321,6 +321,8 @@ def _where(gearbox: Gearbox, stage: PairStage) -> dict[str, Any]:
     )
     azimuth = atan2(apart[2], -apart[0])
     if abs(azimuth) > 1e-9:
+        # half a turn is one place, whatever the sign of a zero
+        azimuth += 2 * pi if azimuth < -pi + 1e-9 else 0.0
         out["azimuth"] = Sourced(deg(azimuth), "from the places of shafts")
     if abs(apart[1]) > NEAR:
         place = [mm(-due), mm(round(apart[1], 9)), mm(0.0)]

@@ -16,7 +16,7 @@ from solidgear.exchange.rexs.document import Component
 from solidgear.exchange.rexs.units import REST
 
 #: relative; numbers that went through the units of a file, and back
-SAME = 4e-15
+SAME = 1e-15
 #: relative; a number of the file in other digits, as the arithmetic between its places leaves it
 DIGITS = 1e-9
 Table = dict[str, Any]

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from solidgear.core.scene.units import quantity
 from solidgear.exchange.rexs.bearings import RIGID_TURN
 from solidgear.exchange.rexs.commented import Sourced, said
 from solidgear.exchange.rexs.document import Component
@@ -18,6 +19,8 @@ from solidgear.exchange.rexs.shafts import Shaft
 
 #: twist of an elastic coupling under the torque that it is chosen for, rad (DIN 740: some degrees)
 TWIST = radians(3.0)
+#: rad/s in a turn a minute as files have it, and what its digits leave, relative
+RPM, RPM_DIGITS = quantity("1 rpm", "speed"), 1e-14
 #: difference of a sum of shares from 1 that their digits leave
 ROUNDED = 1e-3
 #: of unit vectors: a direction along an axis
@@ -140,7 +143,7 @@ def operation_tables(
         if side is not drive.sides[0]:
             table["of"] = side.name
         if speed:
-            rpm = said(abs(speed), "rpm", pi / 30)
+            rpm = said(abs(speed), "rpm", RPM, RPM_DIGITS)
             table["speed"] = Sourced(rpm, "rotational_speed")
         else:
             notes.ask("no shaft has a rotational_speed: write speed under [[operation]]")
