@@ -12,7 +12,7 @@ from rexs_gearboxes import helical, planetary
 import solidgear as sg
 from solidgear.core import is_train
 from solidgear.exchange.rexs.importing import imported
-from solidgear.exchange.rexs.out.exporting import exported, read_source
+from solidgear.exchange.rexs.export.exporting import exported, read_source
 from solidgear.exchange.rexs.reading import document_of, read
 from solidgear.exchange.rexs.rest import REST
 from solidgear.exchange.rexs.writing import xml_of
@@ -99,6 +99,16 @@ def test_what_has_no_place_is_listed_by_component():
         "gearbox_two_stage mesh input-middle.wheel: transmission_error",
         "gearbox_two_stage mesh middle.pinion-output: transmission_error",
     ]
+
+
+@pytest.mark.parametrize("name", ["gearbox_two_stage", "gearbox_train", "gearbox_housed"])
+def test_flanks_and_ways_follow_from_the_torque(name):
+    """The sign of a torque is that of the loaded flanks, and places are those of the meshes."""
+    document = exported(read_source(GEOMETRY / f"{name}.toml")).document
+    rests = " ".join(c.text(REST) for c in document.components.values())
+    assert "pitch_radius" in rests
+    for word in ("loaded_side", "torque", "hand", "azimuth", "gear_position", "kind", "bore"):
+        assert f'"{word}"' not in rests
 
 
 def numbers(root, kind):

@@ -16,7 +16,7 @@ from solidgear.exchange.export import OTHERS, is_rexs, refuse_options
 from solidgear.exchange.matrices.formats import FORMATS, format_of, write_matrices
 from solidgear.exchange.matrices.ross import write_ross
 from solidgear.exchange.matrices.source import CRAIG_BAMPTON, MODEL, Wanted, port_matrices
-from solidgear.exchange.rexs.out.exporting import Exported, write_rexs
+from solidgear.exchange.rexs.export.exporting import Exported, write_rexs
 from solidgear.exchange.rexs.units import REST
 from solidgear.show.command import Progress, command
 from solidgear.show.options import BY_MODEL, Run, Settings, options, speed_of

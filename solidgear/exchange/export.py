@@ -12,7 +12,7 @@ from solidgear.core.reduction.matrix_units import SI
 from solidgear.exchange.matrices.formats import format_of, write_matrices
 from solidgear.exchange.matrices.ross import write_ross
 from solidgear.exchange.matrices.source import port_matrices
-from solidgear.exchange.rexs.out.exporting import write_rexs
+from solidgear.exchange.rexs.export.exporting import write_rexs
 from solidgear.exchange.rexs.writing import ENDINGS
 
 #: formats beside those of matrices
