@@ -183,7 +183,10 @@ def test_the_points_of_a_duty_go_round_with_weight_and_forces(tmp_path):
     tables = read_source(GEOMETRY / "gearbox_train.toml").to_dict()
     scene = tables["shaft"]["gear"]["scene"]
     scene["port"].append({"name": "belt", "position": 0.2, "span": [0.19, 0.21]})
-    tables["operation"][0] |= {"weight": "-z", "force": [{"at": "gear.belt", "x": 800.0, "thx": 5.0}]}
+    tables["operation"][0] |= {
+        "weight": "-z",
+        "force": [{"at": "gear.belt", "x": 800.0, "thx": 5.0}],
+    }
     train = sg.Train.from_dict(tables)
     differing, result = went_round(train, tmp_path)
     assert differing == []
@@ -256,6 +259,15 @@ def test_a_spoiled_rest_ends_in_a_sentence(text):
     document.components[shaft.id] = shaft
     with pytest.raises(sg.SolidgearError, match="leave (it|the attribute) out to go on"):
         imported(document, "box")
+
+
+def test_names_of_a_file_lead_out_of_no_folder(tmp_path):
+    text = xml_of(exported(read_source(GEOMETRY / "gear_shaft.toml")).document)
+    text = text.replace('name="gear_shaft"', 'name="../gear_shaft"')
+    assert [*imported(document_of(text.encode()), "box").files] == ["gear_shaft.toml"]
+    scene = read_source(GEOMETRY / "gear_shaft.toml").with_changes(name="../x")
+    with pytest.raises(sg.SolidgearError, match="its file is named after it"):
+        exported(scene)
 
 
 def test_what_is_no_shaft_of_sections_is_refused():

@@ -10,7 +10,7 @@ import numpy as np
 from solidgear.exchange.rexs.document import Component, Document, RexsError
 from solidgear.exchange.rexs.frames import Frame, along, frame_of
 from solidgear.exchange.rexs.notes import Notes
-from solidgear.exchange.rexs.shafts import Shaft, plain_name, sections_of
+from solidgear.exchange.rexs.shafts import Shaft, is_file_name, plain_name, sections_of
 
 #: difference of places, m, or share of a distance, that digits leave
 NEAR, SHARE = 1e-5, 1e-4
@@ -70,7 +70,9 @@ class Gearbox:
 
     def name_of(self, part: Component, taken: Collection[str], usual: str) -> str:
         """Return what a component is called in files: its name where a file had it before."""
-        if self.document.is_ours and part.name:
+        # files are called after shafts, wherever the names come from
+        is_sound = part.kind != "shaft" or (part.name not in taken and is_file_name(part.name))
+        if self.document.is_ours and part.name and is_sound:
             return part.name
         return plain_name(part.name, taken, usual)
 
@@ -167,7 +169,8 @@ def _add_shafts(gearbox: Gearbox) -> None:
             way = along(frame, first, shaft)
             if way is not None:
                 sign, turn = way, first.train_axes.T @ frame.axes
-        name = gearbox.name_of(shaft, [*names, "shaft"], f"shaft_{shaft.id}")
+        taken = names if document.is_ours else [*names, "shaft"]
+        name = gearbox.name_of(shaft, taken, f"shaft_{shaft.id}")
         try:
             sections, start = sections_of(document, shaft, sign)
         except RexsError as error:

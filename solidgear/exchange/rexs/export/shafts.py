@@ -7,9 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.core import Bearing, Scene, SolidgearError
+from solidgear.core import Bearing, Scene, SolidgearError, show
 from solidgear.exchange.rexs.bearings import KINDS, ONE_WAY
 from solidgear.exchange.rexs.export.parts import Parts
+from solidgear.exchange.rexs.shafts import is_file_name
 from solidgear.exchange.rexs.units import MOTIONS
 
 TYPES = {kind: word for word, kind in KINDS.items()}
@@ -26,6 +27,11 @@ def add_shaft(
     if not scene.segments:
         raise SolidgearError(
             f"{scene.name} has no segments, and REXS has shafts of round sections: it stays where it is"
+        )
+    if not is_file_name(name):
+        raise SolidgearError(
+            f"shaft {show(name, 40)}: its file is named after it when it comes back; use letters, "
+            "digits, blanks, - and _"
         )
     frame = parts.frame(origin, axes)
     shaft = parts.add("shaft", name, parts.unit, **frame, **attributes)
