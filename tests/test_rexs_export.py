@@ -11,8 +11,8 @@ from rexs_gearboxes import helical, planetary
 
 import solidgear as sg
 from solidgear.core import is_train
-from solidgear.exchange.rexs.importing import imported
 from solidgear.exchange.rexs.export.exporting import exported, read_source
+from solidgear.exchange.rexs.importing import imported
 from solidgear.exchange.rexs.reading import document_of, read
 from solidgear.exchange.rexs.rest import REST
 from solidgear.exchange.rexs.writing import xml_of
@@ -21,8 +21,10 @@ GEOMETRY = Path("geometry")
 TRAINS = sorted(path.name for path in GEOMETRY.glob("*.toml") if is_train(path))
 SCENES = ("gear_shaft", "gearbox_catalogue", "intermediate_shaft", "pinion_keyed", "rotor_disc")
 #: keys of files for which REXS has attributes
-IN_REXS = {*("teeth length diameter E nu density position inertia torque azimuth module "
-             "designation pressure_angle kxx kyy elements preload sun planets radial").split()}  # fmt: skip
+IN_REXS = frozenset(
+    "teeth length diameter E nu density position inertia torque azimuth module designation "
+    "pressure_angle kxx kyy elements preload sun planets radial".split()
+)
 #: relative; two roundings in the units of a file, of degrees and of millimetres
 ROUNDED = 1e-15
 

@@ -93,6 +93,7 @@ def imported(document: Document, name: str) -> Imported:
         )
     if document.is_ours:
         notes.assumed.clear()  # as above, of the tables since
+        notes.unknown.clear()
     for unit in document.of_kind("gear_unit"):
         train = _restored(gearbox, train, unit)
     train_file = f"{name}.toml"

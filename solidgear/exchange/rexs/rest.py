@@ -194,6 +194,10 @@ def _is_rest(rest: Any) -> bool:
     )
 
 
+#: the list in which torque and speed are those of another shaft than in REXS
+OPERATION = "operation"
+
+
 def lost(rest: Mapping[str, Any], name: str) -> Iterator[tuple[str, list[str]]]:
     """Yield components of a rest, by what they are called, each with its keys that REXS lacks."""
     was = rest.get("was", {})
@@ -203,7 +207,10 @@ def lost(rest: Mapping[str, Any], name: str) -> Iterator[tuple[str, list[str]]]:
     for key, part in rest.get("in", {}).items():
         yield from lost(part, f"{name} {key}")
     for key, part in rest.get("rows", {}).items():
+        carried = ("torque", "speed") if key == OPERATION else ()
         for row in part.get("add", {}):
             yield f"{name} {key} {row}", ["all"]
         for row, inner in part.get("in", {}).items():
-            yield from lost(inner, f"{name} {key} {row}")
+            for place, keys in lost(inner, f"{name} {key} {row}"):
+                if keys := [k for k in keys if k not in carried]:
+                    yield place, keys

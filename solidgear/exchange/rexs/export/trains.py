@@ -167,7 +167,7 @@ class TrainParts:
             shaft,
             u_coordinate_on_shaft=size / 2,
             transmits_torque=True,
-            defines_torque=name == self.train.engines[0],
+            defines_torque=name in self.train.engines[:1],
         )
 
     def _add_case(self, point: OperatingPoint) -> None:
