@@ -136,7 +136,8 @@ def drive_of(gearbox: Gearbox, cases: list[Case]) -> Drive | None:
         and other.flag("transmits_torque") is not False
         and side.component.id in turns
     ]
-    brings = torque * (speed or torque) >= 0
+    # where this program wrote it, the load that defines the torque is the engine, coasting or not
+    brings = document.is_ours or torque * (speed or torque) >= 0
     if len(others) > 1:
         names = ", ".join(other.label for other, _ in others)
         notes.assume(load, f"its torque goes to {others[-1][0].label} alone, of {names}")
