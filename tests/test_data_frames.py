@@ -148,3 +148,26 @@ def test_a_column_of_frames_alone_is_not_shown():
     assert list(table.to_dataframe().columns) == ["a", "unit", "b"]
     assert list(table.to_dataframe()["a"]) == ["x", "y"]
     assert table.csv().splitlines()[0] == 'a,"b, mm"'
+
+
+def test_shapes_of_a_train_are_motions_of_its_ports(tmp_path):
+    found = sg.system_modes(GEOMETRY / "axle_overhung.toml", "euler", max_frequency=1000.0)
+    shapes = found.to_xarray()
+    turning = shapes.motion.sel(shape="train rotation", component="thy")
+    teeth = [abs(float(turning.sel(port=port))) for port in ("gear.gear", "pinion.pinion")]
+    # both turn as their numbers of teeth say, and all of a shaft alike
+    train = found.assembly.train
+    assert teeth[1] / teeth[0] == pytest.approx(abs(train.turns["pinion"] / train.turns["gear"]))
+    system = found.assembly.system("euler", "euler")
+    whole = found.solved.shapes
+    assert np.allclose(np.einsum("ik,ij,jk->k", whole, system.mass, whole), 1.0)
+
+
+def test_error_bars_of_displacements_stand_beside_them():
+    study = sg.deflect(GEOMETRY / "shaft_stepped.toml", ["euler", "harmonic"], load="z=1 kN")
+    moved = study.to_dataframe("displacements")
+    assert [*moved["place"]] == ["shaft.port", "shaft.A", "shaft.B"]
+    bars = study.judge.displacement["port"]
+    assert moved["z error bar"][0] == pytest.approx(max(bars[2].bar, 1e-4 * abs(bars[2].value)))
+    assert moved.attrs["units"]["z error bar"] == moved.attrs["units"]["z"] == "m"
+    assert [*study.to_dataframe("motion_of_port")["model"]] == ["euler", "harmonic"]

@@ -299,7 +299,10 @@ def test_a_mass_as_a_slice_of_the_shaft():
 
 
 BAD = {
-    'on = "fan"\nmass = "22 kg"': ('on = "fun"\nmass = "22 kg"', "no lumped point or bearing has"),
+    'on = "fan"\nmass = "22 kg"': (
+        'on = "fun"\nmass = "22 kg"',
+        "no lumped point, bearing or segment has",
+    ),
     'mass = "22 kg"': ('mass = "0 kg"', "must be greater than zero"),
     '"0.318 kg*m^2"': ('"0.5 kg*m^2"', "larger than the sum of the other two"),
     'offset = ["0 mm", "12 mm", "0 mm"]': ('offset = ["0 mm", "12 mm"]', "three quantities"),

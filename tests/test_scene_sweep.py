@@ -44,6 +44,20 @@ def test_a_bar_holds_what_a_tighter_tolerance_changes():
         assert tight[f"{name} bar"] < 0.2 * loose[f"{name} bar"]
 
 
+def test_bearings_alone_are_swept_by_one_body_from_python_as_by_the_command(tmp_path):
+    varied, rows = "bearing.A.kzz=1e8,2e8", tmp_path / "rows.csv"
+    swept = sg.sweep(SHAFT, varied, **BEAM)
+    assert list(swept["how"]) == ["reduced"] * 2
+    chosen = ("-f", "timoshenko", "-n", 2, "--vary", varied)
+    assert command("sweep", SHAFT, *chosen, "--out", rows).exit_code == 0
+    files = {path.name for path in swept.write(tmp_path / "study")}
+    assert files == {"sweep.html", "sweep.json", "rows.csv", "sweep.png", "sweep.svg"}
+    # the very digits, of the command and of the folder
+    assert table(rows) == table(tmp_path / "study" / "rows.csv")
+    with pytest.raises(sg.SolidgearError, match="one body for many bearing sets"):
+        sg.sweep(SHAFT, "material.E=200 GPa", reduction_tolerance=1e-3, **BEAM)
+
+
 def test_entries_with_a_plus_have_one_value_and_a_sum_is_kept():
     both = "segment.left.diameter+segment.right.diameter=48 mm:52 mm:3"
     rows = sg.sweep(SHAFT, both, **BEAM)

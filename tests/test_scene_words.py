@@ -144,3 +144,52 @@ def test_a_thing_that_waits_for_its_shaft_keeps_its_words():
     scene = scene_with(port=renamed)
     assert (scene.port.y, scene.port.name, scene.port.words) == (0.3, "gear", None)
     assert math.isclose(scene.with_port(y=0.1).port.y, 0.1)
+
+
+ROD = sg.Segment.cylinder("rod", length="200 mm", diameter="40 mm")
+
+
+def pair(**words):
+    return [
+        sg.Bearing(name=name, position=at, designation="7208 B", **words)
+        for name, at in (("A", "20 mm"), ("B", "180 mm"))
+    ]
+
+
+@pytest.mark.parametrize(
+    ("arrangement", "ways"), [("O", ["+y", "-y"]), ("X", ["-y", "+y"]), ({"X": ["B", "A"]}, "-+")]
+)
+def test_an_arrangement_turns_bearings_made_in_python(arrangement, ways):
+    scene = sg.Scene.from_parts(
+        [ROD],
+        bearings=pair(),
+        arrangement=arrangement,
+        port=sg.Port(at="rod.middle", span=[0.06, 0.1]),
+    )
+    assert [bearing.catalogue.holds[0] for bearing in scene.bearings] == [way[0] for way in ways]
+    assert [bearing.seat_width for bearing in scene.bearings] == [0.018, 0.018]
+    tables = scene.to_dict()
+    for table in tables["bearing"]:
+        del table["seat_width"]
+    assert sg.Scene.from_dict(tables) == scene
+
+
+def test_bearings_without_a_direction_are_refused_by_the_scene_and_by_a_file():
+    with pytest.raises(sg.SceneError, match="catalogue.holds: single angular contact"):
+        sg.Scene.from_parts([ROD], bearings=pair())
+    with pytest.raises(sg.SceneError, match="arrangement.*back to back"):
+        sg.Scene.from_parts([ROD], bearings=pair(), arrangement="Q")
+    with pytest.raises(sg.SceneError, match="this scene has 0"):
+        sg.Scene.from_parts([ROD], bearings=pair(holds="+y"), arrangement="O")
+
+
+def test_a_mass_on_a_segment_sits_on_all_of_it_unless_a_station_has_that_name():
+    wheel = sg.Segment.cylinder("wheel", length="30 mm", diameter="90 mm")
+    masses = [sg.PointMass(name="rim", mass=1.0, on="wheel")]
+    scene = sg.Scene.from_parts([ROD, wheel], masses=masses)
+    (mass,) = scene.masses
+    assert (mass.on, mass.y, mass.seat_width) == (None, 0.215, pytest.approx(0.03))
+    tables = scene.to_dict() | {"mass": [{"name": "rim", "mass": 1.0, "on": "wheel"}]}
+    assert sg.Scene.from_dict(tables) == scene
+    port = sg.Port(name="wheel", at="rod.middle", attach_to="rod")
+    assert sg.Scene.from_parts([ROD, wheel], masses=masses, port=port).masses[0].on == "wheel"

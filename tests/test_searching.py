@@ -69,10 +69,10 @@ def test_the_best_seat_of_a_shaft_is_beside_the_other_disc(tmp_path):
     path.write_text(DISCS)
     vary = ["bearing.B.position=75 mm:540 mm"]
     beam = {"model": "timoshenko"}
-    ends = sg.sweep(path, "bearing.B.position=75 mm,540 mm", n=4, **beam)
+    ends = sg.sweep(path, "bearing.B.position=75 mm,540 mm", n=4, one_at_a_time=True, **beam)
     left, right = (
         next(ends[f"f{j}_hz"][k] for j in range(1, 5) if ends[f"mode{j}"][k] == "bending 2")
-        for k in range(2)
+        for k in (1, 2)
     )
     found = sg.optimise(path, vary, "max bending 2", **beam)
     assert found.best.value == pytest.approx(left, rel=1e-9) and left > 1.03 * right

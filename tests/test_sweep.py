@@ -74,7 +74,7 @@ def test_every_row_is_what_a_separate_run_on_the_same_mesh_gives(fidelity, tmp_p
         )
         assert [row[f"mode{k}"] for k in range(1, 7)] == [name for _, name in direct]
         assert row["rigid_modes"] == modes.evidence["rigid_modes"] == 1
-        assert row["K_z_thx"] == pytest.approx(static.stiffness[2, 3], rel=1e-9) and row[
+        assert row["K_z,thx"] == pytest.approx(static.stiffness[2, 3], rel=1e-9) and row[
             "C_thz"
         ] == pytest.approx(static.compliance[5, 5], rel=1e-9)
         # and the scene is the one the row names
@@ -230,7 +230,7 @@ def test_rows_of_another_sweep_are_never_mixed(finished, tmp_path):
         ({"vary": ["bearing.1.scale=1,2"], "sample": 2}, "sample"),
     ):
         with pytest.raises(
-            SolidgearError, match=rf"another sweep \(it differs in: {word}\).*--overwrite"
+            SolidgearError, match=rf"another sweep \(it differs in: {word}\).*`overwrite`"
         ):
             light(out, **other)
         assert out.read_text() == before

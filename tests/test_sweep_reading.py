@@ -6,10 +6,7 @@ import pytest
 
 import solidgear as sg
 from solidgear.core.errors import SolidgearError
-from solidgear.variants.sweep.bearing_task import bearing_task
 from solidgear.variants.sweep.bearing_variants import bearing_variants
-from solidgear.variants.sweep.file_task import run
-from tests.command import numbers
 
 #: a head, two cylinders; bearing "front" stands in all cases at 90 mm, "rear" at 220 mm
 SHAFT = """
@@ -92,9 +89,6 @@ def by_every_way(path, entry, value, other, folder):
     assert own["in turn"][0] == pytest.approx(own["in turn"][1], rel=1e-9)
     own["in turn"] = own["in turn"][0]
     own["table"] = sg.sweep(path, table=table, **BEAM)["K_zz"][0]
-    rows = folder / "rows.csv"
-    run(bearing_task(bearing_variants(path, [both]), **BEAM), rows, overwrite=True)
-    own["one body"] = numbers(rows)[0]["K_zz"]
     return own
 
 
@@ -142,10 +136,8 @@ def test_every_way_of_sweeping_gives_the_other_rows_as_well(tmp_path):
     rows = sg.sweep(path, ["bearing.front.scale=2", "segment.tail.length=100 mm,101 mm"], **BEAM)
     assert rows["K_zz"][0] == pytest.approx(want[2, 2], rel=1e-9)
     assert rows["K_yy"][0] == pytest.approx(want[1, 1], rel=1e-9)
-    alone = tmp_path / "rows.csv"
-    variants = bearing_variants(path, ["bearing.front.scale=2,3"])
-    run(bearing_task(variants, **BEAM), alone)
-    assert numbers(alone)[0]["K_yy"] == pytest.approx(want[1, 1], rel=MESH)
+    alone = sg.sweep(path, ["bearing.front.scale=2,3"], **BEAM)
+    assert alone["how"][0] == "reduced" and alone["K_yy"][0] == pytest.approx(want[1, 1], rel=MESH)
 
 
 def test_what_hangs_on_a_bearing_that_moves_is_no_sweep_of_bearings_alone(tmp_path):

@@ -123,7 +123,7 @@ def test_a_full_disk_keeps_the_rows_before(tmp_path, right):
         file._db.execute("PRAGMA max_page_count = 1")  # as many as there are
         file.append(map(row, range(30, TOTAL)))
     assert str(full.value) == (
-        f"--out {out}: cannot be written (database or disk is full); 30 of 120 rows are kept, "
+        f"`out` {out}: cannot be written (database or disk is full); 30 of 120 rows are kept, "
         "and the same command goes on from there"
     )
     assert write(out) == list(range(30, TOTAL)) and out.read_bytes() == right
@@ -181,9 +181,9 @@ def test_a_folder_that_cannot_be_written_is_told():
 @pytest.mark.parametrize(
     ("spoil", "says"),
     [
-        ("CREATE TABLE mine (a)", "is no database of rows that this.*--overwrite"),
+        ("CREATE TABLE mine (a)", "is no database of rows that this.*`overwrite`"),
         ("PRAGMA user_version = 1; CREATE TABLE rows (a)", "is no database of rows that this"),
-        (None, "is damaged beyond repair .file is not a database.; put back a copy.*--overwrite"),
+        (None, "is damaged beyond repair .file is not a database.; put back a copy.*`overwrite`"),
     ],
     ids=["foreign", "older", "no database"],
 )

@@ -82,7 +82,7 @@ def test_the_file_of_any_scene_reads_back_equal(scene):
     assert sg.Scene.from_dict(tomllib.loads(scene.to_toml())) == scene
 
 
-def test_the_file_of_a_catalogue_bearing_made_in_python_reads_back_as_it_is(tmp_path):
+def test_the_file_of_a_catalogue_bearing_made_in_python_settles_when_it_is_read(tmp_path):
     rod = sg.Segment.cylinder("rod", length=0.3, diameter=0.04)
     seats = [
         sg.Bearing(name=n, position=y, seat_width="18 mm", designation="6208")
@@ -90,8 +90,20 @@ def test_the_file_of_a_catalogue_bearing_made_in_python_reads_back_as_it_is(tmp_
     ]
     scene = sg.Scene.from_parts([rod], bearings=seats, load={"z": "1 kN"}, name="rod")
     for made in (scene, scene.settled):
-        made.to_toml(tmp_path / "rod.toml")
-        assert sg.load(tmp_path / "rod.toml") == made
+        assert "settled" not in made.to_toml(tmp_path / "rod.toml")
+        assert sg.load(tmp_path / "rod.toml") == scene.settled
+    by_hand = scene.settled.with_changes(bearings=[b.scaled(2) for b in scene.settled.bearings])
+    assert sg.Scene.from_dict(tomllib.loads(by_hand.to_toml())) == by_hand
+
+
+def test_a_changed_material_has_its_name_and_bearings_settle_anew():
+    path = GEOMETRY / "gearbox_catalogue.toml"
+    changed = sg.load(path).with_changes(material="42CrMo4")
+    text = changed.to_toml()
+    new = [line for line in changed_lines(path.read_text("utf-8"), text) if line.startswith("+")]
+    assert new == ['+ material = "42CrMo4"']
+    read = sg.Scene.from_dict(tomllib.loads(text), GEOMETRY, path.name)
+    assert read == changed.settled and read.bearings != sg.load(path).bearings
 
 
 def test_a_train_writes_its_text_with_scenes_that_changed_inside(tmp_path):

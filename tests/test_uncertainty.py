@@ -1,5 +1,7 @@
 """What the data of a scene leave open of its numbers."""
 
+import json
+
 import pytest
 from pytest import approx
 
@@ -65,6 +67,13 @@ def test_what_is_worth_measuring_comes_first(gearbox):
     assert next(iter(shares)) == "load" and sum(shares.values()) == approx(1.0)
     by_source = gearbox.of("bending 1").by_source
     assert by_source["load"].low < by_source["bearings"].low < 0
+
+
+def test_ranges_write_their_chart_and_the_numbers_of_the_command(gearbox, tmp_path):
+    files = {path.name for path in gearbox.write(tmp_path)}
+    assert files == {"budget.html", "budget.json", "budget.png", "budget.svg"}
+    written = json.loads((tmp_path / "budget.json").read_text(encoding="utf-8"))
+    assert written["scene"] == "gearbox_catalogue" and len(written["numbers"]) > 4
 
 
 @pytest.mark.long

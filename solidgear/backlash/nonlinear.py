@@ -126,11 +126,11 @@ def nonlinear(
         ]
     assembly = _with_teeth(assembly, driver, backlash, error)
     if contact_loss is not None and not contact_loss > 0:
-        raise SolidgearError(f"--contact-loss {contact_loss:g}: give a frequency above 0 Hz")
+        raise SolidgearError(f"`contact_loss` {contact_loss:g}: give a frequency above 0 Hz")
     teeth = study.teeth_of(
-        assembly, _read("--mean-force", mean_force, "load"), contact_loss, driver.name
+        assembly, _read("`mean_force`", mean_force, "load"), contact_loss, driver.name
     )
-    for option, count in (("--apart", apart), ("--in-time", in_time), ("--forces", forces)):
+    for option, count in (("`apart`", apart), ("`in_time`", in_time), ("`forces`", forces)):
         if not 0 <= count <= MOST_RUNS:
             raise SolidgearError(f"{option} {count}: give 0 to {MOST_RUNS}")
     limit = reduced.get("max_frequency")
@@ -175,10 +175,10 @@ def _usual(assembly: Assembly) -> list[tuple[str, ...]]:
 
 def _with_teeth(assembly: Assembly, driver: Pair, backlash: Quantity, error: Quantity) -> Assembly:
     """Return the same train with the given teeth of one mesh."""
-    width, size = _read("--backlash", backlash, "length"), _read("--error", error, "length")
+    width, size = _read("`backlash`", backlash, "length"), _read("`error`", error, "length")
     if width is None and size is None:
         return assembly
-    for option, value, text in (("--backlash", width, backlash), ("--error", size, error)):
+    for option, value, text in (("`backlash`", width, backlash), ("`error`", size, error)):
         if value is not None and value < 0:
             raise SolidgearError(f"{option} {show(text, 40)}: it must not be negative")
     changes: dict[str, Any] = {} if width is None else {"backlash": width}

@@ -89,7 +89,7 @@ def ramp_of(rpm: float, teeth: float, low: float, high: float) -> float:
     least, most = cycles / MOST_CYCLES, cycles / FEWEST_CYCLES
     if not least <= abs(rpm) <= most:
         raise SolidgearError(
-            f"--run-up {rpm:g}: give {float(f'{1.05 * least:.2g}'):g} to "
+            f"`run_up` {rpm:g}: give {float(f'{1.05 * least:.2g}'):g} to "
             f"{float(f'{0.95 * most:.2g}'):g} rpm/s, or so much below 0; from {low:g} to {high:g} Hz "
             f"that is {MOST_CYCLES} to {FEWEST_CYCLES} mesh cycles"
         )

@@ -95,7 +95,7 @@ def teeth_of(
     if error.frequency:
         raise SolidgearError(
             "the transmission error is a table over frequency; give it by orders in the file, or "
-            '--error "10 um"'
+            '`error` "10 um"'
         )
     cycle: tuple[tuple[float, float], ...] = ()
     if table is not None:
@@ -125,13 +125,13 @@ def _refuse_absent(train: Train, driver: Pair, mean_force: float | None) -> None
     absent, ways = [], []
     if not any(driven.mesh.backlash is not None for driven in train.pairs):
         absent.append("backlash")
-        ways.append('backlash = "100 um" under [mesh] or --backlash')
+        ways.append('backlash = "100 um" under [mesh] or `backlash`')
     if mean_force is None and train.point is None:
         absent.append("mean force")
-        ways.append('[[operation]] with torque = "115 N*m" or --mean-force "5 kN"')
+        ways.append('[[operation]] with torque = "115 N*m" or `mean_force` "5 kN"')
     if driver.mesh.transmission_error is None:
         absent.append("transmission error")
-        ways.append('transmission_error = "10 um" under [mesh] or --error')
+        ways.append('transmission_error = "10 um" under [mesh] or `error`')
     if absent:
         raise SolidgearError(f"no {', no '.join(absent)}: give {'; '.join(ways)}")
 
@@ -143,7 +143,7 @@ def _refuse_several(assembly: Assembly, driver: Pair) -> None:
         if varies is not None and pair.name != driver.name:
             raise SolidgearError(
                 f"the {pair.name} varies over its own cycle, and the train is driven at that of the "
-                f"{driver.name}: give --mesh {pair.label.strip()}, or leave its table out"
+                f"{driver.name}: give `mesh` {pair.label.strip()}, or leave its table out"
             )
 
 

@@ -329,6 +329,11 @@ class Catalogue(Model):
         return self.arrangement in PAIRED
 
     @property
+    def seat_width(self) -> float:
+        """Width of all rows together, m."""
+        return self.width * (2 if self.paired else 1)
+
+    @property
     def opposed(self) -> bool:
         """True where two rows hold the shaft against each other."""
         return self.own_rows > 1 or (self.paired and self.arrangement != "tandem")

@@ -218,7 +218,7 @@ def loaded_by(scene: Scene, load: str, bearing: str | None = None) -> Scene:
     try:
         return _with_load(scene, BearingLoad(**_components(load)), bearing)
     except SceneError as error:
-        raise SolidgearError(f"--load {show(load)}: {error}") from None
+        raise SolidgearError(f"`load` {show(load)}: {error}") from None
 
 
 def _components(text: str) -> dict[str, Any]:
@@ -228,7 +228,7 @@ def _components(text: str) -> dict[str, Any]:
         key, sep, value = (piece.strip() for piece in part.partition("="))
         if not sep or not value:
             raise SolidgearError(
-                f'--load {show(text)}: write components such as "x=2 kN, z=-500 N, thx=10 N*m"'
+                f'`load` {show(text)}: write components such as "x=2 kN, z=-500 N, thx=10 N*m"'
             )
         try:
             components[key] = float(value)
@@ -246,7 +246,7 @@ def _with_load(scene: Scene, load: BearingLoad, bearing: str | None) -> Scene:
         catalogues = {bearing: catalogues[bearing].with_changes(load=load, displacement=None)}
     else:
         raise SolidgearError(
-            f"--bearing {bearing}: no bearing of catalogue data has this name; known here: "
+            f"`name` {bearing}: no bearing of catalogue data has this name; known here: "
             f"{', '.join(catalogues) or 'none'}"
         )
     bearings = tuple(

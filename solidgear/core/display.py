@@ -147,7 +147,8 @@ class Sheeted(Displayed):
 
     def framed_tables(self) -> dict[str, Table]:
         """Return all tables of numbers by name, the main one first, then those of its files."""
-        return _sheets().tables_of(self.sheet())
+        more = _shown(f"{self.shown}_tables") if self.shown else None
+        return _sheets().tables_of(self.sheet()) if more is None else more(self)
 
     def __repr__(self) -> str:
         return super().__repr__() if self.shown else _sheets().as_printed(self.sheet())

@@ -7,7 +7,7 @@ from __future__ import annotations
 import difflib
 import json
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from numbers import Integral
 from typing import Any
 
@@ -15,12 +15,15 @@ from typing import Any
 MOST_PROBLEMS = 20
 #: hint on the brackets that a file has before a table
 BRACKETS = re.compile(r"(, given once)?: write \[+\w+\]+ with \w+ brackets( before each)?")
+#: name of an argument of Python in the text of an error
+ARGUMENT = re.compile(r"`([a-z_]+)`")
 #: letters of a line on a terminal
 LONGEST = 1000
 
 
 class SolidgearError(Exception):
-    """Base of every error that solidgear raises on purpose; its text is for the user.
+    """Base of every error that solidgear raises on purpose; its text is for the user, with arguments
+    of Python between backquotes, such as ```torque```, which commands show as their options.
 
     Examples
     --------
@@ -33,6 +36,18 @@ class SolidgearError(Exception):
     ...     print(error)
     modes: n = 0 is not a number of modes; ask for 1 or more
     """
+
+    def spell_arguments(self, spell: Callable[[str], str]) -> None:
+        """Write the names of arguments in the text another way, such as options of a command.
+
+        Examples
+        --------
+        >>> error = SolidgearError("give `torque` or `point`, not both")
+        >>> error.spell_arguments(lambda name: f"--{name}")
+        >>> print(error)
+        give --torque or --point, not both
+        """
+        self.args = tuple(_spelled(text, spell) for text in self.args)
 
 
 class NoBounds(SolidgearError):
@@ -171,6 +186,13 @@ class SceneError(SolidgearError, ValueError):
             for problem in self.problems
         )
 
+    def spell_arguments(self, spell: Callable[[str], str]) -> None:
+        """Write the names of arguments in the texts of all problems another way."""
+        super().spell_arguments(spell)
+        self.reason = _spelled(self.reason, spell)
+        for problem in self.others:
+            problem.spell_arguments(spell)
+
     def _located(self, data: Any, source: str, path: tuple) -> SceneError:
         field, entry, exists = _name_and_value(path, data)
         return self._changed(
@@ -188,6 +210,10 @@ class SceneError(SolidgearError, ValueError):
 
 
 # --------------------------------------------------------------------------- texts
+def _spelled(text: Any, spell: Callable[[str], str]) -> Any:
+    return ARGUMENT.sub(lambda name: spell(name[1]), text) if isinstance(text, str) else text
+
+
 def printable(text: str) -> str:
     """Return a text in one line, escaping letters that would move the cursor of a terminal or reverse
     its direction of writing.

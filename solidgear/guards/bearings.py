@@ -42,18 +42,13 @@ def misfits(scene: Scene) -> Iterator[str]:
         yield from _beside_steps(scene, bearing, data)
         yield from _inside(bearing, data)
     for (a, data_a), (b, data_b) in combinations(catalogued, 2):
-        distance, widths = abs(a.y - b.y), (width_of(data_a), width_of(data_b))
+        distance, widths = abs(a.y - b.y), (data_a.seat_width, data_b.seat_width)
         if distance < (1 - REACH) * sum(widths) / 2:
             yield (
                 f"bearings {a.name!r} and {b.name!r} take the same space: their middles are "
                 f"{_mm(distance)} apart, and they are {_mm(widths[0])} and {_mm(widths[1])} wide; "
                 "correct position or designation"
             )
-
-
-def width_of(data: Catalogue) -> float:
-    """Return the width of a bearing with its pair, m."""
-    return data.width * (2 if data.paired else 1)
 
 
 def _label(bearing: Bearing, data: Catalogue) -> str:
@@ -71,7 +66,7 @@ def _on_its_seat(scene: Scene, bearing: Bearing, data: Catalogue) -> Iterator[st
             f"{_label(bearing, data)} has a bore of {_mm(data.bore)} and sits on a diameter of "
             f"{_mm(seat)} ({segments[0].name!r}): correct designation, bore, position or the segment"
         )
-    width, seat_width = width_of(data), bearing.hi - bearing.lo
+    width, seat_width = data.seat_width, bearing.hi - bearing.lo
     if not NARROW <= seat_width / width <= WIDE:
         pair = " with both of its rows" if data.paired else ""
         yield (
@@ -84,7 +79,7 @@ def _beside_steps(scene: Scene, bearing: Bearing, data: Catalogue) -> Iterator[s
     """Yield sentences on larger diameters under the bearing, or beside it as high as its outer
     ring.
     """
-    middle, width = (bearing.lo + bearing.hi) / 2, width_of(data)
+    middle, width = (bearing.lo + bearing.hi) / 2, data.seat_width
     low, high = middle - width / 2, middle + width / 2
     slack = REACH * width
     for segment in scene.segments:

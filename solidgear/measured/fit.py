@@ -74,12 +74,12 @@ def varied_of(
     """
     entries = [_varied(text, tables, ranges or ()) for text in texts]
     if not entries:
-        raise SolidgearError('nothing is varied; give for example --vary "material.E"')
+        raise SolidgearError('nothing is varied; give for example `vary` "material.E"')
     if len({entry.keys for entry in entries}) < len(entries):
-        raise SolidgearError("--vary: the same entry is given twice")
+        raise SolidgearError("`vary`: the same entry is given twice")
     bounded = any(math.isfinite(entry.high) or math.isfinite(entry.deviation) for entry in entries)
     if ranges is not None and not bounded:
-        raise SolidgearError("--priors: [uncertain] of the file has no range for a varied entry")
+        raise SolidgearError("`priors`: [uncertain] of the file has no range for a varied entry")
     return tuple(entries)
 
 
@@ -101,7 +101,7 @@ def _varied(text: str, tables: Tables, ranges: Sequence[Uncertain]) -> Varied:
             low, high = sorted(range_ends(range_text, before, _dimension(value, range_text)))
             return _with_range(Varied(keys, label, before), range_text, low / before, high / before)
     except SceneError as error:
-        raise SolidgearError(f"--vary {text}: {error}") from None
+        raise SolidgearError(f"`vary` {text}: {error}") from None
     out = Varied(keys, label, before)
     for stated in ranges:
         # a range of all of a bearing's stiffness is one of each entry

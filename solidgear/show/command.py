@@ -10,11 +10,20 @@ import time
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any, TypeVar, get_type_hints
 
+from solidgear.core.errors import SolidgearError
+
 if TYPE_CHECKING:
     from rich.console import Console, RenderableType
     from rich.status import Status
 
 R = TypeVar("R")
+#: options of arguments of Python whose names commands do not have
+OTHERWISE = {
+    "folder": "--out",
+    "forces": "--force",
+    "options": "--set",
+    "reduction_tolerance": "--tolerance",
+}
 #: exit code where a check finds what must not be used
 FAULTY = 1
 #: exit code where the tolerance is not reached: the numbers are there, with their bars
@@ -114,16 +123,38 @@ def command(function: Callable[..., R]) -> Callable[..., R]:
     def flattened(**values: Any) -> R:
         for name, group in groups.items():
             values[name] = group(**{key.name: values.pop(key.name) for key in _fields(group)})
-        return function(**values)
+        try:
+            return function(**values)
+        except SolidgearError as error:
+            error.spell_arguments(lambda name: options.get(name) or _option(name))
+            raise
 
     flat = [
         field
         for p in parameters.values()
         for field in (_fields(groups[p.name]) if p.name in groups else [p])
     ]
+    options = {p.name: _option_of(p) for p in flat}
     flattened.__signature__ = inspect.Signature(flat)  # type: ignore[attr-defined]  # what typer reads
     flattened.__annotations__ = {p.name: p.annotation for p in flat}
     return flattened
+
+
+def _option_of(parameter: inspect.Parameter) -> str:
+    """Return the long option of a parameter of a command."""
+    declared = [
+        word
+        for part in getattr(parameter.annotation, "__metadata__", ())
+        # typer takes the first name for a default until it reads the command
+        for word in (getattr(part, "default", None), *(getattr(part, "param_decls", None) or ()))
+        if isinstance(word, str) and word.startswith("--")
+    ]
+    return declared[0].partition("/")[0] if declared else _option(parameter.name)
+
+
+def _option(name: str) -> str:
+    """Return the option of an argument of Python that no parameter of the command has."""
+    return OTHERWISE.get(name) or f"--{name.strip('_').replace('_', '-')}"
 
 
 def _is_group(annotation: Any) -> bool:

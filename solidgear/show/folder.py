@@ -69,7 +69,7 @@ def prepare(out: str | os.PathLike) -> Path:
 
 def _unwritable(out: str | os.PathLike, error: OSError) -> SolidgearError:
     return SolidgearError(
-        f"--out {out}: cannot write there ({error.strerror or error}); name a folder you may write"
+        f"`folder` {out}: cannot write there ({error.strerror or error}); name a folder you may write"
     )
 
 
@@ -119,7 +119,7 @@ def begun(out: str | os.PathLike) -> Iterator[Path]:
             yield folder
         except OSError as error:
             raise SolidgearError(
-                f"--out {out}: writing stopped ({error.strerror or error}); "
+                f"`folder` {out}: writing stopped ({error.strerror or error}); "
                 "files already there are whole"
             ) from error
 
@@ -138,7 +138,7 @@ def _locked(folder: Path, out) -> IO | None:
             file.close()
             who = f"process {process}" if process.isdigit() else "another process"
             raise SolidgearError(
-                f"--out {out}: {who} is writing there; wait for it to end, or name another folder"
+                f"`folder` {out}: {who} is writing there; wait for it to end, or name another folder"
             ) from None
         except OSError:  # a drive without locks
             file.close()

@@ -277,7 +277,8 @@ def swept_tables(rows: Any) -> dict[str, Table]:
     places = len(set(zip(*values.values())))
     axes = rows.varied if full and places == len(rows) else ("variant",)
     columns = [
-        Column(name, name=name, unit=_unit(name), axis=name in axes) for name in rows.columns
+        Column(name, write=str, name=name, unit=_unit(name), axis=name in axes)
+        for name in rows.columns
     ]
     return {"rows": Table("Rows of a sweep, SI", columns, list(zip(*rows.columns.values())))}
 

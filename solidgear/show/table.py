@@ -106,6 +106,10 @@ def given(head: str, si: str, units: Units, of: Callable[[Any], Any] | None = No
     return Column(f"{head}, {units.unit(si)}", of, write, name=head, unit=plain_unit(si))
 
 
+class Aside(list):
+    """A row that is shown and has its values beside those of another row in a frame."""
+
+
 @dataclass
 class Table:
     """A table.
@@ -138,11 +142,12 @@ class Table:
         self.columns = [
             c if c.kind else replace(c, kind=NUMBER if k else TEXT) for k, c in enumerate(columns)
         ]
+        items = self.rows
         self.rows = [
-            [c.of(item) if c.of else item[k] for k, c in enumerate(self.columns)]
-            for item in self.rows
+            [c.of(item) if c.of else item[k] for k, c in enumerate(self.columns)] for item in items
         ]
-        self._framed = self.columns, self.rows
+        framed = [row for item, row in zip(items, self.rows) if not isinstance(item, Aside)]
+        self._framed = self.columns, framed
         if any(c.hidden for c in self.columns):
             shown = [k for k, c in enumerate(self.columns) if not c.hidden]
             self.rows = [[row[k] for k in shown] for row in self.rows]

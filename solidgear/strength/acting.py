@@ -73,10 +73,10 @@ class Acting(Group):
         if isinstance(source, Train) or is_train(source):
             train, point = self.read_train(source)
             return Assembly(train, kept=FEW, tol=tol), point
-        of_train = {"--torque": self.torque, "--point": self.point, "--weight": self.weight}
+        of_train = {"`torque`": self.torque, "`point`": self.point, "`weight`": self.weight}
         options = {option: value is not None for option, value in of_train.items()}
         name = name_of_source(source)
-        refuse(options, f"a train, and {name} is a shaft: give --load, or [load] in the file")
+        refuse(options, f"a train, and {name} is a shaft: give `load`, or [load] in the file")
         scene = as_written(source)
         if self.load is not None:
             scene = loaded_by(scene, self.load)
@@ -89,33 +89,33 @@ class Acting(Group):
 
     def refuse_load(self, train: Source | Train) -> None:
         """Refuse a load on a shaft."""
-        kind = f"a shaft, and {name_of_source(train)} is a train: give --torque"
-        refuse({"--load": self.load is not None}, kind)
+        kind = f"a shaft, and {name_of_source(train)} is a train: give `torque`"
+        refuse({"`load`": self.load is not None}, kind)
 
     def _at_point(self, source: Source | Train) -> tuple[Train, OperatingPoint]:
         if self.torque is None:
             name = name_of_source(source)
-            kind = f"a --torque, and there is none: write weight into [operation] of {name}"
-            refuse({"--weight": self.weight is not None}, kind)
+            kind = f"a `torque`, and there is none: write weight into [operation] of {name}"
+            refuse({"`weight`": self.weight is not None}, kind)
             train = load_train(source)
             if not train.operation:
                 raise SolidgearError(
                     f'{name}: no torque is given; write [operation] with torque = "115 N*m", or '
-                    "give --torque"
+                    "give `torque`"
                 )
             by_name = self.point is not None
             return train, named_point(train, self.point) if by_name else train.operation[0]
         if self.point is not None:
-            raise SolidgearError("give either --torque or --point, not both")
+            raise SolidgearError("give either `torque` or `point`, not both")
         values: dict[str, Any] = {"torque": self.torque, "of": self.of, "weight": self.weight}
         try:
             point = OperatingPoint(**{key: value for key, value in values.items() if value})
         except SceneError as error:
-            raise SolidgearError(f"--torque {show(self.torque, 40)}: {error}") from None
+            raise SolidgearError(f"`torque` {show(self.torque, 40)}: {error}") from None
         try:
             train = load_train(source, point)
         except SceneError as error:
             if error.path[:1] != ("operation",) or error.path[-1] != "of":
                 raise
-            raise SolidgearError(f"--of {show(self.of, 40)}: {error.reason}") from None
+            raise SolidgearError(f"`of` {show(self.of, 40)}: {error.reason}") from None
         return train, train.told(point)

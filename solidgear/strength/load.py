@@ -50,7 +50,7 @@ def load_alone(train: Train, drive: Mapping[str, float] | None = None) -> LoadAt
     if scene.load is None:
         raise SolidgearError(
             'there is no load; write [load] with forces at the port, such as z = "2 kN", or give '
-            "--load"
+            "`load`"
         )
     if port in drive:
         raise SolidgearError(

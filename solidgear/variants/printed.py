@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import Any, Literal
 
-from solidgear.core import OpenNumbers, Settled
+from solidgear.core import Settled
 from solidgear.show.printed import Printed
+from solidgear.variants.budget.budget import Budget
 from solidgear.variants.sensitivity.run import Sensitivities
 from solidgear.variants.sweep.bearing_task import SweptBearings
 from solidgear.variants.sweep.file_task import Swept
@@ -13,7 +14,7 @@ from solidgear.variants.sweep.file_task import Swept
 Number = float | None
 
 SENSITIVITIES = Printed((Sensitivities,))
-BUDGET = Printed((OpenNumbers,), {"scene": str})
+BUDGET = Printed((Budget,))
 SWEEP = (
     Printed((SweptBearings,), optional=(Settled,)),
     Printed(

@@ -8,7 +8,7 @@ piece, and the mass stays in place.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Mapping, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING, TypeVar
 
@@ -35,10 +35,23 @@ def snap_seats(stations: Sequence[Station], segments: Sequence[Segment]) -> tupl
     return tuple(_snapped(station, marks) for station in stations)
 
 
-def seat_masses(masses: Sequence[PointMass], segments: Sequence[Segment]) -> tuple[PointMass, ...]:
-    """Return masses with names, each on the longest piece of its seat between steps."""
+def seat_masses(
+    masses: Sequence[PointMass], segments: Sequence[Segment], stations: Collection[str]
+) -> tuple[PointMass, ...]:
+    """Return masses with names, each on the longest piece of its seat between steps; one on a segment,
+    which is no station of that name, sits on all of it.
+    """
     steps = Outline(segments).steps if masses else ()
-    return tuple(_seated(mass, steps, k) for k, mass in enumerate(masses, 1))
+    by_name = {segment.name: segment for segment in segments if segment.name not in stations}
+    return tuple(_seated(_on_segment(mass, by_name), steps, k) for k, mass in enumerate(masses, 1))
+
+
+def _on_segment(mass: PointMass, segments: Mapping[str, Segment]) -> PointMass:
+    segment = segments.get(mass.on or "")
+    if segment is None:
+        return mass
+    middle = (segment.y0 + segment.y1) / 2
+    return mass.model_copy(update={"on": None, "y": middle, "seat_width": segment.length})
 
 
 def _seated(mass: PointMass, steps: Sequence[float], number: int) -> PointMass:

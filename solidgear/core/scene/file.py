@@ -404,7 +404,10 @@ class _Reading:
         complete &= all(row.thing for key in ("bearings", "ports") for row in rows[key])
         sound = {key: [row for row in kind_rows if row.thing] for key, kind_rows in rows.items()}
         things = {key: [row.thing for row in kind_rows] for key, kind_rows in sound.items()}
-        things["masses"] = [*seat_masses(things["masses"], self.segments)]
+        tables = [*self.file.port, *self.file.bearing]
+        names = [table.get("name", Port.model_fields["name"].default) for table in tables]
+        stations = {name for name in names if isinstance(name, str)}
+        things["masses"] = [*seat_masses(things["masses"], self.segments, stations)]
         problems = [*rules.problems_between(self.segments, **things, complete=complete)]
         if complete and things["ports"]:
             problems += rules.question_problems(things["ports"], self.file.ask.quantities)

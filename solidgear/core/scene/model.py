@@ -36,7 +36,7 @@ from solidgear.core.scene.patches import off_patches
 from solidgear.core.scene.point_mass import PointMass
 from solidgear.core.scene.shapes import places_on
 from solidgear.core.scene.stations import Bearing, Port
-from solidgear.core.scene.tables import parts
+from solidgear.core.scene.tables import paired, parts
 from solidgear.core.scene.typed import Model, Problems
 from solidgear.core.scene.units import AxialSpring
 
@@ -147,7 +147,9 @@ class Scene(Displayed, Model):
             for name in ("bearings", "masses", "further_ports"):
                 object.__setattr__(self, name, snap_seats(getattr(self, name), self.segments))
             object.__setattr__(self, "port", snap_seats([self.port], self.segments)[0])
-            object.__setattr__(self, "masses", seat_masses(self.masses, self.segments))
+            object.__setattr__(
+                self, "masses", seat_masses(self.masses, self.segments, self._stations())
+            )
             problems += rules.problems_between(
                 self.segments,
                 ports=self.ports,
@@ -162,6 +164,10 @@ class Scene(Displayed, Model):
         if problems:
             raise SceneError.of(problems)
         return self
+
+    def _stations(self) -> set[str]:
+        """Return the names of points and bearings that may carry a mass."""
+        return {station.name for station in (*self.ports, *self.bearings)}
 
     def _place(self) -> None:
         """Put things made by words of a file on the shaft, bearings first, which others refer to."""
@@ -190,6 +196,7 @@ class Scene(Displayed, Model):
         material: Material | str = STEEL,
         bearings: Iterable[Bearing] = (),
         port: Port | None = None,
+        arrangement: Any = None,
         **rest: Any,
     ) -> Scene:
         """A scene made in Python.
@@ -206,6 +213,9 @@ class Scene(Displayed, Model):
         port : Port, optional
             Without it, the middle of the longest segment, attached to all of that segment's outer
             surface.
+        arrangement : {'O', 'X'} or dict, optional
+            Mounting of two single bearings without ``holds``, or with their names,
+            ``{"O": ["A", "B"]}``.
         **rest
             Other fields, such as title, name, masses, features, further_ports, load, ask.
 
@@ -237,8 +247,20 @@ class Scene(Displayed, Model):
         if port is None:
             longest = max(segments, key=lambda s: s.length)
             port = Port(y=(longest.y0 + longest.y1) / 2, lo=longest.y0, hi=longest.y1)
-        main: dict[str, Any] = {} if port is None else {"port": port}
-        return cls(segments=segments, material=material, bearings=tuple(bearings), **main, **rest)
+        bearings, pairs = tuple(bearings), []
+        if arrangement is not None:
+            bearings, pairs = paired(bearings, arrangement)
+        scene = cls(segments=segments, material=material, bearings=bearings, port=port, **rest)
+        turned = {
+            k: scene.bearings[k].held_towards(way)
+            for pair in pairs
+            for k, way in pair.ways([scene.bearings[k].y for k in pair.bearings])
+        }
+        if not turned:
+            return scene
+        return scene.with_changes(
+            bearings=tuple(turned.get(k, bearing) for k, bearing in enumerate(scene.bearings))
+        )
 
     @classmethod
     def from_dict(
@@ -431,8 +453,8 @@ class Scene(Displayed, Model):
         ----------
         **changes
             Fields by name; constants of a new `material` also replace those of the old one in the
-            segments that have them from it, and under a new `load` bearings of catalogue data wait
-            for their stiffness again.
+            segments that have them from it, and with a new one or under a new `load` bearings of
+            catalogue data wait for their stiffness again.
 
         Returns
         -------
@@ -448,7 +470,9 @@ class Scene(Displayed, Model):
                 s.with_changes(material=s.material.following(self.material, changes["material"]))
                 for s in self.segments
             )
-        if changes.get("load", self.load) != self.load and "bearings" not in changes:
+        loaded = changes.get("load", self.load) != self.load
+        anew = "material" in changes and by_name(changes["material"]) != self.material
+        if (loaded or anew) and "bearings" not in changes:
             changes["bearings"] = tuple(b.unsettled for b in self.bearings)
         if "bearings" in changes:
             changes["bearings"] = tuple(changes["bearings"])

@@ -244,6 +244,8 @@ class Placed(Model):
         """Return a validated copy with some fields replaced, by name."""
         if self._table is None:
             return super().with_changes(**changes)
+        keys = self._words_by_field()
+        changes = {keys.get(name, name): value for name, value in changes.items()}
         return type(self)(**{**self._table, **changes})
 
     def __repr_args__(self) -> Any:

@@ -32,7 +32,8 @@ class PointMass(Placed):
     offset : tuple of float
         From the station to the centre of mass, along x, y, z, m.
     on : str or None
-        Name of the lumped point or the bearing that it moves with; None for a seat of its own.
+        Name of the lumped point or the bearing that it moves with, or of the segment that is its
+        seat; None for a seat of its own.
     y : float
         Middle of the seat of its own, m.
     seat_width : float or None
@@ -80,7 +81,7 @@ class PointMass(Placed):
         if self.on is None and self.seat_width is None:
             raise SceneError(
                 "this key is missing: the width of the seat that carries the mass, unless on "
-                "names a port or bearing that does",
+                "names a port, bearing or segment that does",
                 path=("seat_width",),
             )
         if self.on is not None:
@@ -93,7 +94,7 @@ class PointMass(Placed):
     @classmethod
     def place(cls, words: Any, table: Mapping[str, Any], places: Places) -> dict[str, Any]:
         if "on" not in table:
-            hint = 'name the port or bearing that carries it, or write position = "28 mm"'
+            hint = 'name the port, bearing or segment that carries it, or write position = "28 mm"'
             words.require("position", hint, "on")
             return {"y": words.y(places)}
         if words.position is not None:

@@ -309,7 +309,7 @@ def mass_problems(
     mass_names = set()
     for i, mass in enumerate(masses):
         if mass.on is not None and mass.on not in stations:
-            reason = f"no lumped point or bearing has this name; there are {', '.join(stations)}"
+            reason = f"no lumped point, bearing or segment has this name; there are {', '.join(stations)}"
             yield SceneError(reason, path=("masses", i, "on"))
         # on seats of their own they are stations, whose names are compared there
         if mass.name in mass_names or (mass.on is not None and mass.name in stations):

@@ -45,7 +45,8 @@ def _settled(text: str, path: str, scene: Scene) -> str:
     import tomlkit  # start-up: not every scene is written
 
     try:
-        if scene_of(tomllib.loads(text), path).bearings == scene.bearings:
+        bearings = scene_of(tomllib.loads(text), path).bearings
+        if bearings in (scene.bearings, scene.settled.bearings):
             return text
     except SceneError:
         pass  # nothing to settle at

@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterator, Mapping
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import BeforeValidator, Field, PrivateAttr, model_validator
 
 from solidgear.core.errors import SceneError, show
 from solidgear.core.frames import DOF_NAMES
@@ -14,7 +14,7 @@ from solidgear.core.registry import addition
 from solidgear.core.scene.bearing_stiffness import Matrix, refuse_two_stiffnesses
 from solidgear.core.scene.housing import ELASTIC, Elastic, elastic
 from solidgear.core.scene.patches import Patch, Point, fields_on_patch, patch_problems
-from solidgear.core.scene.places import Along, Placed, Places, Seat
+from solidgear.core.scene.places import SOMEWHERE, Along, Placed, Places, Seat
 from solidgear.core.scene.support import (
     HOLDS,
     Hold,
@@ -47,6 +47,20 @@ def _catalogue_keys() -> Collection[str]:
     return getattr(Catalogue, "model_fields", ())
 
 
+def _width_of(data: Any) -> float | None:
+    """Return the width of a bearing by its catalogue data, whichever way it holds the shaft; some width
+    for data that are refused anyway, None without any.
+    """
+    if not isinstance(data, Mapping):
+        return getattr(data, "seat_width", None)
+    for known in dict[str, Any](), {"holds": "+y"}:
+        try:
+            return Catalogue(**{**data, **known}).seat_width
+        except (SceneError, TypeError):
+            continue
+    return SOMEWHERE
+
+
 Attachment = Literal["average", "rigid", "section"]
 Status = Literal["published", "identified", "assumed", "measured", "calculated", "estimated"]
 Face = Literal["start", "end"]
@@ -76,7 +90,7 @@ class Bearing(Placed):
     y : float
         Middle of the seat, m; `position`, as in a file, is the same.
     seat_width : float
-        Width of the seat along the shaft, m.
+        Width of the seat along the shaft, m; that of a catalogue bearing by default.
     matrix : tuple of tuple of float, or None
         6x6 of the bearing alone, SI, order (x, y, z, thx, thy, thz): six rows, or named entries,
         also as `stiffness`. None as long as catalogue data are not solved.
@@ -145,7 +159,7 @@ class Bearing(Placed):
 
     needs: ClassVar = (
         ("position", "on", "face", "seat", "patch"),
-        ("seat_width", "on", "seat", "patch"),
+        ("seat_width", "on", "seat", "patch", "catalogue"),
         ("stiffness", "matrix", "catalogue", "hold"),
     )
 
@@ -164,6 +178,8 @@ class Bearing(Placed):
     hold: Hold | None = None
     face: Face | None = None
     patch: Patch | None = None
+    #: what catalogue data without a direction lack, until an arrangement gives it
+    _unpaired: SceneError | None = PrivateAttr(None)
 
     def __init__(self, /, **data: Any):
         inside = [key for key in data if key in _catalogue_keys() and key not in self.table_keys()]
@@ -174,7 +190,30 @@ class Bearing(Placed):
             data = {key: value for key, value in data.items() if key not in inside} | {
                 "catalogue": {key: data[key] for key in inside}
             }
-        super().__init__(**data)
+        if not {"seat_width", "on", "seat", "patch"} & {*data}:
+            width = _width_of(data.get("catalogue"))
+            data |= {} if width is None else {"seat_width": width}
+        try:
+            super().__init__(**data)
+        except SceneError as error:
+            if any(problem.path != ("catalogue", "holds") for problem in error.problems):
+                raise
+            if "holds" in data["catalogue"]:
+                raise
+            # the arrangement of a pair says so, once places are known
+            words = {self._words_by_field().get(key, key): value for key, value in data.items()}
+            super().__init__(**data | {"catalogue": {**data["catalogue"], "holds": "+y"}})
+            self._table, self._unpaired = words, error
+
+    @classmethod
+    def _construct(
+        cls, fields: dict[str, Any], table: Mapping[str, Any], problems: Problems
+    ) -> Bearing | None:
+        bearing = super()._construct(fields, table, problems)
+        if bearing is None or bearing._unpaired is None:
+            return bearing
+        problems += bearing._unpaired.problems
+        return None
 
     @classmethod
     def _by_field(cls, data: dict[str, Any]) -> dict[str, Any]:
@@ -489,7 +528,7 @@ def _on_surface(span: tuple[float, float] | None) -> dict[str, float | None]:
 def _check_face_words(words: Along, table: Mapping[str, Any]) -> None:
     """Refuse a bearing on a face with a position as well, or without a width."""
     words.refuse("give either face, or position with from, not both", "position", "from_")
-    if "seat_width" not in table:
+    if "seat_width" not in table and "catalogue" not in table:
         raise SceneError(
             'this key is missing; face stands for the position alone: write seat_width = "10 mm" or so '
             "as well, the rim beside the face that no other seat may lie on",

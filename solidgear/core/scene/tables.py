@@ -6,9 +6,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any, Protocol
 
-from pydantic import BeforeValidator
+from pydantic import BeforeValidator, TypeAdapter, ValidationError
 
-from solidgear.core.errors import SceneError
+from solidgear.core.errors import SceneError, scene_error
 from solidgear.core.registry import addition
 
 
@@ -36,6 +36,9 @@ class BearingData(Protocol):
 
     @property
     def floats(self) -> bool: ...
+
+    @property
+    def seat_width(self) -> float: ...
 
     @property
     def one_sided(self) -> bool: ...
@@ -93,6 +96,27 @@ class PartReader:
 def pairing() -> Pairing:
     """Return the reader of pairs of bearings."""
     return (addition("table", "arrangement") or Pairing)()
+
+
+def paired(bearings: Sequence[Any], arrangement: Any) -> tuple[tuple[Any, ...], Sequence[Any]]:
+    """Return bearings made in Python with a provisional direction where an arrangement mounts them, and
+    their pairs.
+    """
+    reader = pairing()
+    try:
+        words = TypeAdapter(reader.Words).validate_python(arrangement)
+    except ValidationError as error:
+        problem = scene_error(error, arrangement)
+        raise problem.located(None, prefix=("arrangement",)) from None
+    tables = [bearing.words or {"name": bearing.name} for bearing in bearings]
+    pairs = reader.read_pairs(words, tables) or []
+    known = reader.readable_tables(tables, pairs)
+    return tuple(
+        bearing
+        if known_table == table
+        else bearing.with_changes(catalogue=known_table["catalogue"])
+        for bearing, table, known_table in zip(bearings, tables, known)
+    ), pairs
 
 
 def parts() -> PartReader:

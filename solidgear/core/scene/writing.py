@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from solidgear.core.scene.bearing_stiffness import stiffness_entries
+from solidgear.core.scene.materials import MATERIALS, by_name
 from solidgear.core.scene.model_table import entry_of, table_of
 from solidgear.core.scene.tables import parts
 from solidgear.core.scene.uncertain import written_range
@@ -67,7 +68,7 @@ def unsettled_tables(scene: Scene) -> Table:
         "title": scene.title,
         "name": scene.name,
         "source": scene.source,
-        "material": material_table(scene.material),
+        "material": material_entry(scene.material),
         "body": None,
         "segment": [],
         "bearing": [_bearing(scene, bearing) for bearing in scene.bearings],
@@ -89,9 +90,10 @@ def unsettled_tables(scene: Scene) -> Table:
     return {key: value for key, value in tables.items() if key in needed or value}
 
 
-def material_table(material: Material) -> Table:
-    """Return the table of a material."""
-    return table_of(material)
+def material_entry(material: Material) -> Table | str:
+    """Return the name of a material that has the constants of that name, or its table."""
+    table = table_of(material)
+    return material.name if material.name in MATERIALS and by_name(material.name) == table else table
 
 
 def _segment(segment: Segment, usual: Material) -> Table:
@@ -110,9 +112,11 @@ def _segment(segment: Segment, usual: Material) -> Table:
     if segment.part != "shaft":
         table["part"] = segment.part
     if segment.material != usual:
-        table["material"] = {"name": segment.material.name, **material_table(segment.material)}
-        if segment.material.strength is None and usual.strength is not None:
-            table["material"]["strength"] = False
+        entry = material_entry(segment.material)
+        no_strength = segment.material.strength is None and usual.strength is not None
+        if no_strength or not isinstance(entry, str):
+            entry = {"name": segment.material.name, **table_of(segment.material)}
+        table["material"] = {**entry, "strength": False} if no_strength else entry
     return table
 
 

@@ -92,7 +92,7 @@ def _shapes(moved: np.ndarray, strain: np.ndarray, names: list[str], modes: int 
         weights = np.abs(u[:, len(s) - 1 :]).max(axis=1).reshape(-1, 6).max(axis=1)
         together = [name for name, weight in zip(names, weights) if weight > weights.max() / 10]
         raise SolidgearError(
-            f"the ports {listed(together)} cannot all move independently; leave one out with --ports"
+            f"the ports {listed(together)} cannot all move independently; leave one out with `ports`"
         )
     still = vt[len(s) :].T
     moving = vt[: len(s)].T @ ((u.T / s[:, None]) / size)

@@ -15,7 +15,7 @@ from solidgear.show.panel import GREY, Panel, Series, curve, lines_legend, reado
 from solidgear.show.plot import NARROW, WIDE, Chart, Make, in_columns
 from solidgear.show.scales import Axis
 from solidgear.show.sheet import Sheet, Terminal
-from solidgear.show.table import Cell, Column, Table, in_units, numbers, quantity, text, word
+from solidgear.show.table import Aside, Cell, Column, Table, in_units, numbers, quantity, text, word
 from solidgear.show.units import ENGINEERING, Units
 from solidgear.show.words import DASH
 from solidgear.strength.deflection.at_rest import (
@@ -31,6 +31,7 @@ from solidgear.trains.assembly.layout import senses_sentence
 from solidgear.trains.assembly.turn import StageTurn
 from solidgear.trains.page.chart import COLOURS
 
+BAR, ENDS = "error bar", ("least", "largest")
 #: per cent; no smaller error bar is shown
 LEAST = 0.01
 #: of the largest of a motion's translations or rotations; less is rounding
@@ -279,11 +280,11 @@ def displacements(deflected: Deflection, units: Units = ENGINEERING) -> Table:
             # the only gear of a shaft stands first, and has the name of its shaft
             only = shaft.name if name == next(iter(shaft.ports)) else ""
             keys = (name,) if deflected.load is not None else (f"{shaft.name}.{name}", only)
-            for key in keys:
-                rows += _bars(deflected, key, units)
+            rows[-1:] = _with_bars(rows[-1], [_bars(deflected, key, units) for key in keys])
     if deflected.barred:
         note += f" {OF_BARS}"
-    return Table("Displacements", [word("place"), *_six(MOVED, units)], rows, note)
+    columns = [word("place"), *_six(MOVED, units), *_beside(BAR)]
+    return Table("Displacements", columns, rows, note)
 
 
 def housing(deflected: Deflection, units: Units = ENGINEERING) -> list[Table]:
@@ -308,36 +309,60 @@ def motions(deflected: Deflections, units: Units = ENGINEERING) -> list[Table]:
     """
     if deflected.load is None:
         return []
-    rows: list[Sequence[object]] = []
     port = deflected.load.port
+    ranges = [m.open for m in deflected.judge.compared if m.open is not None]
+    ends = dict(zip(ENDS, map(_rounded, zip(*ranges))))
+    rows: list[Sequence[object]] = []
     for solution in deflected.solutions:
-        rows.append([solution.model, *_rounded([m.value for m in solution.compared])])
-        rows += _bars(solution, port, units)
+        row = [solution.model, *_rounded([m.value for m in solution.compared])]
+        of_judge = ends.values() if solution is deflected.judge else [[None] * 6] * len(ends)
+        beside = [value for six in of_judge for value in six]
+        for line in _with_bars(row, [_bars(solution, port, units)]):
+            rows.append(type(line)([*line, *beside]))
     note = f"No error bars: {WITHOUT_BAR}."
     if any(solution.barred for solution in deflected.solutions):
         note = f"{OF_BARS} Models differ by what their theory leaves out."
-    ranges = [m.open for m in deflected.judge.compared if m.open is not None]
-    if ranges:
-        least, largest = zip(*ranges)
-        rows += [["least", *_rounded(least)], ["largest", *_rounded(largest)]]
+    columns = [word("model"), *_six(MOVED, units), *_beside(BAR)]
+    for end, six in ends.items():
+        columns += _beside(end)
+        rows.append(Aside([end, *six, *[None] * 6 * (1 + len(ends))]))
+    if ends:
         note += " Least and largest: by estimated insides and classes of clearance of the bearings."
-    return [Table(f"Motion of {port}", [word("model"), *_six(MOVED, units)], rows, note)]
+    return [Table(f"Motion of {port}", columns, rows, note)]
 
 
-def _bars(deflected: Deflection, place: str, units: Units) -> list[list[Cell]]:
-    """Return a row of the error bars of a place, none less than a share of the largest translation
-    or rotation; no row where it has none.
+def _with_bars(row: list[Any], bars: Sequence[Sequence[Cell]]) -> list[list[Any]]:
+    """Return a row of six components with its error bars beside them in a frame, and below where they
+    are shown.
+    """
+    six = next(filter(None, bars), [None] * 6)
+    return [
+        [*row, *six],
+        *(Aside([Cell(BAR), *known, *[None] * 6]) for known in bars if known),
+    ]
+
+
+def _beside(kind: str) -> list[Column]:
+    """Return columns of six components that frames have beside those shown."""
+    return [
+        Column(f"{dof} {kind}", unit=si.split()[0], hidden=True)
+        for dof, si in zip(DOF_NAMES, MOVED)
+    ]
+
+
+def _bars(deflected: Deflection, place: str, units: Units) -> list[Cell]:
+    """Return the error bars of a place, none less than a share of the largest translation or rotation;
+    empty where it has none.
     """
     if not deflected.barred or place not in deflected.displacement:
         return []
     six = deflected.displacement[place]
     largest = np.abs([m.value for m in six]).reshape(2, 3).max(axis=1)
     least = np.repeat(LEAST / 100 * largest, 3)
-    bars = [
+    return [
         Cell(None) if m.bar is None else in_units(float(max(m.bar, size)), m.unit, units, 2)
         for m, size in zip(six, least)
     ]
-    return [[Cell(f"error bar of {place}", "", "error bar"), *bars]]
 
 
 def _six(si_units: Sequence[str], units: Units) -> list[Column]:

@@ -78,7 +78,7 @@ def stress(
     torques = {name: quantity(value, "torque") for name, value in (drive or {}).items()}
     if torques and not assembly.train.is_one_shaft:
         raise SolidgearError(
-            f"--drive is for a shaft, and {name_of_source(source)} is a train: torques come by the "
+            f"`drive` is for a shaft, and {name_of_source(source)} is a train: torques come by the "
             "springs of engine and load"
         )
     with explained(source):

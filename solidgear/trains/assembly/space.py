@@ -17,7 +17,6 @@ import numpy as np
 
 from solidgear.bearings.catalogue import catalogue_of
 from solidgear.core import Scene
-from solidgear.guards.bearings import width_of
 from solidgear.trains.assembly.layout import Place
 from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.train import Train
@@ -149,7 +148,7 @@ def _bearings(scene: Scene) -> Iterator[Piece]:
     """Yield bearings with catalogue data up to their outer diameter."""
     for bearing in scene.bearings:
         if (data := catalogue_of(bearing)) is not None:
-            half = width_of(data) / 2
+            half = data.seat_width / 2
             sizes = data.outer_diameter / 2, data.bore / 2
             outer, inner = ((size, size) for size in sizes)
             name, ends = f'bearing "{bearing.name}"', (bearing.y - half, bearing.y + half)

@@ -55,7 +55,7 @@ def check(source: Source, model: str = MODEL, options: Mapping[str, Any] | None 
         from solidgear.trains.options import Reduced
 
         if not usual:
-            option = "--set" if options else "--model"
+            option = "`options`" if options else "`model`"
             raise SolidgearError(
                 f"{option} is for one shaft, and {name_of_source(source)} is a train: for other "
                 "models and meshes run check on the file of a shaft"

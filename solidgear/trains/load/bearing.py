@@ -54,7 +54,7 @@ class SolvedBearings(Sheeted):
         """
         if self.scene is None:
             raise SolidgearError(
-                "--out belongs to a scene; for a train give torque and speed in [operation]"
+                "`out` belongs to a scene; for a train give torque and speed in [operation]"
             )
         with explained(self.scene):
             curves = over_load(self.scene, self.body)
@@ -111,7 +111,7 @@ def bearing(
     [('A', 'cylindrical', 13.8), ('B', 'angular_contact', 23.1)]
     """
     if is_train(source):
-        for option, value in {"--load": load, "--speed": speed}.items():
+        for option, value in {"`load`": load, "`speed`": speed}.items():
             if value:
                 raise SolidgearError(
                     f"{option} belongs to a scene; for a train give torque and speed in [operation]"
@@ -124,7 +124,7 @@ def bearing(
         body = shaft(scene)
         facts = [f for f in bearing_facts(scene, body, turns) if name in (None, f.name)]
         if not facts:
-            raise SolidgearError(f"--bearing {name}: no bearing of catalogue data has this name")
+            raise SolidgearError(f"`name` {name}: no bearing of catalogue data has this name")
     return SolvedBearings(scene.name, tuple(facts), scene=scene, body=body)
 
 
@@ -137,7 +137,7 @@ def _of_train(source: Source, name: str | None) -> SolvedBearings:
     lives = [life for life in train_lives(load_train(source)) if name in (None, life.name)]
     if not lives:
         raise SolidgearError(
-            f"--bearing {name}: no bearing of catalogue data has this name; write shaft and name, "
+            f"`name` {name}: no bearing of catalogue data has this name; write shaft and name, "
             "such as pinion.A"
         )
     return SolvedBearings(name_of(name_of_source(source)), lives=tuple(lives))

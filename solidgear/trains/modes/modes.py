@@ -68,6 +68,8 @@ class TrainModes:
     undriven: dict[str, dict[int, tuple[float, ...]]] = field(default_factory=dict)
     local: tuple[str, ...] = ()  #: compliance that harmonics at a local mesh point add, in words
     speeds: str = "pinion"  #: shaft that the speeds of modes belong to
+    #: (N, modes) on the coordinates of the coupled system, mass-normalised
+    shapes: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)), repr=False)
     turn: str = ""  #: change over a turn of a carrier, in words
     hidden: str = ""
 
@@ -258,6 +260,7 @@ def train_modes(
         undriven={side: families for side, families in undriven_modes.items() if families},
         local=local_lines(assembly, system),
         speeds=train.reference,
+        shapes=solved.shapes,
         turn=frequencies_over_a_turn(assembly, by_shaft, names),
         hidden=hidden,
     )
@@ -282,7 +285,7 @@ def refuse_unresolved(assembly: Assembly, system: System, limit: float) -> None:
     if limit >= 0.9 * cut:
         raise SolidgearError(
             f"{limit:g} Hz is beyond the reduction, which leaves out modes from {cut:.0f} Hz on; "
-            f"keep more modes (--kept), or ask for less than {0.9 * cut:.0f} Hz"
+            f"keep more modes (`kept`), or ask for less than {0.9 * cut:.0f} Hz"
         )
     for side in assembly.scenes:
         highest = mesh_limit(assembly, side, system.parts[side])

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, ClassVar, Unpack
 
 import numpy as np
 
-from solidgear.core import Sheeted, SolidgearError, Source, listed, nearest
+from solidgear.core import DOF_NAMES, Sheeted, SolidgearError, Source, listed, nearest
+from solidgear.show.table import Column, Table
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.file.train import Train
 from solidgear.trains.modes.modes import TrainMode, TrainModes, train_modes
@@ -44,9 +46,38 @@ class SolvedModes(Sheeted):
             raise SolidgearError(f"no mode is {name!r}{nearest(name, by_name)}; there are {names}")
         return by_name[name]
 
+    def framed_tables(self) -> dict[str, Any]:
+        """Return all tables of numbers by name, the main one first, and the shapes of the modes."""
+        return {**super().framed_tables(), "shapes": shapes(self)}
+
     def as_dict(self) -> dict[str, Any]:
         """Return plain data for JSON."""
         return dict(self.sheet().data)
+
+
+def shapes(modes: SolvedModes) -> Table:
+    """Return the motions of ports in all modes; a mode that has the name of another is counted."""
+    solved = modes.solved
+    system = modes.assembly.system(*solved.models.values())
+    ends = [f"{part}.{port}" for part, body in system.parts.items() for port in body.ports]
+    moved = {end: system.motion(end) @ solved.shapes for end in ends}
+    counts = Counter[str]()
+    rows: list[tuple[Any, ...]] = []
+    for k, mode in enumerate(solved.modes):
+        counts[mode.name] += 1
+        name = mode.name if counts[mode.name] == 1 else f"{mode.name} ({counts[mode.name]})"
+        for port, six in moved.items():
+            for dof, motion in zip(DOF_NAMES, six[:, k]):
+                rows.append((name, mode.frequency_hz, port, dof, float(motion)))
+    columns = [
+        Column("shape", axis=True),
+        Column("frequency [Hz]"),
+        Column("port", axis=True),
+        Column("component", axis=True),
+        Column("motion"),
+    ]
+    title = "Motions of ports, of unit modal mass; rotations in rad for translations in m"
+    return Table(title, columns, rows)
 
 
 def system_modes(

@@ -75,18 +75,18 @@ class Speed(Group):
             return turns, origin
         if point is not None and point.speed:
             return (point.speed_of(reference, train.turns) or 0.0) / (2 * pi), point.label
-        needing = {"--measured": self.measured, "--within": self.within, "--of": self.of}
+        needing = {"`measured`": self.measured, "`within`": self.within, "`of`": self.of}
         for option, value in needing.items():
             if value is not None:
-                raise SolidgearError(f'{option} needs a speed; add --speed "3000 rpm"')
+                raise SolidgearError(f'{option} needs a speed; add `speed` "3000 rpm"')
         return 0.0, ""
 
     def spectrum(self) -> Spectrum | None:
         """Read the measured spectrum, once shares are between 0 and 1."""
-        refuse_share("--within", self.within)
-        refuse_share("--fit-speed", self.fit_speed)
+        refuse_share("`within`", self.within)
+        refuse_share("`fit_speed`", self.fit_speed)
         if self.fit_speed is not None and self.measured is None:
-            raise SolidgearError("--fit-speed needs a spectrum; add --measured spectrum.csv")
+            raise SolidgearError("`fit_speed` needs a spectrum; add `measured` spectrum.csv")
         return None if self.measured is None else read_spectrum(self.measured)
 
 
@@ -95,10 +95,10 @@ def _turns(train: Train, text: str, shaft: str) -> float:
         speed = quantity(text, "speed")
     except SceneError:
         raise SolidgearError(
-            f'--speed {show(text, 40)}: write a number and a unit, such as "3000 rpm" or '
+            f'`speed` {show(text, 40)}: write a number and a unit, such as "3000 rpm" or '
             '"314 rad/s"'
         ) from None
     try:
         return turns_of_pinion(train, speed, shaft)
     except SolidgearError as error:
-        raise SolidgearError(f"--speed {show(text, 40)} --of {show(shaft, 40)}: {error}") from None
+        raise SolidgearError(f"`speed` {show(text, 40)} `of` {show(shaft, 40)}: {error}") from None

@@ -108,7 +108,7 @@ def response(
     limit = reduced.get("max_frequency")
     on_ports = _forces(forces)
     if on_ports and together:
-        raise SolidgearError("--together adds up errors of meshes, and --force takes their place")
+        raise SolidgearError("`together` adds up errors of meshes, and `forces` takes their place")
     options = {"highest_hz": limit, "mesh": driver.name, **_losses(damping, matched_at)}
     options["together"] = together
     responses = [
@@ -188,7 +188,7 @@ def receptance(
     ('m/N', ['load torsion 1', 'gear torsion 1'])
     """
     assembly, first = assembled(train, models, settings, reduced)
-    begin, end = _end("--from", from_), _end("--to", to)
+    begin, end = _end("`from_`", from_), _end("`to`", to)
     limit, losses = reduced.get("max_frequency"), _losses(damping, matched_at)
     receptances = [
         ends.receptance(assembly, *names, from_=begin, to=end, highest_hz=limit, **losses)
@@ -216,9 +216,9 @@ def _forces(given: Forces) -> dict[str, np.ndarray]:
             number = float("nan")
         if not isfinite(number):
             raise SolidgearError(
-                f"--force {show(text, 40)}: write PORT:COMPONENT=VALUE, such as gear.gear:z=100"
+                f"`forces` {show(text, 40)}: write PORT:COMPONENT=VALUE, such as gear.gear:z=100"
             )
-        port, dof = _end("--force", end, "=100")
+        port, dof = _end("`forces`", end, "=100")
         out.setdefault(port, np.zeros(6))[DOF_NAMES.index(dof)] += number
     return out
 

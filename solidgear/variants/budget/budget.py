@@ -23,6 +23,7 @@ import itertools
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 import scipy.linalg as sla
@@ -38,6 +39,7 @@ from solidgear.core import (
     OpenNumbers,
     Quantity,
     Scene,
+    Sheeted,
     SolidgearError,
     Source,
     as_supports,
@@ -94,7 +96,7 @@ def _if_few(scene: Scene, solve: Callable[[], OpenNumbers]) -> OpenNumbers:
 
 def budget(
     scene: Source, *, samples: int = 0, seed: int = 0, progress: Progress = lambda _: None
-) -> OpenNumbers:
+) -> Budget:
     """Contribution of every open input to every number of a scene.
 
     Parameters
@@ -110,8 +112,9 @@ def budget(
 
     Returns
     -------
-    OpenNumbers
-        ``numbers`` each with ``by_input``, ``by_source``, ``total`` and ``shares``.
+    Budget
+        ``numbers`` each with ``by_input``, ``by_source``, ``total`` and ``shares``; its ``write``
+        makes the chart and the numbers.
 
     Raises
     ------
@@ -153,7 +156,16 @@ def budget(
             if (numbers := study.at(tuple(place))) is not None:
                 sampled.append(numbers)
     progress("ends of all inputs together")
-    return study.record(sampled, samples, seed if samples else None)
+    ranges = study.record(sampled, samples, seed if samples else None)
+    return Budget(scene=scene.name, **dict(ranges))
+
+
+class Budget(Sheeted, OpenNumbers):
+    """Ranges of every number of a scene by every open input."""
+
+    sheeted: ClassVar[str] = "variants.budget.chart:budget_sheet"
+
+    scene: str = ""  #: name of it
 
 
 class _Study:

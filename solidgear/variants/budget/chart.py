@@ -3,13 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
+from functools import partial
+from typing import TYPE_CHECKING, Any
 
 from solidgear.core import OpenNumbers, Record
 from solidgear.show.open_words import ALL, SHOWN, interval
+from solidgear.show.open_words import budget as budget_table
 from solidgear.show.panel import GREY, Panel, Series, readout
 from solidgear.show.plot import NARROW, WIDE, Chart
 from solidgear.show.scales import Axis, in_percent
+from solidgear.show.sheet import Sheet, Terminal
+from solidgear.show.units import ENGINEERING, Units
+
+if TYPE_CHECKING:
+    from solidgear.variants.budget.budget import Budget
 
 #: in the order of the inputs, the colours in turn
 COLOURS = ("#0072b2", "#d55e00", "#00805e", "#8a6d3b", "#b3305c", "#5a3e8c", "#9cc9e6", "#e0a030")
@@ -56,6 +63,20 @@ def budget_chart(
     panel.draw({"type": "rule", "color": GREY}, [{"x": 0.0}])
     panel.draw({"type": "rect", "strokeWidth": 0}, pieces)
     return Chart([[panel]], width)
+
+
+def budget_sheet(ranges: Budget, units: Units = ENGINEERING, asked: Iterable[str] = ()) -> Sheet:
+    """Return the sheet of all ranges, or of numbers asked for."""
+    return Sheet(
+        name="budget",
+        title=f"{ranges.title or ranges.scene}: ranges by open inputs",
+        lead="",
+        tables=[budget_table(ranges, asked)],
+        data=ranges.model_dump(mode="json"),
+        charts={"budget": partial(budget_chart, ranges, asked=asked)},
+        terminal=Terminal(heading=()),
+        words={"budget": "Range of every number by every open input."},
+    )
 
 
 def of_record(record: Record, width: float) -> Chart | None:

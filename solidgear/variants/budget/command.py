@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -10,13 +11,12 @@ import typer
 from solidgear.core import SolidgearError, listed
 from solidgear.core.judge.answer import asked_for
 from solidgear.show.command import Progress, command
-from solidgear.show.open_words import budget as budget_table
 from solidgear.show.options import Run, SceneFile
 from solidgear.show.plot import check_ending
 from solidgear.show.remarks import load
-from solidgear.show.sheet import Sheet, Terminal, present
+from solidgear.show.sheet import Sheet, present
 from solidgear.variants.budget.budget import budget as solve_budget
-from solidgear.variants.budget.chart import budget_chart
+from solidgear.variants.budget.chart import budget_chart, budget_sheet
 
 
 @command
@@ -53,14 +53,7 @@ def budget(
         chart = budget_chart(ranges, asked=names)
         if out is not None and chart is not None:
             chart.write(out)
-        return Sheet(
-            name="budget",
-            title="",
-            lead="",
-            tables=[budget_table(ranges, names)],
-            data={"scene": loaded.name, **ranges.model_dump(mode="json")},
-            notes=[] if out is None else [f"Chart: {out}"],
-            terminal=Terminal(heading=()),
-        )
+        sheet = budget_sheet(ranges, asked=names)
+        return sheet if out is None else replace(sheet, notes=[f"Chart: {out}"])
 
     present(study, run)

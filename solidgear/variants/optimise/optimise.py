@@ -321,7 +321,7 @@ class _Search:
         if status == "ok" and goal is None:
             names = self.tried.names(rows[0])
             raise SolidgearError(
-                f"--goal {self.goal}: a design has no {self.goal.name}"
+                f"`goal` {self.goal}: a design has no {self.goal.name}"
                 f"{nearest(self.goal.name, names)}; it has {', '.join(names)}"
             )
         value, bar = goal or (None, None)
@@ -354,11 +354,11 @@ def _with_both_ends(text: str) -> str:
     form = 'PATH=LOW:HIGH, such as "bearing.B.position=180 mm:240 mm"'
     path, spec = assignment(text, form)
     if spec.count(":") != 1:
-        raise SolidgearError(f"--vary {text}: write {form}")
+        raise SolidgearError(f"`vary` {text}: write {form}")
     low, high = map(str.strip, spec.split(":"))
     if in_si(plain_number(low)) == in_si(plain_number(high)):
         raise SolidgearError(
-            f"--vary {text}: both ends are the same, and nothing is left to choose"
+            f"`vary` {text}: both ends are the same, and nothing is left to choose"
         )
     return f"{path}={spec}:2"
 

@@ -74,7 +74,7 @@ def wish_of(text: str) -> Wish:
     match = _GOAL.fullmatch(text)
     if match is None:
         raise SolidgearError(
-            f'--goal {show(text, 40)}: write "max NUMBER" or "min NUMBER", such as "max bending 1"'
+            f'`goal` {show(text, 40)}: write "max NUMBER" or "min NUMBER", such as "max bending 1"'
         )
     return Wish(match["name"], match["sense"].lower() == "max")
 
@@ -84,12 +84,12 @@ def limit_of(text: str) -> Wish:
     match = _KEEP.fullmatch(text)
     if match is None:
         raise SolidgearError(
-            f'--keep {show(text, 40)}: write NUMBER < VALUE, such as "C_zz < 5 um/kN" or "f1 > 600 Hz"'
+            f'`keep` {show(text, 40)}: write NUMBER < VALUE, such as "C_zz < 5 um/kN" or "f1 > 600 Hz"'
         )
     try:
         limit = _limit_in_si(match["name"], match["value"])
     except SceneError as error:
-        raise SolidgearError(f"--keep {show(text, 40)}: {error}") from None
+        raise SolidgearError(f"`keep` {show(text, 40)}: {error}") from None
     return Wish(match["name"], match["sense"] == ">", limit)
 
 

@@ -358,7 +358,7 @@ def numbers(tables: Tables, by: Sequence[str] | None) -> Iterator[Keys]:
     labels = [label_of(keys, tables) for keys in keys_of_numbers]
     for path in by or ():
         if not any(_within(label, path) for label in labels):
-            raise SolidgearError(f"--by {path}: the file has no such number{nearest(path, labels)}")
+            raise SolidgearError(f"`by` {path}: the file has no such number{nearest(path, labels)}")
     for keys, label in zip(keys_of_numbers, labels):
         if not by or any(_within(label, path) for path in by):
             yield keys

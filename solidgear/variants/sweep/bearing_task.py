@@ -11,9 +11,8 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Callable, Hashable, Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
@@ -40,15 +39,15 @@ from solidgear.core.reduction.moments import LEVELS, Reduced, reduce
 from solidgear.core.solve.statics import condense
 from solidgear.variants.sweep.bearing_variants import BearingVariants, SeatedShaft
 from solidgear.variants.sweep.bench import surface
-from solidgear.variants.sweep.curves import Curves, curves_of
-from solidgear.variants.sweep.file_task import BARS, BOUND, Task, without_bars
+from solidgear.variants.sweep.curves import curves_of
+from solidgear.variants.sweep.file_task import BARS, BOUND, Swept, Task, without_bars
 from solidgear.variants.sweep.ritz import Seats, ritz_modes
 from solidgear.variants.sweep.rows import RowFile
 
 #: entries of the stiffness and the compliance that a row holds
 ENTRIES = {
     name: (i, i) for i, name in enumerate(2 * d if i < 3 else d for i, d in enumerate(DOF_NAMES))
-} | {"x_thz": (0, 5), "z_thx": (2, 3)}
+} | {"x,thz": (0, 5), "z,thx": (2, 3)}
 #: most elastic shapes of a row, two columns each; a basis that holds as many is no small problem
 MOST_SHAPES = 1000
 #: variants that the basis is tried on before the run
@@ -57,23 +56,25 @@ PROBES = 24
 KEPT = 50
 
 
-@dataclass(frozen=True)
-class SweptBearings:
-    """Account of a sweep of bearings; numbers are zero where nothing was left to do."""
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class SweptBearings(Swept):
+    """Rows of a sweep of bearings; numbers of the run are zero where nothing was left to do, and
+    refusals are those of this run.
+    """
 
-    path: Path
-    total: int  #: number of variants
-    skipped: int  #: rows that were there before
-    refused: int  #: variants without numbers, of this run
+    plain_names: ClassVar[tuple[Any, ...]] = (
+        *(("file", "path"), "total", "skipped", "refused", "full", "unknowns", "seats", "basis"),
+        *("seconds_once", "seconds_each", "whys", "settling"),
+    )
+
     full: int  #: variants whose modes were solved on the body itself, of this run
     unknowns: int  #: of the body
     seats: int  #: on the body
     basis: int  #: unknowns of the largest small problem
     seconds_once: float  #: wall seconds for body and reduction
     seconds_each: float  #: wall seconds per variant of this run
-    whys: dict[str, int]  #: reasons why variants were refused, and how many for that, of this run
     settling: str  #: sentence on the load at which the stiffness of catalogue bearings is taken
-    curves: Curves | None = field(repr=False)  #: where one number varies
+    task: BearingTask
 
 
 @dataclass(eq=False)
@@ -97,6 +98,7 @@ class BearingTask(Task[SweptBearings]):
 
     def __post_init__(self) -> None:
         self.body: Body | None = None
+        self.settled: Settled | None = None  #: the mesh, where it was chosen for the sweep
         self.seats = self.full = 0
         self.whys = Counter[str]()
 
@@ -215,7 +217,7 @@ class BearingTask(Task[SweptBearings]):
         """Return the error bars of the entries of a row, in their units."""
         bars, out = self.bars or {}, {}
         for kind in "KC":
-            names = {name: Quantity(f"{kind}_{name.replace('_', ',')}") for name in ENTRIES}
+            names = {name: Quantity(f"{kind}_{name}") for name in ENTRIES}
             values = {quantity: numbers[f"{kind}_{name}"] for name, quantity in names.items()}
             for name, quantity in names.items():
                 if quantity in bars:
@@ -275,22 +277,29 @@ class BearingTask(Task[SweptBearings]):
             **self._columns_of_modes(frequencies, [name for _, name in shapes]),
         }
 
-    def result(self, file: RowFile, skipped: int, seconds: tuple[float, float]) -> SweptBearings:
+    def result(
+        self, file: RowFile, skipped: int, seconds: tuple[float, float], alone: bool
+    ) -> SweptBearings:
         total, (once, rows) = len(self.variants), seconds
         return SweptBearings(
-            file.path,
-            total,
-            skipped,
-            refused=self.whys.total(),
+            columns=file.later(),
+            total=total,
+            whys=dict(self.whys),
+            varied=tuple(self.variants.columns),
+            curves=curves_of(file.by_column, self.variants),
+            error_curves=(),
+            path=file.path,
+            skipped=skipped,
+            seconds=sum(seconds),
             full=self.full,
             unknowns=0 if self.body is None else self.body.size,
             seats=self.seats,
             basis=max((basis.size for basis in self.bases), default=0),
             seconds_once=0.0 if self.body is None else once,
             seconds_each=0.0 if self.body is None else rows / (total - skipped),
-            whys=dict(self.whys),
             settling=_settling(self.variants),
-            curves=curves_of(file.by_column, self.variants),
+            task=self,
+            alone=alone,
         )
 
 

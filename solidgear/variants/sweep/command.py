@@ -3,35 +3,27 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
 from rich.progress import Progress as ProgressBar
 
-from solidgear.core import LADDER, SolidgearError, build, document_of
-from solidgear.guards.check import cautions
+from solidgear.core import document_of
 from solidgear.show.command import Group, Progress, command, console
 from solidgear.show.options import AUTO, MODEL, Chosen, Run, options, refuse, relative
 from solidgear.show.plot import FORMATS, WIDE, check_ending
-from solidgear.show.sheet import Sheet, present, write_page
+from solidgear.show.sheet import present, write_page
 from solidgear.trains.options import Pair, Reduction, models_of, of_shafts
-from solidgear.variants.sweep.bearing_task import (
-    SweptBearings,
-    bars_of_rows,
-    bearing_task,
-    settled_for_sweep,
-)
-from solidgear.variants.sweep.bearing_variants import BearingVariants, bearing_variants
 from solidgear.variants.sweep.design import Design
-from solidgear.variants.sweep.file_task import R, Swept, Task, run
-from solidgear.variants.sweep.scene_task import scene_task
-from solidgear.variants.sweep.sheet import bearings_sheet, scene_sheet, train_sheet
-from solidgear.variants.sweep.train_task import BY_DEFAULT, shafts_in, train_task
+from solidgear.variants.sweep.file_task import R, Task, run
+from solidgear.variants.sweep.shaft_task import REDUCED, task_of
+from solidgear.variants.sweep.sheet import sweep_sheet
+from solidgear.variants.sweep.train_task import BY_DEFAULT, shafts_in
 
 #: ending of a chart that is a page
 PAGE = ".html"
@@ -110,11 +102,6 @@ class Rows(Group):
                 progress=show,
             )
 
-    @property
-    def of_files(self) -> bool:
-        """True where options are given that are for variants of files."""
-        return bool(self.one_at_a_time or self.table or self.keep_sum)
-
     def design(self, vary: Sequence[str]) -> Design:
         """Return the entries that vary, and in which combinations."""
         return Design(
@@ -188,10 +175,6 @@ class OfTrain(Group):
     ] = None
 
 
-#: relative, of frequencies of a shaft
-TOLERANCE = 1e-6
-
-
 @command
 def sweep(
     scene: Annotated[
@@ -220,7 +203,7 @@ def sweep(
         relative(
             "--tolerance", "Relative error of frequencies; checked by a bound for every variant."
         ),
-    ] = TOLERANCE,
+    ] = REDUCED,
     pair: Pair,
     train_rows: OfTrain,
     reduced: Reduction,
@@ -229,35 +212,28 @@ def sweep(
     chart = train_rows.chart
     if chart is not None:
         check_ending(chart, (*FORMATS, PAGE))
-    swept: Swept | SweptBearings
     document = document_of(scene)
     if document.describes_train:
         of_shaft = {
             "--model": model.name != AUTO,
-            "--tolerance": tolerance != TOLERANCE,
+            "--tolerance": tolerance != REDUCED,
         }
         models = "its models are those of --pinion and --gear"
         refuse(of_shaft, f"one shaft, and {scene} is a train: {models}")
         reduced.checked()
         mix = models_of([*shafts_in(document.tables)], scene.stem, pair.models)
-        train = train_task(
-            document,
-            rows.design(vary or ()),
-            models=mix,
-            mesh=train_rows.mesh,
-            settings=of_shafts(model.pairs, mix),
-            ask=train_rows.ask or BY_DEFAULT,
-            n=rows.n,
-            every_point=train_rows.every_point,
-            max_frequency=reduced.max_frequency,
-            point=reduced.point,
-            reduction=reduced.reduction,
-            kept=reduced.kept,
-            tolerance=model.tol,
-            local_harmonics=reduced.harmonics,
-        )
-        swept = rows.run(train, run.as_json, chart)
-        sheet = train_sheet(train, swept, chart, counted=rows.jobs == 1 and rows.dask is None)
+        how: Mapping[str, Any] = {
+            "models": mix,
+            "mesh": train_rows.mesh,
+            "settings": of_shafts(model.pairs, mix),
+            "ask": train_rows.ask or BY_DEFAULT,
+            "every_point": train_rows.every_point,
+            "max_frequency": reduced.max_frequency,
+            "point": reduced.point,
+            "reduction": reduced.reduction,
+            "kept": reduced.kept,
+            "local_harmonics": reduced.harmonics,
+        }
     else:
         of_train = {
             "--pinion": pair.pinion != MODEL,
@@ -269,27 +245,24 @@ def sweep(
             **reduced.given,
         }
         refuse(of_train, f"a train, and {scene} is the scene of one shaft")
-        sets = None
-        if not (rows.of_files or chart):
-            sets = bearing_variants(document, vary or (), rows.sample, rows.seed)
-        if sets is not None:
-            swept, sheet = _bearings(sets, rows, model, tolerance, run)
-        else:
-            if tolerance != TOLERANCE:
-                raise SolidgearError(
-                    "--tolerance is that of one body for many bearing sets; give --tol"
-                )
-            automatic = model.automatic()
-            shafts = scene_task(
-                document,
-                rows.design(vary or ()),
-                model=None if automatic else str(model.name),
-                tolerance=model.tol,
-                options={} if automatic else options(model.pairs),
-                n=rows.n,
-            )
-            swept = rows.run(shafts, run.as_json, chart)
-            sheet = scene_sheet(shafts, swept, chart)
+        automatic = model.automatic()
+        how = {
+            "model": None if automatic else str(model.name),
+            "options": {} if automatic else options(model.pairs),
+            "reduction_tolerance": None if tolerance == REDUCED else tolerance,
+        }
+    with Progress(quiet=run.as_json or not sys.stderr.isatty()) as progress:
+        # before a file of rows is begun
+        task = task_of(
+            document,
+            rows.design(vary or ()),
+            n=rows.n,
+            tolerance=model.tol,
+            progress=progress,
+            **how,
+        )
+    swept = rows.run(task, run.as_json, chart)
+    sheet = sweep_sheet(swept, chart=chart)
     if chart is not None and sheet.charts:
         if chart.suffix.lower() == PAGE:
             write_page(sheet, chart)
@@ -301,36 +274,3 @@ def sweep(
     present(lambda progress: sheet, run)
     if swept.refused == swept.total:
         raise typer.Exit(1)
-
-
-def _bearings(
-    variants: BearingVariants, rows: Rows, model: Chosen, tolerance: float, run: Run
-) -> tuple[SweptBearings, Sheet]:
-    """Sweep bearings on the mesh asked for, or the cheapest that does for all of them."""
-    variants.first_sound()
-    scene, settled = variants.scene, None
-    if model.automatic(scene):
-        # before a file of rows is begun
-        with Progress(quiet=not sys.stderr.isatty()) as progress:
-            settled = settled_for_sweep(variants, model.tol, progress=progress)
-            progress("bars of natural frequencies")
-            bars = bars_of_rows(variants, settled, rows.n or scene.ask.modes)
-        task = bearing_task(
-            variants,
-            model=settled.rung,
-            options=settled.options,
-            n=rows.n,
-            tolerance=tolerance,
-            bars=bars,
-            judged_on=settled.judged_on,
-        )
-    else:
-        chosen = LADDER[str(model.name)].checked(options(model.pairs))
-        task = bearing_task(
-            variants, model=str(model.name), options=chosen, n=rows.n, tolerance=tolerance
-        )
-    swept = rows.run(task, run.as_json)
-    sentences: list[str] = []
-    if not run.as_json:
-        sentences += cautions(scene, build(scene.plain, "timoshenko"), task.model)
-    return swept, bearings_sheet(task, swept, settled, sentences)

@@ -90,7 +90,7 @@ def chartable(variants: FileVariants) -> Entry:
     if len(several) != 1:
         labels = listed(entry.label for entry in several) or "none"
         raise SolidgearError(
-            f"a chart needs one number that varies, but here vary {labels}; leave --chart out, or "
+            f"a chart needs one number that varies, but here vary {labels}; leave `chart` out, or "
             "give several values to one of them only"
         )
     entry = several[0]

@@ -68,13 +68,13 @@ class Design:
         added = further(varied)
         varied += added
         if not varied:
-            raise SolidgearError(f'nothing is varied; give for example --vary "{example}"')
+            raise SolidgearError(f'nothing is varied; give for example `vary` "{example}"')
         if rows is not None:
             turns = [*itertools.product(*(entry.values for entry in added))]
             values = np.array([(*row, *turn) for row in rows for turn in turns], float)
         elif self.one_at_a_time:
             if self.sample is not None:
-                raise SolidgearError("give one of --sample and --one-at-a-time")
+                raise SolidgearError("give one of `sample` and `one_at_a_time`")
             values = _one_at_a_time(varied)
         else:
             values = self.drawn(varied)
@@ -88,13 +88,13 @@ class Design:
 
     def _refuse_others(self) -> None:
         options = {
-            "--vary": self.vary,
-            "--sample": self.sample,
-            "--one-at-a-time": self.one_at_a_time,
+            "`vary`": self.vary,
+            "`sample`": self.sample,
+            "`one_at_a_time`": self.one_at_a_time,
         }
         for option, value in options.items():
             if value:
-                raise SolidgearError(f"--table {self.table}: says all variants; leave out {option}")
+                raise SolidgearError(f"`table` {self.table}: says all variants; leave out {option}")
 
     @property
     def plan(self) -> dict[str, Any] | None:
@@ -124,7 +124,7 @@ def product(axes: Sequence[Entry]) -> np.ndarray:
     total = int(np.prod([float(len(axis.values)) for axis in axes]))
     if total > MOST:
         raise SolidgearError(
-            f"{total} variants are more than the {MOST} a sweep takes; use fewer values, or draw some with --sample"
+            f"{total} variants are more than the {MOST} a sweep takes; use fewer values, or draw some with `sample`"
         )
     return np.array(list(itertools.product(*(axis.values for axis in axes))), float)
 
@@ -132,9 +132,9 @@ def product(axes: Sequence[Entry]) -> np.ndarray:
 def sample(axes: Sequence[Entry], count: int, seed: int) -> np.ndarray:
     """Return (count, axes) a Latin hypercube over the ranges of the axes."""
     if not 1 <= count <= MOST:
-        raise SolidgearError(f"--sample {count}: give a whole number from 1 to {MOST}")
+        raise SolidgearError(f"`sample` {count}: give a whole number from 1 to {MOST}")
     if seed < 0:
-        raise SolidgearError(f"--seed {seed}: must not be negative")
+        raise SolidgearError(f"`seed` {seed}: must not be negative")
     from scipy.stats import qmc
 
     u = qmc.LatinHypercube(d=len(axes), seed=seed).random(count)

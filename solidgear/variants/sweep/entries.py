@@ -131,7 +131,7 @@ def assignment(text: str, form: str) -> tuple[str, str]:
     """Split ``PATH=VALUES`` into path and values; an error shows the `form` that is wanted."""
     path, equals, values = text.partition("=")
     if not equals or not path.strip() or not values.strip():
-        raise SolidgearError(f"--vary {text}: write {form}")
+        raise SolidgearError(f"`vary` {text}: write {form}")
     return path.strip(), values
 
 
@@ -153,9 +153,9 @@ def entries_of(
             else:
                 values = _range(spec)
         except SceneError as error:
-            raise SolidgearError(f"--vary {text}: {error}") from None
+            raise SolidgearError(f"`vary` {text}: {error}") from None
         out.append(_entry(places, in_file, as_text, values))
-        _refuse_twice(f"--vary {text}", out)
+        _refuse_twice(f"`vary` {text}", out)
     return tuple(out)
 
 
@@ -170,10 +170,10 @@ def entries_of_table(
         with path.open(newline="", encoding="utf-8-sig") as file:
             heads, *rows = [row for row in csv.reader(file) if any(map(str.strip, row))] or [[]]
     except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise SolidgearError(f"--table {path}: cannot be read ({error})") from None
+        raise SolidgearError(f"`table` {path}: cannot be read ({error})") from None
     if not heads or not rows:
         raise SolidgearError(
-            f"--table {path}: has no variants; write paths as heads and a variant a row"
+            f"`table` {path}: has no variants; write paths as heads and a variant a row"
         )
     out: list[Entry] = []
     columns: list[list[float]] = []
@@ -182,12 +182,12 @@ def entries_of_table(
             places = _places(head.strip(), files, owner)
             in_file = entry(places[0].keys, files[places[0].file])
         except SceneError as error:
-            raise SolidgearError(f"--table {path}: {head}: {error}") from None
+            raise SolidgearError(f"`table` {path}: {head}: {error}") from None
         cells = [row[k].strip() if k < len(row) else "" for row in rows]
         as_text = _has_words(places, in_file)
         values = _listed([cell for cell in cells if cell], as_text)
         out.append(_entry(places, in_file, as_text, values))
-        _refuse_twice(f"--table {path}", out)
+        _refuse_twice(f"`table` {path}", out)
         columns.append(
             [values["words"].index(_word(cell, as_text)) if cell else math.nan for cell in cells]
         )
@@ -269,11 +269,11 @@ def kept_sums(
             places = _places(text.strip(), files, owner)
             numbers = [_number_at(place, files[place.file]) for place in places]
         except SceneError as error:
-            raise SolidgearError(f"--keep-sum {text}: {error}") from None
+            raise SolidgearError(f"`keep_sum` {text}: {error}") from None
         free = [place for place in places if (place.file, place.keys) not in moved]
         if len(places) < 2 or len({place.file for place in places}) > 1 or len(free) != 1:
             raise SolidgearError(
-                f"--keep-sum {text}: write entries of one file with + between them, such as "
+                f"`keep_sum` {text}: write entries of one file with + between them, such as "
                 "segment.a.length+segment.b.length, all but one of which vary; that one gives way"
             )
         fixed = [place for place in places if place not in free]

@@ -8,11 +8,10 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
-from solidgear.core import Source, document_of
+from solidgear.core import Source
 from solidgear.variants.sweep.design import Design
-from solidgear.variants.sweep.file_task import FileTask, Swept, run
-from solidgear.variants.sweep.scene_task import scene_task
-from solidgear.variants.sweep.train_task import train_task
+from solidgear.variants.sweep.file_task import Swept, run
+from solidgear.variants.sweep.shaft_task import task_of
 
 
 def sweep(
@@ -64,7 +63,9 @@ def sweep(
 
         Of a shaft: `model`, the cheapest mesh within the tolerance by default, variant by variant
         (rows of a model that is given have no error bars); `options` of its builder; `tolerance`,
-        relative, that of the scene by default.
+        relative, that of the scene by default. Where springs and positions of bearings vary alone,
+        one body does for all, and `reduction_tolerance` is the relative error that its reduction
+        may leave in frequencies, 1e-6 by default.
 
         Of a train: `pinion` and `gear`, models as of ``system-modes``, and `models` of shafts by
         any name; `ask`, some of ``system-modes``, ``response``, ``deflect`` and ``contact``; `max_frequency` in
@@ -96,9 +97,10 @@ def sweep(
     texts = (vary,) if isinstance(vary, str) else tuple(vary)
     variants = None if table is None else Path(table)
     design = Design(texts, sample, seed, one_at_a_time, variants, tuple(keep_sum))
-    document = document_of(source)
-    make: Callable[..., FileTask] = train_task if document.describes_train else scene_task
-    task = make(document, design, **how)
+    task = task_of(source, design, **how)
     with tempfile.TemporaryDirectory() as folder:
         rows = Path(folder) / "rows.csv" if out is None else Path(out)
-        return run(task, rows, jobs=jobs, dask=dask, overwrite=overwrite, progress=progress)
+        swept = run(task, rows, jobs=jobs, dask=dask, overwrite=overwrite, progress=progress)
+        if out is None:
+            dict(swept.columns)  # read before their file is gone
+        return swept

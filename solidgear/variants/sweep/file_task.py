@@ -5,14 +5,14 @@ from __future__ import annotations
 import dataclasses
 import time
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar, Generic, TypeVar
 
 import numpy as np
 
-from solidgear.core import Displayed, SolidgearError, listed, nearest, pinned
+from solidgear.core import Sheeted, SolidgearError, listed, nearest, pinned
 from solidgear.core.machine.threads import usable_cores
 from solidgear.core.machine.version import VERSION
 from solidgear.core.models.limits import number
@@ -84,9 +84,9 @@ class Task(Generic[R]):
         """Return a row of any process as it goes into the file, in this process."""
         return row
 
-    def result(self, file: RowFile, skipped: int, seconds: tuple[float, float]) -> R:
+    def result(self, file: RowFile, skipped: int, seconds: tuple[float, float], alone: bool) -> R:
         """Return the result of a run: `skipped` rows were there before, wall seconds are until the
-        first row and from there on.
+        first row and from there on, `alone` where no other process solved any.
         """
         raise NotImplementedError
 
@@ -95,8 +95,8 @@ class Task(Generic[R]):
         return {field.name: getattr(self, field.name) for field in fields}
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class Swept(Displayed):
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class Swept(Sheeted):
     """Rows of a sweep.
 
     Examples
@@ -108,23 +108,37 @@ class Swept(Displayed):
     """
 
     shown: ClassVar[str] = "swept"
-    plain_names = (("file", "path"), "total", "skipped", "refused", "whys", "seconds")
+    sheeted: ClassVar[str] = "variants.sweep.sheet:sweep_sheet"
+    filed: ClassVar[str] = "variants.sweep.sheet:filed_sheet"
+    plain_names: ClassVar[tuple[Any, ...]] = (
+        ("file", "path"),
+        "total",
+        "skipped",
+        "refused",
+        "whys",
+        "seconds",
+    )
 
     #: values of all rows by the names of columns, SI; None where a row has none. Bars stand beside
     #: numbers as ``f1_hz bar``, in the same unit.
-    columns: dict[str, list[Any]]
+    columns: Mapping[str, list[Any]]
+    total: int  #: number of variants
     varied: tuple[str, ...]  #: columns of the entries that vary
     curves: Curves | None  #: where one number varies
     #: transmission error over the torque, where something else varies as well
     error_curves: tuple[ErrorCurves, ...]
+    #: reasons why variants were refused, and how many for that reason
+    whys: dict[str, int]
     path: Path  #: file that they were written to; of a sweep from Python without one it is gone
     skipped: int  #: rows that were there before
     seconds: float  #: wall seconds of this run
     #: sentences on data that contradict each other in variants that were solved
     cautions: tuple[str, ...] = ()
+    task: Task[Any]  #: what solved the variants
+    alone: bool  #: no other process solved any
 
     def __len__(self) -> int:
-        return len(self.columns["variant"])
+        return self.total
 
     def __getitem__(self, name: str) -> np.ndarray:
         if name not in self.columns:
@@ -135,16 +149,6 @@ class Swept(Displayed):
         values = self.columns[name]
         texts = any(isinstance(value, str) for value in values)
         return np.array(values, object if texts else float)
-
-    @property
-    def total(self) -> int:
-        """Number of variants."""
-        return len(self)
-
-    @property
-    def whys(self) -> dict[str, int]:
-        """Reasons why variants were refused, and how many for that reason."""
-        return dict(Counter(status for status in self.columns["status"] if status != "ok"))
 
     @property
     def refused(self) -> int:
@@ -170,10 +174,14 @@ class FileTask(Task[Swept]):
         """Names of the meshes whose teeth have numbers."""
         return ()
 
-    def result(self, file: RowFile, skipped: int, seconds: tuple[float, float]) -> Swept:
+    def result(
+        self, file: RowFile, skipped: int, seconds: tuple[float, float], alone: bool
+    ) -> Swept:
         columns = file.by_column()
         return Swept(
-            columns,
+            columns=columns,
+            total=len(self.variants),
+            whys=dict(Counter(status for status in columns["status"] if status != "ok")),
             varied=tuple(self.variants.columns),
             curves=curves_of(
                 lambda: columns, self.variants, self.misalignments, self.meshes_in_contact
@@ -183,6 +191,8 @@ class FileTask(Task[Swept]):
             skipped=skipped,
             seconds=sum(seconds),
             cautions=self.cautions,
+            task=self,
+            alone=alone,
         )
 
 
@@ -220,7 +230,8 @@ def run(
             file.append(map(task.checked, rows))
             progress(len(file.done), total, "solving")
         file.finish()
-        return task.result(file, skipped, (ready - start, time.perf_counter() - ready))
+        seconds = ready - start, time.perf_counter() - ready
+        return task.result(file, skipped, seconds, alone=jobs == 1 and dask is None)
 
 
 def workers(jobs: int = 1, dask: str | None = None) -> Workers:
@@ -232,13 +243,13 @@ def workers(jobs: int = 1, dask: str | None = None) -> Workers:
     most = 8 * usable_cores()
     if jobs > most:
         raise SolidgearError(
-            f"--jobs {jobs}: give a whole number up to {most}, eight for each processor here"
+            f"`jobs` {jobs}: give a whole number up to {most}, eight for each processor here"
         )
     try:
         from joblib import Parallel, delayed
     except ImportError:
         raise SolidgearError(
-            f"--jobs {jobs} needs joblib: pip install 'solidgear[sweep]', or use --jobs 1"
+            f"`jobs` {jobs} needs joblib: pip install 'solidgear[sweep]', or use `jobs` 1"
         ) from None
     # the task is sent with every part as places fall free, with a basis enlarged meanwhile
     return lambda task, parts: Parallel(n_jobs=jobs, return_as="generator")(
@@ -251,13 +262,13 @@ def _dask(address: str) -> Workers:
         from distributed import Client
     except ImportError:
         raise SolidgearError(
-            f"--dask {address} needs Dask: pip install 'solidgear[dask]'"
+            f"`dask` {address} needs Dask: pip install 'solidgear[dask]'"
         ) from None
     try:
         client = Client(address, timeout=10, set_as_default=False)
     except (OSError, TimeoutError, ValueError) as error:
         raise SolidgearError(
-            f"--dask {address}: no Dask scheduler answers there ({type(error).__name__})"
+            f"`dask` {address}: no Dask scheduler answers there ({type(error).__name__})"
         ) from None
 
     def rows_of(task: Task, parts: Sequence[Sequence[int]]) -> Iterator[Rows]:

@@ -160,7 +160,7 @@ class FileVariants(Generic[T]):
                 first = first or problems[0]
         if first is not None:
             raise SolidgearError(
-                f"--vary {entry.label}: {explained(first, entry.label, self.files)}"
+                f"`vary` {entry.label}: {explained(first, entry.label, self.files)}"
             )
 
     def _refuse_file_as_it_is(self) -> None:
@@ -229,7 +229,7 @@ def data_of_other_designations(
                 yield (
                     f"{label_of(keys, tables)} varies, and {listed(data)} {are} kept from the file, "
                     f"where {belong} to {show(varying.in_file)}: leave {them} out of the file, or "
-                    f"vary {them} as well (--table)"
+                    f"vary {them} as well (`table`)"
                 )
 
 

@@ -14,7 +14,8 @@ import json
 import math
 import sys
 from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager, nullcontext, suppress
+from contextlib import closing, contextmanager, nullcontext, suppress
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -38,6 +39,41 @@ CREATE TABLE rows (variant INTEGER PRIMARY KEY, line TEXT NOT NULL);
 DAMAGED = (sqlite3.SQLITE_NOTADB, sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_ERROR)
 
 
+class ColumnsOfRows(Mapping[str, list[Any]]):
+    """Values of all rows of a database by the names of columns, read when they are first asked for: a
+    million rows are not held for a sweep that shows none of them.
+    """
+
+    def __init__(self, database: Path, kinds: Mapping[str, type]):
+        self.database, self.kinds = database, dict(kinds)
+
+    @cached_property
+    def _values(self) -> dict[str, list[Any]]:
+        with closing(sqlite3.connect(self.database.absolute())) as db:
+            return _by_column(_lines(db), self.kinds)
+
+    def __getitem__(self, name: str) -> list[Any]:
+        return self._values[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.kinds)
+
+    def __len__(self) -> int:
+        return len(self.kinds)
+
+
+def _lines(db: sqlite3.Connection) -> Iterator[str]:
+    return (line for (line,) in db.execute("SELECT line FROM rows ORDER BY variant"))
+
+
+def _by_column(lines: Iterable[str], kinds: Mapping[str, type]) -> dict[str, list[Any]]:
+    table = list(csv.reader(lines))
+    return {
+        name: [kind(row[k]) if row[k] else None for row in table]
+        for k, (name, kind) in enumerate(kinds.items())
+    }
+
+
 class RowFile:
     """Rows of one sweep, to be used in a ``with`` statement by one process at a time; refuses rows of
     another plan.
@@ -53,7 +89,7 @@ class RowFile:
     ):
         self.path, self.columns, self.total = Path(path), dict(columns), total
         if self.path.suffix not in (".csv", ".parquet"):
-            raise SolidgearError(f"--out {self.path}: the name must end in .csv or .parquet")
+            raise SolidgearError(f"`out` {self.path}: the name must end in .csv or .parquet")
         self._parquet = self.path.suffix == ".parquet"
         if self._parquet:
             _pyarrow()
@@ -65,7 +101,7 @@ class RowFile:
             for place in (self.path, self._database):
                 if place.exists() and not place.is_file():
                     raise SolidgearError(
-                        f"--out {self.path}: {place} is not a file; choose another name"
+                        f"`out` {self.path}: {place} is not a file; choose another name"
                     )
             self._db = self._locked(overwrite)
             try:
@@ -121,7 +157,7 @@ class RowFile:
         elif marks != [APPLICATION, SCHEMA]:
             raise SolidgearError(
                 f"{self._database}: is no database of rows that this version of solidgear reads; "
-                "choose another --out, or add --overwrite"
+                "choose another `out`, or add `overwrite`"
             )
         self._db.execute("PRAGMA journal_mode = WAL")
         # synced now and then: a failure of the machine may cost the last batches, of the process none
@@ -136,7 +172,7 @@ class RowFile:
         if self.path.exists():
             raise SolidgearError(
                 f"{self.path}: is there already and not from this sweep (no rows in "
-                f"{self._database.name}); choose another --out, or add --overwrite"
+                f"{self._database.name}); choose another `out`, or add `overwrite`"
             )
         self._db.execute("DELETE FROM facts")
         self._db.execute("INSERT INTO facts VALUES ('plan', ?)", (plan,))
@@ -157,7 +193,7 @@ class RowFile:
         names = [name for name in differing if name != "columns"] or differing
         raise SolidgearError(
             f"{self.path}: holds the rows of another sweep (it differs in: {', '.join(names)}); "
-            "choose another --out, or add --overwrite"
+            "choose another `out`, or add `overwrite`"
         )
 
     def _value(self, query: str) -> Any:
@@ -222,14 +258,14 @@ class RowFile:
 
     def by_column(self) -> dict[str, list[Any]]:
         """Return the values of all rows that are there, in order; None where a row has none."""
-        table = list(csv.reader(self._lines()))
-        return {
-            name: [kind(row[k]) if row[k] else None for row in table]
-            for k, (name, kind) in enumerate(self.columns.items())
-        }
+        return _by_column(self._lines(), self.columns)
+
+    def later(self) -> ColumnsOfRows:
+        """Return the same values, read when they are first asked for."""
+        return ColumnsOfRows(self._database, self.columns)
 
     def _lines(self) -> Iterator[str]:
-        return (line for (line,) in self._db.execute("SELECT line FROM rows ORDER BY variant"))
+        return _lines(self._db)
 
     # --------------------------------------------------------------------------------- refusals
     @contextmanager
@@ -243,19 +279,19 @@ class RowFile:
             if self.done:
                 rows = f"{len(self.done)} of {self.total} rows"
                 kept = f"; {rows} are kept, and the same command goes on from there"
-            raise SolidgearError(f"--out {self.path}: cannot be written ({reason}){kept}") from None
+            raise SolidgearError(f"`out` {self.path}: cannot be written ({reason}){kept}") from None
 
     def _refusal(self, error: BaseException) -> BaseException:
         """Return an error of opening as a sentence, where it is one of the database."""
         if _has_code(error, sqlite3.SQLITE_BUSY):
             return SolidgearError(
                 f"{self._database}: is in use by another process, perhaps the same sweep; "
-                "wait for it to end, or choose another --out"
+                "wait for it to end, or choose another `out`"
             )
         if _has_code(error, *DAMAGED):
             return SolidgearError(
                 f"{self._database}: is damaged beyond repair ({error}); put back a copy, "
-                "or add --overwrite to solve all rows again"
+                "or add `overwrite` to solve all rows again"
             )
         return error
 

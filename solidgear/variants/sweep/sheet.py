@@ -3,33 +3,37 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from solidgear.core import Settled
+from solidgear.core import build
 from solidgear.core.plain import plain
+from solidgear.guards.check import cautions as cautions_on
 from solidgear.show.command import caution
 from solidgear.show.panel import Panel, Series, readout
 from solidgear.show.plot import NARROW, WIDE, Chart, Make, in_columns
 from solidgear.show.scales import Axis
 from solidgear.show.settled import over_the_sweep
 from solidgear.show.sheet import Sheet, Terminal
+from solidgear.show.shown import swept_tables
 from solidgear.show.table import NUMBER, Column, Table, text
 from solidgear.show.units import ENGINEERING, Units
 from solidgear.show.units import plain as digits
 from solidgear.trains.assembly.shaft import JUDGE, mix_label
 from solidgear.trains.page.chart import COLOURS
-from solidgear.variants.sweep.bearing_task import BearingTask, SweptBearings
+from solidgear.variants.sweep.bearing_task import SweptBearings
 from solidgear.variants.sweep.curves import Curve, Curves
 from solidgear.variants.sweep.error_chart import error_chart, error_table
 from solidgear.variants.sweep.error_curves import ErrorCurves
 from solidgear.variants.sweep.file_task import Swept
-from solidgear.variants.sweep.scene_task import SceneTask
 from solidgear.variants.sweep.train_task import CONTACT, MODES, MOST_MODES, PARTS, TrainTask
 
+#: file of all rows in a folder
+ROWS = Path("rows.csv")
 #: rows that are printed on the terminal as well
 FEW = 40
 #: reasons of refusals that are printed
@@ -46,17 +50,34 @@ ROUNDING = 1e-9
 LINE = "#00805e"
 
 
-def bearings_sheet(
-    task: BearingTask,
-    result: SweptBearings,
-    settled: Settled | None,  # the mesh, where it was chosen for the sweep
-    cautions: Sequence[str],
-) -> Sheet:
+def sweep_sheet(result: Swept, units: Units = ENGINEERING, chart: Path | None = None) -> Sheet:
+    """Return the sheet of a sweep, whose curves go into a file where one is given."""
+    if isinstance(result, SweptBearings):
+        return _bearings_sheet(result, units, chart)
+    if isinstance(result.task, TrainTask):
+        return _train_sheet(result, result.task, units, chart)
+    return _scene_sheet(result, units, chart)
+
+
+def filed_sheet(result: Swept, units: Units, folder: Path) -> Sheet:
+    """Return the sheet of a sweep for a folder, which gets the rows as well."""
+    sheet, rows = sweep_sheet(result, units), ROWS.with_suffix("").name
+    return replace(
+        sheet,
+        lead=sheet.lead.replace(result.path.name, ROWS.name),
+        data={**sheet.data, "file": ROWS.name},
+        lines={rows: swept_tables(result)["rows"]},
+    )
+
+
+def _bearings_sheet(result: SweptBearings, units: Units, chart: Path | None) -> Sheet:
     """Return the sheet of a sweep of bearings on one body."""
+    task, settled = result.task, result.task.settled
     scene = task.variants.scene
     return _sheet(
         result,
         scene.title or scene.name,
+        units,
         lead=f"Rows in {result.path.name}.",
         solved="Bearings alone vary: one body does for all, reduced to its seats.\n"
         f"{result.unknowns} unknowns with {result.seats} seats solved once in "
@@ -64,13 +85,14 @@ def bearings_sheet(
         f"{result.basis} unknowns, {1e3 * result.seconds_each:.1f} ms each; {result.refused} "
         f"refused, {result.full} solved in full.",
         notes=[*filter(None, [result.settling]), *over_the_sweep(settled)],
-        cautions=cautions,
+        chart=chart,
+        cautions=cautions_on(scene, build(scene.plain, "timoshenko"), task.model),
         data=plain(result) | ({} if settled is None else plain(settled)),
         reached=settled is None or settled.reached,
     )
 
 
-def scene_sheet(task: SceneTask, result: Swept, chart: Path | None) -> Sheet:
+def _scene_sheet(result: Swept, units: Units, chart: Path | None) -> Sheet:
     """Return the sheet of variants of the file of a shaft."""
     bars = [
         bar / hz
@@ -82,7 +104,8 @@ def scene_sheet(task: SceneTask, result: Swept, chart: Path | None) -> Sheet:
         note = f"Error bars are in columns beside the numbers; of f1 up to {max(bars):.2g}."
     return _sheet(
         result,
-        task.variants.path.stem,
+        result.task.variants.path.stem,
+        units,
         lead=f"Rows in {result.path.name}.",
         solved=_solved(result),
         notes=[note],
@@ -92,14 +115,14 @@ def scene_sheet(task: SceneTask, result: Swept, chart: Path | None) -> Sheet:
     )
 
 
-def train_sheet(task: TrainTask, result: Swept, chart: Path | None, counted: bool) -> Sheet:
-    """Return the sheet of variants of the file of a train; `counted` where the shafts made are known,
-    as no other process made any.
+def _train_sheet(result: Swept, task: TrainTask, units: Units, chart: Path | None) -> Sheet:
+    """Return the sheet of variants of the file of a train; the shafts made are known where no other
+    process made any.
     """
     title, models = task.usual.title or task.usual.name, mix_label(task.models)
     if task.ask == (CONTACT,):
         models = "teeth by plane slices, on Timoshenko shafts"
-    made, cut = task.bench.made if counted else None, task.cut(result.columns)
+    made, cut = task.bench.made if result.alone else None, task.cut(result.columns)
     notes = []
     if cut > 0:
         notes.append(
@@ -121,6 +144,7 @@ def train_sheet(task: TrainTask, result: Swept, chart: Path | None, counted: boo
     return _sheet(
         result,
         title,
+        units,
         heading=[f"{title}: {models}"],
         lead=f"{models[0].upper()}{models[1:]}; rows in {result.path.name}.",
         solved=shafts + _solved(result),
@@ -133,8 +157,9 @@ def train_sheet(task: TrainTask, result: Swept, chart: Path | None, counted: boo
 
 
 def _sheet(
-    result: Swept | SweptBearings,
+    result: Swept,
     title: str,
+    units: Units,
     *,
     heading: Sequence[str] = (),  # of the terminal
     lead: str,
@@ -149,12 +174,12 @@ def _sheet(
     """Return the sheet of a sweep; a terminal shows few rows, and the sentences on the run."""
     curves, charts, tables = result.curves, dict[str, Make](), list[Table]()
     if curves is not None and not curves.empty:
-        title, tables = f"{title}: sweep over {curves.over}", [sweep_table(curves)]
-        charts = {"sweep": partial(sweep_chart, curves, "", ENGINEERING)}
+        title, tables = f"{title}: sweep over {curves.over}", [sweep_table(curves, units)]
+        charts = {"sweep": partial(sweep_chart, curves, "", units)}
     few = curves is not None and len(curves.x) <= FEW and curves.on_terminal
     if errors:
-        tables = [error_table(mesh) for mesh in errors]
-        charts = {"transmission_error": partial(error_chart, errors, "", ENGINEERING)}
+        tables = [error_table(mesh, units) for mesh in errors]
+        charts = {"transmission_error": partial(error_chart, errors, "", units)}
         few = len(errors[0].torque) <= FEW
     path = str(result.path).encode("utf-8", "backslashreplace").decode()  # bytes that are no text
     new = result.total - result.skipped
@@ -204,7 +229,7 @@ def _caution_on_parting(result: Swept) -> list[str]:
     ]
 
 
-def refusals(result: Swept | SweptBearings) -> list[str]:
+def refusals(result: Swept) -> list[str]:
     """Return a sentence a reason for which variants were refused, the commonest first."""
     reasons = sorted(result.whys.items(), key=lambda why: -why[1])
     sentences = []

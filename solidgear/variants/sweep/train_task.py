@@ -325,10 +325,10 @@ def train_task(
     asked = set(ask)
     for word in asked.difference(ASKED):
         raise SolidgearError(
-            f"--ask {show(word, 40)}: give one or more of {', '.join(ASKED)}{nearest(word, ASKED)}"
+            f"`ask` {show(word, 40)}: give one or more of {', '.join(ASKED)}{nearest(word, ASKED)}"
         )
     if not asked:
-        raise SolidgearError(f"--ask: name one or more of {', '.join(ASKED)}")
+        raise SolidgearError(f"`ask`: name one or more of {', '.join(ASKED)}")
     by_side = {"pinion": pinion, "gear": gear}
     chosen = {side: model for side, model in by_side.items() if model is not None}
     chosen |= models or {}
@@ -348,7 +348,7 @@ def train_task(
     if CONTACT in asked:
         if variants.operating_point(first, usual) is None:
             raise SolidgearError(
-                f"--ask {CONTACT}: teeth touch under a load; give [operation] a torque"
+                f"`ask` {CONTACT}: teeth touch under a load; give [operation] a torque"
             )
         touching(usual)
     return TrainTask(
@@ -541,7 +541,7 @@ def _owner(shafts: Sequence[str], many: bool, housed: bool, path: str) -> tuple[
     of_train = {*Train.model_fields, *shafts, *SHORT, "mesh"} - ({HOUSING} if not housed else set())
     if first in KEYS and first not in of_train:
         raise SolidgearError(
-            f"--vary {path}: belongs to the scene of a shaft; say which: "
+            f"`vary` {path}: belongs to the scene of a shaft; say which: "
             + " or ".join(f"{side}.{path}" for side in shafts)
         )
     return MAIN, path
@@ -556,7 +556,7 @@ def _every_point(tables: Tables, varied: Sequence[Entry], point: str | None) -> 
     """Return the operating points of a file as an entry that varies."""
     if point is not None or any(map(_of_operation, varied)):
         raise SolidgearError(
-            "--every-point takes every operating point: give no --point and vary none"
+            "`every_point` takes every operating point: give no `point` and vary none"
         )
     points = _points(tables)
     if not points:
@@ -582,7 +582,7 @@ def _varied_point(tables: Tables, varied: Sequence[Entry]) -> str | None:
     numbers = {entry.keys[1] for entry in torques}
     if len(numbers) > 1:
         labels = listed(entry.label for entry in torques)
-        raise SolidgearError(f"{labels} are in several operating points; choose one by --point")
+        raise SolidgearError(f"{labels} are in several operating points; choose one by `point`")
     return str(int(numbers.pop()) + 1) if numbers else None
 
 
