@@ -320,7 +320,7 @@ def as_record(data: Mapping[str, Any], name: str = "the results") -> Record:
     'harmonic'
     >>> as_record({"schema": 2}, "out/results.json")
     Traceback (most recent call last):
-    solidgear.core.errors.SolidgearError: out/results.json: written by an older version of solidgear (layout 2; this version reads 4); run solidgear compare again
+    solidgear.core.errors.SolidgearError: out/results.json: written by an older version of solidgear (layout 2; this version reads 5); run solidgear compare again
     """
     version = data.get("schema")
     if version is not None and version != SCHEMA:
