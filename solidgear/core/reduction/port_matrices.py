@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 import scipy.linalg as sla
 
-from solidgear.core.errors import SceneError, SolidgearError
+from solidgear.core.errors import SceneError, SolidgearError, listed
 from solidgear.core.frames import DOF_NAMES, shift
 from solidgear.core.reduction.matrix_units import MATRIX_UNITS, SI, MatrixUnits
 from solidgear.core.reduction.superelement import PortMotion
@@ -87,6 +87,11 @@ class PortMatrices:
         )
 
     __hash__ = object.__hash__
+
+    def __repr__(self) -> str:
+        points = f"{len(self.positions)} points ({listed(self.positions, 6)})"
+        notes = "; ".join(self.notes)
+        return f"<PortMatrices of {self.source}: {points}, {self.modes} modes; {notes}>"
 
     def to_dict(self) -> dict[str, Any]:
         """Return the keys of a train file that read them: matrices, points and units."""

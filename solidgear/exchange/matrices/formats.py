@@ -75,11 +75,12 @@ def format_of(path: str | os.PathLike, to: str = "") -> Format:
         if not to:
             raise SolidgearError(
                 f"{path}: the ending {ending or 'none'!r} is of no format; name one of "
-                f"{listed(FORMATS)}"
+                f"{listed(FORMATS)}, or of a shaft ross"
             )
     if to not in FORMATS:
         raise SolidgearError(
-            f"format {show(to, 30)} is unknown{nearest(to, FORMATS)}; use {listed(FORMATS)}"
+            f"format {show(to, 30)} is unknown{nearest(to, FORMATS)}; use {listed(FORMATS)}, or "
+            "of a shaft ross"
         )
     return FORMATS[to]
 
