@@ -28,7 +28,7 @@ def main():
         found = sg.system_modes(train, models, max_frequency=1000.0)
         first[gear] = found["gear bending 1"].frequency_hz
         response = sg.response(train, models, max_frequency=1000.0).responses[0]
-        force[gear] = float(np.interp(700.0, response.frequency_hz, response.force))
+        force[gear] = float(abs(np.interp(700.0, response.frequency_hz, response.force)))
         print(f"gear {gear}: bending at {first[gear]:.0f} Hz, {force[gear]:.0f} N at 700 Hz")
     for line in found.solved.remarks():
         print(line)

@@ -2,9 +2,8 @@
 
 It illustrates how to:
 
-* build a shaft with catalogue bearings by the words of a file,
-* ask for numbers, sweep, search and compare, all from the same object,
-* write a report, rows for pandas, and the shaft itself.
+* build a shaft by the words of a file,
+* sweep, search and report from one object.
 """
 
 import tempfile

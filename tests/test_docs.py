@@ -102,7 +102,7 @@ SECONDS = {
     "guide/stress.md",
 }
 #: code that takes a second and more
-SLOW_CODE = {"guide/sweeps.md", "theory/stress.md", "guide/stiffness.md"}
+SLOW_CODE = {"guide/python.md", "guide/sweeps.md", "theory/stress.md", "guide/stiffness.md"}
 
 
 @pytest.mark.parametrize(

@@ -413,7 +413,7 @@ def test_what_is_left_out_is_named_and_the_rest_goes_on(tmp_path):
     box.sections(91, 900, (50, 20, 20, 0))
     result = made(box)
     lines = dict(result.notes.groups)["Left out"]
-    assert any("worm drive (worm_stage): no train here" in line for line in lines)
+    assert any("worm drive (worm_stage): not read: no train here" in line for line in lines)
     assert any("worm: no teeth of the train lead to it" in line for line in lines)
     assert (
         "worm.toml" in result.files and len(tomllib.loads(result.files["train.toml"])["shaft"]) == 2

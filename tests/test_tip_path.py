@@ -180,6 +180,12 @@ def test_planets_say_whose_tips_cut():
     planet = stage.table.planet.with_changes(tip_diameter="46 mm")
     with pytest.raises(SceneError, match="into the teeth of the sun; a tip_diameter of at most"):
         with_table(planet=planet)
+    wheel = train.shafts["wheel"]
+    sun = wheel.gears["sun"].with_changes(tip_diameter="25 mm")
+    with pytest.raises(SceneError, match="beyond the point") as error:
+        shaft = wheel.with_changes(gears={**wheel.gears, "sun": sun})
+        train.with_changes(shafts={**train.shafts, "wheel": shaft})
+    assert error.value.problems[0].path == ("shaft", "wheel", "gears", "sun", "tip_diameter")
     ring = {"tip_diameter": "103.5 mm"}
     with pytest.raises(SceneError, match="of the planets; a tip_diameter of at least") as error:
         with_table(ring_flanks=ring)

@@ -40,3 +40,12 @@ def test_the_table_of_an_operating_point_reads_back_equal():
         torque="115 N*m", speed="3000 rpm", weight="-z", force=[{"at": "gear.A", "x": "1 kN"}]
     )
     assert OperatingPoint.from_dict(json.loads(json.dumps(point.to_dict()))) == point
+
+
+def test_an_operating_point_of_a_train_keeps_its_forces_and_its_shaft():
+    train = sg.load_train(GEOMETRY / "gearbox_train.toml")
+    first, last = [*train.shafts][0], [*train.shafts][-1]
+    bearing = train.shafts[first].scene.bearings[0].name
+    point = OperatingPoint(torque=50.0, of=last, force=[{"at": f"{first}.{bearing}", "z": 300.0}])
+    changed = train.with_changes(operation=(point,))
+    assert sg.Train.from_dict(changed.to_dict()).operation == changed.operation == (point,)

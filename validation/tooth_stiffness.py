@@ -20,6 +20,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from solidgear.core.gears.norm import norm_stiffness
 from solidgear.core.gears.wheel import Wheel
 from solidgear.core.gears.wheel_pair import WheelPair
 from solidgear.teeth.compliance.plane import PlaneTeeth
@@ -27,7 +28,6 @@ from solidgear.teeth.compliance.slices import Slices
 from solidgear.teeth.contact.cycle import mesh_cycle
 from solidgear.teeth.contact.cylindrical import CylindricalPair
 from solidgear.teeth.contact.local import Elasticity, LineContact
-from solidgear.core.gears.norm import norm_stiffness
 from validation.common import kept
 
 MODULE, FACE, LOAD = 4e-3, 20e-3, 3e5

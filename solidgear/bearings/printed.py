@@ -60,7 +60,7 @@ FACTS = Printed(
 OVER_POINTS = Printed(
     keys={
         "bearing": str,
-        "points": list[Printed((LIFE,), {"at": str})],  # type: ignore[arg-type,misc]
+        "points": list[Printed((LIFE,), {"at": str})],  # type: ignore[misc]
         "duty": Any,
     }
 )

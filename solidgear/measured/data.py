@@ -31,8 +31,10 @@ import numpy as np
 from pydantic import AfterValidator, BeforeValidator, Field, PrivateAttr, model_validator
 
 from solidgear.core import (
+    Document,
     Model,
     SceneError,
+    SolidgearError,
     Source,
     Surface,
     Written,
@@ -40,6 +42,9 @@ from solidgear.core import (
     explained,
     show,
 )
+from solidgear.core.scene.document import Origin
+from solidgear.core.scene.model_table import entry_of
+from solidgear.core.scene.rewriting import toml_of
 from solidgear.core.scene.units import Frequency, Tolerance, quantity
 from solidgear.measured.alignment import BANDWIDTH
 from solidgear.measured.modal_fit import ResponseFit
@@ -181,6 +186,109 @@ class Measured(Model):
     _on_points: Shapes | None = PrivateAttr(None)
     _responses: ResponseFit | None = PrivateAttr(None)
     _remarks: tuple[str, ...] = PrivateAttr(())
+    #: of data of another file: the tables that name it
+    _tables: dict[str, Any] | None = PrivateAttr(None)
+    _origin: Origin = PrivateAttr(Origin())
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Measured):
+            return False
+        mine, others = (data.model_dump(exclude={"shapes", "file"}) for data in (self, other))
+        return mine == others and self._tables == other._tables
+
+    __hash__ = Model.__hash__
+
+    @classmethod
+    def from_dict(
+        cls, tables: Mapping[str, Any], folder: str | os.PathLike = ".", name: str = "measured"
+    ) -> Measured:
+        """Measured resonances from the tables of a file, as `tomllib` gives them.
+
+        Parameters
+        ----------
+        tables : mapping
+            By the keys of a file.
+        folder : str or path
+            Names of files in the tables are relative to it.
+        name : str
+            Of the data in messages.
+
+        Returns
+        -------
+        Measured
+
+        Raises
+        ------
+        SceneError
+            The entry, its value and the right form.
+
+        Examples
+        --------
+        >>> peaks = Measured.from_dict({"mode": [{"frequency": "1.2 kHz", "uncertainty": "2 Hz"}]})
+        >>> peaks.to_dict()
+        {'mode': [{'frequency': 1200.0, 'uncertainty': '2.0 Hz'}]}
+        """
+        path = os.path.normpath(os.path.join(folder, name))
+        try:
+            return load_measured(Document(tables, path))
+        except SceneError as error:
+            raise error.of_dict() from None
+
+    def to_dict(self) -> dict[str, Any]:
+        """Tables of a file with these data, as plain data in SI; `from_dict` reads them back equal.
+
+        Returns
+        -------
+        dict
+            By the keys of a file. Data of universal files are named by their full paths.
+
+        Raises
+        ------
+        SolidgearError
+            Responses of a CSV file, which no table names.
+        """
+        if self._tables is not None:
+            return dict(self._tables)
+        if self._responses is not None or self._on_points is not None:
+            raise SolidgearError(f"{self.title}: its data are in no table; name the file itself")
+        table = entry_of(self)
+        for key in ("uncertainty", "noise", "damping"):
+            if key in table:
+                table[key] = _share_or_hertz(getattr(self, key))
+        for row, mode in zip(table.get("mode", ()), self.mode):
+            if mode.uncertainty is not None:
+                row["uncertainty"] = _share_or_hertz(mode.uncertainty)
+        return table
+
+    def to_toml(self, path: str | os.PathLike | None = None) -> str:
+        """The file of the data: that which they were read from with its words and comments, where
+        entries that have changed since are written anew.
+
+        Parameters
+        ----------
+        path : str or path, optional
+            File to write, whole or not at all.
+
+        Returns
+        -------
+        str
+
+        Raises
+        ------
+        SolidgearError
+            A file that cannot be written, and as of `to_dict`.
+        """
+
+        def canonical(tables: Mapping[str, Any], path: str) -> dict[str, Any]:
+            return load_measured(Document(tables, path)).to_dict()
+
+        return toml_of(self._origin.document, path, canonical, self.to_dict())
+
+    def with_changes(self, **changes: Any) -> Measured:
+        """Return a validated copy with some fields replaced, a list by itself."""
+        out = super().with_changes(**changes)
+        out._origin = self._origin
+        return out
 
     @property
     def on_points(self) -> Shapes | None:
@@ -283,29 +391,47 @@ def load_measured(source: Source | Measured | Responses) -> Measured:
     if isinstance(source, Responses):
         return measured_from_responses(source)
     name = os.fspath(source) if isinstance(source, str | os.PathLike) else "measured data"
-    if name.lower().endswith(ENDINGS):
+    if isinstance(source, Document):
+        name = source.path
+    elif name.lower().endswith(ENDINGS):
         content = read_universal(name)
         if isinstance(content, Responses):
-            return measured_from_responses(content, name)
-        return _from_shapes(*content, name)
+            out = measured_from_responses(content, name)
+        else:
+            out = _from_shapes(*content, name)
+        out._tables = {"file": os.path.abspath(name)}
+        return out
     tables: Mapping[str, Any] | Responses
+    document = None
     if name.lower().endswith(".csv"):
         with explained(name, {}):
             tables = read_csv(Path(name), tuple(MeasuredMode.model_fields))
     else:
-        tables = document_of(source).tables
+        document = document_of(source)
+        tables = document.tables
     if isinstance(tables, Responses):
         return measured_from_responses(tables, name)
     try:
         out = Measured(**tables)
+        key = "file" if out.file else "shapes"
+        named = {**tables, key: os.path.abspath(Path(name).parent / str(tables.get(key, "")))}
         if out.file:
-            return _from_universal(out, Path(name).parent)
-        if out.shapes or any(mode.shape for mode in out.mode):
+            out = _from_universal(out, Path(name).parent)
+            out._tables = named
+        elif out.shapes or any(mode.shape for mode in out.mode):
             out._on_points = _joined_shapes(out, Path(name).parent)
+            out._tables = named
     except SceneError as error:
         # an error in the file of shapes names that file
         raise error if error.where else error.located(tables, where=name) from None
+    out._origin = Origin(document)
     return out
+
+
+def _share_or_hertz(value: tuple[float, str]) -> float | str:
+    """Return an uncertainty as a file has it."""
+    number, kind = value
+    return number if kind == "relative" else f"{number!r} Hz"
 
 
 def _from_universal(table: Measured, folder: Path) -> Measured:

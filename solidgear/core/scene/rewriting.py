@@ -13,9 +13,11 @@ import copy
 import os
 import tomllib
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from typing import Any
 
 from solidgear.core.errors import SceneError
+from solidgear.core.machine.whole_file import write_page
 from solidgear.core.scene.document import Document
 from solidgear.core.scene.materials import by_name
 from solidgear.core.scene.units import POSITION_DECIMALS, quantity, with_unit_of
@@ -94,6 +96,36 @@ def _changed(
         if current is None or current.get(key) == target.get(key):
             break
     return text, current
+
+
+def toml_of(
+    document: Document | None,
+    path: str | os.PathLike | None,
+    canonical: Canonical,
+    target: Table,
+) -> str:
+    """Return :func:`text_of`, and write it to a path if one is given."""
+    text = text_of(document, path, canonical, target)
+    if path is not None:
+        write_page(path, text)
+    return text
+
+
+def text_of(
+    document: Document | None,
+    path: str | os.PathLike | None,
+    canonical: Canonical,
+    target: Table,
+) -> str:
+    """Return the text of a file that reads back as canonical tables: that of the document it was
+    read from, as far as that holds, to lie at a path or where it lay.
+    """
+    if document is None or not document.text:
+        return written_anew(target)
+    if path is not None:  # files named from a folder are found once it is there
+        with suppress(OSError):
+            os.makedirs(os.path.dirname(os.path.abspath(path)), exist_ok=True)
+    return rewritten(document, os.fspath(path or document.path), canonical, target)
 
 
 def written_anew(tables: Table) -> str:

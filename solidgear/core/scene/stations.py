@@ -66,21 +66,22 @@ class Settled(Model):
 class Bearing(Placed):
     """A bearing: a 6x6 stiffness between ground and the seat it sits on.
 
+    It takes the words of a file as well: a place counted ``from`` a datum, or ``on`` a segment, and
+    catalogue data beside its other keys, such as ``designation="6206"``.
+
     Attributes
     ----------
     name : str
         Name in results, loads and sweeps.
     y : float
-        Middle of the seat, m; `position`, as in a file, is the same, and with ``from`` counts from
-        another datum of the shaft. ``on="neck"`` is the surface of a segment.
+        Middle of the seat, m; `position`, as in a file, is the same.
     seat_width : float
         Width of the seat along the shaft, m.
     matrix : tuple of tuple of float, or None
         6x6 of the bearing alone, SI, order (x, y, z, thx, thy, thz): six rows, or named entries,
         also as `stiffness`. None as long as catalogue data are not solved.
     catalogue : Catalogue or None
-        Catalogue data that the stiffness comes from, where it is not given; the constructor also
-        takes their keys beside those of the bearing, such as ``designation="6206"``.
+        Catalogue data that the stiffness comes from, where it is not given.
     axial_series : tuple of float
         Springs in series with its axial stiffness, N/m.
     housing : Elastic or None

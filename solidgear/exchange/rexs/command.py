@@ -41,6 +41,7 @@ def import_file(
     if (problem := _problem(first, gearbox)) is not None:
         typer.echo(f"solidgear: {problem}", err=True)
         raise typer.Exit(NOT_REACHED)
+    say("", f"Next: solidgear {'check' if gearbox.has_train else 'answer'} {first}")
 
 
 def _write(texts: Mapping[Path, str]) -> None:
@@ -64,8 +65,6 @@ def _report(gearbox: Imported, first: Path) -> None:
         say("", heading)
         for line in lines:
             say("\n".join(f"  {row}" for row in filled(line).split("\n")))
-    next_words = "check" if gearbox.has_train else "answer"
-    say("", f"Next: solidgear {next_words} {first}")
 
 
 def _problem(path: Path, gearbox: Imported) -> SolidgearError | None:

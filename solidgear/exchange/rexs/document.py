@@ -31,8 +31,7 @@ class Attribute:
     name: str
     value: Value
     unit: str = ""
-    #: rows and columns of a matrix, by the shape of `value`; of arrays of arrays rows differ
-    kind: str = ""
+    kind: str = ""  #: array, matrix or array_of_arrays; empty for one value
 
 
 @dataclass(frozen=True)

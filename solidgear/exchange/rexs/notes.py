@@ -86,6 +86,9 @@ READ["rolling_bearing_with_catalog_geometry"] = (
     "contamination_factor_iso_281_2007 preload_force preload_distance"
 )
 READ["rolling_bearing_with_detailed_geometry"] = READ["rolling_bearing_with_catalog_geometry"]
+#: why parts are left out
+UNREAD = "not read: no train here has such a part"
+BEVEL = "not read: write [[mesh]] and the gears of a bevel stage into the train by hand"
 #: stiffness at an operating point, of bearings
 _OPERATING = "operating_point_stiffness"
 
@@ -147,7 +150,7 @@ def unread(document: Document) -> Iterator[tuple[str, str]]:
     for component in [*document.components.values(), *spectra]:
         kind = document.components[component.id].kind
         if kind not in READ:
-            yield f"{component.title} ({kind})", "no train here has such a part"
+            yield f"{component.title} ({kind})", BEVEL if kind.startswith("bevel") else UNREAD
             continue
         words = READ[kind].split()
         known = {*words, *(other for word in words for other in OTHER_NAMES.get(word, ()))}

@@ -39,8 +39,6 @@ LARGEST = 100_000_000
 MOST_ELEMENTS, DEEPEST = 5_000_000, 12
 #: numbers of coded arrays
 CODES = {"int32": "<i4", "float32": "<f4", "float64": "<f8"}
-#: keys of a value in JSON, which say what it is
-_ROWS = ("_matrix", "array_of_integer_arrays")
 
 
 def read(path: Path) -> Document:

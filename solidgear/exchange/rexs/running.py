@@ -13,6 +13,7 @@ from solidgear.exchange.rexs.document import Component
 from solidgear.exchange.rexs.drive import Case, Drive, cases_of, speed_on, torque_in
 from solidgear.exchange.rexs.gearbox import Gearbox, PlanetStage
 from solidgear.exchange.rexs.materials import density_of
+from solidgear.exchange.rexs.planets import point_of
 from solidgear.exchange.rexs.shafts import Shaft
 
 #: twist of an elastic coupling under the torque that it is chosen for, rad (DIN 740: some degrees)
@@ -37,7 +38,7 @@ def rotor_tables(
         behind = drive.coupled.get(load.id)
         is_here = behind is not None or gearbox.shaft_of(load) is shaft
         port = ports.get(load.id) if is_here else None
-        port = port or next(g.name for g in gearbox.gears.values() if g.shaft is shaft)
+        port = port or main_point(gearbox, shaft)
         stiffness, source = torque / abs(ratio) / TWIST, "assumed: twists by 3 deg under the torque"
         rotor, rotor_source = shaft, "assumed: as that of its shaft"
         if behind is not None:
@@ -70,6 +71,12 @@ def rotor_tables(
         "3 deg under the largest torque"
     )
     return out
+
+
+def main_point(gearbox: Gearbox, shaft: Shaft) -> str:
+    """Return the first lumped point of a shaft: of its gears, or of the pins that it carries."""
+    names = [gear.name for gear in gearbox.gears.values() if gear.shaft is shaft]
+    return [*names, *map(point_of, planets_of(gearbox, shaft))][0]
 
 
 def polar_inertia(gearbox: Gearbox, shaft: Shaft) -> float:

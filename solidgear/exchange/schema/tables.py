@@ -106,8 +106,8 @@ def _said(kind: type[Model]) -> dict[str, str]:
     }
     for name, keys in getattr(kind, "sources", {}).items():
         out = {key: out[name] for key in keys if name in out} | out
-    words = getattr(kind, "Words", None)
-    of_words = {} if words is None else sentences(words)
+    words = getattr(kind, "Words", Model)
+    of_words = sentences(words)
     out |= {
         field.alias or name: text
         for name, text in of_words.items()

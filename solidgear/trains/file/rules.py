@@ -22,7 +22,18 @@ def stage_problems(train: Shafting) -> Iterator[SceneError]:
         problems = [*_ends(train, table)]
         yield from (problem.located(None, prefix=path) for problem in problems)
         if not problems:
-            yield from (problem.located(None, prefix=path) for problem in _teeth(train, name))
+            yield from (_in_file(train, name, problem) for problem in _teeth(train, name))
+
+
+def _in_file(train: Shafting, name: str, problem: SceneError) -> SceneError:
+    """Return a problem of a stage where the file has it: that of a key of the sun with its gear."""
+    table, (first, *keys) = train.planetary[name], problem.path
+    if first != "sun" or not keys:
+        return problem.located(None, prefix=("planetary", name))
+    side, _, port = table.sun.partition(".")
+    gears = train.shafts[side].gears
+    gear = ("gears", port) if len(gears) > 1 else ()
+    return problem.located(None, path=(*train.shaft_path(side), *gear, *keys))
 
 
 def _ends(train: Shafting, table: Planetary) -> Iterator[SceneError]:

@@ -6,8 +6,7 @@ import os
 from collections.abc import Mapping
 from typing import Any
 
-from solidgear.core.machine.whole_file import write_page
-from solidgear.core.scene.rewriting import rewritten, written_anew
+from solidgear.core.scene import rewriting
 from solidgear.trains.file.reading import train_of
 from solidgear.trains.file.train import SIDES, Train
 from solidgear.trains.file.writing import tables_of
@@ -18,19 +17,12 @@ Table = dict[str, Any]
 def toml_of(train: Train, path: str | os.PathLike | None = None) -> str:
     """Return the text of the file of a train, and write it to a path if one is given."""
     document = train.document
-    if document is None or not document.text:
-        text = written_anew(_unsettled(tables_of(train)))
-    else:
-        short = "shaft" not in document.tables and train.short
+    short = train.short and document is not None and "shaft" not in document.tables
 
-        def canonical(tables: Mapping[str, Any], path: str) -> Table:
-            return _in_form(tables_of(train_of(tables, path)), short)
+    def canonical(tables: Mapping[str, Any], path: str) -> Table:
+        return _in_form(tables_of(train_of(tables, path)), short)
 
-        place = os.fspath(path or document.path)
-        text = rewritten(document, place, canonical, _in_form(tables_of(train), short))
-    if path is not None:
-        write_page(path, text)
-    return text
+    return rewriting.toml_of(document, path, canonical, _in_form(tables_of(train), short))
 
 
 def _in_form(tables: Table, short: bool) -> Table:
