@@ -1,5 +1,9 @@
 """What Python is answered: arguments by their names, texts as names, sentences for wrong types."""
 
+import json
+import re
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -100,3 +104,17 @@ def test_a_hollow_shaft_has_a_rotor_file_for_ross(tmp_path):
         row for row in (tmp_path / "rotor.py").read_text().splitlines() if "ShaftElement" in row
     ]
     assert sum("0.012, 0.05" in row for row in rows) > 8
+
+
+@pytest.mark.parametrize(
+    "young, density", [("210e3 N/mm2", "7850 kg/m3"), ("21e6 N/cm**2", "7.85 g/cm3")]
+)
+def test_areas_and_volumes_may_go_without_a_sign_of_power(young, density):
+    steel = sg.Material(E=young, nu=0.3, density=density)
+    assert (steel.E, steel.density) == pytest.approx((210e9, 7850.0))
+    schema = json.loads(
+        Path(sg.__file__).with_name("exchange").joinpath("schema/scene.json").read_text()
+    )
+    patterns = schema["properties"]["material"]["properties"]
+    assert re.fullmatch(patterns["E"]["pattern"], young)
+    assert re.fullmatch(patterns["density"]["pattern"], density)
