@@ -21,7 +21,7 @@ What there is, each with an example in its help:
     questions    answer, compare, condense, modes, check, bearing, deflect, stress, turn
     studies      sweep, sensitivities, optimise, budget
     measured     correlate, identify, overlay, load_measured, Measured, Responses, SurfacePoints
-    bodies       build, Body, Supports
+    bodies       build, solid_body, Body, Supports
     trains       load_train, Train, system_modes, response, receptance, judge, nonlinear
     teeth        contact, pair_contact, TeethStudy, TeethModel, Wheel, WheelPair, Rack
     systems      rubin, craig_bampton, synthesise, line_of_action, mesh_point, to_gear_frame,

@@ -105,6 +105,7 @@ from solidgear.measured.identify import identify as identify
 from solidgear.measured.overlay import overlay as overlay
 from solidgear.measured.shapes import SurfacePoints as SurfacePoints
 from solidgear.measured.universal import Responses as Responses
+from solidgear.parts.own_mesh import solid_body as solid_body
 from solidgear.show.viewer import turn as turn
 from solidgear.strength.deflection.study import deflect as deflect
 from solidgear.strength.stress.study import stress as stress

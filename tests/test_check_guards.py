@@ -50,6 +50,7 @@ def angular(*ways: str) -> Scene:
             catalogue=Catalogue(
                 designation="7320 B", load_rating="190 kN", holds=way, preload=preload
             ),
+            matrix=b.matrix,
         )
         for b, way, preload in zip(scene().bearings, ways, ("2 kN", None))
     ]
@@ -60,7 +61,8 @@ def bored(share: float) -> Scene:
     """The first bearing by catalogue data whose bore is that share of its seat, solved already."""
     first, *others = scene().bearings
     data = {"kind": "deep_groove", "bore": share * D, "outer_diameter": 1.8 * D, "width": 0.34 * D}
-    own = first.with_changes(catalogue=Catalogue(**data), seat_width=0.3 * D)
+    catalogue = Catalogue(**data)
+    own = first.with_changes(catalogue=catalogue, matrix=first.matrix, seat_width=0.3 * D)
     return scene().with_changes(bearings=(own, *others))
 
 
@@ -72,7 +74,8 @@ def supported(*words: str | None) -> Scene:
 
 def grooved(*words: str | None) -> Scene:
     """The same with deep grooves in place of springs."""
-    rows = [b.with_changes(catalogue={"designation": "6210"}) for b in supported(*words).bearings]
+    groove = {"designation": "6210"}
+    rows = [b.with_changes(catalogue=groove, matrix=b.matrix) for b in supported(*words).bearings]
     return scene().with_changes(bearings=tuple(rows))
 
 
@@ -774,7 +777,8 @@ def test_a_catalogue_bearing_of_which_few_elements_carry_is_not_told_to_give_dig
     data = sg.load(ROOT / "geometry" / "gearbox_catalogue.toml").bearings[1].catalogue
     typed = scene(matrices=[coupled(1.0), stiff()])
     first, second = typed.bearings
-    worked_out = typed.with_changes(bearings=[first.with_changes(catalogue=data), second])
+    settled = first.with_changes(catalogue=data, matrix=first.matrix)
+    worked_out = typed.with_changes(bearings=[settled, second])
     told = {}
     for name, here in (("typed", typed), ("worked out", worked_out)):
         (notice,) = GUARDS["oblique_softness"](Probe(here, sg.build(here, "euler")))

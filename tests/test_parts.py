@@ -9,6 +9,7 @@ from pathlib import Path
 import meshio
 import numpy as np
 import pytest
+import skfem
 
 import solidgear as sg
 from solidgear.core.elements import ELEMENTS
@@ -279,6 +280,19 @@ def test_a_seat_ends_where_it_is_said_to(stepped, tmp_path):
     assert abs(compliance(uncut, False) / reference - 1) > 1e-2
     # where faces end at the seats there is nothing to clip
     assert compliance(cut, False) == pytest.approx(reference, rel=1e-9)
+
+
+def test_straight_tetrahedra_may_have_their_corners_in_any_order():
+    """scikit-fem orders them as it likes; the mass of the rod is that of its volume."""
+    box = skfem.MeshTet.init_tensor([-0.02, 0, 0.02], [0, 0.1, 0.2], [-0.02, 0, 0.02])
+    corners = box.p.copy()
+    across, along = np.hypot(*corners[[0, 2]]), abs(corners[[0, 2]]).max(axis=0)
+    corners[[0, 2]] *= np.divide(along, across, out=np.zeros_like(across), where=across > 0)
+    mesh = skfem.MeshTet(corners, box.t)
+    rod = sg.Scene.from_parts([sg.Segment.cylinder("rod", length=0.2, diameter=0.04)])
+    body = sg.solid_body(mesh, rod, element="tet10")
+    octagon = 4 * np.sin(np.pi / 4) * 0.02**2
+    assert body.mass_matrix()[0, 0] == pytest.approx(7850 * octagon * 0.2, rel=1e-12)
 
 
 def test_the_area_of_a_clipped_seat(tmp_path):

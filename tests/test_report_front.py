@@ -12,6 +12,7 @@ import solidgear as sg
 from solidgear.comparison.page import html
 from solidgear.core.errors import SolidgearError
 from solidgear.core.judge.record import Record
+from solidgear.show.table import Cell
 from solidgear.show.terminal import matrix_table
 from solidgear.show.units import (
     ENGINEERING,
@@ -151,12 +152,13 @@ def test_numbers_are_those_of_the_trusted_model_with_its_bars():
     record = record_of()
     record.models["harmonic"].band.each["C_zz"] = 0.02
     rows = {row[0]: row for row in html.numbers(record, ENGINEERING).rows}
-    assert rows["First bending mode"][1:] == [("2758 Hz", "strong"), "± 0.050 %"]
-    assert rows["Compliance across the shaft, C_zz"][1:] == [("0.596 µm/kN", "strong"), "± 2.00 %"]
+    assert rows["First bending mode"][1:] == [Cell("2758 Hz", "strong"), "± 0.050 %"]
+    compliance = rows["Compliance across the shaft, C_zz"][1:]
+    assert compliance == [Cell("0.596 µm/kN", "strong"), "± 2.00 %"]
     assert rows["Stiffness along the shaft, K_yy"][2] == "no error bar"
     record.verdict.trust = "solid"
     (first, *_) = html.numbers(record, ENGINEERING).rows
-    assert first[1] == ("2759 Hz", "strong")
+    assert first[1] == Cell("2759 Hz", "strong")
 
 
 def test_what_the_scene_asks_for_is_among_the_numbers():

@@ -5,6 +5,7 @@ elements with a resolved pressure (kept results of validation/teeth_pair.py, che
 import numpy as np
 import pytest
 
+import solidgear as sg
 from validation.common import read_result
 from validation.teeth_pair import BY_CALCULIX, CASES, HOLDS, Case, figures
 from validation.teeth_pair_train import compared
@@ -73,3 +74,10 @@ def test_whole_gears_are_solved_as_kept():
     for number in (0, 3, 12):
         error = case.wheels.first.base * pair.rotation(number / 32, case.torque)
         assert error == pytest.approx(whole_gears(case)[number], rel=1e-6)
+
+
+def test_wheels_whose_tips_cut_have_no_contact():
+    long = sg.Wheel(12, 4e-3, face_width=20e-3, tip_radius=32e-3)
+    mate = sg.Wheel(57, 4e-3, face_width=20e-3)
+    with pytest.raises(sg.SolidgearError, match="first wheel, 64 mm across, cut .* fits"):
+        sg.pair_contact(sg.WheelPair(long, mate), [2e5])

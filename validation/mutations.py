@@ -652,8 +652,8 @@ MUTATIONS = (
     ),
     Mutation(
         "lumped point 1 mm off",
-        "solidgear/core/scene/shapes.py",
-        "lay_out",
+        "solidgear/core/scene/places.py",
+        "Places.enter",
         "(lo + hi) / 2",
         "(lo + hi) / 2 + 1e-3",
         "tests/test_scene.py::test_overhung_pinion_against_closed_forms",
@@ -1251,8 +1251,8 @@ MUTATIONS = (
         "misalignment: the gear's own tilt is left out",
         "solidgear/strength/deflection/misalignment.py",
         "_parallel",
-        "pinion[3:] - gear[3:]",
-        "pinion[3:] - 0.0 * gear[3:]",
+        "(first - second)",
+        "(first - 0.0 * second)",
         "tests/test_train_operation.py::test_misalignment_of_parallel_shafts_is_that_of_both",
     ),
     Mutation(

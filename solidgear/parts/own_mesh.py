@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from skfem import MeshTet1
 
 from solidgear.core import Body
 from solidgear.core.meshing.quality import check_mesh
@@ -38,14 +39,39 @@ def solid_body(
 ) -> Body:
     """Build the free body of a mesh, with ports on cylinders and cones of the surface, or on patches.
 
-    `mesh` is of tetrahedra or hexahedra, m, with y the axis. Stations of the `shaft` are looked for on
-    the outer surface of the segments; `wanted` are other stations with their attachments. `clipped`:
-    integrals stop at the ends of a seat where faces reach beyond it, else only whole faces within the
-    seat count. `owner` (ne,) is the place of each element's material among `materials`; by default
-    each has that of the segment in which its middle lies. `patches` are facets of the patches that
-    stations without an axis lie on; `facts` are added to ``body.mesh``. Ten-node tetrahedra are split in
-    `layers` of a ratio towards singular lines. A seat without faces, or with faces missing, and inverted
-    elements are refused.
+    Parameters
+    ----------
+    mesh : skfem.Mesh
+        Tetrahedra or hexahedra, m, with y the axis; corners of tetrahedra with straight edges may
+        have any order.
+    shaft : Scene
+        Its stations are looked for on the outer surface of its segments.
+    element : str
+        Of the 3D solid, such as ``tet10`` or ``hex20``.
+    wanted : sequence of (Station, str), optional
+        Other stations, each with its attachment.
+    clipped : bool
+        Whether integrals stop at the ends of a seat where faces reach beyond it; else only whole
+        faces within the seat count.
+    facts : mapping, optional
+        Added to ``body.mesh``.
+    owner : (ne,) array of int, optional
+        Place of each element's material among `materials`; by default each has that of the segment
+        in which its middle lies.
+    materials : sequence of Material, optional
+    patches : mapping of str to array, optional
+        Facets of the patches that stations without an axis lie on.
+    layers, ratio : int, float
+        Ten-node tetrahedra are split in layers of a ratio towards singular lines.
+
+    Returns
+    -------
+    Body
+
+    Raises
+    ------
+    SolidgearError
+        For a seat without faces or with faces missing, and for inverted elements.
 
     Examples
     --------
@@ -53,12 +79,14 @@ def solid_body(
     >>> from solidgear.core.meshing.tetrahedra import tetrahedra
     >>> rod = sg.Segment.cylinder("rod", length=0.3, diameter=0.06)
     >>> scene = sg.Scene.from_parts([rod])
-    >>> body = solid_body(tetrahedra(scene.outline, size=0.03).mesh, scene, element="tet10")
+    >>> body = sg.solid_body(tetrahedra(scene.outline, size=0.03).mesh, scene, element="tet10")
     >>> bool(np.isclose(body.mass_matrix()[0, 0], 7850 * np.pi * 0.03**2 * 0.3, rtol=1e-3))  # kg
     True
     """
     if wanted is None:
         wanted = [(s, s.attachment) for s in shaft.stations]
+    if isinstance(mesh, MeshTet1):
+        mesh = mesh.oriented()
     quality = check_mesh(mesh)
     if owner is None:
         y = mesh.p[1][mesh.t].mean(axis=0)

@@ -14,6 +14,7 @@ from solidgear.teeth.contact.cylindrical import CylindricalPair
 from solidgear.teeth.contact.local import LineContact
 from solidgear.trains.file.flanks import ReliefTable
 from solidgear.trains.file.mesh_teeth import reliefs
+from solidgear.trains.file.tip_rules import cut_caution, is_cutting
 
 
 def pair_contact(
@@ -43,7 +44,7 @@ def pair_contact(
     Raises
     ------
     SolidgearError
-        For wheels without a face width.
+        For wheels without a face width, or tips that cut into the other wheel.
 
     Examples
     --------
@@ -58,6 +59,9 @@ def pair_contact(
     first, second = wheels.first, wheels.second
     if not (first.face_width and second.face_width):
         raise SolidgearError("pair_contact: both wheels need a face_width")
+    for k in range(2):
+        if is_cutting(wheels, k):
+            raise SolidgearError(cut_caution(wheels, k, ("first wheel", "second wheel")))
     face, base = min(first.face_width, second.face_width), first.base
     teeth = Slices(PlaneTeeth(first), face, slices), Slices(PlaneTeeth(second), face, slices)
     steel = teeth[0].plane.elasticity, teeth[1].plane.elasticity
@@ -65,4 +69,4 @@ def pair_contact(
     begin = reliefs(wheels, 0, ReliefTable(tip=tip))[0], reliefs(wheels, 1, ReliefTable(tip=tip))[0]
     shapes = FlankShape(face_width=face, tip=begin[0]), FlankShape(face_width=face, tip=begin[1])
     pair = CylindricalPair(wheels, teeth, law, shapes, slices=slices)
-    return tuple(mesh_cycle(pair, load * face * base, base, 1) for load in loads)
+    return tuple(mesh_cycle(pair, load * face * base, base, slices) for load in loads)

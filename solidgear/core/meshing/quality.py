@@ -166,7 +166,8 @@ def _measure(mesh):
         min_det_j=float(low.min()),
         max_det_j=float(high.max()),
         min_ratio=float(ratio.min()),
-        min_volume_ratio=float(volumes.min() / volumes.mean()),
+        # elements turned inside out may cancel the others
+        min_volume_ratio=float(volumes.min() / volumes.mean()) if volumes.mean() else -np.inf,
     )
     return quality, low, high, ratio
 
