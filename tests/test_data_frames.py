@@ -148,3 +148,9 @@ def test_a_column_of_frames_alone_is_not_shown():
     assert list(table.to_dataframe().columns) == ["a", "unit", "b"]
     assert list(table.to_dataframe()["a"]) == ["x", "y"]
     assert table.csv().splitlines()[0] == 'a,"b, mm"'
+
+
+def test_a_column_without_any_number_is_one_of_numbers():
+    frame = Table("", ["a", "b", "c"], [["x", None, 1.0], ["y", None, None]]).to_dataframe()
+    assert [str(kind) for kind in frame.dtypes[["b", "c"]]] == ["float64", "float64"]
+    assert frame["b"].isna().all()
