@@ -55,6 +55,9 @@ def test_options_are_arguments_in_python_and_options_on_a_terminal(text, words):
         (lambda: sg.Train.from_dict("x"), SolidgearError, "^'x': give the tables of a train"),
         (lambda: sg.modes(CATALOGUE), SolidgearError, "a Scene is no body.*sg.build"),
         (lambda: sg.condense(CATALOGUE, (), "gear"), SolidgearError, "a Scene is no body"),
+        (lambda: sg.build(STEPPED, "euler"), SolidgearError, "first, by sg.load"),
+        (lambda: sg.deflect(CATALOGUE, load={"q": 1}), SolidgearError, "unknown key"),
+        (lambda: sg.bearing(CATALOGUE, load=3), SolidgearError, "write components such as"),
         (lambda: sg.port_matrices(STEPPED, speed="3 kg"), SolidgearError, "no.* unit of speed"),
         (lambda: sg.export(STEPPED, "x.abc"), SolidgearError, "of a shaft ross"),
     ],
@@ -118,3 +121,9 @@ def test_areas_and_volumes_may_go_without_a_sign_of_power(young, density):
     patterns = schema["properties"]["material"]["properties"]
     assert re.fullmatch(patterns["E"]["pattern"], young)
     assert re.fullmatch(patterns["density"]["pattern"], density)
+
+
+def test_a_load_is_a_text_or_its_components():
+    texts, components = "x=1 kN, z=500", {"x": "1 kN", "z": 500.0}
+    by_text, by_dict = (sg.bearing(CATALOGUE, load=load)["A"] for load in (texts, components))
+    assert np.array_equal(by_text.motion, by_dict.motion) and by_text.motion.any()
