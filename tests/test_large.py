@@ -199,7 +199,7 @@ def refused(scene, monkeypatch, share, **options):
         factors(body)
     monkeypatch.delenv("SOLIDGEAR_MEMORY_MB")
     assert "MB are free" in str(caught.value) and "\n" not in str(caught.value)
-    return caught.value.text(), share * need
+    return str(caught.value), share * need
 
 
 SMALLER = ["--set precision=single (", "--set out_of"]

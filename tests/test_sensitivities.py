@@ -219,7 +219,7 @@ def test_what_a_motion_does_not_feel_is_exactly_nothing(tmp_path):
     ("model", "more", "told"),
     [
         ("sector", {}, "the sector model has no derivatives"),
-        ("timoshenko", {"by": ["bearing.C"]}, "by bearing.C: the file has no such number"),
+        ("timoshenko", {"by": ["bearing.C"]}, "--by bearing.C: the file has no such number"),
         ("timoshenko", {"of": ["bending 90"]}, "bending 90: no such mode was found"),
         ("solid", {"of": ["C_zz"]}, "derivatives of C_zz are for bodies of revolution"),
         ("timoshenko", {"of": ["C_thy"]}, "C_thy: gear moves freely there"),

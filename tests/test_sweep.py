@@ -230,7 +230,7 @@ def test_rows_of_another_sweep_are_never_mixed(finished, tmp_path):
         ({"vary": ["bearing.1.scale=1,2"], "sample": 2}, "sample"),
     ):
         with pytest.raises(
-            SolidgearError, match=rf"another sweep \(it differs in: {word}\).*overwrite"
+            SolidgearError, match=rf"another sweep \(it differs in: {word}\).*--overwrite"
         ):
             light(out, **other)
         assert out.read_text() == before

@@ -122,7 +122,7 @@ def test_a_full_disk_keeps_the_rows_before(tmp_path, right):
         file.append(map(row, range(30)))
         file._db.execute("PRAGMA max_page_count = 1")  # as many as there are
         file.append(map(row, range(30, TOTAL)))
-    assert full.value.text() == (
+    assert str(full.value) == (
         f"--out {out}: cannot be written (database or disk is full); 30 of 120 rows are kept, "
         "and the same command goes on from there"
     )

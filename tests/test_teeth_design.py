@@ -111,7 +111,7 @@ def test_rows_say_which_command_has_error_bars(task, rows):
 
 
 def test_contact_without_a_torque_is_refused():
-    with pytest.raises(SolidgearError, match="ask contact: teeth touch under a load"):
+    with pytest.raises(SolidgearError, match="--ask contact: teeth touch under a load"):
         task_of("mesh.stiffness=1e8,2e8", file=AXLE)
 
 

@@ -80,7 +80,7 @@ def test_commands_of_a_train_name_those_of_a_shaft(name, tmp_path):
 )
 def test_options_for_one_shaft_are_refused_for_a_train(option, tmp_path):
     done = command("compare", TRAIN, "--out", tmp_path / "out", *option)
-    assert done.exit_code == 1 and f"{option[0]} is for one shaft" in done.exception.text()
+    assert done.exit_code == 1 and f"{option[0]} is for one shaft" in str(done.exception)
     assert not (tmp_path / "out").exists()
 
 
@@ -101,4 +101,4 @@ def test_the_tolerance_of_the_meshes_of_trains_is_that_of_the_option(others, mon
 def test_a_tolerance_of_meshes_is_refused_for_shafts(count, said):
     shafts = [SHAFT, ROOT / "geometry/shaft_stepped.toml"][:count]
     done = command("compare", *shafts, "--tol", "0.01")
-    assert done.exit_code == 1 and said in done.exception.text()
+    assert done.exit_code == 1 and said in str(done.exception)

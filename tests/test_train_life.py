@@ -83,4 +83,4 @@ def test_the_command_tells_lives_of_a_train_over_its_duty_table():
     assert one["duty"]["worst"] == 0 and sum(one["duty"]["damage"]) == pytest.approx(1)
     assert "shaft and name" in str(command("bearing", GEARBOX, "--bearing", "A").exception)
     out = command("bearing", GEARBOX, "--out", "a.png")
-    assert "--out belongs to a scene" in out.exception.text()
+    assert "--out belongs to a scene" in str(out.exception)

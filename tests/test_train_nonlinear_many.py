@@ -156,7 +156,7 @@ def test_what_several_meshes_cannot_have_is_refused(assembly):
     at = np.linspace(0.0, 2 * np.pi / 18, 5)
     table = {"angle": at.tolist(), "stiffness": [4.5e8] * 5}
     varied = toothed(assembly, {"backlash": "20 um"}, {"stiffness_cycle": table})
-    with pytest.raises(SolidgearError, match="give mesh middle-output, or leave its table out"):
+    with pytest.raises(SolidgearError, match="give --mesh middle-output, or leave its table out"):
         teeth_of(varied)
     assert teeth_of(varied, mesh="middle-output").half_gap == 0.0
     with pytest.raises(SolidgearError, match="no backlash: give"):

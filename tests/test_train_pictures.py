@@ -134,7 +134,7 @@ def test_wrong_modes_are_told(more, words, tmp_path, monkeypatch):
     args = ["system-modes", str(OVERHUNG), "--pinion", "euler", "--gear", "euler"]
     monkeypatch.chdir(tmp_path)
     done = command(*args, *more)
-    assert done.exit_code == 1 and words in done.exception.text()
+    assert done.exit_code == 1 and words in str(done.exception)
     assert not list(tmp_path.iterdir())
 
 
@@ -199,7 +199,7 @@ def test_the_page_of_system_modes_has_modes_to_turn_and_units(tmp_path):
     nothing = command(*light, "--turn", str(tmp_path / "no.html"))
     assert nothing.exit_code == 1
     refused = command(*light, "--units", "us")
-    assert refused.exit_code == 1 and "add --turn model.html" in refused.exception.text()
+    assert refused.exit_code == 1 and "add --turn model.html" in str(refused.exception)
     assert "lumped of the pinion has no shape" in str(nothing.exception)
     assert not (tmp_path / "no.html").exists()
 

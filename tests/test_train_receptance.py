@@ -172,5 +172,5 @@ def test_bad_ends_are_told_and_nothing_is_written(from_, to, words, tmp_path):
     out = tmp_path / "out"
     done = command(*ARGS, "--from", from_, "--to", to, "--out", str(out))
     assert done.exit_code == 1
-    assert words in done.exception.text()
+    assert words in str(done.exception)
     assert not out.exists() or not list(out.iterdir())

@@ -12,7 +12,7 @@ from solidgear.bearings.catalogue import Catalogue
 from solidgear.bearings.geometry import inner_geometry
 from solidgear.bearings.inside import Inside
 from solidgear.bearings.passing import passing
-from solidgear.core.errors import SolidgearError, for_terminal
+from solidgear.core.errors import SolidgearError
 from solidgear.trains.assembly.kinematics import SLIP, bearing_orders, settled_angles, train_orders
 from solidgear.trains.response.at_speed import Line, at_speed, explained, turns_of_pinion
 from solidgear.trains.response.measured_chart import outline
@@ -293,7 +293,7 @@ def test_the_command_tells_orders_and_lays_a_spectrum_over_the_response(tmp_path
 def test_bad_words_on_speed_are_told_before_anything_is_solved(tmp_path, more, words):
     done = command(*BEAMS, tmp_path / "out", *more)
     assert done.exit_code != 0 and not (tmp_path / "out").exists()
-    said = for_terminal(done.exception) + done.output
+    said = str(done.exception) + done.output
     assert words in said
 
 

@@ -227,7 +227,7 @@ def test_the_page_holds_the_numbers_of_the_json_and_needs_no_other_file(thicker)
 )
 def test_what_cannot_be_compared_is_refused_in_a_sentence(words, said, tmp_path):
     done = command("compare", *words, "--out", tmp_path / "out")
-    assert done.exit_code == 1 and re.search(said, done.exception.text())
+    assert done.exit_code == 1 and re.search(said, str(done.exception))
     assert not (tmp_path / "out").exists()
 
 

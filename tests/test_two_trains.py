@@ -342,7 +342,7 @@ def test_the_tables_of_the_folder_are_both_responses(stiffer):
 )
 def test_what_cannot_be_compared_is_refused_in_a_sentence(words, said, tmp_path):
     done = command("compare", *words, "--out", tmp_path / "out")
-    assert done.exit_code == 1 and re.search(said, done.exception.text())
+    assert done.exit_code == 1 and re.search(said, str(done.exception))
     assert not (tmp_path / "out").exists()
 
 

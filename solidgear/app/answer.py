@@ -82,7 +82,7 @@ def answer(
             try:
                 error_map, bar = _mapped(loaded, answered)
             except SolidgearError as error:
-                places = error.text()
+                places = str(error)
             else:
                 places = error_map.record.model_copy(update={"total": bar})
                 if picture is not None:

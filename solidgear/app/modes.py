@@ -91,7 +91,7 @@ def modes(
             try:
                 bars = bars_of_modes(loaded, body, whole, settled)
             except (NoBounds, NoRoom) as error:
-                reason = error.text()
+                reason = str(error)
         above = [mode for mode in whole.modes if mode.name not in mode_set.names]
         evidence = less_bars(mode_set.evidence, bars, above)
         bars = {name: bar for name, bar in bars.items() if name in mode_set.names}

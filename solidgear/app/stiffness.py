@@ -74,7 +74,7 @@ def stiffness(
             try:
                 bars = static_bars(loaded, body, as_supports(loaded), names)
             except (NoBounds, NoRoom) as error:
-                reason = error.text()
+                reason = str(error)
         statics = condense(body, loaded, names if len(names) > 1 else names[0])
         open_ = open_ranges(loaded, body)
         judged = Judged(loaded, body, settled, bars, reason, cautions(loaded, body), open_)

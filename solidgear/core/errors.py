@@ -8,7 +8,6 @@ import difflib
 import json
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from keyword import iskeyword
 from numbers import Integral
 from typing import Any
 
@@ -16,10 +15,6 @@ from typing import Any
 MOST_PROBLEMS = 20
 #: hint on the brackets that a file has before a table
 BRACKETS = re.compile(r"(, given once)?: write \[+\w+\]+ with \w+ brackets( before each)?")
-#: option of the command line, and a whole command, which stays what it is
-OPTION = re.compile(
-    r'solidgear [a-z][^;:,]*|--set |--(?P<name>[a-z][a-z-]*)(?P<before_text> (?="))?'
-)
 #: letters of a line on a terminal
 LONGEST = 1000
 
@@ -38,13 +33,6 @@ class SolidgearError(Exception):
     ...     print(error)
     modes: n = 0 is not a number of modes; ask for 1 or more
     """
-
-    def text(self) -> str:
-        """Return the text with options as the command line has them."""
-        return super().__str__()
-
-    def __str__(self) -> str:
-        return OPTION.sub(_argument, self.text())
 
 
 class NoBounds(SolidgearError):
@@ -130,7 +118,7 @@ class SceneError(SolidgearError, ValueError):
             ": ".join(part for part in (_file_name(self.where), place, self.reason) if part)
         )
 
-    def text(self) -> str:
+    def __str__(self) -> str:
         count = len(self.others)
         if not count:
             return self.sentence
@@ -200,16 +188,6 @@ class SceneError(SolidgearError, ValueError):
 
 
 # --------------------------------------------------------------------------- texts
-def _argument(match: re.Match[str]) -> str:
-    """Return an option as an argument of Python."""
-    if match[0] == "--set ":  # those of a builder are arguments by their names
-        return ""
-    if match["name"] is None:
-        return match[0]
-    name = match["name"].replace("-", "_")
-    return name + "_" * iskeyword(name) + "=" * bool(match["before_text"])
-
-
 def printable(text: str) -> str:
     """Return a text in one line, escaping letters that would move the cursor of a terminal or reverse
     its direction of writing.
@@ -222,8 +200,8 @@ def for_terminal(error: Exception) -> str:
     at most `LONGEST` letters.
     """
     if isinstance(error, SceneError):
-        return error.text()
-    line = printable(error.text() if isinstance(error, SolidgearError) else str(error))
+        return str(error)
+    line = printable(str(error))
     return line if len(line) <= LONGEST else f"{line[: LONGEST - 100]} ... {line[-90:]}"
 
 
@@ -319,17 +297,6 @@ def near(word: Any, candidates: Iterable[str]) -> str:
         candidate for candidate in names if sorted(candidate.split("_")) == sorted(text.split("_"))
     ]
     return next(iter(same_letters or same_parts or difflib.get_close_matches(text, names, 1)), "")
-
-
-def names_in(names: str | Iterable[str]) -> tuple[str, ...]:
-    """Return names as a tuple; a text is a name, and no row of letters.
-
-    Examples
-    --------
-    >>> names_in("bending 1"), names_in(["C_zz", "C_yy"])
-    (('bending 1',), ('C_zz', 'C_yy'))
-    """
-    return (names,) if isinstance(names, str) else tuple(names)
 
 
 def listed(words: Iterable[Any], most: int = 24) -> str:

@@ -115,7 +115,7 @@ def explained(source: Source, tables: Mapping[str, Any] | None = None) -> Iterat
         written = document_of(source).tables if tables is None else tables
         raise error.located(written, where=name_of_source(source)) from None
     except SolidgearError as error:
-        raise SceneError(error.text(), where=name_of_source(source)) from None
+        raise SceneError(str(error), where=name_of_source(source)) from None
 
 
 def shaft(scene: Scene) -> Body | None:

@@ -167,8 +167,7 @@ class Operating:
         try:
             solved = seated.equilibrium(total, begin)
         except SolidgearError as error:
-            reason = error.text()
-            raise SolidgearError(reason if alone else f"at {point.label}: {reason}") from None
+            raise SolidgearError(str(error) if alone else f"at {point.label}: {error}") from None
         solved = _engine_still(solved, seated.system, assembly.train)
         if loop_shares := loop_forces(assembly, seated.system, solved.coordinates, point.label):
             forces = {name: {**forces, **loop_shares}[name] for name in assembly.contacts}
