@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.core.errors import SolidgearError, for_terminal
+from solidgear.core.errors import SolidgearError
 
 STEPPED = "geometry/shaft_stepped.toml"
 SEGMENTS = [
@@ -26,22 +26,6 @@ CATALOGUE = sg.Scene.from_parts(
     port=sg.Port(name="gear", on="body"),
     load={"x": "2 kN"},
 )
-
-
-@pytest.mark.parametrize(
-    "text, words",
-    [
-        ('--torque "5 kg": no', 'torque="5 kg": no'),
-        ("--from a: no", "from_ a: no"),
-        ("say --every-point too", "say every_point too"),
-        ("use --set order=4, or wait", "use order=4, or wait"),
-        ("run solidgear modes --json", "run solidgear modes --json"),
-    ],
-)
-def test_options_are_arguments_in_python_and_options_on_a_terminal(text, words):
-    error = SolidgearError(text)
-    assert (str(error), for_terminal(error)) == (words, text)
-    assert str(sg.SceneError(text)) == words and for_terminal(sg.SceneError(text)) == text
 
 
 @pytest.mark.parametrize(
