@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import zlib
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 from zipfile import BadZipFile
@@ -136,12 +137,16 @@ def read_matrices(
     except BROKEN as error:
         if isinstance(error, SceneError):
             raise
+        if isinstance(error, FileNotFoundError):
+            raise SceneError("there is no such file", where=source) from None
         cause = getattr(error, "strerror", None) or f"not a file of {chosen.about}"
         raise SceneError(f"the matrices cannot be read: {cause}", where=source) from None
+    given = {"points": points, "units": units}
+    keys = {key: value for key, value in given.items() if value}
     if isinstance(content, NodeMatrices):
-        return content.matrices(points, units)
+        return replace(content.matrices(points, units), keys=keys)
     matrices = arrays.from_arrays(content, source, units)
-    return _renamed(matrices, points) if points else matrices
+    return replace(_renamed(matrices, points) if points else matrices, keys=keys)
 
 
 def _renamed(matrices: PortMatrices, points: Mapping[str, Any]) -> PortMatrices:
