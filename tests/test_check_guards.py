@@ -919,3 +919,15 @@ def test_the_mass_of_check_counts_rigid_masses():
     assert found.ixx == pytest.approx(own.ixx + 0.4 + share * apart**2, rel=1e-9)
     first, second, *_ = check_scene(loaded, sg.build(loaded, "euler")).facts
     assert f"mass {found.mass:.4g} kg" in first and "'disc' 50 kg on y = 90 to 110 mm" in second
+
+
+@pytest.mark.parametrize("stiffness, slipped", [(1e15, False), (1e14, True)])
+def test_a_spring_that_stands_for_rigid_is_no_slip_in_units(stiffness, slipped):
+    springs = dict.fromkeys(("kxx", "kyy", "kzz"), stiffness)
+    rod = sg.Segment.cylinder("rod", length=0.3, diameter=0.03)
+    ends = [
+        sg.Bearing(name=name, y=y, seat_width=0.02, stiffness=springs)
+        for name, y in (("A", 0.02), ("B", 0.28))
+    ]
+    records = said(sg.Scene.from_parts([rod], bearings=ends), "timoshenko", {})
+    assert any("wrong unit" in record.sentence for record in records) == slipped

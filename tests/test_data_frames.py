@@ -171,3 +171,9 @@ def test_error_bars_of_displacements_stand_beside_them():
     assert moved["z error bar"][0] == pytest.approx(max(bars[2].bar, 1e-4 * abs(bars[2].value)))
     assert moved.attrs["units"]["z error bar"] == moved.attrs["units"]["z"] == "m"
     assert [*study.to_dataframe("motion_of_port")["model"]] == ["euler", "harmonic"]
+
+
+def test_a_column_without_any_number_is_one_of_numbers():
+    frame = Table("", ["a", "b", "c"], [["x", None, 1.0], ["y", None, None]]).to_dataframe()
+    assert [str(kind) for kind in frame.dtypes[["b", "c"]]] == ["float64", "float64"]
+    assert frame["b"].isna().all()

@@ -185,6 +185,13 @@ def test_small_fields_and_fields_with_commas_are_read(tmp_path):
     assert again.elastic[0] == pytest.approx(bar_matrices.elastic[0], rel=1e-9)
     # the same numbers without units are refused no number, but nobody has such a bar
     assert "units = 'mm-t-N'" in sg.read_matrices(tmp_path / "bar.bdf").doubts[0]
+    keys = again.to_dict()
+    reread = sg.read_matrices(keys["matrices"], keys["points"], keys["units"])
+    assert reread == again and str(again) == again.source
+    sg.export(bar_matrices, tmp_path / "si.bdf")
+    assert "units = 'm-kg-N'" in sg.read_matrices(tmp_path / "si.bdf", units="mm-t-N").doubts[0]
+    with pytest.raises(sg.SceneError, match="none.bdf: there is no such file"):
+        sg.read_matrices("none.bdf")
 
 
 def test_a_user_element_of_a_substructure_is_read(tmp_path):

@@ -443,13 +443,15 @@ def test_a_note_is_there_once():
 
 
 def test_the_command_writes_all_or_nothing(tmp_path):
-    source, out = tmp_path / "gear box.rexs", tmp_path / "out"
+    source, out = tmp_path / "gear box.rexs", tmp_path / "the out"
     source.write_text(helical().xml())
     run = CliRunner().invoke(app, ["import", str(source), "--out", str(out)])
     assert run.exit_code == 0, run.output
     assert sorted(p.name for p in out.iterdir()) == ["gear_box.toml", "input.toml", "output.toml"]
     assert "2 shafts of 6 sections, 1 cylindrical stage" in run.output
-    assert "Next: solidgear check" in run.output
+    assert f'Next: solidgear check "{out / "gear_box.toml"}"' in run.output
+    indented = [row for row in run.output.splitlines() if row.startswith("  ")]
+    assert max(map(len, indented)) <= 80
     with pytest.raises(SolidgearError, match="there is such a file already"):
         CliRunner().invoke(app, ["import", str(source), "--out", str(out)], catch_exceptions=False)
     source.write_text(helical().xml()[:3000])

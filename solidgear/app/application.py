@@ -46,8 +46,8 @@ GROUPS = {
             "meshes only.",
         ),
         "export": Entry(
-            "exchange.matrices.command",
-            "Mass and stiffness of a shaft or a train at its ports, for other programs.",
+            "exchange.command",
+            "Mass and stiffness of a shaft or a train at its ports, or a gearbox in REXS.",
         ),
         "import": Entry(
             "exchange.rexs.command",

@@ -16,7 +16,7 @@ from solidgear.core.ladder.model import Model
 from solidgear.core.machine.whole_file import write_files
 from solidgear.core.models.options import Option, limits
 from solidgear.exchange.schema.files import directive
-from solidgear.show.command import command, say
+from solidgear.show.command import as_typed, command, say
 from solidgear.show.table import Table, text, word
 
 KINDS = "; ".join(f"{kind}: {what}" for kind, what in STARTS.items())
@@ -37,7 +37,7 @@ def new(
         if len(contents) > 1
         else ""
     )
-    typer.echo(f"{path}: {STARTS[kind]}{companions}. Next: solidgear check {path}")
+    typer.echo(f"{path}: {STARTS[kind]}{companions}. Next: solidgear check {as_typed(path)}")
 
 
 def _with_schema(content: str) -> str:

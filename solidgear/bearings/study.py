@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -211,12 +211,13 @@ def over_load(
     return curves
 
 
-def loaded_by(scene: Scene, load: str, bearing: str | None = None) -> Scene:
-    """Return the scene under a load of the command line such as ``x=2 kN, z=-500 N``, on the port or
-    on a bearing; refuse components that are none.
+def loaded_by(scene: Scene, load: str | Mapping[str, Any], bearing: str | None = None) -> Scene:
+    """Return the scene under a load such as ``x=2 kN, z=-500 N``, or its components, on the port or on
+    a bearing; refuse components that are none.
     """
+    components = load if isinstance(load, Mapping) else _components(str(load))
     try:
-        return _with_load(scene, BearingLoad(**_components(load)), bearing)
+        return _with_load(scene, BearingLoad(**components), bearing)
     except SceneError as error:
         raise SolidgearError(f"`load` {show(load)}: {error}") from None
 

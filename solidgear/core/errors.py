@@ -325,6 +325,17 @@ def near(word: Any, candidates: Iterable[str]) -> str:
     return next(iter(same_letters or same_parts or difflib.get_close_matches(text, names, 1)), "")
 
 
+def names_in(names: str | Iterable[str]) -> tuple[str, ...]:
+    """Return names as a tuple; a text is a name, and no row of letters.
+
+    Examples
+    --------
+    >>> names_in("bending 1"), names_in(["C_zz", "C_yy"])
+    (('bending 1',), ('C_zz', 'C_yy'))
+    """
+    return (names,) if isinstance(names, str) else tuple(names)
+
+
 def listed(words: Iterable[Any], most: int = 24) -> str:
     """Return words with commas between, at most `most` of them, and a count of the others.
 

@@ -45,11 +45,11 @@ def units(probe: Probe) -> Notices:
     for b in given_springs:
         k = np.diag(b.stiffness)
         local = scene.segments[0].material.E * mean
-        if k[1] > 0:
+        if 0 < k[1] != RIGID:
             place = f"bearing {b.name!r} in {DOF_NAMES[1]}"
             bearings.append(("axial stiffness over E d", k[1] / local, place))
         for axis, tilt in ((0, 5), (2, 3)):
-            if k[axis] > 0:
+            if 0 < k[axis] != RIGID:
                 place = f"bearing {b.name!r} in {DOF_NAMES[axis]}"
                 bearings.append(("stiffness over E d", k[axis] / local, place))
                 if k[tilt] > 0:

@@ -32,6 +32,7 @@ from solidgear.core import (
     flexibility,
     pinned,
 )
+from solidgear.core.errors import names_in
 from solidgear.core.loading import scene_of
 from solidgear.core.scene.paths import Tables, replace_entry
 from solidgear.measured.computed import Computed, computed_like, computed_up_to
@@ -225,7 +226,7 @@ WIDER = 1.15
 def identify(
     scene: Source,
     measured: Source | Measured,
-    vary: Iterable[str],
+    vary: str | Iterable[str],
     *,
     tol: float = 2e-4,
     predict: int = 0,
@@ -246,7 +247,7 @@ def identify(
         A scene: its file (TOML), the tables of one, or an object.
     measured : path, dict or Measured
         Resonances, as of :func:`solidgear.correlate`.
-    vary : iterable of str
+    vary : str or iterable of str
         Paths of entries that leave the shape as it is: of materials, springs, masses; with bounds,
         ``"material.E=180 GPa : 220 GPa"``, or with a prior value and standard deviation,
         ``"material.E=206 GPa ± 3 %"``.
@@ -281,7 +282,7 @@ def identify(
     True
     """
     search = _Search(
-        document_of(scene), load_measured(measured), tuple(vary), tol, progress, priors
+        document_of(scene), load_measured(measured), names_in(vary), tol, progress, priors
     )
     return search.identification(predict)
 

@@ -8,6 +8,7 @@ import sys
 import textwrap
 import time
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar, get_type_hints
 
 from solidgear.core.errors import SolidgearError
@@ -54,14 +55,26 @@ def say(*blocks: RenderableType, soft_wrap: bool = True, printer: Console | None
         terminal.print(block, soft_wrap=isinstance(block, str), crop=False)
 
 
-def filled(text: str) -> str:
-    """Fill a text into lines as wide as the terminal, all but the first indented."""
+def as_typed(path: Path) -> str:
+    """Return a path as it is typed into a shell, in quotes where it has blanks.
+
+    Examples
+    --------
+    >>> as_typed(Path("my box.toml")), as_typed(Path("box.toml"))
+    ('"my box.toml"', 'box.toml')
+    """
+    return f'"{path}"' if " " in str(path) else str(path)
+
+
+def filled(text: str, indent: str = "") -> str:
+    """Fill a text into lines as wide as the terminal, all but the first indented further."""
     from rich.console import Console  # start-up: as in `say`
 
     return textwrap.fill(
         text,
         Console().width,
-        subsequent_indent="  ",
+        initial_indent=indent,
+        subsequent_indent=f"{indent}  ",
         break_long_words=False,
         break_on_hyphens=False,
     )

@@ -6,6 +6,7 @@ quantities; units stand in ``attrs``.  A data set has its columns over those tha
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Container, Mapping, Sequence
 from typing import Any, Protocol
@@ -37,9 +38,15 @@ def dataframe(table: Framed) -> Any:
         raise missing("pandas", "a data frame") from None
     rows = table.framed[1]
     names = enumerate(quantities(table))
-    frame = pandas.DataFrame({name: [_plain(row[k]) for row in rows] for k, name in names})
+    frame = pandas.DataFrame({name: _values([row[k] for row in rows]) for k, name in names})
     frame.attrs = {"title": table.title, "units": units(table)}
     return frame
+
+
+def _values(column: list[Any]) -> list[Any]:
+    """Return the values of a column; a column without any holds numbers that are none."""
+    values = [_plain(value) for value in column]
+    return values if any(value is not None for value in values) else [math.nan] * len(values)
 
 
 def dataset(table: Framed) -> Any:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
@@ -26,8 +27,10 @@ FEW = 6
 Given: TypeAlias = str | float | None
 if TYPE_CHECKING:
     Torque: TypeAlias = Given
+    #: at the port: a text, or its components
+    Forces: TypeAlias = str | Mapping[str, Any] | None
 else:
-    Torque = str | None
+    Torque = Forces = str | None
 AtRestFile = Annotated[
     Path, typer.Argument(help="Train or scene file (TOML), such as geometry/axle_overhung.toml.")
 ]
@@ -57,7 +60,7 @@ class Acting(Group):
         ),
     ] = None
     load: Annotated[
-        str | None,
+        Forces,
         typer.Option(
             "--load",
             help='Load on a shaft in place of that in its file: "x=2 kN, z=-500 N" at the port.',

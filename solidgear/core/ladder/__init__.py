@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
@@ -84,6 +86,8 @@ def build(scene: Shaft, fidelity: str, **options) -> Body:
             f"model {show(fidelity, 40)} is unknown{nearest(fidelity, LADDER.bodies)}; "
             f"use one of {', '.join(LADDER.bodies)}"
         )
+    if isinstance(scene, (str, os.PathLike, Mapping)):
+        raise SolidgearError(f"build: read {show(str(scene), 40)} first, by sg.load")
     model = LADDER[fidelity]
     unfit = model.unfit(scene)
     if unfit:

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 import scipy.linalg as sla
 
-from solidgear.core.errors import SceneError, SolidgearError
+from solidgear.core.errors import SceneError, SolidgearError, listed
 from solidgear.core.frames import DOF_NAMES, shift
 from solidgear.core.reduction.matrix_units import MATRIX_UNITS, SI, MatrixUnits
 from solidgear.core.reduction.superelement import PortMotion
@@ -87,6 +87,14 @@ class PortMatrices:
         )
 
     __hash__ = object.__hash__
+
+    def __repr__(self) -> str:
+        points = f"{len(self.positions)} points ({listed(self.positions, 6)})"
+        notes = "; ".join(self.notes)
+        return f"<PortMatrices of {self.source}: {points}, {self.modes} modes; {notes}>"
+
+    def __str__(self) -> str:
+        return self.source
 
     def to_dict(self) -> dict[str, Any]:
         """Return the keys of a train file that read them: matrices, points and units."""
@@ -280,10 +288,12 @@ class PortMatrices:
             return ()
         out = []
         if not _usual(span, mass):
+            stated = MATRIX_UNITS.get(str(self.keys.get("units")), SI)
+            length, heavy = span / stated.length, mass * stated.length / stated.force  # as written
             fitting = [
                 units
                 for units in MATRIX_UNITS.values()
-                if _usual(span * units.length, mass * units.force / units.length)
+                if _usual(length * units.length, heavy * units.force / units.length)
             ]
             words = f", as of {fitting[0].words}: units = {fitting[0].name!r}" if fitting else ""
             out.append(f"a mass of {mass:.3g} kg on points {span:.3g} m apart is unusual{words}")

@@ -80,8 +80,18 @@ def document_of(source: Source) -> Document:
         read = getattr(source, "as_read", None)
         return read or Document(source.to_dict(), name_of_source(source))
     raise SolidgearError(
-        f"{show(source, 40)}: give the path of a TOML file, its tables as a dict, or a Scene or Train"
+        f"{show(repr(source), 40)[1:-1]}: give the path of a TOML file, its tables as a dict, or a "
+        "Scene or Train"
     )
+
+
+def refuse_no_tables(tables: object, kind: str) -> None:
+    """Refuse what is no dict."""
+    if not isinstance(tables, Mapping):
+        raise SolidgearError(
+            f"{show(repr(tables), 40)[1:-1]}: give the tables of a {kind} as a dict, by the keys of "
+            "its file"
+        )
 
 
 def name_of_source(source: Source) -> str:

@@ -22,7 +22,7 @@ from solidgear.core.scene.ask import Ask
 from solidgear.core.scene.bearing_stiffness import stiffness_entries
 from solidgear.core.scene.blends import Blend
 from solidgear.core.scene.corner import Corner
-from solidgear.core.scene.document import Origin
+from solidgear.core.scene.document import Origin, refuse_no_tables
 from solidgear.core.scene.ends import seat_masses, snap_seats
 from solidgear.core.scene.feature_rules import Feature
 from solidgear.core.scene.housing import ONE_HOUSING, Housing
@@ -297,6 +297,7 @@ class Scene(Displayed, Model):
         >>> scene.length, sg.Scene.from_dict(scene.to_dict()) == scene
         (0.3, True)
         """
+        refuse_no_tables(tables, "scene")
         path = os.path.normpath(os.path.join(folder, name))
         try:
             return addition("document", "read scene")(tables, path)

@@ -146,6 +146,15 @@ class Segment(Model):
     material: Annotated[Material, BeforeValidator(by_name)] = STEEL
     part: Literal["shaft", "frustum", "backcone"] = "shaft"
 
+    def __init__(self, /, *values: Any, **data: Any):
+        if "length" in data:
+            raise SceneError(
+                'with a length write Segment.cylinder("seat", length=0.04, diameter=0.09), or '
+                "Segment.cone; Segment itself takes y1, outer0 and outer1",
+                path=("length",),
+            )
+        super().__init__(*values, **data)
+
     @model_validator(mode="after")
     def _has_a_wall(self) -> Segment:
         if self.y1 <= self.y0:

@@ -190,9 +190,9 @@ class Placed(Model):
     #: words that wait for a shaft, by which a thing made in Python is placed; None once it is
     _table: Mapping[str, Any] | None = PrivateAttr(None)
 
-    def __init__(self, /, **data: Any):
-        if not self._are_words(data):
-            super().__init__(**self._by_field(data))
+    def __init__(self, /, *values: Any, **data: Any):
+        if values or not self._are_words(data):
+            super().__init__(*values, **self._by_field(data))
             return
         words = by_key(self.Words)
         fields = {key: value for key, value in data.items() if key not in words}

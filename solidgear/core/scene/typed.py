@@ -98,7 +98,9 @@ class Model(BaseModel, metaclass=_Listing):
     #: stand together
     needs: ClassVar[tuple[tuple[str | tuple[str, ...], ...], ...]] = ()
 
-    def __init__(self, /, **data: Any):
+    def __init__(self, /, *values: Any, **data: Any):
+        if values:
+            raise TypeError(f"{type(self).__name__} takes its values by name; see its help")
         data = {self._field_name(key, data): value for key, value in data.items()}
         fields = by_key(type(self))
         problems, meant = unknown_keys(data, fields)

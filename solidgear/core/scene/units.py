@@ -228,8 +228,8 @@ def si_factor(unit: str) -> tuple[float, float, Dimension] | None:
     """Return the SI units in one `unit`, the power of the radian in it, and its dimensions; None for
     a unit that pint does not know.
     """
-    # m2 for m^2, as people write inertias, and Nm for N*m (to pint the count of a yarn)
-    unit = re.sub(r"(?<=m)2\b", "^2", unit)
+    # m2 for m^2, m3 for m^3, as people write inertias and densities, and Nm for N*m (to pint the count of a yarn)
+    unit = re.sub(r"(?<=m)([23])\b", r"^\1", unit)
     unit = re.sub(r"\b([mkM]?N)(?=[mc]?m\b)", r"\1*", unit)
     unit = TURNS.get(unit, unit)
     return COMMON[unit] if unit in COMMON else _by_pint(unit)

@@ -18,6 +18,7 @@ from solidgear.core.scene.materials import MATERIALS, by_name
 from solidgear.core.scene.model_table import entry_of, table_of
 from solidgear.core.scene.tables import parts
 from solidgear.core.scene.uncertain import written_range
+from solidgear.core.scene.units import POSITION_DECIMALS
 
 if TYPE_CHECKING:
     from solidgear.core.scene.housing import Elastic
@@ -98,8 +99,17 @@ def material_entry(material: Material) -> Table | str:
     )
 
 
+def _length(segment: Segment) -> float:
+    """Return the length with the fewest digits that ends where the segment does."""
+    for digits in range(1, 17):
+        length = float(f"{segment.length:.{digits}g}")
+        if round(segment.y0 + length, POSITION_DECIMALS) == segment.y1:
+            return length
+    return segment.length
+
+
 def _segment(segment: Segment, usual: Material) -> Table:
-    table: Table = {"kind": "cylinder", "name": segment.name, "length": segment.length}
+    table: Table = {"kind": "cylinder", "name": segment.name, "length": _length(segment)}
     even_bore = segment.inner0 == segment.inner1
     if segment.outer0 == segment.outer1 and even_bore:
         table["diameter"] = segment.diameter

@@ -16,6 +16,7 @@ import numpy as np
 
 from solidgear.core.body import FURTHER, Body, as_supports
 from solidgear.core.body.mode_names import BENDING, ModeName, meant, numbered
+from solidgear.core.body.model import refuse_no_body
 from solidgear.core.display import Displayed
 from solidgear.core.errors import SolidgearError
 from solidgear.core.machine.threads import pinned
@@ -213,6 +214,7 @@ def modes(
     >>> bool(np.isclose(found.named("bending 1").frequency_hz, formula, rtol=1e-6))
     True
     """
+    refuse_no_body(body, "modes")
     if n < 1:
         raise SolidgearError(f"modes: n = {n} is not a number of modes; ask for 1 or more")
     if body.factoring.engine == "petsc-gamg":

@@ -25,6 +25,7 @@ import numpy as np
 import scipy.linalg as sla
 
 from solidgear.core.body import Block, Body, as_supports
+from solidgear.core.body.model import refuse_no_body
 from solidgear.core.body.supports import separated
 from solidgear.core.errors import SolidgearError, show
 from solidgear.core.machine.threads import pinned
@@ -171,6 +172,7 @@ def condense(body, supports, port, attachment=None):
     >>> bool(at_gear.stiffness[2, 2] < 4e8 + 5e8)  # softer than the bearings side by side
     True
     """
+    refuse_no_body(body, "condense")
     names = (port,) if isinstance(port, str) else tuple(port)
     if not names or len(set(names)) < len(names):
         raise SolidgearError(f"condense: port = {show(names)}; name each port once, at least one")

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import os
 import zlib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 from zipfile import BadZipFile
@@ -67,19 +68,20 @@ def write_matrices(
     return write_files(format_of(path, to).write(matrices, Path(path), matrix_units(units)))
 
 
-def format_of(path: str | os.PathLike, to: str = "") -> Format:
-    """Return a format by name, or by the ending of a file."""
+def format_of(path: str | os.PathLike, to: str = "", others: Iterable[str] = ()) -> Format:
+    """Return a format by name, or by the ending of a file; a refusal names `others` as well."""
+    names = [*FORMATS, *others]
     ending = Path(path).suffix.lower()
     if not to:
         to = next((name for name, f in FORMATS.items() if ending in f.endings), "")
         if not to:
             raise SolidgearError(
                 f"{path}: the ending {ending or 'none'!r} is of no format; name one of "
-                f"{listed(FORMATS)}"
+                f"{listed(names)}"
             )
     if to not in FORMATS:
         raise SolidgearError(
-            f"format {show(to, 30)} is unknown{nearest(to, FORMATS)}; use {listed(FORMATS)}"
+            f"format {show(to, 30)} is unknown{nearest(to, names)}; use {listed(names)}"
         )
     return FORMATS[to]
 
@@ -135,12 +137,16 @@ def read_matrices(
     except BROKEN as error:
         if isinstance(error, SceneError):
             raise
+        if isinstance(error, FileNotFoundError):
+            raise SceneError("there is no such file", where=source) from None
         cause = getattr(error, "strerror", None) or f"not a file of {chosen.about}"
         raise SceneError(f"the matrices cannot be read: {cause}", where=source) from None
+    given = {"points": points, "units": units}
+    keys = {key: value for key, value in given.items() if value}
     if isinstance(content, NodeMatrices):
-        return content.matrices(points, units)
+        return replace(content.matrices(points, units), keys=keys)
     matrices = arrays.from_arrays(content, source, units)
-    return _renamed(matrices, points) if points else matrices
+    return replace(_renamed(matrices, points) if points else matrices, keys=keys)
 
 
 def _renamed(matrices: PortMatrices, points: Mapping[str, Any]) -> PortMatrices:

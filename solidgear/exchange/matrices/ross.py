@@ -84,7 +84,7 @@ def write_ross(source: Any, path: str | os.PathLike, units: str, **wanted: Any) 
 
 def _rotor(scene: Scene, supports: Supports) -> Iterator[str]:
     """Yield the function that makes the rotor, on the nodes of the beam."""
-    body = build(scene, "timoshenko", kappa="cowper")
+    body = build(scene, "timoshenko")
     nodes = [float(y) for y in body.geometry.nodes]  # type: ignore[union-attr]
     materials: dict[tuple[float, float, float], int] = {}
     rows = []

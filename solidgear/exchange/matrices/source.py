@@ -30,6 +30,7 @@ from solidgear.core.body import Supports
 from solidgear.core.reduction.craig_bampton import craig_bampton
 from solidgear.core.reduction.port_matrices import PortMatrices
 from solidgear.core.reduction.superelement import Superelement
+from solidgear.core.scene.units import quantity
 from solidgear.core.solve.spin import couplings
 from solidgear.core.system.links import grounded
 from solidgear.core.system.port_coordinates import port_coordinates
@@ -92,9 +93,9 @@ def port_matrices(
     model: str | Mapping[str, str] = "",
     modes: int = 0,
     method: str = CRAIG_BAMPTON,
-    ports: Iterable[str] = (),
+    ports: str | Iterable[str] = (),
     bearings: bool | None = None,
-    speed: float | None = None,
+    speed: float | str | None = None,
     loss: float = 0.0,
     **options: Any,
 ) -> PortMatrices:
@@ -111,14 +112,14 @@ def port_matrices(
     method : str
         ``craig-bampton``: modes with all ports held. ``free-interface``: modes of the free body (of
         a train: of every shaft) with residual fields, by :func:`solidgear.rubin`.
-    ports : iterable of str, optional
+    ports : str or iterable of str, optional
         Ports to keep, of a train or a system as ``part.port``; all of a shaft and of all shafts by
         default.
     bearings : bool, optional
         Whether bearings hold the body. By default a shaft is free and a train is not: whoever takes
         a superelement of a shaft has bearings. Rigid masses on a shaft belong to it.
-    speed : float, optional
-        Of a shaft, rad/s, for the gyroscopic matrix.
+    speed : float or str, optional
+        Of a shaft, rad/s or a text such as ``"3000 rpm"``, for the gyroscopic matrix.
     loss : float
         Loss factor of a shaft, for the damping; trains have losses in their file.
     **options
@@ -144,7 +145,9 @@ def port_matrices(
     >>> bool(abs(gear.stiffness[0, 0] / condensed[0][0] - 1) < 1e-9)
     True
     """
-    wanted = Wanted(model, modes, method, tuple(ports), bearings, speed, loss)
+    chosen = (ports,) if isinstance(ports, str) else tuple(ports)
+    turning = None if speed is None else quantity(speed, "speed")
+    wanted = Wanted(model, modes, method, chosen, bearings, turning, loss)
     if isinstance(source, PortMatrices):
         return source
     if isinstance(source, (Superelement, System)):

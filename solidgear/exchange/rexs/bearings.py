@@ -180,7 +180,7 @@ def _operating_stiffness(bearing: Component, shaft: Shaft) -> dict[str, float] |
     K *= np.sign(K[1, 1] + K[2, 2]) or 1.0
     turned = np.kron(np.eye(2), shaft.turn)
     K = turned @ ((K + K.T) / 2) @ turned.T
-    return {k: float(f"{v:.12g}") for k, v in stiffness_entries(K).items()}
+    return stiffness_entries(K)
 
 
 def _catalogue(
@@ -216,7 +216,7 @@ def _catalogue(
             name = name.replace("radial", "axial")
         if value := bearing.number(name):
             table[key] = Sourced(said(value, "kN", 1e3), f"{label}: {name}")
-    table |= _clearance(bearing, kind, notes)
+    table |= _clearance(bearing, kind, notes, is_ours=document.is_ours)
     table |= _inside(document, bearing, kind, notes)
     if kind in ONE_WAY:
         table |= _one_way(bearing, shaft, y, notes)
@@ -235,11 +235,13 @@ def _fits(standard: Boundary, sizes: list[float | None]) -> bool:
     return all(size is None or abs(size - due) <= SAME * due for size, due in pairs)
 
 
-def _clearance(bearing: Component, kind: str, notes: Notes) -> dict[str, Any]:
+def _clearance(bearing: Component, kind: str, notes: Notes, is_ours: bool) -> dict[str, Any]:
+    """Return the clearance of a bearing; none written by another program says nothing."""
     if kind == "thrust_ball":
         return {}
     for name in ("mounted_radial_bearing_clearance", "radial_bearing_clearance"):
-        if clearance := bearing.number(name):
+        clearance = bearing.number(name)
+        if clearance or (is_ours and clearance is not None):
             return {"clearance": Sourced(said(clearance, "um", 1e-6), f"{bearing.label}: {name}")}
     word = bearing.text("radial_clearance_class").replace("C0", "CN")
     if word in ("C2", "CN", "C3", "C4"):

@@ -13,7 +13,7 @@ from solidgear.core import SolidgearError, whole
 from solidgear.exchange.rexs.document import RexsError
 from solidgear.exchange.rexs.importing import Imported, imported, name_of
 from solidgear.exchange.rexs.reading import read
-from solidgear.show.command import NOT_REACHED, command, filled, say
+from solidgear.show.command import NOT_REACHED, as_typed, command, filled, say
 
 
 @command
@@ -41,7 +41,7 @@ def import_file(
     if (problem := _problem(first, gearbox)) is not None:
         typer.echo(f"solidgear: {problem}", err=True)
         raise typer.Exit(NOT_REACHED)
-    say("", f"Next: solidgear {'check' if gearbox.has_train else 'answer'} {first}")
+    say("", f"Next: solidgear {'check' if gearbox.has_train else 'answer'} {as_typed(first)}")
 
 
 def _write(texts: Mapping[Path, str]) -> None:
@@ -64,7 +64,7 @@ def _report(gearbox: Imported, first: Path) -> None:
     for heading, lines in gearbox.notes.groups:
         say("", heading)
         for line in lines:
-            say("\n".join(f"  {row}" for row in filled(line).split("\n")))
+            say(filled(line, "  "))
 
 
 def _problem(path: Path, gearbox: Imported) -> SolidgearError | None:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import degrees
+from math import pi
 from typing import Any
+
+from solidgear.exchange.rexs.units import scaled
 
 #: letters of a line of comments at the head of a file
 LINE = 118
@@ -19,25 +21,41 @@ class Sourced:
     source: str
 
 
-def said(length: float, unit: str, factor: float = 1.0) -> str:
-    """Return a quantity as a file has it, from its number in SI and the SI units in one unit.
+#: relative; what the arithmetic between two files leaves, which twelve digits may leave out
+NOISE = 1e-15
+
+
+class Said(str):
+    """A quantity as a file has it, with the number in SI that the file gives it."""
+
+    number: float
+
+
+def said(length: float, unit: str, factor: float = 1.0, noise: float = NOISE) -> Said:
+    """Return a quantity as a file has it, from its number in SI and the SI units in one unit: in
+    twelve digits where these say it.
 
     Examples
     --------
     >>> said(0.08, "mm", 1e-3)
     '80 mm'
     """
-    return f"{length / factor:.12g} {unit}"
+    text = f"{length / factor:.12g}"
+    if abs(scaled(float(text), factor) - length) > noise * abs(length):
+        text = repr(float(length / factor))
+    out = Said(f"{text} {unit}")
+    out.number = scaled(float(text), factor)
+    return out
 
 
-def mm(length: float) -> str:
+def mm(length: float) -> Said:
     """Return a length in millimetres."""
     return said(length, "mm", 1e-3)
 
 
-def deg(angle: float) -> str:
+def deg(angle: float) -> Said:
     """Return an angle in degrees."""
-    return f"{degrees(angle):.12g} deg"
+    return said(angle, "deg", pi / 180)
 
 
 def plain(tables: Any) -> Any:

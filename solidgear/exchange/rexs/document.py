@@ -12,7 +12,7 @@ from functools import cached_property
 from math import isfinite
 
 from solidgear.core import SolidgearError, show
-from solidgear.exchange.rexs.units import OTHER_NAMES, TYPES, UNIT_OF, UNITS
+from solidgear.exchange.rexs.units import OTHER_NAMES, REST, TYPES, UNIT_OF, UNITS, scaled
 
 #: a value: text, numbers in a row, or rows
 Value = str | tuple[str, ...] | tuple[tuple[str, ...], ...]
@@ -139,9 +139,7 @@ class Component:
             number = float("nan")
         if not isfinite(number):
             raise self.wrong(attribute.name, "must be a finite number")
-        # dividing by 1000 is exact where multiplying by 0.001 is not
-        inverse = round(1 / factor) if factor < 1 else 0
-        return number / inverse if inverse and factor * inverse == 1 else number * factor
+        return scaled(number, factor)
 
     def with_attributes(self, attributes: Mapping[str, Attribute]) -> Component:
         """Return the component with further attributes, or others in place of its own."""
@@ -232,6 +230,13 @@ class Document:
                             "none of this number"
                         )
         _refuse_cycles(self.parts)
+
+    @cached_property
+    def is_ours(self) -> bool:
+        """True for a document that this program wrote, whoever wrote it since: its names are those of
+        files.
+        """
+        return any(REST in component.attributes for component in self.components.values())
 
     @cached_property
     def parts(self) -> dict[int, list[int]]:

@@ -42,7 +42,7 @@ class Drive:
     torque: Component  #: the load whose torque the file gives
     torque_side: Shaft
     turns: dict[int, float]  #: of every shaft in one of the engine's, by the number of the shaft
-    engine_sign: float  #: of the torque of the engine in the first case, about y
+    engine_sign: float  #: of the torque of the engine in the first case, about y; 0 for no torque
     #: shafts behind couplings that loads of the drive sit on, by the number of the load
     coupled: dict[int, Coupled] = field(default_factory=dict)
 
@@ -58,7 +58,10 @@ def cases_of(gearbox: Gearbox) -> list[Case]:
                 base = document.components[component.id]
                 components[component.id] = base.with_attributes(component.attributes)
             share = _share(components)
+            units = [c for c in case.components if document.components[c.id].kind == "gear_unit"]
             name = f"case {case.id}"
+            if document.is_ours and units and units[0].name:
+                name = units[0].name
             if len(document.spectra) > 1:
                 name = f"spectrum {spectrum.id} {name}"
             out.append(Case(name, share, components))
@@ -115,6 +118,8 @@ def drive_of(gearbox: Gearbox, cases: list[Case]) -> Drive | None:
             loads.append((first[load.id], behind.inside))
             coupled[load.id] = behind
     given = [(x, side) for x, side in loads if any(torque_in(gearbox, c, x, side) for c in cases)]
+    if not given and document.is_ours:
+        given = [(x, side) for x, side in loads if x.flag("defines_torque")]
     if not given:
         notes.ask("no load of the file has a torque: write [engine], [load] and [[operation]]")
         return None
@@ -122,7 +127,8 @@ def drive_of(gearbox: Gearbox, cases: list[Case]) -> Drive | None:
     load, shaft = defining
     turns = turns_from(gearbox, shaft)
     speed = speed_on(gearbox, cases[0], shaft)
-    torque = next(t for c in cases if (t := torque_in(gearbox, c, load, shaft)))
+    torques = (torque_in(gearbox, c, load, shaft) for c in cases)
+    torque = next((t for t in torques if t), 0.0)
     others = [
         (other, side)
         for other, side in loads
@@ -130,7 +136,8 @@ def drive_of(gearbox: Gearbox, cases: list[Case]) -> Drive | None:
         and other.flag("transmits_torque") is not False
         and side.component.id in turns
     ]
-    brings = torque * (speed or torque) >= 0
+    # where this program wrote it, the load that defines the torque is the engine, coasting or not
+    brings = document.is_ours or torque * (speed or torque) >= 0
     if len(others) > 1:
         names = ", ".join(other.label for other, _ in others)
         notes.assume(load, f"its torque goes to {others[-1][0].label} alone, of {names}")

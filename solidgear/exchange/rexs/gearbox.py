@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -10,7 +10,7 @@ import numpy as np
 from solidgear.exchange.rexs.document import Component, Document, RexsError
 from solidgear.exchange.rexs.frames import Frame, along, frame_of
 from solidgear.exchange.rexs.notes import Notes
-from solidgear.exchange.rexs.shafts import Shaft, plain_name, sections_of
+from solidgear.exchange.rexs.shafts import Shaft, is_file_name, plain_name, sections_of
 
 #: difference of places, m, or share of a distance, that digits leave
 NEAR, SHARE = 1e-5, 1e-4
@@ -67,6 +67,14 @@ class Gearbox:
     pairs: list[PairStage] = field(default_factory=list)
     planetary: list[PlanetStage] = field(default_factory=list)
     reference: Frame | None = None  #: of the shaft whose axes are those of the train
+
+    def name_of(self, part: Component, taken: Collection[str], usual: str) -> str:
+        """Return what a component is called in files: its name where a file had it before."""
+        # files are called after shafts, wherever the names come from
+        is_sound = part.kind != "shaft" or (part.name not in taken and is_file_name(part.name))
+        if self.document.is_ours and part.name and is_sound:
+            return part.name
+        return plain_name(part.name, taken, usual)
 
     def shaft_of(self, part: Component) -> Shaft | None:
         """Return the shaft that a component is a part of."""
@@ -161,7 +169,8 @@ def _add_shafts(gearbox: Gearbox) -> None:
             way = along(frame, first, shaft)
             if way is not None:
                 sign, turn = way, first.train_axes.T @ frame.axes
-        name = plain_name(shaft.name, [*names, "shaft"], f"shaft_{shaft.id}")
+        taken = names if document.is_ours else [*names, "shaft"]
+        name = gearbox.name_of(shaft, taken, f"shaft_{shaft.id}")
         try:
             sections, start = sections_of(document, shaft, sign)
         except RexsError as error:
@@ -181,15 +190,22 @@ def _add_shafts(gearbox: Gearbox) -> None:
 
 def _add_gears(gearbox: Gearbox) -> None:
     names: list[str] = []
-    for gear in gearbox.document.of_kind("cylindrical_gear"):
+    for gear in gearbox.document.of_kind("cylindrical_gear", *_bevel(gearbox, "gear")):
         shaft = gearbox.shaft_of(gear)
         if shaft is None:
             gearbox.notes.drop(gear, "sits on no shaft of the train")
             continue
-        name = plain_name(gear.name, names, f"gear_{gear.id}")
+        name = gearbox.name_of(gear, names, f"gear_{gear.id}")
         names.append(name)
         y = _middle(gearbox, gear, shaft)
         gearbox.gears[gear.id] = GearOnShaft(name, gear, shaft, y)
+
+
+def _bevel(gearbox: Gearbox, part: str) -> list[str]:
+    """Return the type of bevel gears or stages, which are read where this program wrote them: others
+    give no place of the apex that files have.
+    """
+    return [f"bevel_{part}"] if gearbox.document.is_ours else []
 
 
 def _middle(gearbox: Gearbox, gear: Component, shaft: Shaft) -> float:
@@ -216,7 +232,7 @@ def _middle(gearbox: Gearbox, gear: Component, shaft: Shaft) -> float:
 
 def _add_pairs(gearbox: Gearbox, in_planets: set[int]) -> None:
     document, names = gearbox.document, [stage.name for stage in gearbox.planetary]
-    for stage in document.of_kind("cylindrical_stage"):
+    for stage in document.of_kind("cylindrical_stage", *_bevel(gearbox, "stage")):
         if stage.id in in_planets:
             continue
         ids = stage_gears(document, stage)
@@ -228,11 +244,12 @@ def _add_pairs(gearbox: Gearbox, in_planets: set[int]) -> None:
             others = ", ".join(document.components[i].label for i in ids)
             gearbox.notes.drop(stage, f"between {others}, which are not two gears on shafts here")
             continue
-        name = plain_name(stage.name, names, f"stage_{stage.id}")
+        name = gearbox.name_of(stage, names, f"stage_{stage.id}")
         names.append(name)
         first, second = (gear for gear in gears if gear is not None)
         frames = first.shaft.frame, second.shaft.frame
-        if None not in frames and along(frames[0], frames[1], stage) is None:
+        is_bevel = stage.kind == "bevel_stage"
+        if not is_bevel and None not in frames and along(frames[0], frames[1], stage) is None:
             gearbox.notes.drop(stage, "its shafts are not parallel")
             continue
         if first.shaft is second.shaft:
@@ -257,7 +274,7 @@ def _add_planetary(gearbox: Gearbox) -> set[int]:
     for stage in document.of_kind("planetary_stage"):
         parts = document.parts_of(stage, "cylindrical_stage")
         inside |= {part.id for part in parts}
-        name = plain_name(stage.name, names, f"planetary_{stage.id}")
+        name = gearbox.name_of(stage, names, f"planetary_{stage.id}")
         reason = _try_planetary(gearbox, stage, parts, name)
         if reason:
             gearbox.notes.drop(stage, reason)

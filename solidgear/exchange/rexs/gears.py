@@ -52,6 +52,8 @@ def gear_table(gearbox: Gearbox, gear: GearOnShaft, loaded_side: str = "") -> di
     """Return the table of a gear."""
     component, document = gear.component, gearbox.document
     label = component.label
+    if component.kind == "bevel_gear":
+        return _bevel_table(component)
     table: dict[str, Any] = {"teeth": Sourced(_teeth(component), f"{label}: number_of_teeth")}
     helix = component.number("helix_angle_reference_diameter") or 0.0
     if helix:
@@ -73,6 +75,23 @@ def gear_table(gearbox: Gearbox, gear: GearOnShaft, loaded_side: str = "") -> di
     table |= _modifications(gearbox, component, gear.shaft.sign)
     if head := _head(gearbox, gear):
         table["head"] = head
+    return table
+
+
+def _bevel_table(gear: Component) -> dict[str, Any]:
+    """Return the table of a bevel gear."""
+    table: dict[str, Any] = {"teeth": Sourced(_teeth(gear), f"{gear.label}: number_of_teeth")}
+    if hand := gear.text("spiral_angle_pitch_direction"):
+        table["hand"] = Sourced(hand, f"{gear.label}: spiral_angle_pitch_direction")
+    if diameter := gear.number("outer_pitch_diameter"):
+        table["pitch_radius"] = Sourced(mm(diameter / 2), f"{gear.label}: outer_pitch_diameter")
+    if width := gear.number("face_width"):
+        table["face_width"] = Sourced(mm(width), f"{gear.label}: face_width")
+    for key, name in (("pitch_angle", "pitch_angle"), ("spiral_angle", "mean_spiral_angle")):
+        if (angle := gear.number(name)) is not None:
+            table[key] = Sourced(deg(angle), f"{gear.label}: {name}")
+    if mass := gear.number("mass_of_component"):
+        table["head"] = {"mass": Sourced(said(mass, "kg"), f"{gear.label}: mass_of_component")}
     return table
 
 
@@ -189,8 +208,8 @@ def _head(gearbox: Gearbox, gear: GearOnShaft) -> dict[str, Any]:
     or as heavy as the file says.
     """
     component, shaft = gear.component, gear.shaft
-    width = component.number("face_width")
-    if not width:
+    width, given = component.number("face_width"), component.number("mass_of_component")
+    if not width or gearbox.document.is_ours and not given:
         return {}
     wheel = circles_of(gearbox, component)
     outer = wheel.tip + wheel.root
@@ -201,7 +220,6 @@ def _head(gearbox: Gearbox, gear: GearOnShaft) -> dict[str, Any]:
     density, _ = density_of(gearbox, component, shaft.component)
     mass, torsional, bending = ring_inertia(outer, inner, width, density)
     source = f"{component.label}: from {1e3 * inner:.4g} mm of its shaft to the middle of its teeth"
-    given = component.number("mass_of_component")
     if given:
         torsional, bending, mass = torsional * given / mass, bending * given / mass, given
         source = f"{component.label}: mass_of_component"
@@ -230,6 +248,8 @@ def mesh_table(gearbox: Gearbox, stage: PairStage, has_torque: bool) -> dict[str
     """Return the table of a mesh; its gears are in the order in which power passes them."""
     first, second = stage.gears
     label = stage.component.label
+    if stage.component.kind == "bevel_stage":
+        return _bevel_mesh(stage)
     a, b = first.component, second.component
     for name in ("normal_module", "helix_angle_reference_diameter"):
         values = [abs(gear.number(name) or 0.0) for gear in (a, b)]
@@ -247,6 +267,23 @@ def mesh_table(gearbox: Gearbox, stage: PairStage, has_torque: bool) -> dict[str
     table["pressure_angle"] = Sourced(deg(angle), source)
     table |= _where(gearbox, stage)
     table |= _stiffness(gearbox, stage, has_torque)
+    return table
+
+
+def _bevel_mesh(stage: PairStage) -> dict[str, Any]:
+    """Return the table of a mesh of bevel gears."""
+    component = stage.component
+    table: dict[str, Any] = {
+        "name": stage.name,
+        "between": Sourced([f"{g.shaft.name}.{g.name}" for g in stage.gears], component.label),
+    }
+    rows = (
+        ("shaft_angle", "shaft_angle"),
+        ("pressure_angle", "nominal_design_pressure_angle_drive"),
+    )
+    for key, name in rows:
+        if (angle := component.number(name)) is not None:
+            table[key] = Sourced(deg(angle), f"{component.label}: {name}")
     return table
 
 
@@ -284,9 +321,11 @@ def _where(gearbox: Gearbox, stage: PairStage) -> dict[str, Any]:
     )
     azimuth = atan2(apart[2], -apart[0])
     if abs(azimuth) > 1e-9:
-        out["azimuth"] = Sourced(deg(round(azimuth, 12)), "from the places of shafts")
+        # half a turn is one place, whatever the sign of a zero
+        azimuth += 2 * pi if azimuth < -pi + 1e-9 else 0.0
+        out["azimuth"] = Sourced(deg(azimuth), "from the places of shafts")
     if abs(apart[1]) > NEAR:
-        place = [mm(-due), mm(round(apart[1], 9)), "0 mm"]
+        place = [mm(-due), mm(round(apart[1], 9)), mm(0.0)]
         out["gear_position"] = Sourced(place, "faces that do not lie beside each other")
     return out
 
@@ -304,11 +343,18 @@ def _stiffness(gearbox: Gearbox, stage: PairStage, has_torque: bool) -> dict[str
     """Return the stiffness of a mesh: from its contact under a torque, else that of the file or the
     usual one.
     """
-    if has_torque and all(g.component.number("face_width") for g in stage.gears):
+    has_width = all(g.component.number("face_width") for g in stage.gears)
+    if has_torque and has_width and not is_stiffness_given(gearbox, stage.component):
         return {"stiffness": Sourced("teeth", "from the contact of the teeth under the torque")}
     widths = [g.component.number("face_width") or 0.0 for g in stage.gears]
     width = min(w for w in widths if w) if any(widths) else 0.0
     return mesh_stiffness(gearbox, stage.component, width, "stiffness")
+
+
+def is_stiffness_given(gearbox: Gearbox, stage: Component) -> bool:
+    """Return True for a stage with the stiffness of its file; other programs give that of a standard."""
+    name = "mesh_stiffness_for_load_distribution_along_face_width"
+    return gearbox.document.is_ours and stage.number(name) is not None
 
 
 def mesh_stiffness(gearbox: Gearbox, stage: Component, width: float, key: str) -> dict[str, Any]:

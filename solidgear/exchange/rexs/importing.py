@@ -14,7 +14,8 @@ from solidgear.exchange.rexs.gearbox import Gearbox, couplings_of, gearbox_of
 from solidgear.exchange.rexs.gears import gear_table, mesh_table
 from solidgear.exchange.rexs.notes import Notes, unread
 from solidgear.exchange.rexs.planets import stage_table
-from solidgear.exchange.rexs.running import operation_tables, rotor_tables
+from solidgear.exchange.rexs.rest import read_rest, restored
+from solidgear.exchange.rexs.running import load_table, operation_tables, rotor_tables
 from solidgear.exchange.rexs.scenes import scene_table
 from solidgear.exchange.rexs.shafts import LONGEST, Shaft, plain_name
 
@@ -56,25 +57,45 @@ def imported(document: Document, name: str) -> Imported:
     for shaft in [*shafts, *_alone(gearbox, shafts)]:
         tables, ports = scene_table(gearbox, shaft, cases, drive)
         loads |= ports
+        if (
+            document.is_ours
+            and not shafts
+            and (load := load_table(gearbox, shaft, cases[0], ports))
+        ):
+            tables["load"] = load
         files[f"{shaft.name}.toml"] = tables
+    if document.is_ours:
+        # what stands in place of what REXS has not is replaced by what the file had
+        notes.assumed.clear()
+        notes.contradictory.clear()
+    _restore_shafts(gearbox, files)
     head = [f"Made from REXS {document.version} of {document.header.get('applicationId', '?')}."]
     if not shafts:
         texts = {file: toml_of(tables, head) for file, tables in files.items()}
         return Imported(texts, files, notes, ("no stage: shafts alone",), False)
     flanks = ordered(gearbox, drive)
+    has_torque = drive is not None and drive.engine_sign != 0
     train: dict[str, Any] = {"title": name, "source": head[0]}
     train["shaft"] = _shaft_tables(gearbox, shafts, flanks)
     if flanks:
-        train["mesh"] = [mesh_table(gearbox, stage, drive is not None) for stage, _ in flanks]
+        train["mesh"] = [mesh_table(gearbox, stage, has_torque) for stage, _ in flanks]
     if gearbox.planetary:
         train["planetary"] = {
-            stage.name: stage_table(gearbox, stage, drive is not None)
-            for stage in gearbox.planetary
+            stage.name: stage_table(gearbox, stage, has_torque) for stage in gearbox.planetary
         }
     if drive is not None:
         train |= rotor_tables(gearbox, drive, cases, loads)
-        train["operation"] = operation_tables(gearbox, drive, cases, loads)
-    notes.ask("the transmission_error of every mesh, which response needs: no file of REXS has it")
+        if has_torque:
+            train["operation"] = operation_tables(gearbox, drive, cases, loads)
+    if not document.is_ours:
+        notes.ask(
+            "the transmission_error of every mesh, which response needs: no file of REXS has it"
+        )
+    if document.is_ours:
+        notes.assumed.clear()  # as above, of the tables since
+        notes.unknown.clear()
+    for unit in document.of_kind("gear_unit"):
+        train = _restored(gearbox, train, unit)
     train_file = f"{name}.toml"
     if train_file in files:
         train_file = f"{name}_train.toml"
@@ -83,6 +104,22 @@ def imported(document: Document, name: str) -> Imported:
     return Imported(
         texts, {train_file: plain(train)} | plain(files), notes, _facts(gearbox, shafts)
     )
+
+
+def _restored(gearbox: Gearbox, tables: dict[str, Any], component: Component) -> dict[str, Any]:
+    """Return tables with what the rest of a component says of them."""
+
+    def doubt(reason: str) -> None:
+        gearbox.notes.doubt(component, reason)
+
+    return restored(tables, read_rest(component), doubt)
+
+
+def _restore_shafts(gearbox: Gearbox, files: dict[str, Any]) -> None:
+    """Put what REXS has no place for into the scenes."""
+    for shaft in gearbox.shafts.values():
+        if (scene := files.get(f"{shaft.name}.toml")) is not None:
+            files[f"{shaft.name}.toml"] = _restored(gearbox, scene, shaft.component)
 
 
 def _shaft_tables(

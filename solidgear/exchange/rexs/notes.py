@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from solidgear.exchange.rexs.document import Component, Document
-from solidgear.exchange.rexs.units import OTHER_NAMES
+from solidgear.exchange.rexs.units import OTHER_NAMES, REST
 
 #: attributes that are read, by type; what is where is said by the others of :mod:`units`
 READ = {
@@ -74,6 +74,14 @@ READ = {
         "support_vector u_axis_vector w_axis_vector reference_component_for_position width "
         "inner_diameter outer_diameter"
     ),
+}
+#: of bevel gears, which are read where this program wrote them
+READ_OURS = {
+    "bevel_gear": (
+        READ["cylindrical_gear"] + " outer_pitch_diameter pitch_angle mean_spiral_angle "
+        "spiral_angle_pitch_direction"
+    ),
+    "bevel_stage": "shaft_angle nominal_design_pressure_angle_drive",
 }
 READ["ring_gear"] = READ["cylindrical_gear"]
 READ["switchable_coupling"] = READ["coupling"]
@@ -146,16 +154,17 @@ def _line(row: tuple[str, list[str]]) -> str:
 def unread(document: Document) -> Iterator[tuple[str, str]]:
     """Yield components of types that no train here has, and attributes without a place, by type."""
     names: dict[str, dict[str, None]] = {}
+    read = READ | (READ_OURS if document.is_ours else {})
     spectra = (c for s in document.spectra for case in s.cases for c in case.components)
     for component in [*document.components.values(), *spectra]:
         kind = document.components[component.id].kind
-        if kind not in READ:
+        if kind not in read:
             yield f"{component.title} ({kind})", BEVEL if kind.startswith("bevel") else UNREAD
             continue
-        words = READ[kind].split()
+        words = read[kind].split()
         known = {*words, *(other for word in words for other in OTHER_NAMES.get(word, ()))}
         for name, attribute in component.attributes.items():
-            used = name in known or name.startswith(_OPERATING)
+            used = name in known or name == REST or name.startswith(_OPERATING)
             if not used and attribute.value not in ("", ()):
                 names.setdefault(kind, {})[name] = None
     for kind, attributes in names.items():

@@ -26,6 +26,7 @@ from solidgear.exchange.rexs.gears import (
     circles_of,
     flank_number,
     gear_places,
+    is_stiffness_given,
     mesh_stiffness,
     ring_inertia,
     shift_of,
@@ -68,10 +69,10 @@ def stage_table(gearbox: Gearbox, stage: PlanetStage, has_torque: bool) -> dict[
     widths = [g.number("face_width") or 0.0 for g in (stage.sun.component, first, stage.ring)]
     width = min(w for w in widths if w) if any(widths) else 0.0
     for mate in ("sun", "ring"):
-        if has_torque and width:
+        part = next(p for p in stage.stages if _is_of_ring(gearbox, p) == (mate == "ring"))
+        if has_torque and width and not is_stiffness_given(gearbox, part):
             mesh[f"{mate}_stiffness"] = Sourced("teeth", "from the contact of the teeth")
             continue
-        part = next(p for p in stage.stages if _is_of_ring(gearbox, p) == (mate == "ring"))
         mesh |= mesh_stiffness(gearbox, part, width, f"{mate}_stiffness")
     mesh["pressure_angle"] = Sourced(deg(angle), source)
     table["mesh"] = mesh
@@ -88,7 +89,12 @@ def stage_table(gearbox: Gearbox, stage: PlanetStage, has_torque: bool) -> dict[
 
 def point_of(stage: PlanetStage) -> str:
     """Return the name of the lumped point of the carrier that holds the pins."""
-    return f"pins_{stage.name}"[:40]
+    return pins_name(stage.name)
+
+
+def pins_name(stage: str) -> str:
+    """Return the name of the lumped point that holds the pins of a stage."""
+    return f"pins_{stage}"[:40]
 
 
 def _is_of_ring(gearbox: Gearbox, part: Component) -> bool:
@@ -212,6 +218,8 @@ def _pin(gearbox: Gearbox, stage: PlanetStage) -> dict[str, Any]:
     K = on_middle(matrix, arms)
     if len(bearings) == 1:
         width = bearings[0].number("width") or planet.component.number("face_width") or 0.0
+        if pin is None and bearings[0].number("bending_stiffness"):
+            return _pin_springs(bearings[0])
         K[1, 1] = (bearings[0].number("bending_stiffness") or 0.0) or K[0, 0] * width**2 / 12
         notes.assume(bearings[0], "tilts as if its radial stiffness were spread over its width")
     notes.assume(stage.component, "pins and planet bearings are springs at the middle of a planet")
@@ -220,6 +228,15 @@ def _pin(gearbox: Gearbox, stage: PlanetStage) -> dict[str, Any]:
         "axial": said(float(f"{along:.6g}"), "N/m"),
         "tilting": said(float(f"{K[1, 1]:.6g}"), "N*m/rad"),
     }
+
+
+def _pin_springs(bearing: Component) -> dict[str, Any]:
+    """Return the springs of a single bearing that has all three, and no pin."""
+    rows = (("radial", "N/m"), ("axial", "N/m"), ("bending", "N*m/rad"))
+    numbers = [bearing.number(f"{word}_stiffness") or RIGID for word, _ in rows]
+    words = [said(number, unit) for number, (_, unit) in zip(numbers, rows)]
+    table: dict[str, Any] = dict(zip(("radial", "axial", "tilting"), words))
+    return table | {"radial": Sourced(words[0], bearing.label)}
 
 
 def _pin_of(gearbox: Gearbox, stage: PlanetStage, bearings: list[Component]) -> Shaft | None:

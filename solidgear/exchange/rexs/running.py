@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from solidgear.core.scene.units import quantity
 from solidgear.exchange.rexs.bearings import RIGID_TURN
 from solidgear.exchange.rexs.commented import Sourced, said
 from solidgear.exchange.rexs.document import Component
@@ -18,6 +19,8 @@ from solidgear.exchange.rexs.shafts import Shaft
 
 #: twist of an elastic coupling under the torque that it is chosen for, rad (DIN 740: some degrees)
 TWIST = radians(3.0)
+#: rad/s in a turn a minute as files have it, and what its digits leave, relative
+RPM, RPM_DIGITS = quantity("1 rpm", "speed"), 1e-14
 #: difference of a sum of shares from 1 that their digits leave
 ROUNDED = 1e-3
 #: of unit vectors: a direction along an axis
@@ -31,7 +34,7 @@ def rotor_tables(
     out = {}
     side = drive.torque_side
     torques = [torque_in(gearbox, c, drive.torque, side) for c in cases]
-    torque = max(abs(t) for t in torques if t)
+    torque = max((abs(t) for t in torques if t), default=0.0)
     here = drive.turns[drive.torque_side.component.id]
     for role, load, shaft in zip(("engine", "load"), (drive.engine, drive.load), drive.sides):
         ratio = drive.turns[shaft.component.id] / here
@@ -39,25 +42,29 @@ def rotor_tables(
         is_here = behind is not None or gearbox.shaft_of(load) is shaft
         port = ports.get(load.id) if is_here else None
         port = port or main_point(gearbox, shaft)
-        stiffness, source = torque / abs(ratio) / TWIST, "assumed: twists by 3 deg under the torque"
+        inertia = float(f"{polar_inertia(gearbox, shaft):.4g}")
+        stiffness, source = (
+            float(f"{torque / abs(ratio) / TWIST:.4g}"),
+            "assumed: twists by 3 deg under the torque",
+        )
         rotor, rotor_source = shaft, "assumed: as that of its shaft"
         if behind is not None:
             rotor, rotor_source = behind.shaft, f"of {behind.shaft.component.label}"
+            inertia = _own_inertia(gearbox, rotor)
             if given := behind.coupling.number("rotational_stiffness"):
                 stiffness = min(given, RIGID_TURN)
                 source = f"{behind.coupling.label}: rotational_stiffness"
-        inertia = said(float(f"{polar_inertia(gearbox, rotor):.4g}"), "kg*m^2")
         out[role] = {
             "shaft": Sourced(shaft.name, load.label),
-            "inertia": Sourced(inertia, rotor_source),
+            "inertia": Sourced(said(inertia, "kg*m^2"), rotor_source),
             "status": "assumed",
             "spring": {
-                "stiffness": Sourced(said(float(f"{stiffness:.4g}"), "N*m/rad"), source),
+                "stiffness": Sourced(said(stiffness, "N*m/rad"), source),
                 "at": Sourced(port, load.label if behind is None else behind.coupling.label),
                 "status": "assumed",
             },
         }
-        if behind is not None:
+        if behind is not None and not gearbox.document.is_ours:
             gearbox.notes.assume(
                 behind.shaft.component,
                 f"is the inertia of the {role}, behind its coupling; it bends nothing, and its machine "
@@ -71,6 +78,14 @@ def rotor_tables(
         "3 deg under the largest torque"
     )
     return out
+
+
+def _own_inertia(gearbox: Gearbox, shaft: Shaft) -> float:
+    """Return the inertia of a shaft about its axis with the masses on it, kg m^2."""
+    masses = gearbox.document.parts_of(shaft.component, "additional_mass")
+    given = fsum(mass.number("moment_of_inertia_u_axis") or 0.0 for mass in masses)
+    sections = polar_inertia(gearbox, shaft)
+    return given + (sections if masses else float(f"{sections:.4g}"))
 
 
 def main_point(gearbox: Gearbox, shaft: Shaft) -> str:
@@ -128,7 +143,7 @@ def operation_tables(
         if side is not drive.sides[0]:
             table["of"] = side.name
         if speed:
-            rpm = said(float(f"{abs(speed) * 30 / pi:.12g}"), "rpm")
+            rpm = said(abs(speed), "rpm", RPM, RPM_DIGITS)
             table["speed"] = Sourced(rpm, "rotational_speed")
         else:
             notes.ask("no shaft has a rotational_speed: write speed under [[operation]]")
@@ -186,6 +201,17 @@ def _forces(gearbox: Gearbox, case: Case, ports: dict[int, str]) -> list[Any]:
     return out
 
 
+def load_table(gearbox: Gearbox, shaft: Shaft, case: Case, ports: dict[int, str]) -> dict[str, Any]:
+    """Return the load of a shaft that stands alone, at its first lumped point."""
+    for number in list(ports)[:1]:
+        load = case.components[number]
+        force, moment = load_vector(load, shaft)
+        moment[1] = load.number("torque_around_u_axis") or 0.0
+        table: dict[str, Any] = {k: said(float(v), "N") for k, v in zip("xyz", force) if v}
+        return table | {f"th{k}": said(float(v), "N*m") for k, v in zip("xyz", moment) if v}
+    return {}
+
+
 def lubrication_table(gearbox: Gearbox, shaft_bearings: list[Component]) -> dict[str, Any]:
     """Return the lubrication of the bearings of a shaft; empty where the file has no lubricant."""
     document, notes = gearbox.document, gearbox.notes
@@ -194,13 +220,14 @@ def lubrication_table(gearbox: Gearbox, shaft_bearings: list[Component]) -> dict
     case = cases_of(gearbox)[0].components
     casings = [c for c in case.values() if c.kind == "gear_casing"]
     viscosity = next((v for c in casings if (v := c.number("operating_viscosity"))), None)
-    source = "operating_viscosity"
+    source, digits = "operating_viscosity", 12
     if viscosity is None and lubricants:
         oil = lubricants[0]
         cold, hot = (oil.number(f"viscosity_at_{t}_degree_celsius") for t in (40, 100))
         temperature = next((t for c in casings if (t := c.number("temperature_lubricant"))), None)
         if cold and hot and temperature is not None:
             viscosity = viscosity_at(temperature, cold, hot)
+            digits = 6
             source = f"{oil.label} at {temperature:g} C, by Walther (ASTM D341)"
     if not viscosity or not shaft_bearings:
         return {}
@@ -213,7 +240,7 @@ def lubrication_table(gearbox: Gearbox, shaft_bearings: list[Component]) -> dict
         )
     cleanliness = Sourced(factor if factor is not None else "normal", "contamination factor")
     return {
-        "viscosity": Sourced(said(float(f"{viscosity:.6g}"), "mm^2/s", 1e-6), source),
+        "viscosity": Sourced(said(float(f"{viscosity:.{digits}g}"), "mm^2/s", 1e-6), source),
         "cleanliness": cleanliness,
     }
 

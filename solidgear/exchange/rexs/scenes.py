@@ -14,7 +14,7 @@ from solidgear.exchange.rexs.gearbox import Gearbox, sides_of
 from solidgear.exchange.rexs.materials import material_table
 from solidgear.exchange.rexs.planets import carried_masses, pins_at, pins_middle, point_of
 from solidgear.exchange.rexs.running import load_vector, lubrication_table, planets_of
-from solidgear.exchange.rexs.shafts import Section, Shaft, plain_name
+from solidgear.exchange.rexs.shafts import Section, Shaft
 
 #: pieces that stand for a conical bore; each has its volume
 STEPS = 8
@@ -71,6 +71,8 @@ def _segments(gearbox: Gearbox, shaft: Shaft) -> list[dict[str, Any]]:
             )
         for k, piece in enumerate(pieces, 1):
             name = f"s{number}" if len(pieces) == 1 else f"s{number}_{k}"
+            if gearbox.document.is_ours and len(pieces) == 1:
+                name = section.component.name
             out.append(_segment(name, piece))
     return out
 
@@ -132,7 +134,7 @@ def _bearings(
             seats[k], seats[k + 1] = (seats[k][0], middle), (middle, seats[k + 1][1])
     out = []
     for (lo, hi), (_, bearing, y, source) in zip(seats, rows):
-        name = plain_name(bearing.name, names, f"bearing_{bearing.id}")
+        name = gearbox.name_of(bearing, names, f"bearing_{bearing.id}")
         names.append(name)
         width, _ = width_of(bearing, shaft, y, gearbox.notes)
         if hi - lo < width - 1e-6:
@@ -164,6 +166,8 @@ def _seat_of(gearbox: Gearbox, bearing: Component, shaft: Shaft) -> float | None
         return None
     side = "inner" if sides[0] == shaft.component else "outer"
     other = sides[1] if side == "inner" else sides[0]
+    if other.id in (g.shaft.component.id for s in gearbox.planetary for g in s.planets):
+        return None
     if other.kind == "shaft":
         counts = [_in_casing(gearbox, part) for part in (shaft.component, other)]
         if counts[0] > counts[1] or (counts[0] == counts[1] and side == "outer"):
@@ -214,13 +218,13 @@ def _ports(
     for load in gearbox.document.parts_of(shaft.component, "external_load"):
         vectors = [load_vector(case.components[load.id], shaft) for case in cases]
         pushes = any(np.any(force) or np.any(moment) for force, moment in vectors)
-        if not pushes and load.id not in driving:
+        if not (pushes or load.id in driving or gearbox.document.is_ours):
             continue
         u = load.number("u_coordinate_on_shaft")
         if u is None:
             raise load.wrong("u_coordinate_on_shaft", "is missing")
         if (name := places.get(u)) is None:
-            name = places[u] = plain_name(load.name, names, f"load_{load.id}")
+            name = places[u] = gearbox.name_of(load, names, f"load_{load.id}")
             names.append(name)
             width = load.number("width_of_external_load") or shaft.length / 20
             ports.append(_port(shaft, name, load, shaft.place(u), width))
@@ -233,7 +237,7 @@ def _ports(
         u = behind.coupling.number(f"u_coordinate_on_shaft_{side}_side")
         if u is None:
             raise behind.coupling.wrong(f"u_coordinate_on_shaft_{side}_side", "is missing")
-        name = plain_name(behind.coupling.name, names, f"coupling_{behind.coupling.id}")
+        name = gearbox.name_of(behind.coupling, names, f"coupling_{behind.coupling.id}")
         names.append(name)
         ports.append(_port(shaft, name, behind.coupling, shaft.place(u), shaft.length / 20))
         loads[number] = name
@@ -268,7 +272,7 @@ def _masses(gearbox: Gearbox, shaft: Shaft) -> list[dict[str, Any]]:
             gearbox.notes.drop(mass, "has no mass_of_component, or lies off its shaft")
             continue
         inertia = [mass.number(f"moment_of_inertia_{axis}_axis") or 0.0 for axis in "wuv"]
-        names.append(plain_name(mass.name, names, f"mass_{mass.id}"))
+        names.append(gearbox.name_of(mass, names, f"mass_{mass.id}"))
         out.append(
             {
                 "name": names[-1],

@@ -15,8 +15,8 @@ from solidgear.exchange.rexs.frames import Frame
 
 #: gap between sections, m, that digits leave
 TOUCH = 1e-6
-#: letters of a name
-LONGEST = 32
+#: letters of a name, and of one that a file had before
+LONGEST, MOST_LETTERS = 32, 100
 
 
 @dataclass(frozen=True)
@@ -173,6 +173,17 @@ def _size(part: Component, name: str) -> float:
     if size is None or size <= 0:
         raise part.wrong(name, "is missing" if size is None else "must be greater than zero")
     return size
+
+
+def is_file_name(name: str) -> bool:
+    """Return True for a name after which a file of a folder can be called, wherever it is.
+
+    Examples
+    --------
+    >>> is_file_name("input shaft 2"), is_file_name("../input")
+    (True, False)
+    """
+    return len(name) <= MOST_LETTERS and re.fullmatch(r"\w[\w ()+-]*", name) is not None
 
 
 def plain_name(text: str, taken: Collection[str], usual: str, longest: int = LONGEST) -> str:

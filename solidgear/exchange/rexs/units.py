@@ -46,6 +46,25 @@ UNITS: dict[str, tuple[str, float]] = {
     "m / s^2": ("acceleration", 1.0),
 }
 
+#: the program that a document of this one names, and the attribute of what REXS has no place for
+OURS, REST = "solidgear", "custom_solidgear_rest"
+
+
+#: attributes that are whole numbers, or numbers of components, by their type in JSON
+WHOLE = {
+    "number_of_teeth": "integer",
+    "number_of_rolling_elements": "integer",
+    "number_of_bearing_rows": "integer",
+    "reference_component_for_position": "reference_component",
+}
+
+
+def scaled(number: float, factor: float) -> float:
+    """Return a number in a unit in SI: dividing by 1000 is exact where multiplying by 0.001 is not."""
+    inverse = round(1 / factor) if factor < 1 else 0
+    return number / inverse if inverse and factor * inverse == 1 else number * factor
+
+
 #: unit of an attribute, of those that are read
 _IN_UNITS = {
     "mm": (
@@ -55,14 +74,14 @@ _IN_UNITS = {
         "inner_diameter outer_diameter width face_width normal_module tip_diameter root_diameter "
         "center_distance common_face_width width_of_external_load diameter_of_rolling_element "
         "length_of_rolling_element raceway_radius_of_inner_ring raceway_radius_of_outer_ring "
-        "reference_diameter_rolling_bearing distance_between_bearing_rows tip_relief_depth "
+        "outer_pitch_diameter reference_diameter reference_diameter_rolling_bearing distance_between_bearing_rows tip_relief_depth "
         "tip_relief_datum_diameter root_relief_depth root_relief_datum_diameter "
         "helix_crowning_amount_datum_face helix_crowning_amount_non_datum_face helix_slope"
     ),
     "mum": "radial_bearing_clearance mounted_radial_bearing_clearance preload_distance",
     "deg": (
         "helix_angle_reference_diameter normal_pressure_angle rotating_angle_around_neg_u_axis "
-        "pressure_angle"
+        "pressure_angle pitch_angle mean_spiral_angle shaft_angle nominal_design_pressure_angle_drive"
     ),
     "N / m": "radial_stiffness axial_stiffness",
     "N mm / rad": "bending_stiffness rotational_stiffness",

@@ -24,6 +24,8 @@ _MASS = _any("[km]?g", "t", "lb")
 _TIME = _any("m?s", "min")
 _TIMES = r"(?: ?\* ?| )"
 _SQUARE, _CUBE = _any(r"\^2", r"\*\*2"), _any(r"\^3", r"\*\*3")
+_AREA = _any(f"{_LENGTH}{_SQUARE}", "[kcmuµn]?m2")
+_VOLUME = _any(f"{_LENGTH}{_CUBE}", "[kcmuµn]?m3")
 #: without a sign between them
 _NM = "[kM]?N[mc]?m"
 _MOMENT = _any(f"{_FORCE}{_TIMES}{_LENGTH}", _NM)
@@ -31,18 +33,18 @@ _MOMENT = _any(f"{_FORCE}{_TIMES}{_LENGTH}", _NM)
 UNITS = {
     "length": _LENGTH,
     "angle": _ANGLE,
-    "pressure": _any("[kMG]?Pa", "bar", "psi", "ksi", f"{_FORCE}/{_LENGTH}{_SQUARE}"),
-    "density": f"{_MASS}/{_LENGTH}{_CUBE}",
+    "pressure": _any("[kMG]?Pa", "bar", "psi", "ksi", f"{_FORCE}/{_AREA}"),
+    "density": f"{_MASS}/{_VOLUME}",
     "force_per_length": f"{_FORCE}/{_LENGTH}",
     "force": f"{_FORCE}(?:/{_ANGLE})?",
     "moment": f"{_MOMENT}(?:/{_ANGLE})?",
     "mass": _MASS,
-    "inertia": _any(f"{_MASS}{_TIMES}{_LENGTH}{_SQUARE}", "kg m2", r"kg\*m2"),
+    "inertia": f"{_MASS}{_TIMES}{_AREA}",
     "frequency": "[kM]?Hz",
     "load": _FORCE,
     "torque": _MOMENT,
     "speed": _any("rpm", *(word.replace("^", r"\^") for word in TURNS), f"{_ANGLE}/{_TIME}"),
-    "viscosity": _any(f"{_LENGTH}{_SQUARE}/{_TIME}", "c?St"),
+    "viscosity": _any(f"{_AREA}/{_TIME}", "c?St"),
     "temperature": "m?K",
     "dimensionless": "%",
 }

@@ -4,7 +4,8 @@ object.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
 from solidgear.core import Source, explained
 from solidgear.strength.acting import Acting, Given
@@ -20,7 +21,7 @@ def deflect(
     of: str | None = None,
     point: str | None = None,
     weight: str | None = None,
-    load: str | None = None,
+    load: str | Mapping[str, Any] | None = None,
     tol: float | None = None,
     progress: Callable[[str], None] = lambda text: None,
 ) -> at_rest.Deflections:
@@ -42,7 +43,7 @@ def deflect(
         Operating point of a train, by name or number.
     weight : str, optional
         With a torque: direction of weight in the first shaft's scene, such as ``"-z"``.
-    load : str, optional
+    load : str or dict, optional
         Load on a shaft in place of that of its scene: ``"x=2 kN, z=-500 N"`` at the port.
     tol : float, optional
         Relative error that meshes of harmonic shafts may leave in the motions of gears; a tenth of

@@ -23,7 +23,7 @@ def stress(
     of: str | None = None,
     point: str | None = None,
     weight: str | None = None,
-    load: str | None = None,
+    load: str | Mapping[str, Any] | None = None,
     drive: Mapping[str, str | float] | None = None,
     tol: float = ENOUGH,
     conditions: Mapping[str, Any] | Conditions | None = None,

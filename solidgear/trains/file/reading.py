@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, ClassVar
@@ -363,6 +362,5 @@ def _matrices_read(table: Mapping[str, Any], folder: Path, path: tuple) -> dict[
         raise SceneError(reason, path=(*path, "points"))
     if not isinstance(units, str) or (units and units not in MATRIX_UNITS):
         raise SceneError(f"use one of {listed(MATRIX_UNITS)}", path=(*path, "units"))
-    keys = {key: table[key] for key in ("points", "units") if key in table}
-    fields["matrices"] = replace(read(folder / name, points, units), keys=keys)
+    fields["matrices"] = read(folder / name, points, units)
     return fields

@@ -13,7 +13,7 @@ from solidgear.trains.options import Reduced, Reducing, mix
 
 def judge(
     train: Source | Train,
-    against: Iterable[str | Sequence[str]] = (),
+    against: str | Iterable[str | Sequence[str]] = (),
     *,
     progress: Callable[[str], None] = lambda text: None,
     **reduced: Unpack[Reducing],
@@ -24,7 +24,7 @@ def judge(
     ----------
     train : path, dict or Train
         A train: its file (TOML), the tables of one, or an object.
-    against : iterable of str
+    against : str or iterable of str
         Further mixes to judge, a model for each shaft, such as ``"euler+euler"``.
     progress : callable
         Called with a sentence at every step.
@@ -48,6 +48,6 @@ def judge(
     >>> found.verdict.sentences()[-1]
     'Cheapest within 2 % and 3 dB up to 300 Hz: pinion euler, gear euler.'
     """
-    more = [*map(mix, against)]
+    more = [*map(mix, [against] if isinstance(against, str) else against)]
     assembly = Reduced(**reduced).assembly(train)
     return compare_train(assembly, reduced.get("max_frequency"), more, progress)

@@ -4,6 +4,7 @@ tables or an object.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, ClassVar
@@ -76,7 +77,7 @@ def bearing(
     source: Source,
     name: str | None = None,
     *,
-    load: str | None = None,
+    load: str | Mapping[str, Any] | None = None,
     speed: str | None = None,
 ) -> SolvedBearings:
     """Catalogue bearings: stiffness at load, load of every element, pressure, life; of a train with
@@ -88,7 +89,7 @@ def bearing(
         A scene or train: its file (TOML), the tables of one, or an object.
     name : str, optional
         This bearing alone; of a train with its shaft, such as ``"pinion.A"``.
-    load : str, optional
+    load : str or dict, optional
         Of a shaft: another load, ``"x=2 kN, z=-500 N, thx=10 N*m"``, on the port, or on the bearing.
     speed : str, optional
         Of a shaft: its speed, such as ``"3000 rpm"``, for lives in hours.

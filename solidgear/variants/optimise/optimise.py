@@ -24,6 +24,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from solidgear.core import Sheeted, SolidgearError, Source, document_of, nearest
+from solidgear.core.errors import names_in
 from solidgear.core.judge.change import Change
 from solidgear.core.plain import plain
 from solidgear.variants.optimise.designs import Designs, scene_designs, train_designs
@@ -171,11 +172,11 @@ SAME, AT_END = 1e-6, 1e-6
 
 def optimise(
     scene: Source,
-    vary: Iterable[str],
+    vary: str | Iterable[str],
     goal: str,
-    keep: Iterable[str] = (),
+    keep: str | Iterable[str] = (),
     *,
-    keep_sum: Iterable[str] = (),
+    keep_sum: str | Iterable[str] = (),
     model: str | None = None,
     tol: float | None = None,
     point: str | None = None,
@@ -188,14 +189,14 @@ def optimise(
     ----------
     scene : path, dict, Scene or Train
         A scene or train: its file, the tables of one, or an object.
-    vary : iterable of str
+    vary : str or iterable of str
         ``PATH=LOW:HIGH``, such as ``bearing.B.position=180 mm:240 mm``.
     goal : str
         ``max bending 1``, ``min C_zz``, ``min mass`` ...; of a train a column of its sweep, such as
         ``min transmission_error``.
-    keep : iterable of str
+    keep : str or iterable of str
         Limits such as ``C_zz < 5 um/kN``, ``f1 > 600 Hz``, ``mass < 12 kg``; error bars included.
-    keep_sum : iterable of str
+    keep_sum : str or iterable of str
         ``PATH+PATH``: sums that stay as they are in the file.
     model : str, optional
         Solve every design by it, such as ``timoshenko``, without error bars; by default by the
@@ -228,8 +229,8 @@ def optimise(
     >>> found.best.number > 0, found.gain.relative > 0.1, found.at_end
     (True, True, ('bearing.B.position',))
     """
-    wanted, limits = wish_of(goal), tuple(map(limit_of, keep))
-    texts, sums = tuple(map(_with_both_ends, vary)), tuple(keep_sum)
+    wanted, limits = wish_of(goal), tuple(map(limit_of, names_in(keep)))
+    texts, sums = tuple(map(_with_both_ends, names_in(vary))), names_in(keep_sum)
     document = document_of(scene)
     if document.describes_train:
         names = [wish.name for wish in (wanted, *limits)]

@@ -30,6 +30,7 @@ from solidgear.core import (
     nearest,
     pinned,
 )
+from solidgear.core.errors import names_in
 from solidgear.core.loading import part_of
 from solidgear.core.plain import plain
 from solidgear.core.scene.bearing_stiffness import STIFFNESS_NAMES
@@ -139,8 +140,8 @@ class Sensitivities(Sheeted):
 def sensitivities(
     source: Source,
     model: str = "harmonic",
-    of: Sequence[str] | None = None,
-    by: Sequence[str] | None = None,
+    of: str | Sequence[str] | None = None,
+    by: str | Sequence[str] | None = None,
     *,
     coarser: bool = True,
     progress: Callable[[str], None] = lambda _: None,
@@ -159,10 +160,10 @@ def sensitivities(
         A scene: its file (TOML), the tables of one, or an object.
     model : {'harmonic', 'timoshenko', 'euler', 'solid'}
         The solid has derivatives of modes by springs, masses and materials alone.
-    of : sequence of str, optional
+    of : str or sequence of str, optional
         Numbers such as ``"C_zz"``, ``"K_thx@pinion"`` or ``"bending 1"``; by default first bending
         and the compliance ``C_zz``.
-    by : sequence of str, optional
+    by : str or sequence of str, optional
         Paths of entries, or their beginnings, such as ``"bearing.A"``; by default all numbers of
         materials, segments, bearings, masses, housing and ports.
     coarser : bool
@@ -196,13 +197,14 @@ def sensitivities(
     """
     document = document_of(source)
     where, tables = document.path, document.tables
-    scene = load(document)
+    scene = load(document).settled
     _supported(scene, model)
-    quantities = [Quantity(name) for name in of or USUAL[: 1 if model == "solid" else 2]]
+    usual = USUAL[: 1 if model == "solid" else 2]
+    quantities = [Quantity(name) for name in names_in(of or usual)]
     if model == "solid" and not all(quantity.is_frequency for quantity in quantities):
         static = next(quantity for quantity in quantities if not quantity.is_frequency)
         raise SolidgearError(f"derivatives of {static} are for bodies of revolution; ask for modes")
-    moves = [*numbers(tables, by)]
+    moves = [*numbers(tables, names_in(by or ()))]
     levels: list[dict[str, Any]] = [{}]
     if coarser and model != "solid":
         levels.append(_coarser(scene, model, options))

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from solidgear.core import Source
+from solidgear.core.errors import names_in
 from solidgear.variants.sweep.design import Design
 from solidgear.variants.sweep.file_task import Swept, run
 from solidgear.variants.sweep.shaft_task import task_of
@@ -22,7 +23,7 @@ def sweep(
     seed: int = 0,
     one_at_a_time: bool = False,
     table: str | os.PathLike | None = None,
-    keep_sum: Iterable[str] = (),
+    keep_sum: str | Iterable[str] = (),
     out: str | os.PathLike | None = None,
     jobs: int = 1,
     dask: str | None = None,
@@ -46,7 +47,7 @@ def sweep(
         The file as it is, then each value with all others as in the file.
     table : path, optional
         Of variants of your own, a CSV file with paths as heads, in place of `vary`.
-    keep_sum : iterable of str
+    keep_sum : str or iterable of str
         ``PATH+PATH``: sums that stay what they are in the file.
     out : path, optional
         Keeps the rows; the same sweep goes on from there.
@@ -94,9 +95,9 @@ def sweep(
     >>> bool(rows["C_zz"][0] > rows["C_zz"][2])
     True
     """
-    texts = (vary,) if isinstance(vary, str) else tuple(vary)
+    texts = names_in(vary)
     variants = None if table is None else Path(table)
-    design = Design(texts, sample, seed, one_at_a_time, variants, tuple(keep_sum))
+    design = Design(texts, sample, seed, one_at_a_time, variants, names_in(keep_sum))
     task = task_of(source, design, **how)
     with tempfile.TemporaryDirectory() as folder:
         rows = Path(folder) / "rows.csv" if out is None else Path(out)

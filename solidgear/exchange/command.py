@@ -1,7 +1,8 @@
-"""The command export: matrices of a shaft or a train for other programs."""
+"""The command export: a gearbox, or the matrices of a shaft or a train, for other programs."""
 
 from __future__ import annotations
 
+from collections import Counter
 from pathlib import Path
 from typing import Annotated
 
@@ -11,9 +12,12 @@ import typer
 from solidgear.core import DOF_NAMES, LADDER, SolidgearError
 from solidgear.core.reduction.matrix_units import MATRIX_UNITS, SI, matrix_units
 from solidgear.core.reduction.port_matrices import PortMatrices, not_free
+from solidgear.exchange.export import OTHERS, is_rexs, refuse_options
 from solidgear.exchange.matrices.formats import FORMATS, format_of, write_matrices
 from solidgear.exchange.matrices.ross import write_ross
-from solidgear.exchange.matrices.source import CRAIG_BAMPTON, MODEL, port_matrices
+from solidgear.exchange.matrices.source import CRAIG_BAMPTON, MODEL, Wanted, port_matrices
+from solidgear.exchange.rexs.export.exporting import Exported, write_rexs
+from solidgear.exchange.rexs.units import REST
 from solidgear.show.command import Progress, command
 from solidgear.show.options import BY_MODEL, Run, Settings, options, speed_of
 from solidgear.show.sheet import Sheet, present
@@ -31,7 +35,8 @@ def export(
         typer.Option(
             "--to",
             help=f"Format, by default that of the ending of --out: {KINDS}; ross: a Python file "
-            "with the rotor of the beam and the shaft condensed to its point.",
+            "with the rotor of the beam and the shaft condensed to its point; rexs: the shaft or "
+            "the train as it is, in .rexs, .rexsj or .rexsz.",
         ),
     ] = None,
     out: Annotated[Path, typer.Option("--out", "-o", help="File to write.")],
@@ -83,7 +88,7 @@ def export(
         "model": _models(model or []),
         "modes": modes,
         "method": method,
-        "ports": names,
+        "ports": tuple(names),
         "bearings": bearings,
         "speed": speed_of(speed),
         "loss": loss,
@@ -91,9 +96,14 @@ def export(
     }
 
     def study(_: Progress) -> Sheet:
+        if is_rexs(out, to or ""):
+            usual = Wanted()
+            asked = {k: v for k, v in wanted.items() if v != getattr(usual, k, None)}
+            refuse_options(out, asked, system)
+            return _rexs_sheet(write_rexs(file, out), file, out)
         if to == "ross":
             return _written(write_ross(file, out, system, **wanted))
-        format_of(out, to or "")
+        format_of(out, to or "", OTHERS)
         matrices = port_matrices(file, **wanted)
         return _sheet(matrices, write_matrices(matrices, out, to or "", system), system)
 
@@ -107,6 +117,30 @@ def _models(words: list[str]) -> str | dict[str, str]:
     if len(alone) > 1 or (alone and by_shaft):
         raise SolidgearError(f"--model {', '.join(words)}: give one model, or SHAFT=MODEL for each")
     return by_shaft or (alone[0] if alone else "")
+
+
+def _rexs_sheet(result: Exported, file: Path, out: Path) -> Sheet:
+    """Return what was written, and what REXS has no place for."""
+    components = result.document.components.values()
+    counts = Counter(component.type for component in components)
+    table = Table("", [text("component"), Column("count")], [*counts.items()])
+    rows = [(name, ", ".join(keys)) for name, keys in result.without_place]
+    places = Table("No place in REXS", [text("component"), text("entries")], rows)
+    facts = f"REXS {result.document.version}: {len(components)} components."
+    notes = [f"Written: {out}"]
+    if rows:
+        notes.insert(
+            0,
+            f"What has no place stands in {REST}, which solidgear import reads and others pass over.",
+        )
+    data = {
+        "files": [str(out)],
+        "version": result.document.version,
+        "components": dict(counts),
+        "without_place": {name: [*keys] for name, keys in result.without_place},
+    }
+    tables = [table, places] if rows else [table]
+    return Sheet("export", str(file), facts, tables, data, notes=notes)
 
 
 def _written(files: list[Path]) -> Sheet:

@@ -1,0 +1,1 @@
+"""From scenes and trains to REXS documents, which read back equal."""
