@@ -104,7 +104,7 @@ ADDITIONS = {
         "judge-system": "trains.printed:COMPARISON",
         "nonlinear": "backlash.printed:NONLINEAR",
         "contact": "teeth.printed:CONTACT",
-        "export": "exchange.matrices.printed:EXPORT",
+        "export": "exchange.printed:EXPORT",
     },
     # matrices of other programs
     "matrices": {

@@ -1,4 +1,4 @@
-"""What the export of matrices prints as JSON."""
+"""What export prints as JSON."""
 
 from __future__ import annotations
 
@@ -15,6 +15,15 @@ EXPORT = (
             "mass": float | None,
             "free": bool,
             "files": list[str],
+        }
+    ),
+    # a file of REXS
+    Printed(
+        keys={
+            "files": list[str],
+            "version": str,
+            "components": dict[str, int],
+            "without_place": dict[str, list[str]],
         }
     ),
     # a rotor of another program is its own account
