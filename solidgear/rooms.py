@@ -58,7 +58,7 @@ ADDITIONS = {
     "document": {
         "read scene": "core.loading:scene_of",
         "write scene": "core.scene.writing:tables_of",
-        "text of scene": "core.scene.scene_text:toml_of",
+        "text of scene": "core.scene_text:toml_of",
         "text of train": "trains.file.text:toml_of",
         "segment of words": "core.scene.shapes:segment_of",
         "settle scene": "core.loading:settled",

@@ -24,7 +24,9 @@ from solidgear.core.scene.file import load, scene_of
 from solidgear.core.scene.toml_file import describes_train
 from solidgear.core.scene.units import DIMENSIONS, quantity
 from solidgear.exchange.schema.files import KINDS, made, path_of, text_of
+from solidgear.exchange.schema.results import of
 from solidgear.exchange.schema.units import text_of as text_of_quantity
+from solidgear.show.printed import Printed
 from solidgear.trains.file.reading import train_of
 
 ROOT = Path(__file__).parents[1]
@@ -201,6 +203,31 @@ def test_the_schema_marks_what_the_reader_refuses_and_no_more(name):
     assert overlooked == [] and false == []
 
 
+def test_a_shaft_without_gears_is_a_carrier():
+    tables = tomllib.loads((ROOT / "geometry/reducer.toml").read_text("utf-8"))
+    assert refusals(tables) == []
+    del tables["planetary"]
+    assert refusals(tables) != []
+    tables["shaft"]["output"]["teeth"] = 20
+    assert refusals(tables) == []
+
+
+@pytest.mark.parametrize("side", ["housing", "pinion"])
+def test_points_of_matrices_are_nodes_with_or_without_a_place(side):
+    tables = tomllib.loads((ROOT / "geometry/gearbox_housed.toml").read_text("utf-8"))
+    tables["housing"] = {"matrices": "box.bdf"}
+
+    def refused(point):
+        return refusals({**tables, side: {**tables[side], "points": {"input.A": point}}}) != []
+
+    place = ["0 mm", "120 mm", 0.0]
+    nodes = [101, [5, 6], {"node": 101}, {"node": [5, 6], "position": place}]
+    assert not any(map(refused, nodes))
+    assert refused(place) == (side == "pinion")  # of a rigid housing points are places
+    misspelt = {"node": 101, "positon": place}
+    assert all(map(refused, ["101", 10.5, [5], [5, 6, 7, 8], {"position": place}, misspelt]))
+
+
 @pytest.mark.parametrize("dimension", DIMENSIONS)
 def test_units_that_the_schema_knows_are_read(dimension):
     @settings(
@@ -282,6 +309,14 @@ def test_every_command_that_prints_json_has_a_schema():
         forms = schema.get("anyOf", [schema])
         assert all(form["type"] == "object" and form["properties"] for form in forms), name
     assert "prints JSON" in str(command("schema", "--json", "render").exception)
+
+
+def test_what_is_printed_beside_other_keys_has_and_lacks_theirs():
+    base = Printed(keys={"name": str, "models": str}, sometimes={"bar": float}, without=("models",))
+    schema = Draft7Validator(of(Printed((base,), {"notes": list[str]})))
+    assert schema.is_valid({"name": "a", "notes": []})
+    assert schema.is_valid({"name": "a", "notes": [], "bar": 0.1})
+    assert not schema.is_valid({"name": "a", "notes": [], "models": "b"})
 
 
 SHAFT, TRAIN = ROOT / "geometry" / "shaft_stepped.toml", ROOT / "geometry" / "axle_overhung.toml"

@@ -434,7 +434,8 @@ def test_the_command_draws_curves_over_one_number(tmp_path):
     ):
         chart = tmp_path / f"curves.{ending}"
         done = call(tmp_path, GEARBOX, *vary, "--chart", chart)
-        assert done.exit_code == 0 and said in done.stdout, done.output
+        assert done.exit_code == 0, done.output
+        assert said in " ".join(done.stdout.split())  # a long folder wraps the line
         drawn = chart.read_text()
         assert "operation.full.torque, N*m" in drawn and "radial load of bearings in N" in drawn
         # words on every place of a curve, in the unit that was asked in

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from solidgear.bearings.duty import DutyLife
 from solidgear.bearings.equivalent import Equivalent
 from solidgear.show.printed import Printed
 
@@ -59,9 +60,9 @@ FACTS = Printed(
 )
 OVER_POINTS = Printed(
     keys={
-        "bearing": str,
+        "name": str,
         "points": list[Printed((LIFE,), {"at": str})],  # type: ignore[misc]
-        "duty": Any,
+        "duty": (Printed((DutyLife,), {"of": str}), type(None)),
     }
 )
 BEARING = (

@@ -37,6 +37,7 @@ CORE_FLOORS = (
     "core.bounds",
     "core.ladder",
     "core.loading",
+    "core.scene_text",
     "core.reduction",
     "core.system",
     "core.judge",

@@ -177,7 +177,8 @@ def _operating_stiffness(bearing: Component, shaft: Shaft) -> dict[str, float] |
     if not 0 < max(diagonal[1:3]) < RIGID:
         return None
     # programs give it with the sign of the bearing's force, or of the force on it
-    K *= np.sign(K[1, 1] + K[2, 2]) or 1.0
+    if K[1, 1] + K[2, 2] < 0:
+        K = -K
     turned = np.kron(np.eye(2), shaft.turn)
     K = turned @ ((K + K.T) / 2) @ turned.T
     return stiffness_entries(K)

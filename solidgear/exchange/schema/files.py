@@ -21,6 +21,19 @@ KINDS = {
     "train": "shafts that mesh, with engines and loads",
     "measured": "measured resonances",
 }
+#: condition on trains: only a carrier of a planetary stage is a shaft without gears
+WITHOUT_STAGES: Node = {
+    "if": {"not": {"required": ["planetary"]}},
+    "then": {
+        "properties": {
+            "shaft": {
+                "additionalProperties": {
+                    "anyOf": [{"required": ["gears"]}, {"required": ["teeth"]}]
+                }
+            }
+        }
+    },
+}
 FOLDER = Path(__file__).parent
 
 
@@ -48,7 +61,8 @@ def made(kind: str) -> Node:
         node = of_model(SceneFile)
     elif kind == "train":
         node = either([of_model(model) for model in added("file").values()])
-        node = also(node, {"anyOf": [{"required": ["shaft"]}, {"required": ["pinion", "gear"]}]})
+        shafts = {"anyOf": [{"required": ["shaft"]}, {"required": ["pinion", "gear"]}]}
+        node = also(node, shafts, WITHOUT_STAGES)
     else:
         node = of_model(added("further file")[kind])
     title = f"solidgear {kind}: {KINDS[kind]}"

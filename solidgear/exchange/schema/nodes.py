@@ -193,7 +193,11 @@ def _either_number(nodes: Sequence[Node]) -> Node:
 def _either_list(nodes: Sequence[Node]) -> Node:
     if len(nodes) == 1:
         return {key: nodes[0][key] for key in ("items", "minItems", "maxItems") if key in nodes[0]}
-    return {"items": either([node["items"] for node in nodes])}
+    out: Node = {"items": either([node["items"] for node in nodes])}
+    for key, widest in (("minItems", min), ("maxItems", max)):
+        if all(key in node for node in nodes):
+            out[key] = widest(node[key] for node in nodes)
+    return out
 
 
 def _either_table(nodes: Sequence[Node]) -> Node:

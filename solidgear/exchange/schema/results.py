@@ -158,12 +158,8 @@ def _each_hint(thing: Any) -> dict[str, Any]:
 
 
 def _of_printed(printed: Printed) -> Node:
-    keys = {k: v for kind in printed.results for k, v in _keys(kind).items()}
-    keys |= {k: Field(kind) for k, kind in printed.keys.items()}
-    keys = {k: v for k, v in keys.items() if k not in printed.without}
-    some = {k: v for kind in printed.optional for k, v in _keys(kind).items()}
-    some |= {k: Field(kind) for k, kind in printed.sometimes.items()}
-    out = _table({**some, **keys})
+    keys, sometimes = _keys(printed), _sometimes(printed)
+    out = _table({**sometimes, **keys})
     out["required"] = [*keys]
     if printed.named is not None:
         out["additionalProperties"] = of(printed.named)
@@ -171,10 +167,20 @@ def _of_printed(printed: Printed) -> Node:
 
 
 def _keys(kind: Any) -> dict[str, Field]:
-    if isinstance(kind, Printed):
-        inner = {k: v for part in kind.results for k, v in _keys(part).items()}
-        return inner | {k: Field(v) for k, v in kind.keys.items()}
-    return keys_of(kind)
+    """Return the keys that every run has."""
+    if not isinstance(kind, Printed):
+        return keys_of(kind)
+    keys = {k: v for part in kind.results for k, v in _keys(part).items()}
+    keys |= {k: Field(v) for k, v in kind.keys.items()}
+    return {k: v for k, v in keys.items() if k not in kind.without}
+
+
+def _sometimes(printed: Printed) -> dict[str, Field]:
+    """Return the keys that not every run has."""
+    bases = [part for part in printed.results if isinstance(part, Printed)]
+    keys = {k: v for base in bases for k, v in _sometimes(base).items()}
+    keys |= {k: v for part in printed.optional for k, v in _keys(part).items()}
+    return keys | {k: Field(v) for k, v in printed.sometimes.items()}
 
 
 def _table(keys: Mapping[str, Field], closed: bool = True) -> Node:

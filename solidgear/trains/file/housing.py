@@ -16,7 +16,7 @@ from solidgear.core.reduction.port_matrices import CENTRE, PortMatrices
 from solidgear.core.scene.bearing_stiffness import Matrix
 from solidgear.core.scene.stations import Status
 from solidgear.core.scene.units import TYPED, Loss, Mass, Product, quantity
-from solidgear.trains.file.matrix_keys import WithMatrices
+from solidgear.trains.file.matrix_keys import PointNode, WithMatrices
 from solidgear.trains.file.mesh_cycle import Vector
 
 #: name of the housing among the parts of a train
@@ -118,7 +118,7 @@ class TrainHousing(WithMatrices):
     mounts: tuple[Mount, ...] = Field((), alias="mount")
     #: places of a rigid housing whose motion is given, by name, m, or the nodes of the file of
     #: matrices
-    points: Annotated[dict[str, Vector], Written(dict[str, Any])] = {}
+    points: Annotated[dict[str, Vector], Written(dict[str, Vector | PointNode])] = {}
     #: source of mass and inertia
     status: Status = "assumed"
 
