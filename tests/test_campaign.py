@@ -462,6 +462,7 @@ def test_bodies_of_boxes_are_one_body_by_any_mesh(sort, tmp_path):
     assert max(sizes) < int(build(part.exact[-1], "solid").size)
 
 
+@pytest.mark.long
 def test_a_shaft_in_a_mesh_file_is_that_of_its_segments(tmp_path):
     part = PARTS["mesh"](2, tmp_path)
     plain = part.exact[0]

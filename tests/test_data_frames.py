@@ -42,6 +42,7 @@ def results():
     }
 
 
+@pytest.mark.long
 def test_every_result_has_a_frame_of_numbers_with_units(results):
     texts = set()
     for name, result in results.items():

@@ -84,6 +84,7 @@ def test_no_row_depends_on_the_rows_before_it(task, rows):
     assert alone == rows[3] and "face_load_factor" in alone
 
 
+@pytest.mark.long
 def test_a_bearing_that_moves_settles_the_train_anew():
     """What carries the teeth is shared by torques and reliefs alone."""
     task = task_of("pinion.bearing.A.position=15 mm,20 mm", RELIEF)
@@ -92,6 +93,7 @@ def test_a_bearing_that_moves_settles_the_train_anew():
     assert near["face_load_factor"] != pytest.approx(far["face_load_factor"], rel=1e-3)
 
 
+@pytest.mark.long
 def test_a_row_with_the_stiffness_of_its_teeth_has_the_modes_of_its_torque():
     """Each row's mesh stiffness is that of its own torque and relief, not of the first point."""
     task = task_of("mesh.stiffness=teeth", RELIEF, TORQUE, ask=("contact", "system-modes"), n=4)

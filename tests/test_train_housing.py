@@ -391,6 +391,7 @@ def test_finer_meshes_stay_within_the_bars_of_a_train_in_a_housing(train):
     assert error.max() > 0.5 * bars.max()
 
 
+@pytest.mark.long
 def test_mixes_are_judged_where_a_housing_stands_on_nothing(bare):
     """Seven motions at 0 Hz take no part: equal models leave no band."""
     coarse = {"harmonic": {"order": 2, "layers": 1}}
