@@ -190,6 +190,9 @@ def test_small_fields_and_fields_with_commas_are_read(tmp_path):
     assert reread == again and str(again) == again.source
     sg.export(bar_matrices, tmp_path / "si.bdf")
     assert "units = 'm-kg-N'" in sg.read_matrices(tmp_path / "si.bdf", units="mm-t-N").doubts[0]
+    slip = {"left": {"node": 1, "positon": [0, 0, 0]}, "right": 2}
+    with pytest.raises(sg.SceneError, match="'left': unknown key .positon.*position"):
+        sg.read_matrices(tmp_path / "bar.bdf", slip, "mm-t-N")
     with pytest.raises(sg.SceneError, match="none.bdf: there is no such file"):
         sg.read_matrices("none.bdf")
 

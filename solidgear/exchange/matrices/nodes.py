@@ -30,6 +30,8 @@ from solidgear.exchange.matrices.header import Stated
 
 #: a node and a direction, 1 to 6
 Label = tuple[int, int]
+#: keys of a point that is a table
+POINT_KEYS = ("node", "position")
 #: modes that are kept of a body that is condensed here
 KEPT = 40
 #: unknowns up to which all modes are computed
@@ -114,6 +116,10 @@ class NodeMatrices:
             return point_nodes or {str(k): (k, k) for k in alone}
         out: dict[str, tuple[int, int]] = {}
         for name, entry in points.items():
+            for key in (*entry,) if isinstance(entry, Mapping) else ():
+                if key not in POINT_KEYS:
+                    hint = nearest(key, POINT_KEYS)
+                    raise self.wrong(f"point {name!r}: unknown key {show(key, 20)}{hint}")
             node: Any = entry.get("node") if isinstance(entry, Mapping) else entry
             pair = node if isinstance(node, (list, tuple)) else [node, node]
             for number in pair:
