@@ -38,6 +38,7 @@ def test_shaft_in_python():
 
 @pytest.mark.long
 def test_shaft_to_report(tmp_path):
+    pytest.importorskip("pandas")
     found = run("shaft_to_report", tmp_path)
     # a thicker seat is stiffer, and weighs as much as is allowed
     assert list(found["rows"]["C_zz"]) == sorted(found["rows"]["C_zz"], reverse=True)
