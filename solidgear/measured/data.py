@@ -42,7 +42,7 @@ from solidgear.core import (
     explained,
     show,
 )
-from solidgear.core.scene.document import Origin
+from solidgear.core.scene.document import Origin, read_tables
 from solidgear.core.scene.model_table import entry_of
 from solidgear.core.scene.rewriting import toml_of
 from solidgear.core.scene.units import Frequency, Tolerance, quantity
@@ -228,11 +228,7 @@ class Measured(Model):
         >>> peaks.to_dict()
         {'mode': [{'frequency': 1200.0, 'uncertainty': '2.0 Hz'}]}
         """
-        path = os.path.normpath(os.path.join(folder, name))
-        try:
-            return load_measured(Document(tables, path))
-        except SceneError as error:
-            raise error.of_dict() from None
+        return read_tables(tables, folder, name, "measurement", load_measured)
 
     def to_dict(self) -> dict[str, Any]:
         """Tables of a file with these data, as plain data in SI; `from_dict` reads them back equal.

@@ -112,15 +112,21 @@ def mode_set_tables(modes: ModeSet) -> dict[str, Table]:
         for y, six in zip(modes.stations, sections)
         for dof, motion in zip(DOF_NAMES, six)
     ]
+    motions = shapes_table("sections", "y [m]", shapes)
+    return {"frequencies": mode_set(modes), "shapes": motions}
+
+
+def shapes_table(of: str, place: str, rows: Sequence[Sequence[Any]]) -> Table:
+    """Return motions in all shapes, of rows with shape, frequency, place, component and motion."""
     columns = [
         Column("shape", axis=True),
         Column("frequency [Hz]"),
-        Column("y [m]", axis=True),
+        Column(place, axis=True),
         Column("component", axis=True),
         Column("motion"),
     ]
-    title = "Motions of sections, of unit modal mass; rotations in rad for translations in m"
-    return {"frequencies": mode_set(modes), "shapes": Table(title, columns, shapes)}
+    title = f"Motions of {of}, of unit modal mass; rotations in rad for translations in m"
+    return Table(title, columns, rows)
 
 
 def mode_set_figure(modes: ModeSet, names: Sequence[str] = ()) -> Chart:

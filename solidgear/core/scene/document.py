@@ -6,13 +6,15 @@ A file, a dict and an object are one thing: each gives tables with the keys of a
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any, Protocol, TypeAlias, runtime_checkable
+from typing import Any, Protocol, TypeAlias, TypeVar, runtime_checkable
 
-from solidgear.core.errors import SolidgearError, show
+from solidgear.core.errors import SceneError, SolidgearError, show
 from solidgear.core.scene.paths import Tables
 from solidgear.core.scene.toml_file import describes_train, place_of, read_text, tables_in
+
+Thing = TypeVar("Thing")
 
 
 @runtime_checkable
@@ -85,13 +87,25 @@ def document_of(source: Source) -> Document:
     )
 
 
-def refuse_no_tables(tables: object, kind: str) -> None:
-    """Refuse what is no dict."""
+def read_tables(
+    tables: Mapping[str, Any],
+    folder: str | os.PathLike,
+    name: str,
+    kind: str,
+    reader: Callable[[Document], Thing],
+) -> Thing:
+    """Return what a reader of documents makes of a dict, whose names of files are relative to a folder;
+    errors are those of a dict of a `kind`.
+    """
     if not isinstance(tables, Mapping):
         raise SolidgearError(
             f"{show(repr(tables), 40)[1:-1]}: give the tables of a {kind} as a dict, by the keys of "
             "its file"
         )
+    try:
+        return reader(Document(tables, os.path.normpath(os.path.join(folder, name))))
+    except SceneError as error:
+        raise error.of_dict() from None
 
 
 def name_of_source(source: Source) -> str:

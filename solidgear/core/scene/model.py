@@ -22,7 +22,7 @@ from solidgear.core.scene.ask import Ask
 from solidgear.core.scene.bearing_stiffness import stiffness_entries
 from solidgear.core.scene.blends import Blend
 from solidgear.core.scene.corner import Corner
-from solidgear.core.scene.document import Origin, refuse_no_tables
+from solidgear.core.scene.document import Origin, read_tables
 from solidgear.core.scene.ends import seat_masses, snap_seats
 from solidgear.core.scene.feature_rules import Feature
 from solidgear.core.scene.housing import ONE_HOUSING, Housing
@@ -297,12 +297,8 @@ class Scene(Displayed, Model):
         >>> scene.length, sg.Scene.from_dict(scene.to_dict()) == scene
         (0.3, True)
         """
-        refuse_no_tables(tables, "scene")
-        path = os.path.normpath(os.path.join(folder, name))
-        try:
-            return addition("document", "read scene")(tables, path)
-        except SceneError as error:
-            raise error.of_dict() from None
+        read = addition("document", "read scene")
+        return read_tables(tables, folder, name, "scene", lambda d: read(d.tables, d.path))
 
     def to_dict(self) -> dict[str, Any]:
         """Tables of a file that describes the scene, as plain data in SI; `from_dict` reads them back

@@ -26,7 +26,7 @@ from solidgear.core import (
     addition,
     listed,
 )
-from solidgear.core.scene.document import Origin, refuse_no_tables
+from solidgear.core.scene.document import Origin, read_tables
 from solidgear.trains.file.gears import HeadInertia, Member, Shaft
 from solidgear.trains.file.housing import TrainHousing
 from solidgear.trains.file.layout import (
@@ -225,12 +225,7 @@ class Train(Model):
         >>> sg.Train.from_dict(train.to_dict()) == train
         True
         """
-        refuse_no_tables(tables, "train")
-        path = os.path.normpath(os.path.join(folder, name))
-        try:
-            return addition("document", "read train")(Document(tables, path))
-        except SceneError as error:
-            raise error.of_dict() from None
+        return read_tables(tables, folder, name, "train", addition("document", "read train"))
 
     def to_dict(self) -> dict[str, Any]:
         """Tables of a file that describes the train with its shafts, as plain data in SI; `from_dict`

@@ -10,7 +10,7 @@ from typing import Any, ClassVar, Unpack
 import numpy as np
 
 from solidgear.core import DOF_NAMES, Sheeted, SolidgearError, Source, listed, nearest
-from solidgear.show.table import Column, Table
+from solidgear.show.table import Table
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.file.train import Train
 from solidgear.trains.modes.modes import TrainMode, TrainModes, train_modes
@@ -57,6 +57,8 @@ class SolvedModes(Sheeted):
 
 def shapes(modes: SolvedModes) -> Table:
     """Return the motions of ports in all modes; a mode that has the name of another is counted."""
+    from solidgear.show.shown import shapes_table  # start-up: for frames alone
+
     solved = modes.solved
     system = modes.assembly.system(*solved.models.values())
     ends = [f"{part}.{port}" for part, body in system.parts.items() for port in body.ports]
@@ -69,15 +71,7 @@ def shapes(modes: SolvedModes) -> Table:
         for port, six in moved.items():
             for dof, motion in zip(DOF_NAMES, six[:, k]):
                 rows.append((name, mode.frequency_hz, port, dof, float(motion)))
-    columns = [
-        Column("shape", axis=True),
-        Column("frequency [Hz]"),
-        Column("port", axis=True),
-        Column("component", axis=True),
-        Column("motion"),
-    ]
-    title = "Motions of ports, of unit modal mass; rotations in rad for translations in m"
-    return Table(title, columns, rows)
+    return shapes_table("ports", "port", rows)
 
 
 def system_modes(
