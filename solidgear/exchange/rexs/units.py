@@ -74,7 +74,8 @@ _IN_UNITS = {
         "inner_diameter outer_diameter width face_width normal_module tip_diameter root_diameter "
         "center_distance common_face_width width_of_external_load diameter_of_rolling_element "
         "length_of_rolling_element raceway_radius_of_inner_ring raceway_radius_of_outer_ring "
-        "outer_pitch_diameter reference_diameter reference_diameter_rolling_bearing distance_between_bearing_rows tip_relief_depth "
+        "outer_pitch_diameter reference_diameter reference_diameter_rolling_bearing "
+        "distance_between_bearing_rows tip_relief_depth "
         "tip_relief_datum_diameter root_relief_depth root_relief_datum_diameter "
         "helix_crowning_amount_datum_face helix_crowning_amount_non_datum_face helix_slope"
     ),
