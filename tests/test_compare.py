@@ -304,7 +304,7 @@ def test_subset_of_models(overhung):
 def test_solid_alone_is_its_own_reference(rod):
     # coarse: a fifth is asked
     scene = rod.with_changes(ask=rod.ask.with_changes(tolerance=0.2))
-    found = compare(scene, ("solid",), settings={"solid": {"refinement": 1.0}}).results
+    found = compare(scene, ("solid",), settings={"solid": {"refinement": 0.5}}).results
     assert (
         found["verdict"]["reference"] == "solid"
         and found["deviations"] == []

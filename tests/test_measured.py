@@ -395,6 +395,7 @@ def test_what_is_known_beforehand_stands_where_the_data_tell_nothing(rod):
     assert any("do not determine material.density" in sentence for sentence in found.sentences)
 
 
+@pytest.mark.long
 def test_data_and_what_was_known_are_weighed_by_their_deviations(rod):
     alone = identify(rod, PEAKS, ["material.E"], tol=1e-3)["material.E"]
     rod.write_text(ROD + '[uncertain]\n"material.E" = "200 GPa ± 2 %"\n')

@@ -122,6 +122,7 @@ def test_guyan_drifts_with_the_fourth_power(measured):
     assert max(past) > 1  # the pole it does not know
 
 
+@pytest.mark.long
 def test_effective_mass_can_be_negative_second_or_hollow(measured):
     rows = measured("effective_mass_limits")["effective_mass_limits"].rows
     assert {"first", "second", "negative"} <= {r["mode-matched"] for r in rows}

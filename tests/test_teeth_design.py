@@ -303,6 +303,7 @@ def test_a_verdict_says_where_the_mesh_stiffness_comes_from():
     assert tooth_stiffness(Assembly(sg.load_train(GEARBOX))) == ()
 
 
+@pytest.mark.long
 def test_two_trains_beside_each_other_say_which_has_its_stiffness_from_teeth():
     train = sg.load_train(AXLE)
     point = OperatingPoint(torque=300.0)
