@@ -864,6 +864,7 @@ def test_narrow_seats_are_told_in_one_sentence():
     assert "the seats of 'A', 'B', 'C' are 0.025, 0.025, 0.025 diameters" in notice.sentence
 
 
+@pytest.mark.long
 def test_check_says_in_a_dozen_lines_what_it_says_of_an_ordinary_shaft():
     """Cautions of one kind stand in one line with their places."""
     wrapped = command("check", "geometry/intermediate_shaft.toml").stdout

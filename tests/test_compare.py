@@ -506,6 +506,7 @@ def test_only_whole_files_are_left(folder):
     }
 
 
+@pytest.mark.long
 def test_pictures_of_an_earlier_run_do_not_stay(overhung, tmp_path, monkeypatch):
     monkeypatch.setenv("SOLIDGEAR_RENDERER", "none")
     (tmp_path / "mode_euler.png").write_bytes(b"old")

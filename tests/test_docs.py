@@ -98,6 +98,8 @@ SECONDS = {
     "guide/compare.md",
     "guide/contact.md",
     "guide/frequencies.md",
+    "guide/housings.md",
+    "guide/planetary.md",
     "guide/points.md",
     "guide/uncertainty.md",
     "guide/nonlinear.md",

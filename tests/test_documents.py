@@ -80,7 +80,7 @@ OF_TRAIN = {
 
 #: a second and more each
 DEAR = {
-    *("answer", "optimise", "compare", "stress", "deflect", "response", "receptance"),
+    *("answer", "sweep", "optimise", "compare", "stress", "deflect", "response", "receptance"),
     *("sweep of a train", "a shaft of it", "bearing of a train"),
 }
 

@@ -49,7 +49,7 @@ def nothing_found(case, kind, cases, seed=1):
 @pytest.mark.long
 def test_spoilt_scenes_are_refused_or_solved(fuzz):
     case, _, scenes = fuzz
-    cases, kind = 12, case.Fuzz("scenes", partial(scenes.scene, harmonic=0.7, command=0.35))
+    cases, kind = 20, case.Fuzz("scenes", partial(scenes.scene, harmonic=0.7, command=0.35))
     stages, sorts = nothing_found(case, kind, cases)
     # a fuzz that never gets past the parser, or never meets a refusal, tests nothing
     accepted = {stage: n for (kind, stage), n in stages.items() if kind == "accepted"}

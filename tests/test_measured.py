@@ -520,6 +520,7 @@ def test_commands_tell_and_write_what_they_found(rod, tmp_path):
     assert data["predicted"][0]["name"] == "bending 4"
 
 
+@pytest.mark.long
 def test_a_mode_has_one_name_whatever_solid_finds_it():
     """Of a short cylinder two modes that are even around the axis swell more than they stretch."""
     scene = sg.load("validation/experiments/steel_cylinder.toml")
