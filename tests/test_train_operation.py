@@ -1,7 +1,6 @@
 """Operating points: mesh force, settled bearings, displacements, misalignment and their bars."""
 
 import json
-from dataclasses import replace
 from math import cos, pi
 from pathlib import Path
 
@@ -250,10 +249,9 @@ def test_modes_are_those_of_the_point():
 
 
 # ----------------------------------------------------------------------- displacements
-def alone(scene, model, **settings):
-    """Deflection of a shaft under the load of its scene, with options of models that are set."""
-    assembly = replace(Assembly.of(scene), settings=settings)
-    return deflection(assembly, AT_REST, model).shafts[0]
+def alone(scene, model):
+    """Deflection of a shaft under the load of its scene."""
+    return deflection(Assembly.of(scene), AT_REST, model).shafts[0]
 
 
 def simply_bent(lengths, diameters, E, load, at, ends):
@@ -303,8 +301,7 @@ def test_a_solid_deflects_as_the_harmonic_solid_does():
         ],
         port=sg.Port(name="p", y=0.05, lo=0.04, hi=0.06),
     ).with_changes(load={"z": 1000.0, "y": 500.0})
-    coarse = {"refinement": 0.5}
-    models = [alone(scene, model, solid=coarse) for model in ("timoshenko", "harmonic", "solid")]
+    models = [alone(scene, model) for model in ("timoshenko", "harmonic", "solid")]
     beam, harmonic, solid = (shaft.ports["p"][[1, 2, 3]] for shaft in models)
     # a coarse mesh of the 3D solid is some tenths of a per cent stiff; beams are off by more
     assert solid == pytest.approx(harmonic, rel=1e-2)
