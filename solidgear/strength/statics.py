@@ -58,14 +58,15 @@ def statics(scene: Scene, loads: LoadsAlone, carried: Mapping[str, np.ndarray]) 
     rows = [(load.y, load.six) for load in loads.acting]
     reactions = [(places[name], -np.asarray(load)) for name, load in carried.items()]
     all_rows = [*rows, *reactions]
-    sums = [_about_start(part) for part in (rows, reactions)]
+    acting, reacting = _about_start(rows), _about_start(reactions)
     moved = [np.abs(_about_start([row])) for row in all_rows]
     forces, moments = sum(moved, np.zeros(6)).reshape(2, 3).sum(axis=1)
     # moments count by the length of the shaft
     size = max(forces, moments / scene.length) * np.repeat([1.0, scene.length], 3)
-    left = np.abs(sums[0] + sums[1])
+    left = np.abs(acting + reacting)
     return Statics(
-        *sums,
+        acting,
+        reacting,
         float((left / size).max()) if size.any() else 0.0,
         tuple(_torque_line([(y, float(six[4])) for y, six in all_rows])),
     )

@@ -62,7 +62,10 @@ def seat_loads(
             load = load.with_changes(name=load.on or f"load {number}")
         if (segment := by_name.get(load.on or "")) is not None:
             load = load.with_changes(on=None, lo=segment.y0, hi=segment.y1)
-        out.append(snap_seats([load], segments)[0] if load.on is None else load)
+        if load.seat is not None:
+            seat = snap_seats([load.seat], segments)[0]
+            load = load.with_changes(lo=seat.lo, hi=seat.hi)
+        out.append(load)
     return tuple(out)
 
 
