@@ -88,7 +88,7 @@ class Teeth:
         force = pull * np.cross(along, out) - pull * twist * generator - abs(pull) * rise * normal
         moment = np.cross(self.diameter / 2 * out, force)
         moment[1] = torque
-        return np.concatenate([force, moment])
+        return np.concatenate([force, moment]) + 0.0  # without zeros below zero
 
 
 @dataclass(frozen=True)
