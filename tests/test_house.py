@@ -156,7 +156,7 @@ main()
     "words",
     [
         ("modes", "-f", "timoshenko"),
-        ("modes", "-f", "harmonic"),
+        pytest.param(("modes", "-f", "harmonic"), marks=pytest.mark.slow),
         ("stiffness", "-f", "timoshenko"),
         ("answer",),
     ],
