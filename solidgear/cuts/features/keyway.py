@@ -34,6 +34,8 @@ class Keyway(Long):
     depth: PositiveLength
     #: shape of both ends
     ends: Literal["round", "square"] = "round"
+    #: radius at the edges of the floor, m, for stress alone: models have sharp ones
+    radius: PositiveLength | None = None
 
     def _sized(self, segment: Segment) -> Iterator[SceneError]:
         yield from self._deep(segment)
@@ -52,6 +54,11 @@ class Keyway(Long):
                 "the surface at the sides of the keyway lies below its floor: it is too wide, or "
                 "not deep enough",
                 path=("depth",),
+            )
+        elif self.radius is not None and self.radius > min(self.depth, self.width / 2):
+            yield SceneError(
+                "the edges of the floor have radii up to the depth, and half the width",
+                path=("radius",),
             )
         elif self.ends == "round" and self.length <= self.width + TOUCH:
             yield SceneError(

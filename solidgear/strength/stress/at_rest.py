@@ -21,8 +21,9 @@ from solidgear.core.plain import plain
 from solidgear.core.scene.filleted import filleted
 from solidgear.parts.body_file import BodyFile
 from solidgear.strength.load import AT_REST, LoadAtPort, load_alone
+from solidgear.strength.stress.conditions import Conditions
+from solidgear.strength.stress.norm.steels import strength_of
 from solidgear.strength.stress.notch import ENOUGH
-from solidgear.strength.stress.rating import Conditions
 from solidgear.strength.stress.section_forces import COMPONENTS, SectionForces, forces_of
 from solidgear.strength.stress.shaft import ShaftStress, check_tolerance, local_stress, shaft_stress
 from solidgear.trains.assembly.assembly import Assembly
@@ -66,9 +67,11 @@ class StressedShaft:
 
     @property
     def weak(self) -> tuple[str, ...]:
-        """Segments with a fillet whose material has no strength."""
+        """Segments with a notch whose material has no strength."""
         segments = [self.scene.segments[notch.found.corner.owner] for notch in self.found.notches]
-        return tuple(dict.fromkeys(s.name for s in segments if s.material.strength is None))
+        names = {drawn.segment for drawn in self.found.drawn}
+        segments += [segment for segment in self.scene.segments if segment.name in names]
+        return tuple(dict.fromkeys(s.name for s in segments if strength_of(s.material) is None))
 
 
 @dataclass(frozen=True)

@@ -9,8 +9,8 @@ from solidgear.core import SolidgearError, Source, explained, name_of_source
 from solidgear.core.scene.units import quantity
 from solidgear.strength.acting import Acting, Given
 from solidgear.strength.stress.at_rest import StressAtRest, StressSettings, stress_at_rest
+from solidgear.strength.stress.conditions import Conditions
 from solidgear.strength.stress.notch import ENOUGH
-from solidgear.strength.stress.rating import Conditions
 from solidgear.trains.assembly.shaft import JUDGE
 from solidgear.trains.file.train import Train
 
@@ -46,15 +46,17 @@ def stress(
         Error bar allowed for a form factor, relative.
     conditions : mapping or Conditions, optional
         Of the rating by DIN 743: ``roughness``, ``ultimate_at_size``, ``yield_at_size``,
-        ``hardening``, ``force_share``, ``torque_share``, ``constant_mean``.
+        ``treated_diameter``, ``hardening``, ``hard_surface``, ``surface_strength``,
+        ``force_share``, ``torque_share``, ``bending_share``, ``overload``, ``constant_mean``,
+        ``cycles``, ``spectrum``, ``damage_sum``.
     progress : callable
         Called with a sentence at every step.
 
     Returns
     -------
     StressAtRest
-        ``shafts``, each with its forces, nominal stress and ``notches``. ``write(folder)`` makes a
-        page, section forces and their charts.
+        ``shafts``, each with its forces, nominal stress, fillets (``notches``) and rated features
+        (``drawn``). ``write(folder)`` makes a page, section forces and their charts.
 
     Raises
     ------

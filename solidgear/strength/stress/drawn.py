@@ -1,0 +1,163 @@
+"""Stress and rating of features of a drawing, each where it is worst along its length."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from solidgear.core import TOUCH
+from solidgear.strength.stress.conditions import Conditions
+from solidgear.strength.stress.din743 import Load
+from solidgear.strength.stress.nominal import NominalStress
+from solidgear.strength.stress.norm.steels import source_of, strength_of
+from solidgear.strength.stress.norm.tested import TABLE
+from solidgear.strength.stress.norm_notch import Section
+from solidgear.strength.stress.notches import DrawnNotch, drawn_notch
+from solidgear.strength.stress.rating import Rating, Steel, rated
+
+if TYPE_CHECKING:
+    from solidgear.core import Scene
+    from solidgear.core.scene.parts import Strength
+    from solidgear.strength.stress.section_forces import SectionForces
+
+
+@dataclass(frozen=True)
+class DrawnStress:
+    """A feature as a notch of DIN 743, with the stress of this shaft under loads."""
+
+    name: str
+    kind: str  #: in words
+    y: float  #: where it is worst, m
+    section: Section  #: of nominal stress
+    forces: np.ndarray  #: (6,) Q_x, N, Q_z, M_x, T, M_z there, N and N m
+    nominal: NominalStress
+    #: fatigue notch factors of the norm; empty for a material without strength
+    factors: Mapping[Load, float]
+    rating: Rating | None  #: none without strength
+    remark: str
+    segment: str = field(repr=False, default="")
+
+    @property
+    def severity(self) -> tuple[float, float]:
+        """Rank of a notch, the worst least: the safety, or minus the stress where there is none."""
+        safety = self.rating.worst if self.rating else np.inf
+        return safety, -(self.nominal.bending + abs(self.nominal.tension))
+
+
+@dataclass(frozen=True)
+class Unrated:
+    """A feature that DIN 743 does not rate."""
+
+    name: str
+    kind: str  #: in words
+    reason: str
+
+
+def drawn_stresses(
+    scene: Scene, forces: SectionForces, conditions: Conditions
+) -> tuple[tuple[DrawnStress, ...], tuple[Unrated, ...]]:
+    """Return the stress of the features of a shaft that the norm rates, and the others."""
+    stresses, others = [], []
+    for feature in scene.features:
+        found = drawn_notch(scene, feature)
+        if isinstance(found, str):
+            others.append(Unrated(feature.name, feature.what, found))
+        else:
+            stresses.append(_worst(scene, feature, found, forces, conditions))
+    return tuple(stresses), tuple(others)
+
+
+def _worst(
+    scene: Scene,
+    feature: Any,
+    drawn: DrawnNotch,
+    forces: SectionForces,
+    conditions: Conditions,
+) -> DrawnStress:
+    """Return the stress of a notch in the section of its length where it is worst."""
+    candidates = [
+        _at(scene, feature, drawn, y, six, conditions)
+        for y, six in _sections(scene, feature, forces)
+    ]
+    return min(candidates, key=lambda stress: stress.severity)
+
+
+def _sections(
+    scene: Scene, feature: Any, forces: SectionForces
+) -> Iterator[tuple[float, np.ndarray]]:
+    """Yield places along a feature, m, with their section forces: both ends, and both sides of loads
+    between.
+    """
+    lo, hi = feature.span(scene.segments)
+    yield lo, forces.at(lo)
+    for k, y in enumerate(forces.y):
+        if lo + TOUCH < y < hi - TOUCH:
+            yield float(y), forces.left[k]
+            yield float(y), forces.right[k]
+    last = int(np.abs(forces.y - hi).argmin())
+    yield hi, forces.left[last] if abs(forces.y[last] - hi) <= TOUCH else forces.at(hi)
+
+
+def _at(
+    scene: Scene,
+    feature: Any,
+    drawn: DrawnNotch,
+    y: float,
+    six: np.ndarray,
+    conditions: Conditions,
+) -> DrawnStress:
+    """Return the stress of a notch under the section forces at a place, m."""
+    notch, nominal = drawn.notch, drawn.notch.section.nominal(six)
+    segment = next(s for s in scene.segments if s.name == feature.segment)
+    strength = strength_of(segment.material)
+    rating, factors, remarks = None, {}, list(drawn.remarks)
+    if strength is not None:
+        largest = 2 * scene.outline.largest_radius
+        rating = rated(
+            notch,
+            conditions.levels(nominal),
+            strength,
+            conditions,
+            largest,
+            source_of(segment.material),
+        )
+        steel = steel_at_size(strength, rating, conditions)
+        factors = dict(notch.factors(steel).notch)
+        if notch.tested_roughness is not None and not TABLE[0] <= steel.ultimate <= TABLE[1]:
+            remarks.append(
+                f"a tensile strength of {steel.ultimate / 1e6:.4g} MPa is outside of the tests, 400 "
+                "to 1200 MPa"
+            )
+        if conditions.hard_surface and rating.crack is None:
+            remarks.append(_no_crack_check(conditions))
+    return DrawnStress(
+        name=feature.name,
+        kind=feature.what,
+        y=y,
+        section=notch.section,
+        forces=six,
+        nominal=nominal,
+        factors=factors,
+        rating=rating,
+        remark="; ".join(remarks),
+        segment=segment.name,
+    )
+
+
+def _no_crack_check(conditions: Conditions) -> str:
+    if conditions.surface_strength is None:
+        return "its first crack is not judged without surface_strength"
+    return "its first crack is not judged: the norm has no form factor for it"
+
+
+def steel_at_size(strength: Strength, rating: Rating, conditions: Conditions) -> Steel:
+    """Return the strength at the size of the part that a rating took."""
+    size = {entry.symbol: entry.values[0] or 1.0 for entry in rating.entries[:4]}
+    return Steel(
+        strength.ultimate * size["K_1 (sigma_B)"],
+        strength.yield_point * size["K_1 (sigma_S)"],
+        conditions.hard_surface,
+    )
