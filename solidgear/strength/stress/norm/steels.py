@@ -2,7 +2,7 @@
 
 K_1 of DIN 743-2, equations 10 to 14, as two public programs have it (see
 :mod:`solidgear.strength.stress.norm.tested`). Strengths are those of DIN 743-3, tables A.1, A.3 and
-A.4, as hanslhansl/din743 has them (edition of 2024); for the diameter of a test bar.
+A.4, of a test bar, where both programs agree (editions of 2000 and 2024).
 """
 
 from __future__ import annotations
@@ -51,7 +51,6 @@ STEELS: dict[str, tuple[SteelGroup, float, float]] = {
     "42CrMo4": ("tempering", 1100, 900),
     "50CrMo4": ("tempering", 1100, 900),
     "34CrNiMo6": ("tempering", 1200, 1000),
-    "30CrNiMo8": ("tempering", 1030, 850),
     "16MnCr5": ("case_hardening", 1000, 695),
     "20MnCr5": ("case_hardening", 1200, 850),
     "18CrNiMo7-6": ("case_hardening_crnimo", 1200, 850),
