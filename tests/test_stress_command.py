@@ -14,7 +14,7 @@ import solidgear as sg
 from solidgear.core.scene.closed_form import mass_properties
 from solidgear.strength.stress import shaft
 from solidgear.strength.stress.at_rest import StressSettings, stress_at_rest
-from solidgear.strength.stress.rating import Conditions
+from solidgear.strength.stress.conditions import Conditions
 from solidgear.strength.stress.sheet import shaft_tables
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.file.operation import GRAVITY, OperatingPoint

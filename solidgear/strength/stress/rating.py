@@ -376,10 +376,6 @@ def _used(
     return used, _safety(elementary) if several else None
 
 
-def _use(shares: ByLoad) -> float:
-    return 1 / _safety(shares) if shares else 0.0
-
-
 def _crack(
     sheet: _Sheet, peak: ByLoad | None, stress: _Stress, overload: float, strength: float | None
 ) -> float | None:
@@ -396,10 +392,15 @@ def _crack(
     return strength / principal if principal > 0 else math.inf
 
 
-def _safety(shares: ByLoad) -> float:
-    """Return the safety from shares of the limits (DIN 743-1): normal stresses add, shear is
+def _use(shares: ByLoad) -> float:
+    """Return the share of all limits together (DIN 743-1): normal stresses add, shear is
     perpendicular.
     """
     normal = shares.get("tension", 0.0) + shares.get("bending", 0.0)
-    used = math.hypot(normal, shares.get("torsion", 0.0))
+    return math.hypot(normal, shares.get("torsion", 0.0))
+
+
+def _safety(shares: ByLoad) -> float:
+    """Return the safety from shares of the limits."""
+    used = _use(shares)
     return 1 / used if used > 0 else math.inf
