@@ -141,9 +141,9 @@ def test_two_keyways_side_by_side_are_one_notch_of_two(tmp_path):
 
 def test_a_steel_by_name_has_the_strength_of_the_norm():
     rod = sg.Segment.cylinder("rod", length=0.1, diameter=0.04, material="16MnCr5")
-    found = strength_of(rod.material)
+    found = strength_of(rod)
     assert (found.ultimate, found.yield_point) == (1000e6, 695e6)
-    assert strength_of(sg.Material(E=2e11, nu=0.3, density=7800.0)) is None
+    assert strength_of(sg.Segment.cylinder("rod", length=0.1, diameter=0.04)) is None
 
 
 # ----------------------------------------------------------------------- the command
@@ -213,6 +213,17 @@ def test_the_pressure_of_a_hub_is_that_of_thick_rings():
     assert fit.pressure(bored) == pytest.approx(-(press_h[0] @ constants[2:]), rel=1e-9)
 
 
+def test_a_fit_gives_the_largest_interference():
+    """40 H7/s6: 43 + 16 um; 65 H7/u6 is in the range to 65, 87 + 19 um."""
+    fit = PressFit(name="hub", segment="s", y=0.0, hub_diameter=0.2, fit="H7/s6")
+    for diameter, other, most in (
+        (0.04, fit, 59e-6),
+        (0.065, fit.with_changes(fit="H7/u6"), 106e-6),
+    ):
+        seat = sg.Segment(name="s", y1=0.07, outer0=diameter / 2, outer1=diameter / 2)
+        assert other.most(seat) == pytest.approx(most, rel=1e-9)
+
+
 # ----------------------------------------------------------------------- refusals
 @pytest.mark.parametrize(
     "table, says",
@@ -227,6 +238,9 @@ def test_the_pressure_of_a_hub_is_that_of_thick_rings():
         (NUT.replace("M30x1.5", "30 mm"), "is no metric thread"),
         (HUB.replace("40 um", "90 um"), "the hub yields at 139 MPa (DIN 7190-1): it bears 66 um"),
         (HUB.replace("90 mm", "38 mm"), "is thicker than it"),
+        (HUB.replace('interference = "40 um"', 'fit = "H7/u6"'), "it bears 66 um at most"),
+        (HUB.replace('interference = "40 um"', 'fit = "h6/S7"'), "is no fit that is known here"),
+        (HUB.replace(', interference = "40 um"', ""), "interference"),
         (UNDERCUT.replace('"start"', '"end"'), "no shoulder stands at the end"),
         (SHARP.replace("2 mm", "0.05 mm"), "is above the depth"),
     ],

@@ -119,10 +119,11 @@ def test_points_where_nothing_acts_are_told():
     assert any(c.startswith('nothing acts at the point "pinion"') for c in bare)
 
 
-def test_what_is_cut_into_a_shaft_is_left_out_and_told():
+def test_what_is_cut_into_a_shaft_is_a_notch_without_a_rating_where_strength_is_missing():
     scene = sg.load(GEOMETRY / "pinion_keyed.toml").with_changes(load={"z": 1e3})
     (one,) = stress_of(scene).shafts
-    assert any("keyway" in said and "is not included" in said for said in one.found.remarks)
+    assert [(d.kind, d.rating) for d in one.found.drawn] == [("keyway", None)]
+    assert one.weak == (one.found.drawn[0].segment,)
     assert one.found.forces.largest_moment > 0
 
 

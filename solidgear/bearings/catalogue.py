@@ -21,6 +21,7 @@ from solidgear.core import (
     Range,
     SceneError,
     SignedAngle,
+    Word,
     Written,
     show,
 )
@@ -35,7 +36,7 @@ from solidgear.core.scene.units import (
     TemperatureRise,
     quantity,
 )
-from solidgear.core.scene.written import Measure, Word
+from solidgear.core.scene.written import Measure
 
 if TYPE_CHECKING:
     from solidgear.core import Bearing

@@ -13,12 +13,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import Literal
+from typing import Annotated, ClassVar, Literal
 
-from solidgear.core import PositiveLength, SceneError
+from pydantic import AfterValidator
+
+from solidgear.core import PositiveLength, SceneError, Word
 from solidgear.core.scene.parts import Segment
 from solidgear.core.scene.units import Modulus, Poisson, Stress
 from solidgear.cuts.features.detail import Stretch
+from solidgear.cuts.features.fits import PATTERN, checked_fit, interference_of
 
 
 class PressFit(Stretch):
@@ -32,11 +35,15 @@ class PressFit(Stretch):
     '78.3 MPa'
     """
 
+    needs: ClassVar = (("interference", "fit"),)
+
     kind: Literal["press_fit"] = "press_fit"
     #: outer diameter of the hub, m
     hub_diameter: PositiveLength
     #: largest difference of diameters before joining, m, less what smoothing of surfaces takes
-    interference: PositiveLength
+    interference: PositiveLength | None = None
+    #: fit in place of the interference, such as H7/s6
+    fit: Annotated[str, AfterValidator(checked_fit), Word(pattern=f"^{PATTERN}$")] | None = None
     #: yield point of the hub, Pa; its pressure is not judged where none is given
     hub_yield_point: Stress | None = None
     #: Young's modulus of the hub, Pa
@@ -44,13 +51,19 @@ class PressFit(Stretch):
     #: Poisson's ratio of the hub
     hub_nu: Poisson = 0.3
 
+    def most(self, segment: Segment) -> float:
+        """Return the largest interference on a segment, m."""
+        if self.fit is None:
+            return self.interference or 0.0
+        return interference_of(self.fit, 2 * segment.outer0)[1]
+
     def pressure(self, segment: Segment) -> float:
-        """Return the pressure between hub and shaft, Pa, both elastic."""
+        """Return the largest pressure between hub and shaft, Pa, both elastic."""
         diameter, material = 2 * segment.outer0, segment.material
         hub, shaft = diameter / self.hub_diameter, segment.inner0 / segment.outer0
         gives = ((1 + hub**2) / (1 - hub**2) + self.hub_nu) / self.hub_E
         gives += ((1 + shaft**2) / (1 - shaft**2) - material.nu) / material.E
-        return self.interference / (diameter * gives)
+        return self.most(segment) / (diameter * gives)
 
     def hub_limit(self, segment: Segment) -> float | None:
         """Return the pressure at which the bore of the hub yields, Pa; None without a yield point."""
@@ -76,16 +89,25 @@ class PressFit(Stretch):
                 path=("hub_diameter",),
             )
             return
-        pressure = self.pressure(segment)
+        if (self.fit is None) == (self.interference is None):
+            yield SceneError(
+                'give either an interference or a fit, such as "H7/s6"', path=("interference",)
+            )
+            return
+        try:
+            pressure = self.pressure(segment)
+        except SceneError as error:
+            yield error.located(None, path=("fit",))
+            return
         for part, limit in (
             ("hub", self.hub_limit(segment)),
             ("shaft", self.shaft_limit(segment)),
         ):
             if limit is not None and pressure > limit:
-                most = self.interference * limit / pressure
+                most = self.most(segment) * limit / pressure
                 yield SceneError(
                     f"presses with {pressure / 1e6:.4g} MPa, and the {part} yields at "
                     f"{limit / 1e6:.4g} MPa (DIN 7190-1): it bears {1e6 * most:.3g} um at most",
-                    path=("interference",),
+                    path=("interference" if self.fit is None else "fit",),
                 )
                 return

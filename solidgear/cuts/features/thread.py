@@ -8,9 +8,8 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator
 
-from solidgear.core import SceneError, show
+from solidgear.core import SceneError, Word, show
 from solidgear.core.scene.parts import Segment
-from solidgear.core.scene.written import Word
 from solidgear.cuts.features.detail import Stretch
 
 #: pitches of coarse threads by their diameter, mm (ISO 261)

@@ -71,7 +71,7 @@ class StressedShaft:
         segments = [self.scene.segments[notch.found.corner.owner] for notch in self.found.notches]
         names = {drawn.segment for drawn in self.found.drawn}
         segments += [segment for segment in self.scene.segments if segment.name in names]
-        return tuple(dict.fromkeys(s.name for s in segments if strength_of(s.material) is None))
+        return tuple(dict.fromkeys(s.name for s in segments if strength_of(s) is None))
 
 
 @dataclass(frozen=True)

@@ -112,7 +112,7 @@ def _at(
     """Return the stress of a notch under the section forces at a place, m."""
     notch, nominal = drawn.notch, drawn.notch.section.nominal(six)
     segment = next(s for s in scene.segments if s.name == feature.segment)
-    strength = strength_of(segment.material)
+    strength = strength_of(segment)
     rating, factors, remarks = None, {}, list(drawn.remarks)
     if strength is not None:
         largest = 2 * scene.outline.largest_radius
@@ -122,7 +122,7 @@ def _at(
             strength,
             conditions,
             largest,
-            source_of(segment.material),
+            source_of(segment),
         )
         steel = steel_at_size(strength, rating, conditions)
         factors = dict(notch.factors(steel).notch)

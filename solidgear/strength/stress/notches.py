@@ -24,7 +24,7 @@ from solidgear.strength.stress.rating import Steel
 
 if TYPE_CHECKING:
     from solidgear.core import Scene
-    from solidgear.core.scene.parts import Segment
+    from solidgear.core.scene import Segment
 
 #: a notch with the remarks on it, or the reason why it has no rating
 Found: TypeAlias = "DrawnNotch | str"
@@ -117,10 +117,7 @@ def _keyway_remarks(place: Place, count: int) -> Iterator[str]:
     if count > 2:
         yield f"{count} keyways side by side, and the norm goes to two"
     if place.feature.ends == "square":
-        yield (
-            "the norm has one factor for keyways by end mill and by disc mill, and a disc mill's "
-            "is milder"
-        )
+        yield "rated as one by end mill; a keyway by disc mill is milder"
 
 
 def _hub(place: Place) -> NotchByTests:

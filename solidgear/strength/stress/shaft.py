@@ -230,8 +230,8 @@ def _notch(
     section_load = forces.at(fillet.reference)
     nominal = nominal_stress(fillet.section, section_load, fillet.radius)
     local, (small, large) = local_stress(fillet, section_load), _diameters(scene, corner)
-    material = scene.segments[corner.owner].material
-    strength = strength_of(material)
+    segment = scene.segments[corner.owner]
+    strength = strength_of(segment)
     published, rating, fatigue = {}, None, {}
     if corner.surface == "outer":
         published = {
@@ -245,7 +245,7 @@ def _notch(
                 strength,
                 conditions,
                 largest=2 * scene.outline.largest_radius,
-                source=source_of(material),
+                source=source_of(segment),
                 raised=FilletNotch(fillet, large, bars=1.0),
             )
             steel = steel_at_size(strength, rating, conditions)

@@ -36,7 +36,6 @@ from solidgear.core.plain import plain
 from solidgear.core.scene.bearing_stiffness import STIFFNESS_NAMES
 from solidgear.core.scene.file import scene_of
 from solidgear.core.scene.paths import Keys, Tables, entries, entry, label_of, replace_entry
-from solidgear.core.scene.shaft import resolved
 from solidgear.variants.sensitivity.adjoint import Form, entry_form, mode_form
 from solidgear.variants.sensitivity.derivatives import Derivatives
 from solidgear.variants.sweep.entries import amount, in_si
@@ -269,8 +268,9 @@ def _supported(scene: Scene, model: str) -> None:
         raise SolidgearError(
             f"the {model} model has no derivatives; use {', '.join(MODELS[:-1])} or {MODELS[-1]}"
         )
-    if model != "solid" and resolved(scene):
-        part = "a part from a file" if scene.body is not None else resolved(scene)[0].name
+    features = [feature for feature in scene.features if not feature.smeared]
+    if model != "solid" and (scene.body is not None or features):
+        part = "a part from a file" if scene.body is not None else features[0].name
         raise SolidgearError(
             f"{part}: the {model} model has derivatives for shafts of segments only; the solid "
             "model has those by springs, masses and materials"

@@ -10,7 +10,8 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from solidgear.core.scene.parts import Material, SteelGroup, Strength
+from solidgear.core.scene import Segment
+from solidgear.core.scene.parts import SteelGroup, Strength
 
 #: m, above which the norm gives no K_1
 LARGEST = 0.5
@@ -96,21 +97,23 @@ def least_size_factors(diameter: float) -> tuple[float, float]:
     return min(first for first, _ in factors), min(second for _, second in factors)
 
 
-def source_of(material: Material) -> str:
-    """Return where the strength of a material comes from."""
+def source_of(segment: Segment) -> str:
+    """Return where the strength of a segment comes from."""
+    material = segment.material
     return "material" if material.strength is not None else f"DIN 743-3: {material.name}"
 
 
-def strength_of(material: Material) -> Strength | None:
-    """Return the strength of a material: its own, or that of a steel of its name; None without.
+def strength_of(segment: Segment) -> Strength | None:
+    """Return the strength of a segment: that of its material, or of a steel of its name; None
+    without.
 
     Examples
     --------
-    >>> from solidgear import Segment
     >>> rod = Segment.cylinder("rod", length=0.1, diameter=0.04, material="42CrMo4")
-    >>> strength_of(rod.material).group
+    >>> strength_of(rod).group
     'tempering'
     """
+    material = segment.material
     if material.strength is not None or material.name not in STEELS:
         return material.strength
     group, ultimate, yields = STEELS[material.name]
