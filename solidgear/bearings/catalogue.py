@@ -21,7 +21,6 @@ from solidgear.core import (
     Range,
     SceneError,
     SignedAngle,
-    Word,
     Written,
     show,
 )
@@ -36,7 +35,7 @@ from solidgear.core.scene.units import (
     TemperatureRise,
     quantity,
 )
-from solidgear.core.scene.written import Measure
+from solidgear.core.scene.written import Measure, Word
 
 if TYPE_CHECKING:
     from solidgear.core import Bearing

@@ -53,7 +53,7 @@ if TYPE_CHECKING:
     from solidgear.core.scene.shaft import without_axis
     from solidgear.core.scene.typed import Model
     from solidgear.core.scene.units import DIMENSIONS, Length, PositiveLength, SignedAngle
-    from solidgear.core.scene.written import Range, Word, Written
+    from solidgear.core.scene.written import Range, Written
     from solidgear.core.solve.condensed import Condensed
     from solidgear.core.solve.modes import Mode, ModeSet, modes
     from solidgear.core.solve.statics import flexibility
@@ -62,7 +62,6 @@ if TYPE_CHECKING:
 __all__ = [
     "addition",
     "Written",
-    "Word",
     "Range",
     "BEAM",
     "BarredMode",
@@ -199,7 +198,6 @@ _WHERE = {
     "SignedAngle": "solidgear.core.scene.units",
     "Range": "solidgear.core.scene.written",
     "Written": "solidgear.core.scene.written",
-    "Word": "solidgear.core.scene.written",
     "Condensed": "solidgear.core.solve.condensed",
     "Mode": "solidgear.core.solve.modes",
     "ModeSet": "solidgear.core.solve.modes",

@@ -17,11 +17,11 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import AfterValidator
 
-from solidgear.core import PositiveLength, SceneError, Word
+from solidgear.core import PositiveLength, SceneError
 from solidgear.core.scene.parts import Segment
 from solidgear.core.scene.units import Modulus, Poisson, Stress
 from solidgear.cuts.features.detail import Stretch
-from solidgear.cuts.features.fits import PATTERN, checked_fit, interference_of
+from solidgear.cuts.features.fits import checked_fit, interference_of
 
 
 class PressFit(Stretch):
@@ -43,7 +43,7 @@ class PressFit(Stretch):
     #: largest difference of diameters before joining, m, less what smoothing of surfaces takes
     interference: PositiveLength | None = None
     #: fit in place of the interference, such as H7/s6
-    fit: Annotated[str, AfterValidator(checked_fit), Word(pattern=f"^{PATTERN}$")] | None = None
+    fit: Annotated[str, AfterValidator(checked_fit)] | None = None
     #: yield point of the hub, Pa; its pressure is not judged where none is given
     hub_yield_point: Stress | None = None
     #: Young's modulus of the hub, Pa

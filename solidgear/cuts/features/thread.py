@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator
 
-from solidgear.core import SceneError, Word, show
+from solidgear.core import SceneError, show
 from solidgear.core.scene.parts import Segment
 from solidgear.cuts.features.detail import Stretch
 
@@ -78,7 +78,7 @@ class Thread(Stretch):
 
     kind: Literal["thread"] = "thread"
     #: designation, such as M30x1.5
-    size: Annotated[str, AfterValidator(_sized), Word(pattern=f"^{PATTERN}$")]
+    size: Annotated[str, AfterValidator(_sized)]
 
     @property
     def nominal(self) -> float:

@@ -15,10 +15,10 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 from annotated_types import Ge, Gt, Le, Lt, MaxLen, MinLen
 from pydantic.fields import FieldInfo
 
-from solidgear.core import Range, Word, Written
+from solidgear.core import Range, Written
 from solidgear.core.scene.typed import Model
 from solidgear.core.scene.units import DIMENSIONS
-from solidgear.core.scene.written import Kinds, Measure, Three
+from solidgear.core.scene.written import Kinds, Measure, Three, Word
 from solidgear.exchange.schema.units import number_of, text_of, words_on_unit
 
 Node = dict[str, Any]
