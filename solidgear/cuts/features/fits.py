@@ -13,8 +13,9 @@ from collections.abc import Mapping
 from solidgear.core import SceneError, show
 
 #: mm; upper ends of the ranges of sizes
-SIZES = (3, 6, 10, 14, 18, 24, 30, 40, 50, 65, 80, 100, 120, 140, 160, 180, 200, 225, 250)
-SIZES += (280, 315, 355, 400, 450, 500)
+SIZES = (3, 6, 10, 14, 18, 24, 30, 40, 50, 65, 80, 100, 120, 140, 160, 180, 200, 225, 250) + (
+    *(280, 315, 355, 400, 450, 500),
+)
 #: um; lower deviation of a shaft by its letter, range by range; None where the standard has none
 DEVIATIONS: Mapping[str, tuple[int | None, ...]] = {
     "n": (4, 8, 10, 12, 12, 15, 15, 17, 17, 20, 20, 23, 23, 27, 27, 27, 31, 31, 31)

@@ -14,7 +14,6 @@ from solidgear.core import TOUCH
 from solidgear.strength.stress.din743 import LOADS
 from solidgear.strength.stress.norm import forms, tested
 from solidgear.strength.stress.norm_notch import (
-    NormNotch,
     NotchByForm,
     NotchByTests,
     Section,
@@ -34,7 +33,7 @@ Found: TypeAlias = "DrawnNotch | str"
 class DrawnNotch:
     """A notch by the norm, and what a reader must know about it."""
 
-    notch: NormNotch | TwoNotches
+    notch: NotchByTests | NotchByForm | TwoNotches
     remarks: tuple[str, ...] = ()
 
 

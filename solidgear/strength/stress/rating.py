@@ -250,15 +250,15 @@ class _Stress:
     @classmethod
     def of(cls, nominal: NominalStress, conditions: Conditions) -> _Stress:
         """Return those of a turning shaft, whose bending is all amplitude, or of one that stands."""
-        still = conditions.bending_share is not None
+        share = conditions.bending_share
         amplitude: dict[Load, float] = {
             "tension": abs(nominal.tension) * (conditions.force_share or 0.0),
-            "bending": nominal.bending * (conditions.bending_share if still else 1.0),
+            "bending": nominal.bending * (1.0 if share is None else share),
             "torsion": abs(nominal.torsion) * (conditions.torque_share or 0.0),
         }
         mean: dict[Load, float] = {
             "tension": nominal.tension,
-            "bending": nominal.bending if still else 0.0,
+            "bending": 0.0 if share is None else nominal.bending,
             "torsion": nominal.torsion,
         }
         return cls(amplitude, mean)
@@ -352,7 +352,7 @@ def _used(
     cycles = [level.cycles for level in levels]
     counts = [count for count in cycles if count is not None]
     if not counts:
-        return dict(max(shares, key=_use)), None
+        return {**max(shares, key=lambda of_level: _use(of_level))}, None
     several = len(levels) > 1
     borne = (damage_sum or DAMAGE_SUM) if several else 1.0
     used: dict[Load, float] = {}
