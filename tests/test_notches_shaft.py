@@ -165,6 +165,66 @@ def test_the_headline_and_json_speak_of_all_notches(run, tmp_path):
     assert "of the tests" in said and "K_3" in said
 
 
+DUTY = """
+[[load]]
+name = "gear"
+on = "wheel"
+x = "40 kN"
+[[case]]
+name = "heavy"
+speed = "1500 rpm"
+hours = 0.2
+[[case]]
+name = "usual"
+speed = "1500 rpm"
+hours = 2000
+factors = { gear = 0.3 }
+"""
+
+
+def cased(tmp_path, *changes):
+    """A keyed shaft with a duty table of two cases."""
+    path = shaft(tmp_path, KEY)
+    text = path.read_text().replace('load = { x = "4 kN", z = "1.5 kN" }', "") + DUTY
+    for old, new in changes:
+        text = text.replace(old, new)
+    path.write_text(text)
+    return path
+
+
+def test_a_duty_table_is_the_spectrum_of_its_cases(tmp_path):
+    """1500 rpm for 0.2 and 2000 h turn 18 000 and 180 000 000 times; every case settles anew."""
+    file = cased(tmp_path)
+    spectrum = {"spectrum": "1:18000, 0.3:1.8e8"}
+    over, same, endless = (
+        sg.stress(file, "timoshenko", tol=0.05, **how).shafts[0].found.drawn[0].rating
+        for how in ({"duty": True}, {"conditions": spectrum}, {})
+    )
+    assert over.fatigue == pytest.approx(same.fatigue, rel=1e-6)
+    assert over.elementary == pytest.approx(same.elementary, rel=1e-6)
+    assert over.fatigue > endless.fatigue and over.yielding == pytest.approx(endless.yielding)
+    shares = [("hours = 0.2", "share = 0.0001"), ("hours = 2000", "share = 0.9999")]
+    by_share = cased(tmp_path, *shares)
+    halves = sg.stress(by_share, "timoshenko", duty=True, conditions={"hours": 2000.2}, tol=0.05)
+    found = halves.shafts[0].found.drawn[0].rating
+    assert found.fatigue == pytest.approx(over.fatigue, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    "changes, words, says",
+    [
+        ([('speed = "1500 rpm"', "")], (), "cycles of bending are turns of the shaft"),
+        ([("hours = 0.2", ""), ("hours = 2000", "")], (), "needs share or hours"),
+        ([("hours = 0.2", "share = 0.1"), ("hours = 2000", "share = 0.9")], (), "give the life by"),
+        ([], ("--cycles", "1e5"), "a duty table gives the cycles"),
+    ],
+)
+def test_a_duty_table_without_times_or_speeds_is_refused(run, tmp_path, changes, words, says):
+    file = cased(tmp_path, *changes)
+    code, _, refused = run("-q", "stress", file, "-f", "timoshenko", "--duty", *words)
+    assert code == 1 and says in " ".join(refused.split())
+
+
 def test_models_leave_details_out_and_check_says_so(tmp_path):
     plain, detailed = (sg.load(shaft(tmp_path, *f)) for f in ((), (RING, UNDERCUT, NUT)))
     first, second = (build(scene, "timoshenko").blocks for scene in (plain, detailed))

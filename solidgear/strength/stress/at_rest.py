@@ -22,6 +22,7 @@ from solidgear.core.scene.filleted import filleted
 from solidgear.parts.body_file import BodyFile
 from solidgear.strength.load import AT_REST, LoadsAlone, loads_alone
 from solidgear.strength.stress.conditions import Conditions
+from solidgear.strength.stress.duty import DutyForces, cycles_of
 from solidgear.strength.stress.norm.steels import strength_of
 from solidgear.strength.stress.notch import ENOUGH
 from solidgear.strength.stress.section_forces import COMPONENTS, SectionForces, forces_of
@@ -80,6 +81,7 @@ class StressSettings:
 
     tolerance: float = ENOUGH  #: relative error bar of form factors at which their meshes stop
     conditions: Conditions = Conditions()  #: of the rating by DIN 743
+    duty: bool = False  #: whether ratings are over the duty table
 
     def __post_init__(self) -> None:
         check_tolerance(self.tolerance)
@@ -106,6 +108,8 @@ class StressAtRest(Sheeted):
     shafts: tuple[StressedShaft, ...]
     open_by: str  #: open data of bearings, in words; empty if none
     cautions: tuple[str, ...] = ()  #: beside the remarks of each shaft
+    #: labels of the points of the duty table that ratings are over; empty where they are of the loads
+    duty: tuple[str, ...] = ()
 
     @property
     def reached(self) -> bool:
@@ -146,7 +150,8 @@ def stress_at_rest(
         state = usual if as_stated else Operating(settling, model, choice=choice).at(point)
         return _on_shafts(settling, state)
 
-    shafts, open_by = _shafts(train, acting, asked, progress)
+    duty = _duty(train, settling, model, asked) if asked.duty else {}
+    shafts, open_by = _shafts(train, acting, asked, duty, progress)
     files = {side: shaft.scene.body for side, shaft in assembly.train.shafts.items()}
     left_out = [text for k in files for text in _file_cautions(files[k], train.shafts[k].scene)]
     torque = _torque_cautions(train) if load is None else _load_cautions(train, load)
@@ -158,7 +163,24 @@ def stress_at_rest(
         shafts=shafts,
         open_by=open_by,
         cautions=(*left_out, *usual.notes, *settling.data_cautions, *torque),
+        duty=tuple(each.label for each in train.operation) if asked.duty else (),
     )
+
+
+def _duty(
+    train: Train, settling: Assembly, model: str, asked: StressSettings
+) -> dict[str, list[DutyForces]]:
+    """Return section forces and turns of every shaft over the points of the duty table."""
+    turns = cycles_of(train, asked.conditions)
+    out: dict[str, list[DutyForces]] = {side: [] for side in turns}
+    operating = Operating(settling, model)
+    state: OperatingState | None = None
+    for k, each in enumerate(train.operation):
+        state = operating.at(each, state)
+        for side, acting in _on_shafts(settling, state).items():
+            forces = forces_of(train.shaft(side), acting.loads, acting.gravity)
+            out[side].append(DutyForces(each.label, forces, turns[side][k]))
+    return out
 
 
 def _file_cautions(file: BodyFile | None, scene: Scene) -> Iterator[str]:
@@ -241,6 +263,7 @@ def _shafts(
     train: Train,
     acting: Callable[[Choice], dict[str, ShaftLoads]],
     asked: StressSettings,
+    duty: Mapping[str, Sequence[DutyForces]],
     progress: Progress,
 ) -> tuple[tuple[StressedShaft, ...], str]:
     """Return the stress of every shaft, and in words which data of bearings are open."""
@@ -259,6 +282,7 @@ def _shafts(
             gravity=shaft_loads.gravity,
             tolerance=asked.tolerance,
             conditions=asked.conditions,
+            duty=duty.get(side, ()),
             progress=progress,
         )
         further = [forces_of(scene, loads[side].loads, loads[side].gravity) for loads in variants]

@@ -92,6 +92,10 @@ class Rated(Group):
             "consequent rule."
         ),
     ] = None
+    hours: Annotated[
+        float | None,
+        typer.Option(help="Life in hours, of a duty table with shares of the time."),
+    ] = None
     damage_sum: Annotated[
         float | None, typer.Option(help="Sum of damage that a spectrum bears; else 0.3.")
     ] = None
@@ -119,6 +123,12 @@ def stress(
         float,
         relative("--tol", "Error bar allowed for a form factor."),
     ] = 0.01,
+    duty: Annotated[
+        bool,
+        typer.Option(
+            "--duty", help="Rate over all cases or operating points, by share or hours and speed."
+        ),
+    ] = False,
     rated: Rated,
     out: Annotated[
         Path | None,
@@ -133,6 +143,7 @@ def stress(
             **vars(acting),
             tol=tol,
             conditions=rated.conditions(),
+            duty=duty,
             progress=progress,
         ).sheet(run.units),
         run,

@@ -77,6 +77,8 @@ class Conditions(Model):
     cycles: Annotated[float, Field(gt=0)] | None = None
     #: factors of the load, each with its cycles, in place of `cycles`
     spectrum: Levels | None = None
+    #: life in hours, of a duty table with shares of the time
+    hours: Annotated[float, Field(gt=0)] | None = None
     #: sum of damage that a spectrum bears
     damage_sum: Annotated[float, Field(gt=0, le=2)] | None = None
 

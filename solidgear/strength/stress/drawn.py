@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from solidgear.core import TOUCH
 from solidgear.strength.stress.conditions import Conditions
 from solidgear.strength.stress.din743 import Load
+from solidgear.strength.stress.duty import DutyForces, levels
 from solidgear.strength.stress.nominal import NominalStress
 from solidgear.strength.stress.norm.steels import source_of, strength_of
 from solidgear.strength.stress.norm.tested import TABLE
@@ -57,16 +58,21 @@ class Unrated:
 
 
 def drawn_stresses(
-    scene: Scene, forces: SectionForces, conditions: Conditions
+    scene: Scene,
+    forces: SectionForces,
+    conditions: Conditions,
+    duty: Sequence[DutyForces] = (),
 ) -> tuple[tuple[DrawnStress, ...], tuple[Unrated, ...]]:
-    """Return the stress of the features of a shaft that the norm rates, and the others."""
+    """Return the stress of the features of a shaft that the norm rates, over a duty table where there
+    is one, and the others.
+    """
     stresses, others = [], []
     for feature in scene.features:
         found = drawn_notch(scene, feature)
         if isinstance(found, str):
             others.append(Unrated(feature.name, feature.what, found))
         else:
-            stresses.append(_worst(scene, feature, found, forces, conditions))
+            stresses.append(_worst(scene, feature, found, forces, conditions, duty))
     return tuple(stresses), tuple(others)
 
 
@@ -76,41 +82,51 @@ def _worst(
     drawn: DrawnNotch,
     forces: SectionForces,
     conditions: Conditions,
+    duty: Sequence[DutyForces],
 ) -> DrawnStress:
     """Return the stress of a notch in the section of its length where it is worst."""
+    all_forces = [forces, *(point.forces for point in duty)]
     candidates = [
-        _at(scene, feature, drawn, y, six, conditions)
-        for y, six in _sections(scene, feature, forces)
+        _at(scene, feature, drawn, cut, forces, conditions, duty)
+        for cut in _cuts(feature.span(scene.segments), all_forces)
     ]
     return min(candidates, key=lambda stress: stress.severity)
 
 
-def _sections(
-    scene: Scene, feature: Any, forces: SectionForces
-) -> Iterator[tuple[float, np.ndarray]]:
-    """Yield places along a feature, m, with their section forces: both ends, and both sides of loads
-    between.
-    """
-    lo, hi = feature.span(scene.segments)
-    yield lo, forces.at(lo)
-    for k, y in enumerate(forces.y):
-        if lo + TOUCH < y < hi - TOUCH:
-            yield float(y), forces.left[k]
-            yield float(y), forces.right[k]
-    last = int(np.abs(forces.y - hi).argmin())
-    yield hi, forces.left[last] if abs(forces.y[last] - hi) <= TOUCH else forces.at(hi)
+class Cut(NamedTuple):
+    """A section across the shaft, just before a place, m, or just beyond it."""
+
+    y: float
+    beyond: bool
+
+    def of(self, forces: SectionForces) -> np.ndarray:
+        """Return the section forces (6,) there."""
+        return forces.at(self.y) if self.beyond else forces.before(self.y)
+
+
+def _cuts(span: tuple[float, float], forces: Sequence[SectionForces]) -> Iterator[Cut]:
+    """Yield sections along a span, m: both ends, and both sides of loads between."""
+    lo, hi = span
+    yield Cut(lo, beyond=True)
+    loaded = np.unique(np.concatenate([each.y for each in forces]))
+    for y in loaded[(loaded > lo + TOUCH) & (loaded < hi - TOUCH)]:
+        yield Cut(float(y), beyond=False)
+        yield Cut(float(y), beyond=True)
+    yield Cut(hi, beyond=False)
 
 
 def _at(
     scene: Scene,
     feature: Any,
     drawn: DrawnNotch,
-    y: float,
-    six: np.ndarray,
+    cut: Cut,
+    forces: SectionForces,
     conditions: Conditions,
+    duty: Sequence[DutyForces],
 ) -> DrawnStress:
-    """Return the stress of a notch under the section forces at a place, m."""
-    notch, nominal = drawn.notch, drawn.notch.section.nominal(six)
+    """Return the stress of a notch in a section across the shaft."""
+    section, six = drawn.notch.section, cut.of(forces)
+    notch, nominal = drawn.notch, section.nominal(six)
     segment = next(s for s in scene.segments if s.name == feature.segment)
     strength = strength_of(segment)
     rating, factors, remarks = None, {}, list(drawn.remarks)
@@ -118,7 +134,7 @@ def _at(
         largest = 2 * scene.outline.largest_radius
         rating = rated(
             notch,
-            conditions.levels(nominal),
+            levels(conditions, duty, nominal, lambda each: section.nominal(cut.of(each))),
             strength,
             conditions,
             largest,
@@ -136,8 +152,8 @@ def _at(
     return DrawnStress(
         name=feature.name,
         kind=feature.what,
-        y=y,
-        section=notch.section,
+        y=cut.y,
+        section=section,
         forces=six,
         nominal=nominal,
         factors=factors,

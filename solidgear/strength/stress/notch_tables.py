@@ -65,7 +65,7 @@ def safeties(stress: ShaftStress) -> Table:
         text("notch"),
         word("kind"),
         Column("S, fatigue"),
-        Column("less by the error bar", write=partial(plain, digits=2)),
+        Column("less by the error bar", write=partial(plain, digits=2), hidden=not stress.notches),
         Column("S, yielding"),
         Column("S, first crack", hidden=all(r.crack is None for r in ratings)),
         Column("S, least K_1", hidden=all(r.least is None for r in ratings)),
@@ -84,10 +84,9 @@ def safeties(stress: ShaftStress) -> Table:
         ]
         for notch, r in rated
     ]
-    note = (
-        f"The norm asks for {LEAST:g} where loads and strength are known. Less by the error bar: "
-        "loss of S with Kt at the upper end of its error bar."
-    )
+    note = f"The norm asks for {LEAST:g} where loads and strength are known."
+    if stress.notches:
+        note += " Less by the error bar: loss of S with Kt at the upper end of its error bar."
     if any(r.least is not None for r in ratings):
         note += (
             " Least K_1: the lesser of both S if the steel is of the group that loses most strength "

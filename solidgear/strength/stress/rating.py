@@ -19,7 +19,6 @@ from solidgear.strength.stress.norm import steels
 from solidgear.strength.stress.norm.life import (
     DAMAGE_SUM,
     EXPONENTS,
-    KNEE,
     elementary_repetitions,
     equivalent_share,
 )
@@ -370,7 +369,7 @@ def _used(
     if several:
         given = "given" if damage_sum is not None else f"{ASSUMED}: FKM guideline, 4.4.3, of steel"
         sheet.write("D_M", borne, given)
-    most = f"DIN 743-4: knee {KNEE:g} cycles, slopes 5, 5, 8"
+    most = "DIN 743-4: knee 1e6 cycles, slopes 5, 5, 8"
     rule = f"{most}; consequent Miner" if several else most
     sheet.write("u", used, rule)
     return used, _safety(elementary) if several else None

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -19,6 +20,7 @@ from solidgear.strength.stress.conditions import Conditions
 from solidgear.strength.stress.din743 import LOADS
 from solidgear.strength.stress.din743 import Load as LoadKind
 from solidgear.strength.stress.drawn import DrawnStress, Unrated, drawn_stresses, steel_at_size
+from solidgear.strength.stress.duty import DutyForces, levels
 from solidgear.strength.stress.fillet_rating import FatigueFactor, FilletNotch
 from solidgear.strength.stress.nominal import (
     NominalRow,
@@ -132,6 +134,7 @@ def shaft_stress(
     gravity: ArrayLike | None = None,
     tolerance: float = ENOUGH,
     conditions: Conditions | None = None,
+    duty: Sequence[DutyForces] = (),
     progress: Callable[[str], None] = lambda text: None,
 ) -> ShaftStress:
     """Return the stress of a shaft under loads that balance.
@@ -149,6 +152,8 @@ def shaft_stress(
         Relative error bar of form factors at which to stop.
     conditions : Conditions, optional
         Of the rating by DIN 743.
+    duty : sequence of DutyForces
+        Points of a duty table over which ratings are; without one they are of the loads.
     progress : callable, optional
         Called with each fillet.
 
@@ -180,14 +185,14 @@ def shaft_stress(
     forces = forces_of(scene, loads, gravity)
     conditions = conditions or Conditions()
     seats = [(s.lo, s.hi) for s in scene.stations if np.any(loads.get(s.name, 0.0))]
-    drawn, unrated = drawn_stresses(scene, forces, conditions)
+    drawn, unrated = drawn_stresses(scene, forces, conditions, duty)
     remarks = []
     notches = []
     for corner in sorted(scene.outline.corners, key=lambda c: c.y):
         if corner.root and corner.kind == "fillet":
             progress(corner.name)
             try:
-                notches.append(_notch(scene, corner, forces, seats, tolerance, conditions))
+                notches.append(_notch(scene, corner, forces, seats, tolerance, conditions, duty))
             except SolidgearError as error:  # the others have their stress all the same
                 remarks.append(f"no stress there: {error}")
     return ShaftStress(
@@ -225,6 +230,7 @@ def _notch(
     seats: Sequence[tuple[float, float]],
     tolerance: float,
     conditions: Conditions,
+    duty: Sequence[DutyForces],
 ) -> Notch:
     fillet = fillet_factors(scene, corner.name, tolerance)
     section_load = forces.at(fillet.reference)
@@ -241,7 +247,7 @@ def _notch(
         if strength is not None:
             rating = rated(
                 FilletNotch(fillet, large),
-                conditions.levels(nominal),
+                levels(conditions, duty, nominal, partial(_nominal_at, fillet)),
                 strength,
                 conditions,
                 largest=2 * scene.outline.largest_radius,
@@ -265,6 +271,11 @@ def _notch(
         rating=rating,
         remark=_remark(corner, seats, fillet, tolerance, _excess_by_shear(fillet, nominal, local)),
     )
+
+
+def _nominal_at(fillet: FilletFactors, forces: SectionForces) -> NominalStress:
+    """Return the nominal stress of a fillet under section forces of a shaft."""
+    return nominal_stress(fillet.section, forces.at(fillet.reference), fillet.radius)
 
 
 def _diameters(scene: Scene, corner: Corner) -> tuple[float, float]:

@@ -156,6 +156,11 @@ def sentences(stressed: StressAtRest, units: Units = ENGINEERING) -> list[str]:
                 'yield_point = "700 MPa", ultimate = "1000 MPa" } beside E, nu and density.'
             )
         out += [lead + remark for remark in shaft_remarks]
+    if stressed.duty:
+        out.append(
+            f"Ratings are over the duty table, {listed(stressed.duty, most=6)}; tables of stress are "
+            "of the one case above."
+        )
     return [*out, ELASTIC]
 
 

@@ -27,6 +27,7 @@ def stress(
     drive: Mapping[str, str | float] | list[str] | None = None,
     tol: float = ENOUGH,
     conditions: Mapping[str, Any] | Conditions | None = None,
+    duty: bool = False,
     progress: Callable[[str], None] = lambda text: None,
 ) -> StressAtRest:
     """Stress of shafts at rest: section forces, nominal stress, stress on fillets, DIN 743.
@@ -45,7 +46,10 @@ def stress(
         Of the rating by DIN 743: ``roughness``, ``ultimate_at_size``, ``yield_at_size``,
         ``treated_diameter``, ``hardening``, ``hard_surface``, ``surface_strength``,
         ``force_share``, ``torque_share``, ``bending_share``, ``overload``, ``constant_mean``,
-        ``cycles``, ``spectrum``, ``damage_sum``.
+        ``cycles``, ``spectrum``, ``hours``, ``damage_sum``.
+    duty : bool
+        Whether ratings are over all cases of a shaft or operating points of a train, by their
+        shares or hours and speeds.
     progress : callable
         Called with a sentence at every step.
 
@@ -72,7 +76,7 @@ def stress(
     """
     if not isinstance(conditions, Conditions):
         conditions = Conditions(**(conditions or {}))
-    settings = StressSettings(tol, conditions)
+    settings = StressSettings(tol, conditions, duty)
     assembly, at = Acting(torque, of, point, weight, load, case, drive).read(source)
     with explained(source):
         return stress_at_rest(assembly, at, model, settings, progress)
