@@ -351,7 +351,8 @@ def _used(
     cycles = [level.cycles for level in levels]
     counts = [count for count in cycles if count is not None]
     if not counts:
-        return {**max(shares, key=lambda of_level: _use(of_level))}, None
+        hardest: ByLoad = max(shares, key=_use)
+        return dict(hardest), None
     several = len(levels) > 1
     borne = (damage_sum or DAMAGE_SUM) if several else 1.0
     used: dict[Load, float] = {}
@@ -360,10 +361,11 @@ def _used(
         of_levels = [share.get(load, 0.0) for share in shares]
         if max(of_levels) <= 0:
             continue
+        if math.isinf(max(of_levels)):  # a mean beyond yielding leaves no amplitude
+            used[load] = elementary[load] = math.inf
+            continue
         exponent = EXPONENTS[load]
-        used[load] = max(of_levels)
-        if math.isfinite(used[load]):
-            used[load] = equivalent_share(of_levels, counts, exponent, borne)
+        used[load] = equivalent_share(of_levels, counts, exponent, borne)
         repeated = borne * elementary_repetitions(of_levels, counts, exponent)
         elementary[load] = repeated ** (-1 / exponent)
     if several:
