@@ -289,6 +289,8 @@ def test_a_fit_gives_the_largest_interference():
     "table, says",
     [
         (KEY.replace("45 mm", "70 mm"), "the keyway reaches from 0.07 to 0.14 m, outside"),
+        (f'{KEY}, mill = "60 mm"', "a disc mill runs out beyond square ends"),
+        (f'{KEY}, radius = "7 mm"', "radii up to the depth"),
         (RING.replace('diameter = "33 mm"', 'depth = "18 mm"'), "cuts through the radius"),
         (RING.replace("33 mm", "36 mm"), 'lies between the diameter of "right"'),
         (RING.replace('diameter = "33 mm", ', ""), "depth"),

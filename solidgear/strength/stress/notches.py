@@ -115,8 +115,8 @@ def _keyway(place: Place) -> Found:
 def _keyway_remarks(place: Place, count: int) -> Iterator[str]:
     if count > 2:
         yield f"{count} keyways side by side, and the norm goes to two"
-    if place.feature.ends == "square":
-        yield "rated as one by end mill; a keyway by disc mill is milder"
+    if place.feature.mill is not None:
+        yield "rated as one by end mill; by disc mill it is milder"
 
 
 def _hub(place: Place) -> NotchByTests:
