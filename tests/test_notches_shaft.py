@@ -11,6 +11,7 @@ from solidgear.core.ladder import build
 from solidgear.cuts.features import PressFit
 from solidgear.guards.details import details
 from solidgear.guards.smearing import smearing
+from solidgear.show.sketch import draw
 from solidgear.strength.stress.conditions import Conditions
 from solidgear.strength.stress.norm.steels import strength_of
 from solidgear.strength.stress.shaft import shaft_stress
@@ -234,6 +235,13 @@ def test_models_leave_details_out_and_check_says_so(tmp_path):
         'thread "nut": no model has them; solidgear stress rates them by DIN 743'
     )
     assert not [*details(plain)] and not [*smearing(detailed)]
+
+
+def test_a_drawing_marks_grooves_threads_and_hubs(tmp_path):
+    scene = sg.load(shaft(tmp_path, HUB, RING, UNDERCUT, NUT))
+    text = draw(scene.as_dict()).svg("wide", "a-")
+    for label in ("press fit hub", "ring groove ring", "relief undercut", "thread nut"):
+        assert label in text
 
 
 def test_features_are_written_and_read_again(tmp_path):
