@@ -16,7 +16,8 @@ from solidgear.strength.stress.norm.life import (
     repetitions,
 )
 from solidgear.strength.stress.norm_notch import NotchByForm, NotchByTests, Section
-from solidgear.strength.stress.rating import Steel, rated
+from solidgear.strength.stress.rated_notch import Steel
+from solidgear.strength.stress.rating import rated
 
 LOG20 = math.log10(20)
 
@@ -261,6 +262,14 @@ def test_without_a_group_the_least_of_all_steels_stands_beside():
     assert "K_1 (sigma_B)" in bare.assumed and "K_1 (sigma_B)" not in known.assumed
     assert bare.least == pytest.approx((known.fatigue, known.yielding), rel=1e-12)
     assert known.least is None and bare.fatigue > 1.2 * known.fatigue
+
+
+def test_beyond_the_norm_size_is_assumed_and_said():
+    strong = steel(1000, 800, "tempering")
+    found = rate(keyed(40), [0, 0, 0, 300, 200, 0], strong, 0.6)
+    assert "K_1 (sigma_B)" in found.assumed and found.least is not None
+    entry = next(e for e in found.entries if e.symbol == "K_1 (sigma_B)")
+    assert entry.values[0] == 1.0 and "ends at d_eff 500 mm" in entry.source
 
 
 def test_roughness_of_tests_is_in_their_factors():

@@ -14,7 +14,8 @@ from solidgear.strength.stress.conditions import Conditions
 from solidgear.strength.stress.fillet_rating import FilletNotch
 from solidgear.strength.stress.nominal import CrossSection, NominalStress
 from solidgear.strength.stress.notch import Factor, FilletFactors
-from solidgear.strength.stress.rating import Steel, rated
+from solidgear.strength.stress.rated_notch import Steel
+from solidgear.strength.stress.rating import rated
 
 SCENE = shoulder(1.5, 0.1, d=0.04)
 LARGE = 0.06

@@ -17,7 +17,8 @@ from solidgear.strength.stress.norm.steels import source_of, strength_of
 from solidgear.strength.stress.norm.tested import TABLE
 from solidgear.strength.stress.norm_notch import Section
 from solidgear.strength.stress.notches import DrawnNotch, drawn_notch
-from solidgear.strength.stress.rating import Rating, Steel, rated
+from solidgear.strength.stress.rated_notch import Steel
+from solidgear.strength.stress.rating import Rating, rated
 
 if TYPE_CHECKING:
     from solidgear.core import Scene

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from solidgear.strength.stress import din743
 from solidgear.strength.stress.din743 import LOADS, Load
-from solidgear.strength.stress.rating import NotchFactors, Steel
+from solidgear.strength.stress.rated_notch import NotchFactors, Steel
 from solidgear.strength.stress.rating_lines import BY_GRADIENT_HARD, Line
 
 if TYPE_CHECKING:

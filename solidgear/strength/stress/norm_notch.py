@@ -12,7 +12,7 @@ from solidgear.strength.stress import din743
 from solidgear.strength.stress.din743 import LOADS, Load
 from solidgear.strength.stress.nominal import CrossSection, NominalStress, nominal_stress
 from solidgear.strength.stress.norm.tested import at_diameter, size_of_notch
-from solidgear.strength.stress.rating import ByLoad, NotchFactors, RatedNotch, Steel
+from solidgear.strength.stress.rated_notch import ByLoad, NotchFactors, RatedNotch, Steel
 from solidgear.strength.stress.rating_lines import BY_GRADIENT, BY_GRADIENT_HARD, Line
 
 Tested = Callable[[Steel], dict[Load, float]]

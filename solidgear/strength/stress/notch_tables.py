@@ -147,11 +147,11 @@ def safety(value: float) -> str:
 
 def headline(stressed: StressAtRest, units: Units = ENGINEERING) -> str:
     """Return the sentences on the worst notch of all shafts, and on what has no rating; empty where
-    there is no notch.
+    there is neither.
     """
     worst = [(shaft, shaft.found.worst[0]) for shaft in stressed.shafts if shaft.found.worst]
     if not worst:
-        return ""
+        return " ".join(_unrated_words(stressed.shafts))
     shaft, notch = min(worst, key=lambda pair: _rank(pair[1]))
     name = notch.name if isinstance(notch, Notch) else f'{notch.kind} "{notch.name}"'
     place = f"{shaft.name}, {name}" if len(stressed.shafts) > 1 else name

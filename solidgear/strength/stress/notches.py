@@ -19,7 +19,7 @@ from solidgear.strength.stress.norm_notch import (
     Section,
     TwoNotches,
 )
-from solidgear.strength.stress.rating import Steel
+from solidgear.strength.stress.rated_notch import Steel
 
 if TYPE_CHECKING:
     from solidgear.core import Scene

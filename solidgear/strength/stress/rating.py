@@ -1,8 +1,8 @@
 """Rating of a notch against fatigue, yielding and a first crack by DIN 743, every factor with a
 source.
 
-A notch hands out its factors (:class:`RatedNotch`): a fillet those of the shaft's solid, other
-notches those of the norm. Inputs of the norm that were not given are 1, and their source says
+A notch hands out its factors (:class:`~solidgear.strength.stress.rated_notch.RatedNotch`): a fillet
+those of the shaft's solid, other notches those of the norm. Inputs of the norm that were not given are 1, and their source says
 *assumed*.
 """
 
@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple
 
 from solidgear.strength.stress import din743
 from solidgear.strength.stress.din743 import LOADS, Load
@@ -22,55 +22,13 @@ from solidgear.strength.stress.norm.life import (
     elementary_repetitions,
     equivalent_share,
 )
-from solidgear.strength.stress.rating_lines import ASSUMED, LINES, Entry, Line
+from solidgear.strength.stress.rated_notch import ByLoad, RatedNotch, Steel
+from solidgear.strength.stress.rating_lines import ASSUMED, LINES, Entry
 
 if TYPE_CHECKING:
     from solidgear.core.scene.parts import Strength
     from solidgear.strength.stress.conditions import Conditions, LoadLevel
     from solidgear.strength.stress.nominal import NominalStress
-
-ByLoad = Mapping[Load, float]
-
-
-class Steel(NamedTuple):
-    """Strength of a steel at the size of the part, Pa."""
-
-    ultimate: float
-    yield_point: float
-    hard: bool  #: whether its surface is hard
-
-
-@dataclass(frozen=True)
-class NotchFactors:
-    """Fatigue notch factors of a notch, and the lines that lead to them."""
-
-    notch: ByLoad  #: beta
-    rise: ByLoad  #: form factor, or beta without one, by which yielding rises
-    peak: ByLoad | None  #: form factor for a first crack; none where the norm has tests alone
-    lines: tuple[Line, ...]
-
-
-class RatedNotch(Protocol):
-    """A notch as a rating sees it."""
-
-    @property
-    def diameter(self) -> float:
-        """Diameter of nominal stress and of K_2, m."""
-
-    @property
-    def hollow(self) -> bool:
-        """Whether the section has a bore."""
-
-    @property
-    def revolved(self) -> bool:
-        """Whether the notch runs around the shaft, which raises the yield point."""
-
-    @property
-    def tested_roughness(self) -> float | None:
-        """Rz of the tests behind the factors, m: zero where it is in them, None without tests."""
-
-    def factors(self, steel: Steel) -> NotchFactors:
-        """Return the notch factors in a steel."""
 
 
 @dataclass(frozen=True)
@@ -179,6 +137,9 @@ def _sizes(
         of_whom = "given" if conditions.treated_diameter else "largest of the shaft"
         group = strength.group.replace("_", " ")
         source = f"DIN 743-2, eq. 10 to 14: {group}, d_eff {1e3 * diameter:g} mm ({of_whom})"
+    elif strength.group is not None:
+        source = f"{ASSUMED}: the norm ends at d_eff {1e3 * steels.LARGEST:g} mm"
+        by_group = (1.0, 1.0)
     factors = []
     given = (conditions.ultimate_at_size, conditions.yield_at_size)
     for symbol, user, group_factor in zip(("K_1 (sigma_B)", "K_1 (sigma_S)"), given, by_group):
