@@ -52,9 +52,9 @@ class Stretch(Detail):
                 f'begins where "{segment.name}" ends, at {segment.y1:.6g} m', path=("y",)
             )
             return
-        yield from self._kept(segment)
+        yield from self._fitted(segment)
 
-    def _kept(self, segment: Segment) -> Iterator[SceneError]:
+    def _fitted(self, segment: Segment) -> Iterator[SceneError]:
         """Yield problems of its sizes on a segment that it lies on."""
         raise NotImplementedError
 

@@ -81,7 +81,7 @@ class PressFit(Stretch):
         hollow = 1 - (segment.inner0 / segment.outer0) ** 2
         return strength.yield_point * hollow / math.sqrt(3)
 
-    def _kept(self, segment: Segment) -> Iterator[SceneError]:
+    def _fitted(self, segment: Segment) -> Iterator[SceneError]:
         diameter = 2 * segment.outer0
         if self.hub_diameter <= diameter:
             yield SceneError(
