@@ -6,7 +6,7 @@ Lame's thick rings: an interference I on the diameter d presses with
                                      K_shaft = ((1 + q^2)/(1 - q^2) - nu)/E
 
 Q = d/d_hub and q = bore/d. A ring of the yield point R stays elastic to p = R (1 - Q^2)/sqrt(3), and a
-solid shaft to 2 R/sqrt(3) (DIN 7190-1:2017, 5.3).
+solid shaft to 2 R/sqrt(3) (DIN 7190-1:2017).
 """
 
 from __future__ import annotations
