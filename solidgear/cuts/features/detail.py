@@ -70,9 +70,9 @@ def floor_problems(
             path=("depth",),
         )
     elif diameter is not None and not 2 * inner < diameter < 2 * outer:
-        wall = f"the bore, {2 * inner:.6g} m, and " if inner else ""
+        above = f"above the bore, {2 * inner:.6g} m, and " if inner else ""
         yield SceneError(
-            f'the floor of a {what} lies between {wall}the diameter of "{segment.name}", '
+            f'the floor of a {what} lies {above}below the surface of "{segment.name}", of diameter '
             f"{2 * outer:.6g} m",
             path=("diameter",),
         )
