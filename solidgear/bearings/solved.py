@@ -199,7 +199,7 @@ def partners(scene: Scene) -> dict[str, str]:
     rows = [
         (b, b.catalogue)
         for b in scene.bearings
-        if b.catalogue is not None and b.catalogue.one_sided
+        if b.catalogue is not None and b.catalogue.faces_one_way
     ]
     pressed = [(b, data.holds) for b, data in rows if data.preload is not None]
     free = [
