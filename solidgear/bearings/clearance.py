@@ -82,9 +82,9 @@ def clearance_range(data: Catalogue) -> tuple[float, float]:
     table = TABLES.get(data.kind)
     if table is None:
         instead = "a length, or a preload" if data.nature.holds == "one way" else "a length"
-        axial = ", theirs being along the shaft" if data.nature.holds == "both ways" else ""
+        along = " across the shaft" if data.nature.holds == "both ways" else ""
         raise SceneError(
-            f"{kind} bearings have no clearance class of ISO 5753-1{axial}; write {instead}",
+            f"{kind} bearings have no clearance class{along}; write {instead}",
             path=("clearance",),
         )
     ranges = table.get(name, "").split()

@@ -7,6 +7,7 @@ are the maker's, and estimated in :mod:`solidgear.bearings.geometry`.
 from __future__ import annotations
 
 import math
+import os
 import re
 from collections.abc import Iterator
 from functools import lru_cache
@@ -52,7 +53,7 @@ def _families() -> Iterator[Family]:
     plain = {name: sizes for name, sizes in TAPERED.items() if name not in named}
     words = "tapered 302, 303, 313, 320, 322, 323, 329, 330, 331, 332"
     yield Family("tapered", words, plain, "(?:4T-?|HR|E-?)?")
-    yield Family("tapered", "T7FC, T2ED, T2EE of ISO 355", named)
+    yield Family("tapered", "T7FC, T2ED, T2EE, T4CB, T5ED of ISO 355", named)
     spherical = {"213": "03", "222": "22", "223": "23", "230": "30", "231": "31", "232": "32"}
     spherical |= {"239": "39", "240": "40", "241": "41"}
     words = "spherical 213, 222, 223, 230, 231, 232, 239, 240, 241"
@@ -98,7 +99,7 @@ _ANGLES = {
     "tapered": {"302": 15.0, "303": 12.95, "320": 16.0, "322": 15.0, "323": 12.95, "330": 11.2}
 }
 _E = {
-    "tapered": {"313": 0.83, "329": 0.36, "331": 0.40, "332": 0.37, "T7FC": 0.87, "T2E": 0.35},
+    "tapered": {"313": 0.83, "329": 0.36, "331": 0.40, "332": 0.37, "T7FC": 0.87, "T2E": 0.35, "T4": 0.47, "T5": 0.55},
     "spherical": {
         "213": 0.24,
         "2220[4-7]": 0.32,
@@ -348,7 +349,8 @@ def _unknown(designation: str, text: str) -> SceneError:
     plain = re.sub(r"[\s/-]", "", text).replace("O", "0")
     designations = _designations()
     swapped = [name for name in designations if sorted(name) == sorted(plain)]
-    hint = did_you_mean(next(iter(swapped), near(plain, designations)))
+    alike = max(swapped, key=lambda name: len(os.path.commonprefix([name, plain])), default="")
+    hint = did_you_mean(alike or near(plain, designations))
     return SceneError(
         f"this designation is not understood{hint}; known are {series}, NK and NKI with sizes, and "
         "drawn cups HK, BK, in bores to 200 mm, with makers' suffixes; or write kind, bore, "

@@ -242,8 +242,10 @@ TAPERED = {
     ),
     # ISO 355's names of series that have no older one
     "T7FC": _listed(45, "95x29 105x32 115x34 125x37 130x37 140x39 150x42 160x45 170x48 - 180x49"),
-    "T2ED": _listed(45, "95x36 100x36 110x39 - - 130x43"),
-    "T2EE": _listed(40, "85x33 - - - 115x40"),
+    "T2ED": _listed(45, "95x36 100x36 110x39 - - 130x43 - 145x46"),
+    "T2EE": {40: Size(85, 33), 60: Size(115, 40), 100: Size(165, 47)},
+    "T4CB": {100: Size(145, 24), 120: Size(170, 27), 140: Size(195, 29)},
+    "T5ED": {60: Size(115, 39)},
 }
 #: ISO 104:2015, single-direction thrust balls, outer diameter x height
 THRUST = {

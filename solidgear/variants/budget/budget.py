@@ -19,11 +19,12 @@ every range, 0 to 1.
 
 from __future__ import annotations
 
+import copy
 import itertools
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 import scipy.linalg as sla
@@ -57,6 +58,7 @@ from solidgear.core.loading import SHAFT
 from solidgear.core.scene.uncertain import with_scaled_entry
 from solidgear.core.solve.neighbours import best_assignment
 from solidgear.core.solve.statics import condense
+from solidgear.variants.budget.questions import Question, questions
 
 Progress = Callable[[str], None]
 Place = tuple[float, ...]
@@ -157,7 +159,9 @@ def budget(
                 sampled.append(numbers)
     progress("ends of all inputs together")
     ranges = study.record(sampled, samples, seed if samples else None)
-    return Budget(scene=scene.name, **dict(ranges))
+    progress("what makers know")
+    asked = questions(study.points, ranges, [inputs.index(i) for i in inputs if i.of])
+    return Budget(scene=scene.name, questions=asked, **dict(ranges))
 
 
 class Budget(Sheeted, OpenNumbers):
@@ -166,6 +170,7 @@ class Budget(Sheeted, OpenNumbers):
     sheeted: ClassVar[str] = "variants.budget.chart:budget_sheet"
 
     scene: str = ""  #: name of it
+    questions: list[Question] = []  #: to makers of bearings, those that narrow most first
 
 
 class _Study:
@@ -321,7 +326,7 @@ class _Study:
 
 
 def _recorded(inputs: Iterable[OpenInput]) -> list[InputRecord]:
-    return [InputRecord(path=i.path, source=i.source, said=i.said) for i in inputs]
+    return [InputRecord(path=i.path, source=i.source, said=i.said, of=i.of) for i in inputs]
 
 
 def spread_points(dimension: int, count: int) -> np.ndarray:
@@ -364,6 +369,7 @@ class OpenInput:
     low: float = 0.0
     high: float = 1.0
     usual: float = 0.5  #: place of the value of the scene in the range, 0 to 1
+    of: str = ""  #: bearing in words, of an estimated inside
 
     def value(self, place: float) -> float:
         """Return the factor, or the place, at a place of the range."""
@@ -393,7 +399,10 @@ def open_inputs(scene: Scene) -> tuple[OpenInput, ...]:
             continue
         path = f"bearing.{bearing.name}"
         if data.estimated:
-            inputs.append(OpenInput(path + INSIDE, BEARINGS, "estimated, softer to stiffer"))
+            designation = f" ({data.designation})" if data.designation else ""
+            words = f"bearing {bearing.name}{designation}"
+            said = "estimated, softer to stiffer"
+            inputs.append(OpenInput(path + INSIDE, BEARINGS, said, of=words))
         if isinstance(data.clearance, str):
             least, most = (f"{1e6 * end:.3g}" for end in clearance_range(data))
             words = f"{data.clearance}, {least} to {most} um"
@@ -420,6 +429,18 @@ class Points:
         self.lost: dict[str, None] = {}  #: names of bearings that carried nothing at a point
         self._beams: dict[tuple, Body] = {}
         self._first: NamedShapes | None = None
+
+    def with_data(self, bearing: str, **known: Any) -> Points:
+        """Return the same points of a scene in which more catalogue data of a bearing are known."""
+        out = copy.copy(self)
+        bearings = tuple(
+            b.with_changes(catalogue=b.catalogue.with_changes(**known))
+            if b.name == bearing and b.catalogue is not None
+            else b
+            for b in self.scene.bearings
+        )
+        out.scene = self.scene.with_changes(bearings=bearings)
+        return out
 
     @property
     def model(self) -> str:
