@@ -204,6 +204,7 @@ def _with_suffixes(size: Boundary, suffixes: Suffixes, designation: str) -> Boun
 _ISO_355 = {
     r"T[23][DE]B": ("302", ""),
     r"T[23][DE]C": ("322", ""),
+    r"T[23][DE]E": ("332", ""),
     r"T5[DE]C": ("322", "B"),
     r"T2[FG]B": ("303", ""),
     r"T7[FG]B": ("313", ""),
@@ -219,10 +220,11 @@ def _of_iso_355(text: str) -> tuple[Boundary, str] | None:
     if match is None:
         return None
     bore, series, steep = int(match["bore"]), match["series"], ""
-    for pattern, older in _ISO_355.items():
-        if re.fullmatch(pattern, series):
-            series, steep = older
     size = TAPERED.get(series, {}).get(bore)
+    if size is None:
+        older = (names for pattern, names in _ISO_355.items() if re.fullmatch(pattern, series))
+        series, steep = next(older, ("", ""))
+        size = TAPERED.get(series, {}).get(bore)
     if size is None:
         return None
     return _sized("tapered", bore, size), f"{steep} {text[match.end() :]}"

@@ -46,8 +46,11 @@ ANGLES = {
     },
     "spindle": {"C": 15.0, "AC": 25.0, "E": 25.0},
     "double_row_angular": {"B": 25.0, "BD": 30.0, "A": 30.0, "E": 30.0},
-    # 1.5 tan a = 0.55, which ISO 355 calls angle series 5
-    "tapered": {"B": 20.1, "BJ2": 20.1, "BR": 20.1},
+    # 1.5 tan a = 0.55 and 0.83, which ISO 355 calls angle series 5 and 7; NSK writes C and D
+    "tapered": {
+        **dict.fromkeys(("B", "BJ2", "BR", "C", "CJ"), 20.1),
+        **dict.fromkeys(("D", "DJ", "DA", "DJ2"), 28.8),
+    },
 }
 #: what a stiffness would have to know and does not
 UNKNOWN = {
