@@ -62,6 +62,8 @@ PAIRED = ("tandem", "back_to_back", "face_to_face")
 WAYS = {"back_to_back": ("+y", "-y"), "face_to_face": ("-y", "+y")}
 #: other words of the field for arrangements
 _CALLED = {"o": "back_to_back", "db": "back_to_back", "x": "face_to_face", "df": "face_to_face"}
+#: words that a designation may give, beside sizes and clearance
+DESIGNATED = ("arrangement", "cage", "ribs")
 #: rolling elements of a row
 FEWEST, MOST = 3, 300
 
@@ -396,6 +398,18 @@ class Catalogue(Model):
         if self.ribbed:
             inner.append("rib_stiffness")
         return tuple(name for name in inner if getattr(self, name) is None)
+
+    @property
+    def written_too(self) -> tuple[str, ...]:
+        """Fields that a file has even where they have their default, for the designation says
+        something else.
+        """
+        if not self.designation or self.listed:
+            return ("clearance",)
+        said = boundary(self.designation)
+        usual = {key: type(self).model_fields[key].get_default() for key in DESIGNATED}
+        unlike = (k for k in DESIGNATED if getattr(self, k) == usual[k] != getattr(said, k))
+        return ("clearance", *(key for key in unlike if getattr(said, key) is not None))
 
     @model_validator(mode="after")
     def _hangs_together(self) -> Catalogue:

@@ -50,6 +50,8 @@ LIFE_POWER = {True: 3.0, False: 10 / 3}
 ROUNDING = 1e-9
 #: of C: beyond this equivalent load ISO 281 does not vouch for its life
 MOST_LOAD = 0.5
+#: of the radial load: what ribs of cylindrical rollers may carry along y (SKF, Rolling bearings)
+MOST_ON_RIBS = 0.5
 
 
 class Modified(NamedTuple):
@@ -133,7 +135,10 @@ def life(
         static_safety=_quotient(rated.static, static),
         pressure=tuple((float(row.inner.max()), float(row.outer.max())) for row in rows),
         rated=rated,
-        notes=tuple(_notes(data, rated, rows, equivalent.load, static)),
+        notes=(
+            *_on_ribs(data, equivalent),
+            *_notes(data, rated, rows, equivalent.load, static),
+        ),
     )
     if math.isinf(result.reference):
         return replace(result, without="it carries nothing")
@@ -188,6 +193,16 @@ def _modified(
         high=life_with(high),
     )
     return replace(result, modified=modified)
+
+
+def _on_ribs(data: Catalogue, equivalent: Equivalent) -> Iterator[str]:
+    """Yield a sentence on ribs that carry more than they may."""
+    if data.ribbed and equivalent.axial > MOST_ON_RIBS * equivalent.radial:
+        yield (
+            f"it takes {equivalent.axial:.5g} N along the shaft on its ribs, above half of its radial "
+            f"load of {equivalent.radial:.5g} N, which makers allow at most (SKF); its life counts "
+            "the radial load alone (ISO 281)"
+        )
 
 
 def _notes(

@@ -8,7 +8,8 @@
 (N, mm; g = Dw cos(a) / Dpw; i rows).  Q_0 is the load under which a ball presses a ring with 4200
 MPa: the f_0 of ISO 76 is ``Q_0 / (5 Dw^2)``, and is computed here by Hertz's contact and not read
 from its table.  Thrust balls stand at 90 degrees, and their ratings are axial; ISO 281's Table 4 of
-their f_c is ``36.7 (100 Dw / Dpw)^0.3`` to three digits.
+their f_c is ``36.7 (100 Dw / Dpw)^0.3`` to three digits.  Balls on a sphere have its radius in f_c,
+and 4600 MPa in Q_0.
 """
 
 from __future__ import annotations
@@ -26,9 +27,8 @@ from solidgear.bearings.kinds import SHARES
 STATIC_PRESSURE = {True: 4200e6, False: 4000e6}
 #: Pa, of self-aligning balls
 _SPHERE_PRESSURE = 4600e6
-#: of ISO/TR 1281-1, by which ISO 281's factors of two rows in deep grooves, and of balls on a sphere,
-#: differ from those of one row: 0.90 and 1 over 0.95
-_TWO_GROOVES, _ON_SPHERE = 0.90 / 0.95, 1 / 0.95
+#: of ISO/TR 1281-1, by which ISO 281's factors of two rows in deep grooves differ from those of one
+_TWO_GROOVES = 0.90 / 0.95
 #: Pa, of ISO 76
 _STATIC_E = 207e9
 #: of several rows in one rating
@@ -50,9 +50,7 @@ def ball_rating(inside: Inside, factor: float = 1.3, rows: int = 1) -> float:
     both_rings = (1 + ratio ** (10 / 3)) ** -0.3
     material = 39.9 * both_rings * g**0.3 * (1 - g) ** 1.39 / (1 + g) ** (1 / 3)
     material *= (2 * inner / (2 * inner - 1)) ** 0.41
-    if inside.sphere:
-        material *= _ON_SPHERE
-    elif rows > 1 and not inside.angle:
+    if rows > 1 and not inside.angle:
         material *= _TWO_GROOVES
     angle = math.cos(inside.angle)
     return factor * material * (rows * angle) ** 0.7 * inside.elements ** (2 / 3) * size
