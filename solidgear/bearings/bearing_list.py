@@ -200,7 +200,7 @@ def _rows(path: str) -> list[tuple[int, list[str]]]:
         text = Path(path).read_text(encoding="cp1252", errors="replace")
     except OSError as error:
         raise SceneError(f"cannot be read: {error.strerror or error}", where=path) from None
-    head = next((line for line in text.splitlines() if line.strip()), "")
+    head = next((line for line in text.splitlines() if line.strip() and line[0] != "#"), "")
     separator = max(";\t,", key=head.count)
     reader = csv.reader(text.splitlines(), delimiter=separator, skipinitialspace=True)
     rows = [(reader.line_num, [cell.strip() for cell in cells]) for cells in reader]
