@@ -200,7 +200,9 @@ def test_classes_of_clearance(written, low, high):
 
 
 def test_a_class_that_has_no_table_is_refused():
-    with pytest.raises(SceneError, match="CM of deep groove bearings is not known here at a bore of"):
+    with pytest.raises(
+        SceneError, match="CM of deep groove bearings is not known here at a bore of"
+    ):
         clearance_range(Catalogue(designation="6320 CM"))
     with pytest.raises(SceneError, match="no clearance class across the shaft; write a length"):
         clearance_range(Catalogue(designation="3206 A/C3"))

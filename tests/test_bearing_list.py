@@ -50,7 +50,9 @@ def test_five_bearings_of_a_list(tmp_path):
     found = read_list(written(tmp_path))
     assert [*found] == ["MX4711", "6208", "7208BEP", "32210XL", "61908"]
     bearings = {
-        name: Catalogue(**data, **({"holds": "+y"} if data["kind"] in ("angular_contact", "tapered") else {}))
+        name: Catalogue(
+            **data, **({"holds": "+y"} if data["kind"] in ("angular_contact", "tapered") else {})
+        )
         for name, data in found.items()
     }
     own = bearings["MX4711"]
@@ -67,7 +69,9 @@ def test_five_bearings_of_a_list(tmp_path):
 
 @pytest.mark.parametrize("separator, comma", [(";", ","), (",", "."), ("\t", ",")])
 def test_separators_decimal_commas_and_units(tmp_path, separator, comma):
-    head = separator.join(("designation", "bore [in]", "D [cm]", "width [mm]", "kind", "C [N]", "maker"))
+    head = separator.join(
+        ("designation", "bore [in]", "D [cm]", "width [mm]", "kind", "C [N]", "maker")
+    )
     line = separator.join(("A 1", "1", f"5{comma}2", f"1{comma}5E1", "Deep Groove", "14e3", "us"))
     data = read_list(written(tmp_path, f"\ufeff# ours\n{head}\n\n{line}\n"))["A1"]
     assert data["bore"] == pytest.approx(0.0254) and data["outer_diameter"] == pytest.approx(0.052)
@@ -98,7 +102,7 @@ def test_a_list_for_all_by_a_variable(tmp_path, monkeypatch):
 def test_a_train_has_one_list_for_its_shafts(tmp_path):
     written(tmp_path, HEAD + "MX 99;deep_groove;99;180;34;122;93;3;;;;;;\n")
     pinion = Path("geometry/pinion_overhung.toml").read_text(encoding="utf-8")
-    start, end = pinion.index("[bearing.stiffness]"), pinion.index("[[bearing]]\nname = \"2\"")
+    start, end = pinion.index("[bearing.stiffness]"), pinion.index('[[bearing]]\nname = "2"')
     own = '[bearing.catalogue]\ndesignation = "MX 99"\nload = { z = "5 kN" }\n'
     (tmp_path / "shaft.toml").write_text(pinion[:start] + own + pinion[end:], encoding="utf-8")
     gear = Path("geometry/gear_shaft.toml").read_text(encoding="utf-8")
@@ -142,4 +146,13 @@ def test_all_wrong_lines_are_named_at_once(tmp_path):
     text = "designation;C [kN]\n6208;30\nX;12\n6210;zwölf\n"
     with pytest.raises(SceneError) as refused:
         read_list(written(tmp_path, text))
-    assert [str(p).split("list.csv: ")[1][:6] for p in refused.value.problems] == ["line 3", "line 4"]
+    assert [str(p).split("list.csv: ")[1][:6] for p in refused.value.problems] == [
+        "line 3",
+        "line 4",
+    ]
+
+
+def test_the_list_of_the_guide_is_read(tmp_path):
+    page = Path("docs/guide/designations.md").read_text(encoding="utf-8")
+    text = page.split("```text\n")[1].split("```")[0]
+    assert len(read_list(written(tmp_path, text))) == 3

@@ -49,7 +49,9 @@ def ranges(scene):
     return beside(scene("", KNOWN))
 
 
-LED = "100 % of what is open in C_yy comes from the inside of bearing A (7208 B): its maker knows it"
+LED = (
+    "100 % of what is open in C_yy comes from the inside of bearing A (7208 B): its maker knows it"
+)
 
 
 def test_one_bearing_that_leads_is_named_in_one_line(scene, ranges):

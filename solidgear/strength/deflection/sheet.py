@@ -328,7 +328,9 @@ def motions(deflected: Deflections, units: Units = ENGINEERING) -> list[Table]:
         columns += _beside(end)
         rows.append(Aside([end, *six, *[None] * 6 * (1 + len(ends))]))
     if ends:
-        note += " Least and largest: by estimated insides and classes of clearance of the bearings. "
+        note += (
+            " Least and largest: by estimated insides and classes of clearance of the bearings. "
+        )
         note += deflected.judge.led
     return [Table(f"Motion of {port}", columns, rows, note.strip())]
 

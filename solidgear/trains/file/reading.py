@@ -165,7 +165,9 @@ def train_of(raw: Mapping[str, Any], file_path: str, shaft: ReadShaft = _as_writ
                 path=("segment",),
             )
         data: dict[str, Any] = {"name": name_of(file_path), **raw}
-        read_scene = partial(_with_scene, folder, "operation" not in raw, with_list_of(raw, folder, shaft))
+        read_scene = partial(
+            _with_scene, folder, "operation" not in raw, with_list_of(raw, folder, shaft)
+        )
         problems, kind = Problems(), LongFile if "shaft" in raw else ShortFile
         if kind is LongFile:
             data["shaft"] = _shafts(problems, raw["shaft"], read_scene, "planetary" in raw)

@@ -139,7 +139,9 @@ def _candidates(data: Catalogue) -> list[Candidate]:
     geometry = inner_geometry(data)
     out = []
     # balls are estimated from C, rollers from C0
-    rating = ratings(data.with_changes(arrangement="single") if data.paired else data, geometry.middle)
+    rating = ratings(
+        data.with_changes(arrangement="single") if data.paired else data, geometry.middle
+    )
     if data.balls and data.load_rating is None:
         out.append(Candidate("load_rating", rating.dynamic))
     if not data.balls and data.static_rating is None and data.load_rating is None:
