@@ -47,7 +47,7 @@ def written(folder, text=FIVE, name="list.csv"):
 
 
 def test_five_bearings_of_a_list(tmp_path):
-    found = read_list(written(tmp_path))
+    found = read_list(written(tmp_path), Catalogue)
     assert [*found] == ["MX4711", "6208", "7208BEP", "32210XL", "61908"]
     bearings = {
         name: Catalogue(
@@ -73,7 +73,7 @@ def test_separators_decimal_commas_and_units(tmp_path, separator, comma):
         ("designation", "bore [in]", "D [cm]", "width [mm]", "kind", "C [N]", "maker")
     )
     line = separator.join(("A 1", "1", f"5{comma}2", f"1{comma}5E1", "Deep Groove", "14e3", "us"))
-    data = read_list(written(tmp_path, f"\ufeff# ours\n{head}\n\n{line}\n"))["A1"]
+    data = read_list(written(tmp_path, f"\ufeff# ours\n{head}\n\n{line}\n"), Catalogue)["A1"]
     assert data["bore"] == pytest.approx(0.0254) and data["outer_diameter"] == pytest.approx(0.052)
     assert data["width"] == pytest.approx(0.015) and data["load_rating"] == pytest.approx(14e3)
 
@@ -138,14 +138,14 @@ WRONG = (
 @pytest.mark.parametrize("text, sentence", WRONG, ids=[s for _, s in WRONG])
 def test_wrong_lines_are_named(tmp_path, text, sentence):
     with pytest.raises(SceneError, match=sentence) as refused:
-        read_list(written(tmp_path, text))
+        read_list(written(tmp_path, text), Catalogue)
     assert len(refused.value.problems) == 1 and "list.csv" in str(refused.value)
 
 
 def test_all_wrong_lines_are_named_at_once(tmp_path):
     text = "designation;C [kN]\n6208;30\nX;12\n6210;zwölf\n"
     with pytest.raises(SceneError) as refused:
-        read_list(written(tmp_path, text))
+        read_list(written(tmp_path, text), Catalogue)
     assert [str(p).split("list.csv: ")[1][:6] for p in refused.value.problems] == [
         "line 3",
         "line 4",
@@ -155,4 +155,4 @@ def test_all_wrong_lines_are_named_at_once(tmp_path):
 def test_the_list_of_the_guide_is_read(tmp_path):
     page = Path("docs/guide/designations.md").read_text(encoding="utf-8")
     text = page.split("```text\n")[1].split("```")[0]
-    assert len(read_list(written(tmp_path, text))) == 3
+    assert len(read_list(written(tmp_path, text), Catalogue)) == 3

@@ -12,7 +12,7 @@ import csv
 import math
 import os
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -22,6 +22,8 @@ from solidgear.bearings.kinds import SHARES
 from solidgear.core import SceneError, nearest, show
 from solidgear.core.scene.units import quantity
 
+#: makes a bearing of catalogue data, or refuses them
+Make = Callable[..., Any]
 #: variable with the path of a list for scenes that name none
 VARIABLE = "SOLIDGEAR_BEARINGS"
 #: columns by the letters of makers; capitals count
@@ -87,46 +89,24 @@ class Column(NamedTuple):
     head: str  #: as the file has it
 
 
-def complete(tables: Mapping[str, Any], folder: Path) -> dict[str, Any]:
-    """Return the tables of a scene with catalogue data from the list that the key ``bearings`` names,
-    where a designation is in it; what the scene gives itself holds.
+def with_listed_by_variable(data: Mapping[str, Any], make: Make) -> dict[str, Any]:
+    """Return catalogue data with those of the list of the variable ``SOLIDGEAR_BEARINGS``, if there is
+    one.
     """
-    out = dict(tables)
-    name = out.get("bearings")
-    bearings = out.get("bearing")
-    if name is None or not isinstance(bearings, list):
-        return out
-    if not isinstance(name, str):
-        reason = 'names the file of a list of bearings, such as "my_bearings.csv"'
-        raise SceneError(reason, path=("bearings",), value=show(name))
-    listed = read_list(os.fspath(folder / name))
-    out["bearing"] = [_completed(table, listed) for table in bearings]
-    return out
+    path = os.environ.get(VARIABLE)
+    if not path or data.get("listed"):  # the lines of the list themselves
+        return dict(data)
+    return with_listed(data, read_list(path, make))
 
 
-def _completed(table: Any, listed: Mapping[str, Mapping[str, Any]]) -> Any:
-    """Return the table of a bearing with the data of a list."""
-    data = table.get("catalogue") if isinstance(table, Mapping) else None
-    if not isinstance(data, Mapping):
-        return table
-    return {**table, "catalogue": with_listed(data, listed)}
-
-
-def with_listed(
-    data: Mapping[str, Any], listed: Mapping[str, Mapping[str, Any]] | None = None
-) -> dict[str, Any]:
-    """Return catalogue data with those of a list, by default that of the variable
-    ``SOLIDGEAR_BEARINGS``, where it has the designation; data that are there stay.
+def with_listed(data: Mapping[str, Any], listed: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+    """Return catalogue data with those of a list, where it has the designation; data that are there
+    stay.
     """
     out = dict(data)
     designation = data.get("designation")
     if not isinstance(designation, str) or data.get("listed"):
         return out
-    if listed is None:
-        path = os.environ.get(VARIABLE)
-        if not path:
-            return out
-        listed = read_list(path)
     name = _plain(designation)
     # lists seldom have a line for every class of clearance
     split = re.fullmatch(r"(.*?)(C[2-5]|CN)", name)
@@ -140,9 +120,9 @@ def _plain(designation: str) -> str:
     return re.sub(r"[\s/\-.,]", "", designation.upper())
 
 
-def read_list(path: str) -> dict[str, dict[str, Any]]:
+def read_list(path: str, make: Make) -> dict[str, dict[str, Any]]:
     """Read a list of bearings: catalogue data in SI by designation without separators; all wrong
-    lines are refused, each with its column.
+    lines are refused, each with its column, and those of which `make` makes no bearing.
 
     Examples
     --------
@@ -150,7 +130,7 @@ def read_list(path: str) -> dict[str, dict[str, Any]]:
     >>> with TemporaryDirectory() as folder:
     ...     path = os.path.join(folder, "list.csv")
     ...     _ = Path(path).write_text("designation;C [kN];Dw [mm]\\n6208;32,5;12\\n")
-    ...     data = read_list(path)["6208"]
+    ...     data = read_list(path, dict)["6208"]
     >>> data["load_rating"], data["element_diameter"], data["outer_diameter"]
     (32500.0, 0.012, 0.08)
     """
@@ -159,11 +139,11 @@ def read_list(path: str) -> dict[str, dict[str, Any]]:
     except OSError as error:
         reason = f"cannot be read: {error.strerror or error}"
         raise SceneError(reason, where=path) from None
-    return _read(path, status.st_mtime_ns, status.st_size)
+    return _read(path, make, status.st_mtime_ns, status.st_size)
 
 
 @lru_cache(maxsize=8)
-def _read(path: str, changed: int, size: int) -> dict[str, dict[str, Any]]:
+def _read(path: str, make: Make, changed: int, size: int) -> dict[str, dict[str, Any]]:
     """Read a list that has this time of change and size."""
     if size > LARGEST:
         reason = f"has {size / 1e6:.0f} MB, more than a list of bearings has"
@@ -176,7 +156,7 @@ def _read(path: str, changed: int, size: int) -> dict[str, dict[str, Any]]:
     problems = []
     for number, cells in lines:
         try:
-            name, data = _bearing(columns, cells, number, path)
+            name, data = _bearing(columns, cells, number, path, make)
         except SceneError as error:
             problems += error.problems
             continue
@@ -260,7 +240,7 @@ def _no_unit(unit: str, dimension: str) -> str:
 
 
 def _bearing(
-    columns: Sequence[Column], cells: Sequence[str], number: int, path: str
+    columns: Sequence[Column], cells: Sequence[str], number: int, path: str, make: Make
 ) -> tuple[str, dict[str, Any]]:
     """Return the name without separators and the catalogue data of a line; all that is wrong in it is
     refused.
@@ -284,7 +264,7 @@ def _bearing(
     if problems:
         raise SceneError.of(problems)
     try:
-        return _checked(data, f"{Path(path).name}, line {number}")
+        return _checked(data, f"{Path(path).name}, line {number}", make)
     except SceneError as error:
         heads = {column.key: column.head for column in columns}
         raise SceneError.of(
@@ -328,12 +308,10 @@ def _number(cell: str) -> float:
     return number
 
 
-def _checked(data: dict[str, Any], line: str) -> tuple[str, dict[str, Any]]:
+def _checked(data: dict[str, Any], line: str, make: Make) -> tuple[str, dict[str, Any]]:
     """Return the name and catalogue data of a line, with the sizes of its designation where the line
     has none; refuse data that make no bearing.
     """
-    from solidgear.bearings.catalogue import Catalogue  # it reads lists itself
-
     name = data.get("designation")
     if not name:
         raise SceneError("has no designation")
@@ -348,7 +326,7 @@ def _checked(data: dict[str, Any], line: str) -> tuple[str, dict[str, Any]]:
     ways: dict[str, Any] = {}
     if (shares := SHARES.get(data["kind"])) and shares.holds == "one way":
         ways["holds"] = "+y"
-    Catalogue(**data, **ways)
+    make(**data, **ways)
     return _plain(name), data
 
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, get_args
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from solidgear.bearings.bearing_list import with_listed
+from solidgear.bearings.bearing_list import with_listed_by_variable
 from solidgear.bearings.designation import boundary
 from solidgear.bearings.kinds import SHARES, Shares
 from solidgear.core import (
@@ -303,7 +303,7 @@ class Catalogue(Model):
         if "support" in data:
             reason = "belongs to the bearing, not to its catalogue data"
             raise SceneError(reason, path=("support",), value=show(data["support"]))
-        data = with_listed(data)
+        data = with_listed_by_variable(data, Catalogue)
         if (
             isinstance(data.get("designation"), str)
             and data["designation"]

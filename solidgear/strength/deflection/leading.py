@@ -3,17 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import numpy as np
 
 from solidgear.bearings.catalogue import catalogue_of
 from solidgear.bearings.solved import Choice
 from solidgear.show.open_words import LEADS, WORTH, led_by
+from solidgear.trains.file.train import Train
 
-if TYPE_CHECKING:
-    from solidgear.strength.deflection.at_rest import Measured
-    from solidgear.trains.file.train import Train
+
+class Measured(Protocol):
+    """A number of deflected shafts with its range."""
+
+    name: str
+    unit: str
+    value: float
+    open: tuple[float, float] | None
+
 
 #: numbers that are compared at a place in the ranges of the bearings
 ValuesAt = Callable[[Choice], np.ndarray]

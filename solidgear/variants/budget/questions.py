@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 from solidgear.bearings.catalogue import Catalogue, catalogue_of
 from solidgear.bearings.catalogued import End
@@ -17,13 +17,30 @@ from solidgear.bearings.geometry import inner_geometry
 from solidgear.bearings.inside import Inside
 from solidgear.bearings.rating import ratings
 from solidgear.bearings.ribs import estimated_stiffness
-from solidgear.core import OpenNumbers, Quantity, SolidgearError
-from solidgear.core.judge.quantities import JUDGED
+from solidgear.core import OpenNumbers, Quantity, Scene, SolidgearError
 from solidgear.core.judge.record import OpenRecord, Part
-from solidgear.core.quantity import K_ZZ
+from solidgear.show.open_words import SHOWN
 
-if TYPE_CHECKING:
-    from solidgear.variants.budget.budget import Points
+
+class Open(Protocol):
+    """Open input of a scene."""
+
+    path: str
+    usual: float
+
+
+class Points(Protocol):
+    """Numbers of a scene at points of the ranges of its open inputs."""
+
+    scene: Scene
+
+    @property
+    def inputs(self) -> Sequence[Open]: ...
+
+    def numbers(self, place: Sequence[float]) -> dict[Quantity, float]: ...
+
+    def with_data(self, bearing: str, **known: Any) -> Points: ...
+
 
 #: of the variance of a number: an inside with less is no question
 ASKED = 0.1
@@ -124,7 +141,7 @@ def _widest(ranges: OpenNumbers, path: str) -> OpenRecord | None:
     """Return the number that is shown and of which an input leaves most open; None where it leaves
     little of every one.
     """
-    shown = [n for name in (*JUDGED, K_ZZ) if (n := ranges.of(name)) is not None]
+    shown = [n for name in SHOWN if (n := ranges.of(name)) is not None]
     shown = [n for n in shown if n.width_shares.get(path, 0.0) >= ASKED and _width(n, path)]
     return max(shown, key=lambda n: _width(n, path), default=None)
 
