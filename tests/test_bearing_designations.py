@@ -67,26 +67,26 @@ DRAWN = (
 @pytest.mark.parametrize("written, kind, sizes, clearance, ignored", DRAWN)
 def test_forty_seven_designations_of_drawings(written, kind, sizes, clearance, ignored):
     assert len(DRAWN) == 47
-    found = boundary(written)
-    assert (found.kind, found.clearance, found.ignored) == (kind, clearance, ignored)
-    assert _sizes(found) == pytest.approx(sizes)
+    result = boundary(written)
+    assert (result.kind, result.clearance, result.ignored) == (kind, clearance, ignored)
+    assert _sizes(result) == pytest.approx(sizes)
     # the same in small letters, and with other separators
-    assert boundary(written.lower()) == found
+    assert boundary(written.lower()) == result
     if "/" not in written and " " in written:
-        assert boundary(written.replace(" ", "-")) == found
+        assert boundary(written.replace(" ", "-")) == result
 
 
-def _sizes(found):
-    return [1e3 * size for size in (found.bore, found.outer_diameter, found.width)]
+def _sizes(result):
+    return [1e3 * size for size in (result.bore, result.outer_diameter, result.width)]
 
 
 @pytest.mark.parametrize("kind", PUBLISHED)
 def test_sizes_are_those_of_printed_lists(kind):
     for entry in PUBLISHED[kind].split():
         name, sizes = entry.split(":")
-        found = boundary(name.replace("_", " "))
-        assert found.kind == kind, name
-        assert _sizes(found) == pytest.approx([float(s) for s in sizes.split("x")]), name
+        result = boundary(name.replace("_", " "))
+        assert result.kind == kind, name
+        assert _sizes(result) == pytest.approx([float(s) for s in sizes.split("x")]), name
 
 
 def test_the_plan_grows_with_the_bore_and_with_the_series():

@@ -47,24 +47,24 @@ def written(folder, text=FIVE, name="list.csv"):
 
 
 def test_five_bearings_of_a_list(tmp_path):
-    found = read_list(written(tmp_path), Catalogue)
-    assert [*found] == ["MX4711", "6208", "7208BEP", "32210XL", "61908"]
+    result = read_list(written(tmp_path), Catalogue)
+    assert [*result] == ["MX4711", "6208", "7208BEP", "32210XL", "61908"]
     bearings = {
         name: Catalogue(
             **data, **({"holds": "+y"} if data["kind"] in ("angular_contact", "tapered") else {})
         )
-        for name, data in found.items()
+        for name, data in result.items()
     }
-    own = bearings["MX4711"]
-    assert (own.bore, own.outer_diameter, own.width) == (0.042, 0.078, 0.0175)
-    assert own.load_rating == 31.2e3 and own.estimated == ("conformity",)
+    bearing = bearings["MX4711"]
+    assert (bearing.bore, bearing.outer_diameter, bearing.width) == (0.042, 0.078, 0.0175)
+    assert bearing.load_rating == 31.2e3 and bearing.estimated == ("conformity",)
     assert bearings["6208"].outer_diameter == 0.08 and bearings["6208"].fatigue_limit == 800
     assert bearings["7208BEP"].contact_angle == pytest.approx(math.radians(40))
     # e = 1.5 tan a (ISO 281)
     assert math.tan(bearings["32210XL"].contact_angle) == pytest.approx(0.28)
     # what the list says holds against ISO
     assert bearings["61908"].kind == "angular_contact"
-    assert own.listed == "list.csv, line 2"
+    assert bearing.listed == "list.csv, line 2"
 
 
 @pytest.mark.parametrize("separator, comma", [(";", ","), (",", "."), ("\t", ",")])
@@ -103,8 +103,8 @@ def test_a_train_has_one_list_for_its_shafts(tmp_path):
     written(tmp_path, HEAD + "MX 99;deep_groove;99;180;34;122;93;3;;;;;;\n")
     pinion = Path("geometry/pinion_overhung.toml").read_text(encoding="utf-8")
     start, end = pinion.index("[bearing.stiffness]"), pinion.index('[[bearing]]\nname = "2"')
-    own = '[bearing.catalogue]\ndesignation = "MX 99"\nload = { z = "5 kN" }\n'
-    (tmp_path / "shaft.toml").write_text(pinion[:start] + own + pinion[end:], encoding="utf-8")
+    bearing = '[bearing.catalogue]\ndesignation = "MX 99"\nload = { z = "5 kN" }\n'
+    (tmp_path / "shaft.toml").write_text(pinion[:start] + bearing + pinion[end:], encoding="utf-8")
     gear = Path("geometry/gear_shaft.toml").read_text(encoding="utf-8")
     (tmp_path / "gear_shaft.toml").write_text(gear, encoding="utf-8")
     train = Path("geometry/axle_overhung.toml").read_text(encoding="utf-8")

@@ -141,9 +141,9 @@ def test_ribs_hold_one_way_or_both():
 def test_load_on_ribs_is_found_and_told():
     data = Catalogue(designation="NUP 208", load={"y": "1.5 kN", "z": "2 kN"}, load_rating="62 kN")
     made = catalogued(data)
-    found = life(data, made, state(data, made))
-    assert found.equivalent.load == pytest.approx(2000)
-    assert "1500 N along the shaft on its ribs, above half of its radial load" in found.notes[0]
+    result = life(data, made, state(data, made))
+    assert result.equivalent.load == pytest.approx(2000)
+    assert "1500 N along the shaft on its ribs, above half of its radial load" in result.notes[0]
     with pytest.raises(SolidgearError, match="nothing holds it in y"):
         nu = data.with_changes(ribs="none")
         state(nu, catalogued(nu))
@@ -205,10 +205,10 @@ def test_the_ten_ratings_of_the_guide_are_computed():
     assert len(rows) == 10
     for name, _, c, computed, c0, computed0, longer in rows:
         data = Catalogue(designation=name, **({"holds": "+y"} if name[0] in "37" else {}))
-        found = ratings(data, inner_geometry(data).middle)
-        assert found.dynamic / 1e3 == pytest.approx(float(computed), abs=0.06), name
-        assert found.static / 1e3 == pytest.approx(float(computed0), abs=0.06), name
+        result = ratings(data, inner_geometry(data).middle)
+        assert result.dynamic / 1e3 == pytest.approx(float(computed), abs=0.06), name
+        assert result.static / 1e3 == pytest.approx(float(computed0), abs=0.06), name
         power = 3 if data.balls else 10 / 3
-        assert (found.dynamic / 1e3 / float(c)) ** power == pytest.approx(float(longer), abs=0.006)
+        assert (result.dynamic / 1e3 / float(c)) ** power == pytest.approx(float(longer), abs=0.006)
         # a claim of the page: twice the life at most, but for one tapered bearing
-        assert 0.6 < float(longer) < 2.3 and abs(found.static / 1e3 / float(c0) - 1) < 0.41
+        assert 0.6 < float(longer) < 2.3 and abs(result.static / 1e3 / float(c0) - 1) < 0.41

@@ -71,13 +71,13 @@ def test_questions_to_a_maker_and_what_each_narrows(scene, ranges):
     shaft = scene("", KNOWN)
     inputs = open_inputs(shaft)
     asked_for = questions(Points(shaft, inputs), ranges, [0])
-    found = Budget(scene=shaft.name, questions=asked_for, **dict(ranges))
-    asked = {question.key: question for question in found.questions}
+    result = Budget(scene=shaft.name, questions=asked_for, **dict(ranges))
+    asked = {question.key: question for question in result.questions}
     assert [*asked][0] == "load_rating" and asked["load_rating"].in_catalogue
     assert {"elements", "element_diameter", "conformity"} <= {*asked}
     assert "pitch_diameter" not in asked  # nothing of this range comes from it
     assert asked["elements"].asked == "number of rolling elements in a row"
-    assert {q.designation for q in found.questions} == {"7208 B"}
+    assert {q.designation for q in result.questions} == {"7208 B"}
     # the same by a file that says so, on the way of any other scene
     question = asked["elements"]
     answered = scene(f", elements = {question.middle.split()[0]}", KNOWN)
@@ -86,7 +86,7 @@ def test_questions_to_a_maker_and_what_each_narrows(scene, ranges):
     width = (max(ends) - min(ends)) / abs(ends[1])
     assert question.left == pytest.approx(width / question.width, rel=1e-9)
     assert 0.1 < question.left < 0.9
-    (table,) = [t for t in budget_sheet(found).tables if t.name == "questions"]
+    (table,) = [t for t in budget_sheet(result).tables if t.name == "questions"]
     text = str(table)
     assert "basic dynamic load rating C, kN" in text and "A (7208 B)" in text
 

@@ -110,10 +110,10 @@ def with_listed(data: Mapping[str, Any], listed: Mapping[str, Mapping[str, Any]]
     name = _plain(designation)
     # lists seldom have a line for every class of clearance
     split = re.fullmatch(r"(.*?)(C[2-5]|CN)", name)
-    found = listed.get(name)
-    if found is None and split is not None and split[1] in listed:
-        found = {**listed[split[1]], "clearance": split[2]}
-    return out if found is None else {**found, **out}
+    entry = listed.get(name)
+    if entry is None and split is not None and split[1] in listed:
+        entry = {**listed[split[1]], "clearance": split[2]}
+    return out if entry is None else {**entry, **out}
 
 
 def _plain(designation: str) -> str:
@@ -153,7 +153,7 @@ def _read(path: str, make: Make, changed: int, size: int) -> dict[str, dict[str,
     columns = _columns(heads, path)
     out: dict[str, dict[str, Any]] = {}
     numbers: dict[str, int] = {}
-    problems = []
+    problems: list[SceneError] = []
     for number, cells in lines:
         try:
             name, data = _bearing(columns, cells, number, path, make)
@@ -199,7 +199,7 @@ def _columns(heads: Sequence[str], path: str) -> list[Column]:
     force or an angle without a unit.
     """
     columns: list[Column] = []
-    problems = []
+    problems: list[SceneError] = []
     for place, head in enumerate(heads, start=1):
         match = re.fullmatch(r"(?P<word>[^\[\]]*?)\s*(?:\[\s*(?P<unit>[^\]]+?)\s*\])?", head)
         word = match["word"].strip() if match else head

@@ -171,10 +171,10 @@ def boundary(designation: str) -> Boundary:
     ('cylindrical', 0.08, 'C3', 'both ways')
     """
     text = re.sub(r"\s+", " ", designation.strip().upper())
-    found = _of_iso_355(text) or _of_family(text) or _of_needles(text)
-    if found is None:
+    sized = _of_iso_355(text) or _of_family(text) or _of_needles(text)
+    if sized is None:
         raise _unknown(designation, text)
-    size, rest = found
+    size, rest = sized
     # an E of a spindle bearing is an angle, of another its design
     spindle = size.kind == "angular_contact" and text.startswith("B")
     suffixes = read_suffixes(rest, "spindle" if spindle else size.kind)
@@ -249,15 +249,15 @@ def _of_family(text: str) -> tuple[Boundary, str] | None:
         rest = text[match.end() :]
         for place, (series, bore, left) in enumerate(_read_digits(match["digits"], rest)):
             if (size := family.series.get(series, {}).get(bore)) is not None:
-                found = _of_letters(family, match["before"], series, bore, size)
-                readings.append((place, found, left))
+                sized = _of_letters(family, match["before"], series, bore, size)
+                readings.append((place, sized, left))
     if not readings:
         return None
-    _, found, left = min(readings, key=lambda reading: reading[0])
-    if found.kind == "cylindrical" and (flange := re.search(r"\+ ?HJ.*", left)):
-        ribs = {"one way": "both ways", "none": "one way"}.get(found.ribs or "", found.ribs)
-        return found._replace(ribs=ribs), left[: flange.start()]
-    return found, left
+    _, sized, left = min(readings, key=lambda reading: reading[0])
+    if sized.kind == "cylindrical" and (flange := re.search(r"\+ ?HJ.*", left)):
+        ribs = {"one way": "both ways", "none": "one way"}.get(sized.ribs or "", sized.ribs)
+        return sized._replace(ribs=ribs), left[: flange.start()]
+    return sized, left
 
 
 def _read_digits(digits: str, rest: str) -> Iterator[tuple[str, int, str]]:
@@ -279,19 +279,19 @@ def _read_digits(digits: str, rest: str) -> Iterator[tuple[str, int, str]]:
 
 def _of_letters(family: Family, letters: str, series: str, bore: int, size: Size) -> Boundary:
     """Return what the digits of a designation and the letters before them say."""
-    found = _sized(family.kind, bore, size)._replace(arrangement=family.rows)
+    sized = _sized(family.kind, bore, size)._replace(arrangement=family.rows)
     if family.kind == "cylindrical":
         letters = letters.replace("SL18", "NCF")
         cage = False if letters == "NCF" else None
-        return found._replace(ribs=RIBS.get(letters, "none"), cage=cage)
+        return sized._replace(ribs=RIBS.get(letters, "none"), cage=cage)
     if family.kind != "needle":
-        return found
+        return sized
     under = RACEWAYS[series[1]].get(bore)
     if under is None:
-        return found
+        return sized
     if letters == "RNA":
-        return found._replace(bore=under / 1e3)
-    return found._replace(raceway=under / 1e3)
+        return sized._replace(bore=under / 1e3)
+    return sized._replace(raceway=under / 1e3)
 
 
 def _sized(kind: str, bore: float, size: Size) -> Boundary:
@@ -318,8 +318,8 @@ def _of_needles(text: str) -> tuple[Boundary, str] | None:
     under = bore if match["ring"] == "NK" else int(NKI_RACEWAY.get(bore, 0))
     if under not in NK_OUTER:
         return None
-    found = _sized("needle", bore, Size(NK_OUTER[under], width))
-    return found._replace(raceway=None if under == bore else under / 1e3), rest
+    sized = _sized("needle", bore, Size(NK_OUTER[under], width))
+    return sized._replace(raceway=None if under == bore else under / 1e3), rest
 
 
 def usual_angle(designation: str, kind: str = "tapered") -> float | None:

@@ -89,8 +89,8 @@ def read_suffixes(text: str, kind: str) -> Suffixes:
 
     Examples
     --------
-    >>> found = read_suffixes("-2RS1/C3", "deep_groove")
-    >>> found.ignored, found.classes
+    >>> result = read_suffixes("-2RS1/C3", "deep_groove")
+    >>> result.ignored, found.classes
     (('2RS1',), ('C3',))
     >>> read_suffixes("BECBP", "angular_contact").angle
     40.0

@@ -16,10 +16,17 @@ from solidgear.trains.file.train import Train
 class Measured(Protocol):
     """A number of deflected shafts with its range."""
 
-    name: str
-    unit: str
-    value: float
-    open: tuple[float, float] | None
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def unit(self) -> str: ...
+
+    @property
+    def value(self) -> float: ...
+
+    @property
+    def open(self) -> tuple[float, float] | None: ...
 
 
 #: numbers that are compared at a place in the ranges of the bearings

@@ -25,8 +25,11 @@ from solidgear.show.open_words import SHOWN
 class Open(Protocol):
     """Open input of a scene."""
 
-    path: str
-    usual: float
+    @property
+    def path(self) -> str: ...
+
+    @property
+    def usual(self) -> float: ...
 
 
 class Points(Protocol):
@@ -111,14 +114,14 @@ def questions(points: Points, ranges: OpenNumbers, insides: Sequence[int]) -> li
         name = path.removeprefix("bearing.").removesuffix(".inside")
         data = catalogue_of(next(b for b in points.scene.bearings if b.name == name))
         assert data is not None
-        now, found = _width(number, path), []
+        now, of_bearing = _width(number, path), []
         for candidate in _candidates(data):
             width = _width_with(points, index, name, candidate, number.quantity)
             if width is None or width > NARROWER * now:
                 continue
             asked, unit = WORDS[candidate.key]
             low, high = candidate.ends or (None, None)
-            found.append(
+            of_bearing.append(
                 Question(
                     bearing=name,
                     designation=data.designation,
@@ -133,7 +136,7 @@ def questions(points: Points, ranges: OpenNumbers, insides: Sequence[int]) -> li
                     in_catalogue=candidate.key in IN_CATALOGUE,
                 )
             )
-        out += sorted(found, key=lambda question: (not question.in_catalogue, question.left))
+        out += sorted(of_bearing, key=lambda question: (not question.in_catalogue, question.left))
     return out
 
 
