@@ -174,6 +174,7 @@ def test_a_tapered_bore_asks_for_the_clearance_that_is_left():
     with pytest.raises(SceneError, match="tapered bore, K"):
         Catalogue(designation="22210 EK/C3")
     assert Catalogue(designation="22210 EK", clearance="20 um").clearance == 20e-6
+    assert boundary("2210 E-2RS1KTN9/C3").ignored == "E 2RS1 TN9"
 
 
 def test_single_letters_do_not_read_every_word():

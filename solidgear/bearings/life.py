@@ -39,7 +39,13 @@ import numpy as np
 from solidgear.bearings.catalogue import Catalogue
 from solidgear.bearings.catalogued import Catalogued
 from solidgear.bearings.equivalent import Equivalent, equivalent_load, static_load
-from solidgear.bearings.rating import ROW_POWER, STATIC_PRESSURE, Ratings, ratings
+from solidgear.bearings.rating import (
+    ROW_POWER,
+    SPHERE_PRESSURE,
+    STATIC_PRESSURE,
+    Ratings,
+    ratings,
+)
 from solidgear.bearings.reference_life import Damage, Ring, damage, raceways
 from solidgear.bearings.row import Contacts
 from solidgear.core.scene.lubrication import Lubrication
@@ -219,7 +225,7 @@ def _notes(
             f"dynamic rating C; ISO 281 holds up to {MOST_LOAD:g} of it"
         )
     most = max(float(max(row.inner.max(), row.outer.max())) for row in rows)
-    limit = STATIC_PRESSURE[data.balls]
+    limit = SPHERE_PRESSURE if data.nature.sphere else STATIC_PRESSURE[data.balls]
     if most > limit:
         yield (
             f"a contact pressure of {most / 1e6:.0f} MPa is beyond the {limit / 1e6:.0f} MPa of its "

@@ -26,7 +26,7 @@ from solidgear.bearings.kinds import SHARES
 #: Pa, ISO 76: beyond it the dent is above 1e-4 of the element's diameter; of balls and of rollers
 STATIC_PRESSURE = {True: 4200e6, False: 4000e6}
 #: Pa, of self-aligning balls
-_SPHERE_PRESSURE = 4600e6
+SPHERE_PRESSURE = 4600e6
 #: of ISO/TR 1281-1, by which ISO 281's factors of two rows in deep grooves differ from those of one
 _TWO_GROOVES = 0.90 / 0.95
 #: Pa, of ISO 76
@@ -79,7 +79,7 @@ def static_ball_rating(inside: Inside) -> float:
         outer=outer,
         E=_STATIC_E,
     )
-    pressure = _SPHERE_PRESSURE if inside.sphere else STATIC_PRESSURE[True]
+    pressure = SPHERE_PRESSURE if inside.sphere else STATIC_PRESSURE[True]
     ball = min(ring.load(pressure) for ring in row.rings)
     return inside.elements * ball * (1.0 if inside.thrust else 0.2 * math.cos(inside.angle))
 

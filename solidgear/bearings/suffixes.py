@@ -152,8 +152,8 @@ def _split(chunk: str, first: tuple[str, ...]) -> tuple[list[str], str]:
             continue
         for end in range(len(chunk), start, -1):
             piece = chunk[start:end]
-            # single letters anywhere would read every word
-            placed = end - start > 1 or start == 0 or end == len(chunk)
+            # single letters anywhere would read every word; 2RS1KTN9 is usual
+            placed = end - start > 1 or start == 0 or end == len(chunk) or piece == "K"
             known = (placed and _what(piece)) or (start == 0 and piece in first)
             if known and (end not in ways or len(ways[start]) + 1 < len(ways[end])):
                 ways[end] = [*ways[start], piece]
