@@ -8,7 +8,7 @@ from published_sizes import PUBLISHED
 
 from solidgear.bearings.catalogue import Catalogue
 from solidgear.bearings.clearance import clearance_range
-from solidgear.bearings.designation import FAMILIES, boundary, usual_angle
+from solidgear.bearings.designation import boundary, families, usual_angle
 from solidgear.bearings.suffixes import read_suffixes
 from solidgear.core import SceneError
 
@@ -91,7 +91,7 @@ def test_sizes_are_those_of_printed_lists(kind):
 
 def test_the_plan_grows_with_the_bore_and_with_the_series():
     # a slip of a row by one place breaks the order
-    for family in FAMILIES:
+    for family in families():
         for series, sizes in family.series.items():
             ordered = [sizes[bore] for bore in sorted(sizes)]
             outer = [size.outer for size in ordered]
@@ -217,4 +217,4 @@ def test_usual_angles_of_series():
 
 
 def _family(kind):
-    return next(family for family in FAMILIES if family.kind == kind)
+    return next(family for family in families() if family.kind == kind)

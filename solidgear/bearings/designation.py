@@ -10,7 +10,7 @@ import math
 import os
 import re
 from collections.abc import Iterator
-from functools import lru_cache
+from functools import cache, lru_cache
 from typing import NamedTuple
 
 from solidgear.bearings.plan import (
@@ -18,13 +18,13 @@ from solidgear.bearings.plan import (
     NK_OUTER,
     NKI_RACEWAY,
     RACEWAYS,
-    TAPERED,
-    THRUST,
     Size,
     Sizes,
     bore_of,
     code_of,
     iso_15,
+    tapered,
+    thrust,
 )
 from solidgear.bearings.suffixes import IGNORED, Suffixes, read_suffixes
 from solidgear.core import SceneError, near, show
@@ -48,9 +48,9 @@ RIBS = {"NJ": "one way", "NF": "one way", "NCF": "one way", "NUP": "both ways", 
 
 def _families() -> Iterator[Family]:
     """Yield families, those with more digits first."""
-    yield Family("thrust_ball", "thrust ball 511, 512, 513, 514", THRUST)
-    named = {name: sizes for name, sizes in TAPERED.items() if name.startswith("T")}
-    plain = {name: sizes for name, sizes in TAPERED.items() if name not in named}
+    yield Family("thrust_ball", "thrust ball 511, 512, 513, 514", thrust())
+    named = {name: sizes for name, sizes in tapered().items() if name.startswith("T")}
+    plain = {name: sizes for name, sizes in tapered().items() if name not in named}
     words = "tapered 302, 303, 313, 320, 322, 323, 329, 330, 331, 332"
     yield Family("tapered", words, plain, "(?:4T-?|HR|E-?)?")
     yield Family("tapered", "T7FC, T2ED, T2EE, T4CB, T5ED of ISO 355", named)
@@ -92,7 +92,12 @@ def _planned(series: dict[str, str], least: int = 3) -> dict[str, Sizes]:
     return {written: iso_15(dimension, least) for written, dimension in series.items()}
 
 
-FAMILIES = tuple(_families())
+@cache
+def families() -> tuple[Family, ...]:
+    """Return all families; files without a designation need none."""
+    return tuple(_families())
+
+
 #: degrees, the middle of what makers give for a series: of ISO 355 the angle, else that of the
 #: ``e = 1.5 tan a`` of ISO 281 in their lists
 _ANGLES = {
@@ -229,11 +234,11 @@ def _of_iso_355(text: str) -> tuple[Boundary, str] | None:
     if match is None:
         return None
     bore, series, steep = int(match["bore"]), match["series"], ""
-    size = TAPERED.get(series, {}).get(bore)
+    size = tapered().get(series, {}).get(bore)
     if size is None:
         older = (names for pattern, names in _ISO_355.items() if re.fullmatch(pattern, series))
         series, steep = next(older, ("", ""))
-        size = TAPERED.get(series, {}).get(bore)
+        size = tapered().get(series, {}).get(bore)
     if size is None:
         return None
     return _sized("tapered", bore, size), f"{steep} {text[match.end() :]}"
@@ -242,7 +247,7 @@ def _of_iso_355(text: str) -> tuple[Boundary, str] | None:
 def _of_family(text: str) -> tuple[Boundary, str] | None:
     """Return sizes of a designation of a series and a bore, and the rest; None for another."""
     readings = []
-    for family in FAMILIES:
+    for family in families():
         match = re.match(rf"(?P<before>{family.before})[ -]?(?P<digits>\d+)", text)
         if match is None:
             continue
@@ -342,7 +347,7 @@ def _designations() -> list[str]:
     """Return all known designations without suffixes, except those of needle rollers by size."""
     return [
         f"{before}{series}{code_of(bore)}"
-        for family in FAMILIES
+        for family in families()
         for before in family.first
         for series, sizes in family.series.items()
         for bore in sizes
@@ -356,7 +361,7 @@ def _unknown(designation: str, text: str) -> SceneError:
                 f"is {words} of which there is no model here; write stiffness in place of catalogue",
                 value=show(designation),
             )
-    series = ", ".join(family.words for family in FAMILIES if family.words)
+    series = ", ".join(family.words for family in families() if family.words)
     plain = re.sub(r"[\s/-]", "", text).replace("O", "0")
     designations = _designations()
     swapped = [name for name in designations if sorted(name) == sorted(plain)]

@@ -8,6 +8,7 @@ stiffness; a class of clearance, a contact angle, a pair and a tapered bore do.
 from __future__ import annotations
 
 import re
+from functools import cache
 from typing import NamedTuple
 
 #: patterns of pieces by what they say, in the order in which a refusal names them
@@ -81,7 +82,12 @@ _PIECES = {
     "unknown": "|".join(UNKNOWN),
     "ignored": "|".join(IGNORED.values()),
 }
-_PATTERNS = {what: re.compile(pattern) for what, pattern in _PIECES.items()}
+
+
+@cache
+def _patterns() -> dict[str, re.Pattern]:
+    """Return compiled patterns; files without a designation need none."""
+    return {what: re.compile(pattern) for what, pattern in _PIECES.items()}
 
 
 def read_suffixes(text: str, kind: str) -> Suffixes:
@@ -90,7 +96,7 @@ def read_suffixes(text: str, kind: str) -> Suffixes:
     Examples
     --------
     >>> result = read_suffixes("-2RS1/C3", "deep_groove")
-    >>> result.ignored, found.classes
+    >>> result.ignored, result.classes
     (('2RS1',), ('C3',))
     >>> read_suffixes("BECBP", "angular_contact").angle
     40.0
@@ -127,7 +133,7 @@ def _with(result: Suffixes, piece: str) -> Suffixes:
     if what == "bore":
         return result._replace(tapered_bore=True)
     if what == "pair":
-        match = _PATTERNS["pair"].fullmatch(piece)
+        match = _patterns()["pair"].fullmatch(piece)
         assert match
         return result._replace(arrangement=_WAYS[match["way"]])
     if what == "unknown":
@@ -138,7 +144,7 @@ def _with(result: Suffixes, piece: str) -> Suffixes:
 
 def _what(piece: str) -> str:
     """Return the kind of a piece; empty for one that is not known."""
-    return next((what for what, pattern in _PATTERNS.items() if pattern.fullmatch(piece)), "")
+    return next((what for what, pattern in _patterns().items() if pattern.fullmatch(piece)), "")
 
 
 def _split(chunk: str, first: tuple[str, ...]) -> tuple[list[str], str]:
