@@ -7,6 +7,7 @@ import pytest
 from published_sizes import PUBLISHED
 
 from solidgear.bearings.catalogue import Catalogue
+from solidgear.bearings.catalogued import catalogued, state
 from solidgear.bearings.clearance import clearance_range
 from solidgear.bearings.designation import boundary, families, usual_angle
 from solidgear.bearings.suffixes import read_suffixes
@@ -205,8 +206,22 @@ def test_a_class_that_has_no_table_is_refused():
         SceneError, match="CM of deep groove bearings is not known here at a bore of"
     ):
         clearance_range(Catalogue(designation="6320 CM"))
-    with pytest.raises(SceneError, match="no clearance class across the shaft; write a length"):
-        clearance_range(Catalogue(designation="3206 A/C3"))
+    with pytest.raises(SceneError, match="C5 of double row angular bearings is not known here"):
+        clearance_range(Catalogue(designation="3206 A/C5"))
+
+
+@pytest.mark.parametrize(
+    "written, low, high",
+    [("3206 A/C3", 18, 37), ("3212-B-TVH", 13, 36), ("QJ 208 MA/C3", 100, 150)],
+)
+def test_classes_along_the_shaft(written, low, high):
+    """DAS Lager's catalogue: axial clearance of series 32 and 33 and of QJ."""
+    data = Catalogue(designation=written, load={"y": "0.01 N"})
+    data = data.with_changes(clearance="CN") if written.startswith("3212") else data
+    assert clearance_range(data) == pytest.approx((low / 1e6, high / 1e6))
+    # the shaft moves that far along its axis before a row carries, half of it each way
+    moved = state(data, catalogued(data))[1]
+    assert 2e6 * moved == pytest.approx((low + high) / 2, rel=1e-3)
 
 
 def test_usual_angles_of_series():

@@ -70,29 +70,43 @@ TABLES = {
     "spherical": _SPHERICAL,
     "self_aligning": _SELF_ALIGNING,
 }
+#: classes along the shaft by kind (ISO 5753-2, DIN 628), with their bores
+_FOUR_POINT = {
+    "C2": "20-60 30-70 40-90 50-100 60-120 70-140 80-160 100-180",
+    "CN": "50-90 60-110 80-130 90-140 100-160 120-180 140-200 160-220",
+    "C3": "80-120 100-150 120-170 130-180 140-200 160-220 180-240 200-260",
+}
+_TWO_ROWS = {
+    "C2": "1-11 1-12 2-14 2-15 2-16 2-18 3-22 3-24 3-26 4-30",
+    "CN": "5-21 6-23 7-25 8-27 9-29 11-33 13-36 15-40 18-46 22-53",
+    "C3": "12-28 13-31 16-34 18-37 21-40 23-44 26-48 30-54 35-63 42-73",
+}
+AXIAL = {
+    "four_point": (_FOUR_POINT, (0, 18, 40, 60, 80, 100, 140, 180, 220)),
+    "double_row_angular": (_TWO_ROWS, (0, 10, 18, 24, 30, 40, 50, 65, 80, 100, 110)),
+}
 
 
 def clearance_range(data: Catalogue) -> tuple[float, float]:
-    """Return the least and largest radial internal clearance before mounting, m, equal if it is
-    given as a length; refuse a class of a bearing that has none.
+    """Return the least and largest internal clearance before mounting, m, equal if it is given as a
+    length; refuse a class of a bearing that has none. It is radial, but along the shaft for classes
+    of two rows of balls against each other and of four points.
     """
     if not isinstance(data.clearance, str):
         return data.clearance, data.clearance
     kind, name = data.kind.replace("_", " "), data.clearance
-    table = TABLES.get(data.kind)
+    table, edges = AXIAL.get(data.kind, (TABLES.get(data.kind), _BORES))
     if table is None:
         instead = "a length, or a preload" if data.nature.holds == "one way" else "a length"
-        along = " across the shaft" if data.nature.holds == "both ways" else ""
         raise SceneError(
-            f"{kind} bearings have no clearance class{along}; write {instead}",
-            path=("clearance",),
+            f"{kind} bearings have no clearance class; write {instead}", path=("clearance",)
         )
     ranges = table.get(name, "").split()
     bore = data.bore * 1e3
-    place = sum(bore > edge + 1e-9 for edge in _BORES[1:])
+    place = sum(bore > edge + 1e-9 for edge in edges[1:])
     if place >= len(ranges) or ranges[place] == "-":
         known = [k for k, range_ in enumerate(ranges) if range_ != "-"]
-        span = f", from {_BORES[known[0]]} to {_BORES[known[-1] + 1]} mm of bore" if known else ""
+        span = f", from {edges[known[0]]} to {edges[known[-1] + 1]} mm of bore" if known else ""
         raise SceneError(
             f"{name} of {kind} bearings is not known here at a bore of {bore:g} mm{span}; write a "
             "length",
@@ -100,6 +114,20 @@ def clearance_range(data: Catalogue) -> tuple[float, float]:
         )
     low, high = ranges[place].split("-")
     return round(float(low) * 1e-6, 9), round(float(high) * 1e-6, 9)
+
+
+def is_axial(data: Catalogue) -> bool:
+    """Return whether the clearance is a class along the shaft."""
+    return isinstance(data.clearance, str) and data.kind in AXIAL
+
+
+def across_shaft(axial: float, inside: Inside) -> float:
+    """Return the radial clearance of balls that touch after the shaft has moved half of an axial
+    clearance, m: ``axial tan(a)`` where it is small beside the distance of the grooves' centres.
+    """
+    free = (sum(inside.conformity) - 1) * inside.diameter
+    risen = min(free * math.sin(inside.angle) + axial / 2, free)
+    return 2 * (free * math.cos(inside.angle) - math.sqrt(free**2 - risen**2))
 
 
 def mounting_change(data: Catalogue, inside: Inside) -> float:
@@ -121,4 +149,7 @@ def clearance_at_work(data: Catalogue, inside: Inside, share: float = 0.5) -> fl
     class, 0 to 1.
     """
     low, high = clearance_range(data)
-    return low + share * (high - low) + mounting_change(data, inside)
+    clearance = low + share * (high - low)
+    if is_axial(data):
+        clearance = across_shaft(clearance, inside)
+    return clearance + mounting_change(data, inside)

@@ -30,7 +30,7 @@ import numpy as np
 import scipy.linalg as sla
 
 from solidgear.bearings.catalogue import catalogue_of
-from solidgear.bearings.clearance import clearance_range
+from solidgear.bearings.clearance import clearance_range, is_axial
 from solidgear.bearings.solved import Choice, solved, wants_equilibrium
 from solidgear.core import (
     LADDER,
@@ -405,7 +405,7 @@ def open_inputs(scene: Scene) -> tuple[OpenInput, ...]:
             inputs.append(OpenInput(path + INSIDE, BEARINGS, said, of=words))
         if isinstance(data.clearance, str):
             least, most = (f"{1e6 * end:.3g}" for end in clearance_range(data))
-            words = f"{data.clearance}, {least} to {most} um"
+            words = f"{data.clearance}, {least} to {most} um{' along y' * is_axial(data)}"
             inputs.append(OpenInput(path + CLEARANCE, BEARINGS, words))
     for stated in scene.uncertain:
         source = {"material": MATERIAL, "segment": MATERIAL, "load": LOAD}.get(
