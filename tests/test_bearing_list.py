@@ -97,6 +97,9 @@ def test_a_list_for_all_by_a_variable(tmp_path, monkeypatch):
     assert Catalogue(designation="MX 4711").bore == 0.042
     assert Catalogue(designation="6208").static_rating == 19e3
     assert Catalogue(designation="6308").static_rating is None
+    monkeypatch.setenv("SOLIDGEAR_BEARINGS", "none.csv")
+    with pytest.raises(SceneError, match="SOLIDGEAR_BEARINGS: none.csv: cannot be read"):
+        Catalogue(designation="6308")
 
 
 def test_a_train_has_one_list_for_its_shafts(tmp_path):
@@ -131,7 +134,7 @@ WRONG = (
     ("designation;Z;Dw [mm]\n6208;40;12\n", "line 2, column Z: .*more than fit on the pitch circle"),
     ("designation;C [kN]\n6208;30\n6208;31\n", 'line 3: "6208" is in line 2 as well'),
     ("designation,C [kN]\n6208,30,7\n", "line 2: has 3 cells under 2 columns; a decimal comma needs"),
-    ("designation;e;Y\n32210;0,42;2,5\n", "line 2, column Y: 2.5 does not fit e = 0.42"),
+    ("designation;e;Y\n32210;0,42;2,5\n", 'line 2, column Y: "2,5" does not fit e = 0.42'),
 )  # fmt: skip
 
 

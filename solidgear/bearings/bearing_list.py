@@ -46,6 +46,10 @@ LETTERS = {
     "F": "raceway",
     "Fw": "raceway",
     "alpha": "contact_angle",
+    "ID": "bore",
+    "OD": "outer_diameter",
+    "type": "kind",
+    "Type": "kind",
 }
 #: dimension of what columns hold
 MEASURED = {
@@ -96,7 +100,11 @@ def with_listed_by_variable(data: Mapping[str, Any], make: Make) -> dict[str, An
     path = os.environ.get(VARIABLE)
     if not path or data.get("listed"):  # the lines of the list themselves
         return dict(data)
-    return with_listed(data, read_list(path, make))
+    try:
+        listed = read_list(path, make)
+    except SceneError as error:
+        raise SceneError(f"{VARIABLE}: {error}", path=("designation",)) from None
+    return with_listed(data, listed)
 
 
 def with_listed(data: Mapping[str, Any], listed: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
@@ -266,17 +274,18 @@ def _bearing(
     try:
         return _checked(data, f"{Path(path).name}, line {number}", make)
     except SceneError as error:
-        heads = {column.key: column.head for column in columns}
+        given = {c.key: (c.head, cell) for c, cell in zip(columns, cells)}
         raise SceneError.of(
-            SceneError(_of_line(problem, number, heads), where=path) for problem in error.problems
+            SceneError(_of_line(problem, number, given), where=path) for problem in error.problems
         ) from None
 
 
-def _of_line(problem: SceneError, number: int, heads: Mapping[str, str]) -> str:
-    """Return the reason of a problem with its line and column."""
+def _of_line(problem: SceneError, number: int, given: Mapping[str, tuple[str, str]]) -> str:
+    """Return the reason of a problem with its line, its column and the cell."""
     key = str(problem.path[0]) if problem.path else ""
-    column = f", column {heads.get(key, key)}" if key else ""
-    value = f"{problem.value} " if problem.value else ""
+    head, cell = given.get(key, (key, ""))
+    column = f", column {head}" if head else ""
+    value = f"{show(cell)} " if cell else ""
     return f"line {number}{column}: {value}{problem.reason}"
 
 
