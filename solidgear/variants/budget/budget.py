@@ -79,7 +79,7 @@ def beside(scene: Scene, body: Body | None = None) -> OpenNumbers:
 
 def opened(scene: Scene) -> OpenNumbers:
     """Return the whole budget for a report, left out as by :func:`beside`."""
-    return _if_few(scene, lambda: budget(scene))
+    return _if_few(scene, lambda: _studied(scene)[1])
 
 
 def _if_few(scene: Scene, solve: Callable[[], OpenNumbers]) -> OpenNumbers:
@@ -135,14 +135,27 @@ def budget(
     (-0.005, 0.005)
     """
     scene = load(scene)
+    if samples and not FEWEST_SAMPLES <= samples <= MOST_SAMPLES:
+        raise SolidgearError(f"samples = {samples}: give {FEWEST_SAMPLES} to {MOST_SAMPLES}, or 0")
+    study, ranges = _studied(scene, samples, seed, progress)
+    progress("what makers know")
+    insides = [k for k, open_input in enumerate(study.inputs) if open_input.of]
+    asked = questions(study.points, ranges, insides)
+    return Budget(scene=scene.name, questions=asked, **dict(ranges))
+
+
+def _studied(
+    scene: Scene, samples: int = 0, seed: int = 0, progress: Progress = lambda _: None
+) -> tuple[_Study, OpenNumbers]:
+    """Return the points of a scene that were solved, and the ranges of its numbers with deviations;
+    refuse a scene without open inputs.
+    """
     inputs = open_inputs(scene)
     if not inputs:
         raise SolidgearError(
             f"{scene.name}: no input is open, since no bearing has an estimated inside or a class "
             "of clearance and the file has no [uncertain]"
         )
-    if samples and not FEWEST_SAMPLES <= samples <= MOST_SAMPLES:
-        raise SolidgearError(f"samples = {samples}: give {FEWEST_SAMPLES} to {MOST_SAMPLES}, or 0")
     study = _Study(scene, inputs)
     for k, open_input in enumerate(inputs):
         progress(f"{open_input.path} ({k + 1} of {len(inputs)})")
@@ -158,10 +171,7 @@ def budget(
             if (numbers := study.at(tuple(place))) is not None:
                 sampled.append(numbers)
     progress("ends of all inputs together")
-    ranges = study.record(sampled, samples, seed if samples else None)
-    progress("what makers know")
-    asked = questions(study.points, ranges, [inputs.index(i) for i in inputs if i.of])
-    return Budget(scene=scene.name, questions=asked, **dict(ranges))
+    return study, study.record(sampled, samples, seed if samples else None)
 
 
 class Budget(Sheeted, OpenNumbers):
