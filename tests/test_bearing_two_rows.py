@@ -165,6 +165,21 @@ def test_support_follows_the_ribs():
     assert loose.floats
 
 
+def test_a_rib_that_could_hold_a_shaft_is_named():
+    ends = [
+        sg.Bearing(name=name, y=y, seat_width=0.018, catalogue={"designation": name})
+        for name, y in (("NJ 208", 0.01), ("NU 208", 0.19))
+    ]
+    shaft = sg.Segment.cylinder("shaft", length=0.2, diameter=0.04)
+    port = sg.Port(y=0.1, lo=0.05, hi=0.15)
+    load = {"y": 500.0, "z": 2000.0}
+    with pytest.raises(SolidgearError, match="one rib of 'NJ 208' would hold it one way: write hol"):
+        sg.Scene.from_parts([shaft], bearings=ends, port=port, load=load).settled
+    held = [ends[0].held_towards("+y"), ends[1]]
+    scene = sg.Scene.from_parts([shaft], bearings=held, port=port, load=load).settled
+    assert scene.bearings[0].stiffness[1, 1] > 1e8 > scene.bearings[1].stiffness[1, 1]
+
+
 def test_words_against_a_designation_are_written():
     """A file that takes a NUP without its ribs reads back as one."""
     data = Catalogue(designation="NUP 208", ribs="none")
