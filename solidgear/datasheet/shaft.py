@@ -1,0 +1,267 @@
+"""Facts of one shaft: numbers asked for, model trusted, shaft at rest, natural frequencies, speed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from typing import Any
+
+from solidgear.bearings.catalogue import catalogue_of
+from solidgear.bearings.study import BearingFacts
+from solidgear.bearings.study import bearing_facts as catalogue_facts
+from solidgear.core import OpenNumbers, Quantity, Scene, SolidgearError, load, without_axis
+from solidgear.core.judge.answer import Answered, answer
+from solidgear.core.judge.quantities import judged
+from solidgear.core.loading import shaft as settling_body
+from solidgear.datasheet.at_rest import (
+    bearing_facts,
+    cautions_of_bearings,
+    cautions_of_notch,
+    designation,
+    forces,
+    life_fact,
+    motions,
+    trust_at_rest,
+    worst_notch,
+    worst_section,
+)
+from solidgear.datasheet.facts import (
+    Amount,
+    BearingFact,
+    DrawnShaft,
+    Figure,
+    Frequency,
+    Remark,
+    Resonance,
+    Trust,
+)
+from solidgear.datasheet.result import Datasheet
+from solidgear.show.remarks import open_ranges
+from solidgear.strength.deflection import at_rest
+from solidgear.strength.stress.at_rest import StressSettings, stress_at_rest
+from solidgear.trains.assembly.assembly import Assembly
+from solidgear.trains.file.operation import OperatingPoint
+from solidgear.trains.file.train import ALONE
+
+Progress = Callable[[str], None]
+#: frequencies that a sheet lists beside the numbers asked for
+FREQUENCIES = tuple(map(Quantity, ("bending 1", "bending 2", "axial 1", "torsion 1")))
+#: orders of a shaft that excite it most: unbalance, and misalignment or a keyway
+ORDERS = (1, 2)
+#: share of a speed within which a resonance is listed
+NEAR = 0.2
+
+
+def shaft_sheet(
+    assembly: Assembly,
+    point: OperatingPoint,
+    settings: StressSettings,
+    tol: float | None,
+    speed: float | None,
+    progress: Progress,
+) -> Datasheet:
+    """Return the sheet of a shaft alone, its bearings settled once; a body without an axis is
+    refused.
+    """
+    scene = assembly.train.shafts[ALONE].scene
+    if without_axis(scene):
+        raise SolidgearError(f"sheet: {scene.name} has no axis: run solidgear stiffness or modes")
+    settled = load(scene)
+    progress("numbers")
+    wanted = judged(settled)
+    names = [*wanted, *(q for q in FREQUENCIES if q not in wanted)]
+    answered = answer(settled, tol, names)
+    progress("what the data leave open")
+    ranges = open_ranges(settled)
+    turning = speed or speed_of(settled)
+    figures = {value.quantity: figure(value, ranges) for value in answered.values}
+    frequencies = tuple(
+        Frequency(name, f.value, f.bar, f.open) for name, f in figures.items() if name.is_frequency
+    )
+    lives = lives_of(scene, speed)
+    sheet = Datasheet(
+        title=settled.title or settled.name,
+        file=settled.name,
+        train=False,
+        drawn=(DrawnShaft(settled.name, settled.as_dict(), speed=turning),),
+        figures=tuple(figures[q] for q in wanted if q in figures),
+        trust=trust(answered, wanted),
+        bearings=tuple(lives.get(b.name, without_load(b)) for b in scene.bearings),
+        frequencies=frequencies,
+        resonances=resonances(frequencies, turning),
+        speed=turning,
+        assumed=tuple(assumed(scene, ranges)),
+        absent={} if turning else {"speeds": Remark("absent speed")},
+        cautions=tuple(cautions(answered, ranges)),
+    )
+    if scene.load is None:
+        reason = Remark("absent load")
+        absent = {"worst": reason, "motions": reason}
+        return replace(sheet, absent=sheet.absent | absent)
+    return _under_load(sheet, assembly, point, settings, lives, progress)
+
+
+def _under_load(
+    sheet: Datasheet,
+    assembly: Assembly,
+    point: OperatingPoint,
+    settings: StressSettings,
+    lives: dict[str, BearingFact],
+    progress: Progress,
+) -> Datasheet:
+    """Return the sheet with what the load does to the shaft at rest."""
+    progress("deflection")
+    deflected = at_rest.deflect(assembly, point)
+    progress("stress")
+    stressed = stress_at_rest(assembly, point, asked=settings)
+    notch = worst_notch(stressed)
+    bars = [f.bar for f in sheet.frequencies if f.bar is not None]
+    trust_under_load = trust_at_rest(deflected, max(bars, default=None), "within motion")
+    (drawn,) = sheet.drawn
+    return replace(
+        sheet,
+        drawn=(replace(drawn, forces=forces(stressed.shafts[0])),),
+        trust=replace(
+            sheet.trust,
+            cheapest=trust_under_load.cheapest,
+            gap=trust_under_load.gap,
+            demand="within motion",
+        ),
+        notch=notch,
+        section=worst_section(stressed),
+        absent=sheet.absent | absent_notch(stressed, notch),
+        bearings=bearing_facts(deflected, {ALONE: assembly.scenes[ALONE]}, lives),
+        motions=motions(deflected),
+        assumed=(*sheet.assumed, *assumed_at_rest(stressed, notch)),
+        cautions=(*sheet.cautions, *cautions_of_bearings(deflected), *cautions_of_notch(notch)),
+        elsewhere=len({*deflected.cautions, *deflected.judge.notes, *stressed.cautions}),
+    )
+
+
+def figure(value: Any, ranges: OpenNumbers) -> Figure:
+    """Return a number of an answer with both error bars."""
+    number = ranges.of(value.quantity)
+    total = None if number is None else number.total
+    open_ = None if total is None else (total.low or 0.0, total.high or 0.0)
+    bar = value.bar if math.isfinite(value.bar) else None
+    return Figure(str(value.quantity), value.value, value.unit, bar, open_)
+
+
+def trust(answered: Answered, wanted: tuple[Quantity, ...]) -> Trust:
+    """Return the model of an answer, with the widest error bars of the numbers asked for."""
+    values = [v for v in answered.values if v.quantity in wanted and math.isfinite(v.bar)]
+    static = [v.bar for v in values if not v.quantity.is_frequency]
+    frequency = [v.bar for v in values if v.quantity.is_frequency]
+    return Trust(
+        model=answered.rung,
+        tolerance=answered.tolerance,
+        reached=all(v.bar <= answered.tolerance for v in answered.values if v.quantity in wanted),
+        static_bar=max(static, default=None),
+        frequency_bar=max(frequency, default=None),
+    )
+
+
+def speed_of(scene: Scene) -> float | None:
+    """Return the speed that a scene gives, rad/s; None without one."""
+    oil = scene.lubrication
+    speeds = [oil.speed] if oil is not None and oil.speed else []
+    data = [catalogue_of(bearing) for bearing in scene.bearings]
+    speeds += [d.speed for d in data if d is not None and d.speed]
+    return max(map(abs, speeds), default=None)
+
+
+def lives_of(scene: Scene, speed: float | None) -> dict[str, BearingFact]:
+    """Return lives of the catalogue bearings of a shaft by name; empty without any."""
+    if not any(bearing.catalogue is not None for bearing in scene.bearings):
+        return {}
+    facts = catalogue_facts(scene, settling_body(scene), speed)
+    return {fact.name: _alone(fact) for fact in facts}
+
+
+def _alone(fact: BearingFacts) -> BearingFact:
+    life = life_fact(fact.name, fact.bearing, fact.life)
+    radial = math.hypot(fact.load[0], fact.load[2])
+    return replace(life, radial=radial, axial=float(fact.load[1]))
+
+
+def without_load(bearing: Any) -> BearingFact:
+    """Return a bearing whose load is not known."""
+    return BearingFact(bearing.name, designation(bearing))
+
+
+def resonances(frequencies: tuple[Frequency, ...], speed: float | None) -> tuple[Resonance, ...]:
+    """Return speeds at which orders of a shaft meet its bending modes, the nearest first."""
+    if not speed:
+        return ()
+    met = []
+    for frequency in frequencies:
+        if not frequency.mode.startswith("bending"):
+            continue
+        bar, (low, high) = frequency.bar or 0.0, frequency.open or (0.0, 0.0)
+        for order in ORDERS:
+            critical = 2 * math.pi * frequency.hz / order
+            met.append(
+                Resonance(
+                    order=order,
+                    source="",
+                    by_teeth=False,
+                    mode=frequency.mode,
+                    speed=critical,
+                    low=critical * (1 + low) * (1 - bar),
+                    high=critical * (1 + high) * (1 + bar),
+                    distance=speed / critical - 1,
+                )
+            )
+    return tuple(sorted(met, key=lambda resonance: abs(resonance.distance)))
+
+
+def assumed(scene: Scene, ranges: OpenNumbers) -> Iterator[Remark]:
+    """Yield what the data of a shaft leave to be assumed."""
+    data = {b.name: catalogue_of(b) for b in scene.bearings}
+    estimated = [name for name, d in data.items() if d is not None and d.estimated]
+    if estimated:
+        yield Remark("assumed inside", {"names": tuple(estimated)})
+    classes = [n for n, d in data.items() if d is not None and isinstance(d.clearance, str)]
+    if classes:
+        yield Remark("assumed clearance", {"names": tuple(classes)})
+    stiffness = [b.name for b in scene.bearings if b.status == "assumed" and not b.hold]
+    if stiffness:
+        yield Remark("assumed stiffness", {"names": tuple(stiffness)})
+    stated = [entry.path for entry in scene.uncertain]
+    if stated:
+        yield Remark("assumed ranges", {"names": tuple(stated)})
+    if ranges.left_out:
+        yield Remark("assumed without ranges")
+
+
+def assumed_at_rest(stressed: Any, notch: Any) -> Iterator[Remark]:
+    """Yield what stress at rest assumes."""
+    if notch is not None and notch.assumed:
+        yield Remark("assumed factors", {"names": notch.assumed})
+    if not getattr(stressed.under, "drive", True):
+        yield Remark("assumed no torque")
+
+
+def absent_notch(stressed: Any, notch: Any) -> dict[str, Remark]:
+    """Return why no notch is rated, by section; empty where one is."""
+    if notch is None:
+        return {"notch": Remark("absent notch")}
+    if notch.fatigue is None:
+        weak = [name for shaft in stressed.shafts for name in shaft.weak]
+        return {"notch": Remark("absent strength", {"names": tuple(dict.fromkeys(weak))})}
+    return {}
+
+
+def cautions(answered: Answered, ranges: OpenNumbers) -> Iterator[Remark]:
+    """Yield cautions on numbers of a shaft."""
+    if not answered.reached:
+        bar = max((v.bar for v in answered.values), default=math.inf)
+        if math.isfinite(bar):
+            values = {
+                "bar": Amount(100 * bar, "%", 2),
+                "tolerance": Amount(100 * answered.tolerance, "%", 2),
+            }
+            yield Remark("caution tolerance", values)
+    for name in ranges.lost:
+        yield Remark("caution lost", {"name": name})
