@@ -33,14 +33,23 @@ ROUNDING = 1e-6
 def forces(shaft: StressedShaft) -> tuple[Force, ...]:
     """Return the loads on a shaft in the order of their places."""
     scene = shaft.scene
-    bearings = {bearing.name for bearing in scene.bearings}
+    bearings = {bearing.name: bearing for bearing in scene.bearings}
     places = {station.name: station.y for station in (*scene.stations, *scene.masses)}
-    loads = [
-        Force(name, places[name], tuple(map(float, six)), name in bearings)
-        for name, six in shaft.acting.loads.items()
-        if name in places
-    ]
+    loads = []
+    for name, load in shaft.acting.loads.items():
+        if name not in places:
+            continue
+        six = tuple(map(float, load))
+        if name in bearings and six[4] and _turns(bearings[name]):
+            # the torque comes from a coupling at its place
+            loads.append(Force(name, places[name], (0.0, 0.0, 0.0, 0.0, six[4], 0.0), False))
+            six = (*six[:4], 0.0, six[5])
+        loads.append(Force(name, places[name], six, name in bearings))
     return tuple(sorted(loads, key=lambda force: force.y))
+
+
+def _turns(bearing: Bearing) -> bool:
+    return bearing.matrix is None or not bearing.matrix[4][4]
 
 
 def worst_notch(stressed: StressAtRest) -> WorstNotch | None:

@@ -116,9 +116,10 @@ def shaft_svg(
     _draw_shaft(board, shaft, words)
     _draw_blocks(board, upper, over, 1, width)
     _draw_blocks(board, lower, reach, -1, width)
-    for station in [*_ports(scene), *(scene.get("bearings") or [])]:
-        _draw_forces(board, shaft, station)
-    _draw_sense(board, shaft, before + length * inch, words)
+    bearings = {bearing["name"]: bearing for bearing in scene.get("bearings") or []}
+    for force in shaft.forces:
+        _draw_force(board, shaft, force, bearings.get(force.name))
+    _draw_sense(board, shaft, before + length * inch, words, width)
     _draw_axes(board, above)
     level = -lower_reach - 0.22
     _draw_chain(board, segments, chain, level)
@@ -219,12 +220,13 @@ def _diameter(segment: Mapping, words: Language) -> str:
 def _blocks(board: Board, shaft: DrawnShaft, words: Language) -> tuple[list[Block], list[Block]]:
     """Return words on what stands above the shaft, and on its bearings."""
     scene, segments = shaft.scene, shaft.scene["segments"]
-    acting = {force.name: force for force in shaft.forces}
+    loads = {force.name: force for force in shaft.forces if not force.by_bearing}
+    reactions = {force.name: force for force in shaft.forces if force.by_bearing}
     above, below = [], []
     ports = {port["name"]: port["y"] for port in _ports(scene)}
-    further = {f.name: f.y for f in shaft.forces if not f.by_bearing and f.name not in ports}
+    further = {name: load.y for name, load in loads.items() if name not in ports}
     for name, y in (ports | further).items():
-        lines = (name, *_components(shaft, acting.get(name), words))
+        lines = (name, *_components(shaft, loads.get(name), words))
         foot = board.radial * _radius(segments, y)
         above.append(Block(board.x(y), foot, lines, SPAN))
     for mass in scene.get("masses") or []:
@@ -235,7 +237,7 @@ def _blocks(board: Board, shaft: DrawnShaft, words: Language) -> tuple[list[Bloc
     for bearing in scene.get("bearings") or []:
         kind = (bearing.get("catalogue") or {}).get("designation", "")
         heading = " ".join(filter(None, (bearing["name"], kind)))
-        lines = (heading, *_components(shaft, acting.get(bearing["name"]), words))
+        lines = (heading, *_components(shaft, reactions.get(bearing["name"]), words))
         _, foot = _ring(board, bearing, segments)
         below.append(Block(board.x(bearing["y"]), foot, lines, SEAT))
     return above, below
@@ -301,17 +303,14 @@ def _draw_blocks(board: Board, levels: Levels, reach: float, side: int, width: f
             board.words(x, height, line, block.colour, 9, size=SIZE, cover=1.0)
 
 
-def _draw_forces(board: Board, shaft: DrawnShaft, station: Mapping) -> None:
-    """Draw the force on a port from above, or of a bearing from below, in its three directions."""
-    force = next((f for f in shaft.forces if f.name == station["name"]), None)
-    if force is None:
-        return
+def _draw_force(board: Board, shaft: DrawnShaft, force: Force, bearing: Mapping | None) -> None:
+    """Draw a load from above, or the force of a bearing from below, in its three directions."""
     six = _shown(shaft, force.six)
     segments = shaft.scene["segments"]
     side = -1 if force.by_bearing else 1
     foot = board.radial * _radius(segments, force.y)
-    if force.by_bearing:
-        _, foot = _ring(board, station, segments)
+    if bearing is not None:
+        _, foot = _ring(board, bearing, segments)
     colour, x = SEAT if force.by_bearing else SPAN, board.x(force.y)
     most = max(np.abs(f.six[:3]).max() for f in shaft.forces)
     if six[2]:
@@ -356,7 +355,7 @@ def _across(board: Board, x: float, height: float, to_reader: bool, colour: str)
     board.line([x - half, x + half], [height + half, height - half], colour, 1.0, 9)
 
 
-def _draw_sense(board: Board, shaft: DrawnShaft, end: float, words: Language) -> None:
+def _draw_sense(board: Board, shaft: DrawnShaft, end: float, words: Language, width: float) -> None:
     """Draw the sense in which the shaft turns at its far end, and write its speed."""
     x, tall = end + 0.2, 0.2
     if shaft.sense:
@@ -368,7 +367,9 @@ def _draw_sense(board: Board, shaft: DrawnShaft, end: float, words: Language) ->
         board.line([p for p, _ in places[:-2]], [z for _, z in places[:-2]], INK, 1.3, 8)
         _arrow(board, places[-4], places[-1], INK)
     if shaft.speed:
-        board.words(end + 0.08, -tall - 0.14, words.speed(shaft.speed), align="left", cover=1.0)
+        text = words.speed(shaft.speed, 4)
+        place = min(end + 0.08, width - width_of(text, SIZE) / POINTS)
+        board.words(place, -tall - 0.14, text, align="left", cover=1.0)
 
 
 def _draw_axes(board: Board, above: float) -> None:

@@ -15,7 +15,7 @@ class Amount(NamedTuple):
 
     value: float
     unit: str
-    digits: int = 4
+    digits: int | None = 4  #: None: as it was written
 
 
 class Place(NamedTuple):

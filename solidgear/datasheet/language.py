@@ -16,6 +16,8 @@ from solidgear.show.open_words import interval
 from solidgear.show.units import Units, digits_for, plain
 from solidgear.show.words import DASH, bar_percent, is_number
 
+#: figures of a number with an error bar, at most
+MOST_DIGITS = 5
 #: families of motion in names of modes
 _FAMILIES = ("bending", "axial", "torsion", "ovalising", "rotational", "along", "about")
 _MODE = re.compile(
@@ -53,6 +55,8 @@ class Language:
 
     def _text_of(self, value: Any) -> str:
         if isinstance(value, Amount):
+            if value.digits is None:
+                return f"{self.given(value.value, value.unit)} {self.units.unit(value.unit)}"
             return self.text(value.value, value.unit, value.digits)
         if isinstance(value, Place):
             return f"{self.length(value.y)} {self.units.unit('m')}"
@@ -78,18 +82,22 @@ class Language:
         """Return a value of SI in the units of the sheet, with their name."""
         return self.local(self.units.text(value, si, digits))
 
+    def given(self, value: float, si: str) -> str:
+        """Return a number of the file without zeros behind it, and without a unit."""
+        return self.local(self.units.given(value, si))
+
     def length(self, value: float) -> str:
         """Return a length of the file without zeros behind it, and without a unit."""
-        return self.local(self.units.given(round(value, 9), "m"))
+        return self.given(round(value, 9), "m")
 
-    def speed(self, value: float) -> str:
-        """Return a speed, rad/s, in turns a minute, to five figures."""
-        turns = plain(abs(value) * 30 / math.pi, 5)
+    def speed(self, value: float, digits: int = 5) -> str:
+        """Return a speed, rad/s, in turns a minute."""
+        turns = plain(abs(value) * 30 / math.pi, digits)
         return f"{self.local(turns.rstrip('0').rstrip('.') if '.' in turns else turns)} /min"
 
     def with_bar(self, value: float, si: str, bar: float | None) -> str:
         """Return a value with figures that suit the relative error bar."""
-        return self.text(value, si, digits_for(bar))
+        return self.text(value, si, digits_for(bar, most=MOST_DIGITS))
 
     def bar(self, share: float | None) -> str:
         """Return a relative error bar in per cent."""

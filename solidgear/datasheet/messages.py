@@ -51,7 +51,7 @@ MESSAGES: dict[str, tuple[str, str]] = {
     "axial": ("axial", "axial"),
     "life": ("life", "Lebensdauer"),
     "life range": ("range", "Spanne"),
-    "static": ("static safety", "statische Sicherheit"),
+    "static": ("S0", "S0"),
     "place": ("place", "Stelle"),
     "across": ("across", "quer"),
     "tilt": ("tilt", "Neigung"),
@@ -79,6 +79,7 @@ MESSAGES: dict[str, tuple[str, str]] = {
         "No lives: no bearing has catalogue data.",
         "Keine Lebensdauern: kein Lager hat Katalogdaten.",
     ),
+    "note static": ("S0: static safety.", "S0: statische Sicherheit."),
     "note range": (
         "Range: by estimated insides, clearance classes and cleanliness.",
         "Spanne: durch geschätzte Innenmaße, Luftklassen und Sauberkeit.",
@@ -145,7 +146,10 @@ MESSAGES: dict[str, tuple[str, str]] = {
     "turns": ("Speed: {speed}.", "Drehzahl: {speed}."),
     "turns of": ("Speed of the {shaft}: {speed}.", "Drehzahl der Welle {shaft}: {speed}."),
     "order of shaft": ("order {order} of the shaft", "{order}. Ordnung der Welle"),
-    "order of named shaft": ("order {order} of {source}", "{order}. Ordnung von {source}"),
+    "order of named shaft": (
+        "order {order} of shaft {source}",
+        "{order}. Ordnung der Welle {source}",
+    ),
     "order of mesh": (
         "order {order} of the mesh{source}",
         "{order}. Ordnung des Eingriffs{source}",
@@ -220,6 +224,10 @@ MESSAGES: dict[str, tuple[str, str]] = {
         "DIN 743 with factors set to 1, as they are not given: {names}.",
         "DIN 743 mit Faktor 1, weil nicht angegeben: {names}.",
     ),
+    "assumed plain": (
+        "Deflection and bearing loads without {names}; with it the shaft is a little softer.",
+        "Verformung und Lagerkräfte ohne {names}; damit ist die Welle etwas weicher.",
+    ),
     "assumed no torque": (
         "No torque runs along the shaft in the stress.",
         "In der Spannung läuft kein Drehmoment durch die Welle.",
@@ -281,7 +289,7 @@ MESSAGES: dict[str, tuple[str, str]] = {
     "model rigid": ("rigid shaft", "starre Welle"),
     "model euler": ("Euler beam", "Euler-Balken"),
     "model timoshenko": ("Timoshenko beam", "Timoshenko-Balken"),
-    "model harmonic": ("harmonic solid", "rotationssymmetrisches Volumenmodell mit Fourierreihe"),
+    "model harmonic": ("harmonic solid", "harmonisches Volumenmodell"),
     "model corrected": ("corrected solid", "korrigiertes Volumenmodell"),
     "model sector": ("cyclic sector", "zyklischer Sektor"),
     "model solid": ("3D solid", "3D-Volumenmodell"),
@@ -309,7 +317,7 @@ MESSAGES: dict[str, tuple[str, str]] = {
     "measure KHb": ("Face load factor KHb, ISO 6336-1", "Breitenfaktor KHb, ISO 6336-1"),
     # motions of modes
     "family bending": ("bending", "Biegung"),
-    "family axial": ("axial", "Längs"),
+    "family axial": ("axial", "Längsschwingung"),
     "family torsion": ("torsion", "Torsion"),
     "family ovalising": ("ovalising", "Ovalisierung"),
     "family rotational": ("rotational", "Drehung"),

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from datetime import date
 from pathlib import Path
@@ -49,7 +48,7 @@ class Datasheet(Sheeted):
     speed: float | None = None  #: rad/s
     operation: Remark | None = None  #: operating point of a train
     assumed: tuple[Remark, ...] = ()
-    absent: Mapping[str, Remark] = field(default_factory=dict)  #: why a section is left out
+    absent: dict[str, Remark] = field(default_factory=dict)  #: why a section is left out
     cautions: tuple[Remark, ...] = ()
     elsewhere: int = 0  #: further cautions, which the commands behind the sheet print
     language: str = "en"

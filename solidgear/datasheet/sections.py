@@ -259,7 +259,8 @@ def _bearings(facts: Datasheet, words: Language) -> Section:
         return Section("bearings", title, sentences=(words.say("absent bearings"),))
     loaded = any(b.radial is not None for b in facts.bearings)
     lived = any(b.life is not None for b in facts.bearings)
-    ranged = any(b.open is not None for b in facts.bearings)
+    ranges = {bearing.name: _life_range(bearing, words) for bearing in facts.bearings}
+    ranged = any(ends != DASH for ends in ranges.values())
     newton = words.units.unit("N")
     columns = [text(words.say("bearing")), word(words.say("type"))]
     if loaded:
@@ -278,7 +279,7 @@ def _bearings(facts: Datasheet, words: Language) -> Section:
         if lived:
             row.append(Cell(bearing.hours, "strong", _life(bearing, words)))
         if ranged:
-            row.append(_life_range(bearing, words))
+            row.append(ranges[bearing.name])
         if lived:
             safety = bearing.static_safety
             row.append(DASH if safety is None else _safety(safety, words))
@@ -286,7 +287,7 @@ def _bearings(facts: Datasheet, words: Language) -> Section:
     kinds = {b.kind for b in facts.bearings if b.kind}
     notes = [words.say(f"note {kind}") for kind in sorted(kinds)]
     notes += [words.say("note range")] if ranged else []
-    notes += [] if lived else [words.say("note no life")]
+    notes += [words.say("note static" if lived else "note no life")]
     more = _more(len(facts.bearings), MOST_ROWS, words)
     return Section("bearings", title, Table(title, columns, rows), (), (*more, *notes))
 

@@ -10,7 +10,7 @@ from typing import Any
 from solidgear.bearings.catalogue import catalogue_of
 from solidgear.bearings.study import BearingFacts
 from solidgear.bearings.study import bearing_facts as catalogue_facts
-from solidgear.core import OpenNumbers, Quantity, Scene, SolidgearError, load, without_axis
+from solidgear.core import LADDER, OpenNumbers, Quantity, Scene, SolidgearError, load, without_axis
 from solidgear.core.judge.answer import Answered, answer
 from solidgear.core.judge.quantities import judged
 from solidgear.core.loading import shaft as settling_body
@@ -35,12 +35,15 @@ from solidgear.datasheet.facts import (
     Remark,
     Resonance,
     Trust,
+    WorstNotch,
 )
 from solidgear.datasheet.result import Datasheet
 from solidgear.show.remarks import open_ranges
+from solidgear.strength.acting import FEW
 from solidgear.strength.deflection import at_rest
-from solidgear.strength.stress.at_rest import StressSettings, stress_at_rest
+from solidgear.strength.stress.at_rest import StressAtRest, StressSettings, stress_at_rest
 from solidgear.trains.assembly.assembly import Assembly
+from solidgear.trains.assembly.shaft import JUDGE
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.train import ALONE
 
@@ -112,7 +115,10 @@ def _under_load(
 ) -> Datasheet:
     """Return the sheet with what the load does to the shaft at rest."""
     progress("deflection")
-    deflected = at_rest.deflect(assembly, point)
+    scene = assembly.train.shafts[ALONE].scene
+    cuts = tuple(feature.name for feature in scene.features) if LADDER[JUDGE].unfit(scene) else ()
+    # what is cut out moves loads of bearings by next to nothing
+    deflected = at_rest.deflect(Assembly.of(scene.plain, kept=FEW) if cuts else assembly, point)
     progress("stress")
     stressed = stress_at_rest(assembly, point, asked=settings)
     notch = worst_notch(stressed)
@@ -133,7 +139,7 @@ def _under_load(
         absent=sheet.absent | absent_notch(stressed, notch),
         bearings=bearing_facts(deflected, {ALONE: assembly.scenes[ALONE]}, lives),
         motions=motions(deflected),
-        assumed=(*sheet.assumed, *assumed_at_rest(stressed, notch)),
+        assumed=(*sheet.assumed, *assumed_at_rest(stressed, notch, cuts)),
         cautions=(*sheet.cautions, *cautions_of_bearings(deflected), *cautions_of_notch(notch)),
         elsewhere=len({*deflected.cautions, *deflected.judge.notes, *stressed.cautions}),
     )
@@ -235,15 +241,19 @@ def assumed(scene: Scene, ranges: OpenNumbers) -> Iterator[Remark]:
         yield Remark("assumed without ranges")
 
 
-def assumed_at_rest(stressed: Any, notch: Any) -> Iterator[Remark]:
-    """Yield what stress at rest assumes."""
+def assumed_at_rest(
+    stressed: StressAtRest, notch: WorstNotch | None, cuts: tuple[str, ...] = ()
+) -> Iterator[Remark]:
+    """Yield what deflection and stress at rest assume, the former without some cuts."""
+    if cuts:
+        yield Remark("assumed plain", {"names": cuts})
     if notch is not None and notch.assumed:
         yield Remark("assumed factors", {"names": notch.assumed})
     if not getattr(stressed.under, "drive", True):
         yield Remark("assumed no torque")
 
 
-def absent_notch(stressed: Any, notch: Any) -> dict[str, Remark]:
+def absent_notch(stressed: StressAtRest, notch: WorstNotch | None) -> dict[str, Remark]:
     """Return why no notch is rated, by section; empty where one is."""
     if notch is None:
         return {"notch": Remark("absent notch")}

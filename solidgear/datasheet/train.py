@@ -132,7 +132,7 @@ def _at_point(
 
 
 def _operation(point: OperatingPoint) -> Remark:
-    values = {"torque": Amount(point.torque, "N m", 5), "shaft": point.of, "name": point.name}
+    values = {"torque": Amount(point.torque, "N m", None), "shaft": point.of, "name": point.name}
     key = "under named point" if point.name else "under point"
     if point.speed is None:
         return Remark(key, values)
