@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -10,7 +11,6 @@ import tempfile
 from pathlib import Path
 
 from solidgear.core import SolidgearError
-from solidgear.core.machine.whole_file import whole_or_refused
 
 #: variable that names another browser
 VARIABLE = "BROWSER"
@@ -64,25 +64,27 @@ def browser() -> str | None:
     return next(filter(None, map(shutil.which, candidates)), None)
 
 
-def print_pdf(program: str, page: str, path: Path) -> Path:
-    """Print a page of HTML into a PDF file, whole or not at all; refused where the browser fails."""
+def print_pdf(program: str, page: str, name: str) -> bytes:
+    """Return a page of HTML as PDF; refused with the name of the file where the browser fails."""
     with tempfile.TemporaryDirectory(prefix="solidgear-sheet-") as folder:
         source, printed = Path(folder) / "sheet.html", Path(folder) / "sheet.pdf"
         source.write_text(page, encoding="utf-8")
-        # a sandbox needs rights that containers and root do not have; the page is our own
+        # a sandbox needs rights that root in a container does not have; the page is our own
         sandbox = ["--no-sandbox"] if _is_root() else []
         command = [program, *OPTIONS, *sandbox, f"--user-data-dir={folder}/profile"]
         command += [f"--print-to-pdf={printed}", source.as_uri()]
         try:
             subprocess.run(command, capture_output=True, timeout=PATIENCE, cwd=folder, check=False)
         except (OSError, subprocess.TimeoutExpired) as error:
-            raise SolidgearError(f"{path}: {_failed(program)} ({error})") from None
+            raise SolidgearError(f"{name}: {_failed(program)} ({error})") from None
         if not printed.exists():
-            raise SolidgearError(f"{path}: {_failed(program)}")
-        with whole_or_refused(path) as partial:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            partial.write_bytes(printed.read_bytes())
-    return path
+            raise SolidgearError(f"{name}: {_failed(program)}")
+        return printed.read_bytes()
+
+
+def pages_of(pdf: bytes) -> int:
+    """Return the number of pages of a PDF as browsers write it."""
+    return len(re.findall(rb"/Type\s*/Page\b", pdf))
 
 
 def _failed(program: str) -> str:

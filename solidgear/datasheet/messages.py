@@ -224,6 +224,10 @@ MESSAGES: dict[str, tuple[str, str]] = {
         "DIN 743 with factors set to 1, as they are not given: {names}.",
         "DIN 743 mit Faktor 1, weil nicht angegeben: {names}.",
     ),
+    "assumed steady": (
+        "Axial force and torque are taken as steady, as their amplitudes are not given.",
+        "Längskraft und Drehmoment gelten als ruhend, weil ihre Ausschläge nicht angegeben sind.",
+    ),
     "assumed plain": (
         "Deflection and bearing loads without {names}; with it the shaft is a little softer.",
         "Verformung und Lagerkräfte ohne {names}; damit ist die Welle etwas weicher.",
@@ -327,16 +331,14 @@ MESSAGES: dict[str, tuple[str, str]] = {
     "mode free motion": ("free motion", "freie Bewegung"),
     # drawing
     "drawing": (
-        "The shaft to scale: upper half in section, lower half from outside; dimensions in {unit}. "
-        "Orange: loads. Blue: bearings and their forces on the shaft. ⊙ acts towards the reader "
-        "(+x), ⊗ away from him.",
-        "Die Welle im Maßstab: obere Hälfte geschnitten, untere von außen; Maße in {unit}. Orange: "
-        "Lasten. Blau: Lager und ihre Kräfte auf die Welle. ⊙ wirkt zum Betrachter hin (+x), ⊗ von "
-        "ihm weg.",
+        "To scale, upper half in section; dimensions in {unit}. Orange: loads. Blue: bearings and "
+        "their forces on the shaft. ⊙ acts towards the reader (+x), ⊗ away.",
+        "Im Maßstab, obere Hälfte geschnitten; Maße in {unit}. Orange: Lasten. Blau: Lager und ihre "
+        "Kräfte auf die Welle. ⊙ wirkt zum Betrachter hin (+x), ⊗ von ihm weg.",
     ),
     "drawing alone": (
-        "The shaft to scale: upper half in section, lower half from outside; dimensions in {unit}.",
-        "Die Welle im Maßstab: obere Hälfte geschnitten, untere von außen; Maße in {unit}.",
+        "To scale, upper half in section; dimensions in {unit}.",
+        "Im Maßstab, obere Hälfte geschnitten; Maße in {unit}.",
     ),
     "radii enlarged": (
         "Radii are drawn {times} times larger than lengths.",

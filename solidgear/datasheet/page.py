@@ -6,8 +6,8 @@ import os
 from pathlib import Path
 
 from solidgear.core import SolidgearError
-from solidgear.core.machine.whole_file import write_page
-from solidgear.datasheet.browser import browser, print_pdf
+from solidgear.core.machine.whole_file import write_files, write_page
+from solidgear.datasheet.browser import browser, pages_of, print_pdf
 from solidgear.datasheet.drawing import NARROW, WIDE, enlarged_by, shaft_svg
 from solidgear.datasheet.language import Language
 from solidgear.datasheet.result import Datasheet
@@ -20,12 +20,14 @@ from solidgear.show.units import units_named
 MOST_SHAFTS = 4
 #: factor from which on radii are called enlarged
 ENLARGED = 1.01
+#: zooms at which a page is printed until it is one sheet
+ZOOMS = (1.0, 0.93, 0.86, 0.8, 0.74)
 #: endings of files
 HTML, PDF = (".html", ".htm"), (".pdf",)
 
 
-def html_of(facts: Datasheet, units: str = "engineering") -> str:
-    """Return the page of a sheet as HTML."""
+def html_of(facts: Datasheet, units: str = "engineering", zoom: float = 1.0) -> str:
+    """Return the page of a sheet as HTML, printed at a zoom."""
     from markupsafe import Markup
 
     words = Language(facts.language, units_named(units))
@@ -33,6 +35,7 @@ def html_of(facts: Datasheet, units: str = "engineering") -> str:
     return template("onepage.html", Path(__file__).parent).render(
         title=facts.title,
         lang=facts.language,
+        zoom=zoom,
         sheet=facts,
         say=words.say,
         day=words.date(facts.day),
@@ -102,10 +105,12 @@ def check_ending(path: str | os.PathLike) -> Path:
 def save(facts: Datasheet, path: str | os.PathLike, units: str = "engineering") -> list[Path]:
     """Write the page of a sheet as HTML, or as PDF; where there is no browser as HTML beside it."""
     path = check_ending(path)
-    page = html_of(facts, units)
-    if path.suffix.lower() in HTML:
-        return [write_page(path, page)]
-    program = browser()
+    program = browser() if path.suffix.lower() in PDF else None
     if program is None:
-        return [write_page(path.with_suffix(".html"), page)]
-    return [print_pdf(program, page, path)]
+        page = path if path.suffix.lower() in HTML else path.with_suffix(".html")
+        return [write_page(page, html_of(facts, units))]
+    for zoom in ZOOMS:
+        printed = print_pdf(program, html_of(facts, units, zoom), path.name)
+        if pages_of(printed) == 1:
+            break
+    return write_files({path: printed})

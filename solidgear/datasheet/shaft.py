@@ -73,7 +73,9 @@ def shaft_sheet(
     settled = load(scene)
     progress("numbers")
     wanted = judged(settled)
-    names = [*wanted, *(q for q in FREQUENCIES if q not in wanted)]
+    names = [*wanted]
+    if not LADDER[JUDGE].unfit(settled):  # of other solids every further number is dear
+        names += [q for q in FREQUENCIES if q not in wanted]
     answered = answer(settled, tol, names)
     progress("what the data leave open")
     ranges = open_ranges(settled)
@@ -247,8 +249,11 @@ def assumed_at_rest(
     """Yield what deflection and stress at rest assume, the former without some cuts."""
     if cuts:
         yield Remark("assumed plain", {"names": cuts})
-    if notch is not None and notch.assumed:
-        yield Remark("assumed factors", {"names": notch.assumed})
+    names = () if notch is None else notch.assumed
+    if factors := tuple(name for name in names if name.startswith("K")):
+        yield Remark("assumed factors", {"names": factors})
+    if len(factors) < len(names):
+        yield Remark("assumed steady")
     if not getattr(stressed.under, "drive", True):
         yield Remark("assumed no torque")
 
