@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
 
 from solidgear.bearings.bearing_life import BearingLife
 from solidgear.bearings.catalogue import catalogue_of
 from solidgear.core import Bearing, Scene
+from solidgear.core.scene.acting import ROUNDING
+from solidgear.core.scene.load_rules import ONLY
 from solidgear.datasheet.facts import (
     BearingFact,
     Force,
@@ -21,13 +26,13 @@ from solidgear.datasheet.facts import (
 from solidgear.strength.deflection.at_rest import Deflections, Measured
 from solidgear.strength.deflection.shaft import BearingState
 from solidgear.strength.stress.at_rest import StressAtRest, StressedShaft
+from solidgear.trains.file.train import Train
+from solidgear.trains.load.lives import train_lives
 
 #: share of P over C beyond which ISO 281 does not vouch for a life (ISO 281:2007, clause 1)
 MOST_LOAD = 0.5
 #: safety that DIN 743-1 asks for where loads and strength are sure
 LEAST_SAFETY = 1.2
-#: of the largest force on a shaft: less is rounding
-ROUNDING = 1e-6
 
 
 def forces(shaft: StressedShaft) -> tuple[Force, ...]:
@@ -46,6 +51,60 @@ def forces(shaft: StressedShaft) -> tuple[Force, ...]:
             six = (*six[:4], 0.0, six[5])
         loads.append(Force(name, places[name], six, name in bearings))
     return tuple(sorted(loads, key=lambda force: force.y))
+
+
+def forces_alone(deflected: Deflections) -> tuple[Force, ...]:
+    """Return the loads on a shaft alone, those on one station together, and its reactions."""
+    (shaft,), load = deflected.judge.shafts, deflected.load
+    assert load is not None  # of a shaft alone
+    names: dict[str, list[str]] = {}
+    sums: dict[str, np.ndarray] = {}
+    places: dict[str, float] = {}
+    for acting in load.acting:
+        station = acting.station
+        names.setdefault(station, [])
+        if acting.name != ROUNDING:
+            given = not acting.name.endswith(f" at {station}") and acting.name != ONLY
+            names[station].append(acting.name if given else station)
+        sums[station] = sums.get(station, np.zeros(6)) + acting.six
+        places[station] = acting.y
+    loads = [
+        Force(
+            name=", ".join(dict.fromkeys(names[station])),
+            y=places[station],
+            six=tuple(map(float, six)),
+            by_bearing=False,
+        )
+        for station, six in sums.items()
+    ]
+    loads += [
+        Force(bearing.name, bearing.place, tuple(map(float, -bearing.load)), True)
+        for bearing in shaft.bearings
+    ]
+    return tuple(sorted(loads, key=lambda force: force.y))
+
+
+def lives_over_points(train: Train) -> dict[str, BearingFact]:
+    """Return lives of the catalogue bearings of a train, or of a shaft over its cases, with the duty
+    table where there is one; empty without such bearings.
+    """
+    bearings = {
+        bearing.name if train.is_one_shaft else f"{side}.{bearing.name}": bearing
+        for side, shaft in train.shafts.items()
+        for bearing in shaft.scene.bearings
+    }
+    if not train.operation or all(b.catalogue is None for b in bearings.values()):
+        return {}
+    out = {}
+    for lives in train_lives(train):
+        fact = life_fact(lives.name, bearings[lives.name], lives.points[0].life)
+        duty = lives.duty
+        if duty is not None and len(lives.points) > 1:
+            fact = replace(
+                fact, kind=lives.kind, life=duty.revolutions, hours=duty.hours, open=None
+            )
+        out[lives.name] = fact
+    return out
 
 
 def _turns(bearing: Bearing) -> bool:
@@ -147,11 +206,11 @@ def life_fact(name: str, bearing: Bearing, rated: BearingLife) -> BearingFact:
     )
 
 
-def motions(deflected: Deflections) -> tuple[MotionFact, ...]:
-    """Return motions of the lumped points of a train, or of the main point of a shaft alone."""
+def motions(deflected: Deflections, ports: Collection[str] = ()) -> tuple[MotionFact, ...]:
+    """Return motions of the lumped points of a train, or of some places of a shaft alone."""
     places = deflected.judge.displacement
-    if deflected.load is not None:
-        places = {deflected.load.port: places[deflected.load.port]}
+    if ports:
+        places = {name: six for name, six in places.items() if name in ports}
     return tuple(_motion(name, six) for name, six in places.items() if len(six) == 6)
 
 

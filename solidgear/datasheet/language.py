@@ -16,8 +16,8 @@ from solidgear.show.open_words import interval
 from solidgear.show.units import Units, digits_for, plain
 from solidgear.show.words import DASH, bar_percent, is_number
 
-#: figures of a number with an error bar, at most
-MOST_DIGITS = 5
+#: figures of a number with an error bar
+FEWEST_DIGITS, MOST_DIGITS = 4, 5
 #: families of motion in names of modes
 _FAMILIES = ("bending", "axial", "torsion", "ovalising", "rotational", "along", "about")
 _MODE = re.compile(
@@ -97,7 +97,7 @@ class Language:
 
     def with_bar(self, value: float, si: str, bar: float | None) -> str:
         """Return a value with figures that suit the relative error bar."""
-        return self.text(value, si, digits_for(bar, most=MOST_DIGITS))
+        return self.text(value, si, digits_for(bar, FEWEST_DIGITS, MOST_DIGITS))
 
     def bar(self, share: float | None) -> str:
         """Return a relative error bar in per cent."""

@@ -208,6 +208,14 @@ MESSAGES: dict[str, tuple[str, str]] = {
         "Stiffness of bearing {names} neither measured nor published.",
         "Steifigkeit von Lager {names} weder gemessen noch veröffentlicht.",
     ),
+    "assumed angle": (
+        "Pressure angle of {names} taken as 20 degrees.",
+        "Eingriffswinkel von {names} mit 20 Grad angenommen.",
+    ),
+    "assumed belt": (
+        "Both sides of the belt of {names} pull along one direction.",
+        "Beide Trums von {names} ziehen in einer Richtung.",
+    ),
     "assumed ranges": (
         "Ranges stated in the file: {names}.",
         "In der Datei angegebene Spannen: {names}.",
@@ -273,7 +281,7 @@ MESSAGES: dict[str, tuple[str, str]] = {
         "{count} more in the output of solidgear deflect and stress.",
         "{count} weitere in der Ausgabe von solidgear deflect und stress (englisch).",
     ),
-    "more": ("and {count} more", "und {count} weitere"),
+    "more": ("And {count} more.", "Und {count} weitere."),
     # operating point
     "under point": ("At {torque} on {shaft}.", "Bei {torque} an {shaft}."),
     "under point at speed": (
@@ -287,6 +295,11 @@ MESSAGES: dict[str, tuple[str, str]] = {
     "under named point at speed": (
         "Operating point {name}: {torque} and {speed} on {shaft}.",
         "Betriebspunkt {name}: {torque} und {speed} an {shaft}.",
+    ),
+    "case": ("Load case {name}.", "Lastfall {name}."),
+    "case of": (
+        "Load case {name}, of {count}; lives are over all of them.",
+        "Lastfall {name} von {count}; Lebensdauern über alle.",
     ),
     # models
     "model lumped": ("lumped model", "Punktmassenmodell"),

@@ -28,7 +28,7 @@ from solidgear.show.words import DASH
 #: SI unit of a stress
 STRESS = "Pa stressed"
 #: rows of a table, and sentences of a section, that one page holds
-MOST_ROWS, MOST_MOTIONS, MOST_SENTENCES = 9, 5, 6
+MOST_ROWS, MOST_MOTIONS, MOST_SENTENCES = 10, 5, 6
 #: hours from which on a life is as good as without end
 ENDLESS = 1e6
 
@@ -334,7 +334,8 @@ def _frequencies(facts: Datasheet, words: Language) -> Section:
     columns += [Column(words.say("open data"))] if ranged else []
     rows = []
     for frequency in sorted(facts.frequencies, key=lambda f: f.hz)[:MOST_ROWS]:
-        value = Cell(frequency.hz, "strong", words.number(frequency.hz, "Hz", 5))
+        hertz = words.with_bar(frequency.hz, "Hz", frequency.bar).removesuffix(" Hz")
+        value = Cell(frequency.hz, "strong", hertz)
         row = [words.mode(frequency.mode), value, words.bar(frequency.bar)]
         rows.append([*row, words.interval(frequency.open)] if ranged else row)
     return Section("frequencies", title, Table(title, columns, rows), (), (words.say("note spin"),))

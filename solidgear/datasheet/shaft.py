@@ -14,13 +14,15 @@ from solidgear.core import LADDER, OpenNumbers, Quantity, Scene, SolidgearError,
 from solidgear.core.judge.answer import Answered, answer
 from solidgear.core.judge.quantities import judged
 from solidgear.core.loading import shaft as settling_body
+from solidgear.core.scene.acting import loads_of
 from solidgear.datasheet.at_rest import (
     bearing_facts,
     cautions_of_bearings,
     cautions_of_notch,
     designation,
-    forces,
+    forces_alone,
     life_fact,
+    lives_over_points,
     motions,
     trust_at_rest,
     worst_notch,
@@ -41,11 +43,12 @@ from solidgear.datasheet.result import Datasheet
 from solidgear.show.remarks import open_ranges
 from solidgear.strength.acting import FEW
 from solidgear.strength.deflection import at_rest
+from solidgear.strength.load import LoadsAlone
 from solidgear.strength.stress.at_rest import StressAtRest, StressSettings, stress_at_rest
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.shaft import JUDGE
 from solidgear.trains.file.operation import OperatingPoint
-from solidgear.trains.file.train import ALONE
+from solidgear.trains.file.train import ALONE, Train
 
 Progress = Callable[[str], None]
 #: frequencies that a sheet lists beside the numbers asked for
@@ -79,28 +82,31 @@ def shaft_sheet(
     answered = answer(settled, tol, names)
     progress("what the data leave open")
     ranges = open_ranges(settled)
-    turning = speed or speed_of(settled)
+    turning = speed or point.speed or speed_of(settled)
     figures = {value.quantity: figure(value, ranges) for value in answered.values}
     frequencies = tuple(
         Frequency(name, f.value, f.bar, f.open) for name, f in figures.items() if name.is_frequency
     )
-    lives = lives_of(scene, speed)
+    lives = lives_of(assembly.train, speed or point.speed)
     sheet = Datasheet(
         title=settled.title or settled.name,
         file=settled.name,
         train=False,
-        drawn=(DrawnShaft(settled.name, settled.as_dict(), speed=turning),),
+        drawn=(
+            DrawnShaft(settled.name, settled.as_dict(), sense=settled.turns or "", speed=turning),
+        ),
         figures=tuple(figures[q] for q in wanted if q in figures),
         trust=trust(answered, wanted),
         bearings=tuple(lives.get(b.name, without_load(b)) for b in scene.bearings),
         frequencies=frequencies,
         resonances=resonances(frequencies, turning),
+        operation=case_of(scene),
         speed=turning,
         assumed=tuple(assumed(scene, ranges)),
         absent={} if turning else {"speeds": Remark("absent speed")},
         cautions=tuple(cautions(answered, ranges)),
     )
-    if scene.load is None:
+    if not scene.is_loaded:
         reason = Remark("absent load")
         absent = {"worst": reason, "motions": reason}
         return replace(sheet, absent=sheet.absent | absent)
@@ -129,7 +135,7 @@ def _under_load(
     (drawn,) = sheet.drawn
     return replace(
         sheet,
-        drawn=(replace(drawn, forces=forces(stressed.shafts[0])),),
+        drawn=(replace(drawn, forces=forces_alone(deflected)),),
         trust=replace(
             sheet.trust,
             cheapest=trust_under_load.cheapest,
@@ -140,7 +146,7 @@ def _under_load(
         section=worst_section(stressed),
         absent=sheet.absent | absent_notch(stressed, notch),
         bearings=bearing_facts(deflected, {ALONE: assembly.scenes[ALONE]}, lives),
-        motions=motions(deflected),
+        motions=motions(deflected, [port.name for port in scene.ports]),
         assumed=(*sheet.assumed, *assumed_at_rest(stressed, notch, cuts)),
         cautions=(*sheet.cautions, *cautions_of_bearings(deflected), *cautions_of_notch(notch)),
         elsewhere=len({*deflected.cautions, *deflected.judge.notes, *stressed.cautions}),
@@ -179,10 +185,25 @@ def speed_of(scene: Scene) -> float | None:
     return max(map(abs, speeds), default=None)
 
 
-def lives_of(scene: Scene, speed: float | None) -> dict[str, BearingFact]:
-    """Return lives of the catalogue bearings of a shaft by name; empty without any."""
+def case_of(scene: Scene) -> Remark | None:
+    """Return the case of the loads that a sheet is of; None of a scene without cases."""
+    if not scene.cases:
+        return None
+    count = len(scene.cases)
+    return Remark(
+        "case" if count == 1 else "case of", {"name": scene.cases[0].name, "count": count}
+    )
+
+
+def lives_of(train: Train, speed: float | None) -> dict[str, BearingFact]:
+    """Return lives of the catalogue bearings of a shaft by name, over the cases of its loads where
+    there are several; empty without any.
+    """
+    scene = train.shafts[ALONE].scene
     if not any(bearing.catalogue is not None for bearing in scene.bearings):
         return {}
+    if len(scene.cases) > 1:
+        return lives_over_points(train)
     facts = catalogue_facts(scene, settling_body(scene), speed)
     return {fact.name: _alone(fact) for fact in facts}
 
@@ -236,6 +257,13 @@ def assumed(scene: Scene, ranges: OpenNumbers) -> Iterator[Remark]:
     stiffness = [b.name for b in scene.bearings if b.status == "assumed" and not b.hold]
     if stiffness:
         yield Remark("assumed stiffness", {"names": tuple(stiffness)})
+    loads = loads_of(scene)
+    angles = [load.name for load in loads if load.kind == "gear" and load.pressure_angle is None]
+    if angles:
+        yield Remark("assumed angle", {"names": tuple(angles)})
+    belts = [load.name for load in loads if load.kind == "belt"]
+    if belts:
+        yield Remark("assumed belt", {"names": tuple(belts)})
     stated = [entry.path for entry in scene.uncertain]
     if stated:
         yield Remark("assumed ranges", {"names": tuple(stated)})
@@ -254,7 +282,8 @@ def assumed_at_rest(
         yield Remark("assumed factors", {"names": factors})
     if len(factors) < len(names):
         yield Remark("assumed steady")
-    if not getattr(stressed.under, "drive", True):
+    under = stressed.under
+    if isinstance(under, LoadsAlone) and not any(load.six[4] for load in under.acting):
         yield Remark("assumed no torque")
 
 

@@ -32,6 +32,8 @@ def sheet(
     point: str | None = None,
     weight: str | None = None,
     load: str | Mapping[str, Any] | None = None,
+    case: str | None = None,
+    drive: Mapping[str, str | float] | list[str] | None = None,
     conditions: Mapping[str, Any] | Conditions | None = None,
     progress: Callable[[str], None] = lambda text: None,
 ) -> Datasheet:
@@ -48,7 +50,7 @@ def sheet(
         Of all words.
     speed : str, optional
         Speed of a shaft alone, such as ``"1500 rpm"``; by default that of its file.
-    torque, of, point, weight, load
+    torque, of, point, weight, load, case, drive
         As of :func:`solidgear.deflect`.
     conditions : mapping or Conditions, optional
         Of the rating by DIN 743, as of :func:`solidgear.stress`.
@@ -79,7 +81,7 @@ def sheet(
     if not isinstance(conditions, Conditions):
         conditions = Conditions(**(conditions or {}))
     settings = StressSettings(conditions=conditions)
-    acting = Acting(torque, of, point, weight, load)
+    acting = Acting(torque, of, point, weight, load, case, drive)
     with explained(source):
         if isinstance(source, Train) or is_train(source):
             facts = _of_train(source, acting, settings, tol, speed, progress)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 from solidgear.core import OpenNumbers
@@ -13,7 +13,7 @@ from solidgear.datasheet.at_rest import (
     cautions_of_notch,
     designation,
     forces,
-    life_fact,
+    lives_over_points,
     motions,
     trust_at_rest,
     worst_notch,
@@ -40,7 +40,6 @@ from solidgear.trains.assembly.kinematics import train_orders
 from solidgear.trains.assembly.shaft import JUDGE
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.train import Train
-from solidgear.trains.load.lives import train_lives
 from solidgear.trains.load.operation import at_point
 from solidgear.trains.modes.modes import TrainMode, train_modes
 
@@ -123,7 +122,7 @@ def _at_point(
         notch=notch,
         section=worst_section(stressed),
         absent=sheet.absent | absent_notch(stressed, notch),
-        bearings=bearing_facts(deflected, assembly.scenes, lives_of(train)),
+        bearings=bearing_facts(deflected, assembly.scenes, lives_over_points(train)),
         motions=motions(deflected),
         assumed=(*sheet.assumed, *assumed_at_rest(stressed, notch)),
         cautions=(*sheet.cautions, *cautions_of_bearings(deflected), *cautions_of_notch(notch)),
@@ -158,27 +157,6 @@ def _relative(measure: Measured) -> Figure:
         open_ = ends[0], ends[1]
     bar = None if measure.bar is None else measure.bar / size
     return Figure(measure.name, measure.value, measure.unit, bar, open_)
-
-
-def lives_of(train: Train) -> Mapping[str, BearingFact]:
-    """Return lives of the catalogue bearings of a train, over its duty table where it has one."""
-    bearings = {
-        f"{side}.{bearing.name}": bearing
-        for side, shaft in train.shafts.items()
-        for bearing in shaft.scene.bearings
-    }
-    if not train.operation or all(b.catalogue is None for b in bearings.values()):
-        return {}
-    out = {}
-    for lives in train_lives(train):
-        fact = life_fact(lives.name, bearings[lives.name], lives.points[0].life)
-        duty = lives.duty
-        if duty is not None and len(lives.points) > 1:
-            fact = replace(
-                fact, kind=lives.kind, life=duty.revolutions, hours=duty.hours, open=None
-            )
-        out[lives.name] = fact
-    return out
 
 
 def _frequency(mode: TrainMode) -> Frequency:
