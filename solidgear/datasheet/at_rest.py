@@ -64,8 +64,8 @@ def forces_alone(deflected: Deflections) -> tuple[Force, ...]:
         station = acting.station
         names.setdefault(station, [])
         if acting.name != ROUNDING:
-            given = not acting.name.endswith(f" at {station}") and acting.name != ONLY
-            names[station].append(acting.name if given else station)
+            by_place = acting.name == ONLY or acting.name.endswith(f" at {station}")
+            names[station].append(station if by_place else acting.name)
         sums[station] = sums.get(station, np.zeros(6)) + acting.six
         places[station] = acting.y
     loads = [

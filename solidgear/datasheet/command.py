@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
-from solidgear.datasheet.messages import LANGUAGES
+from solidgear.datasheet.messages import LANGUAGES, LanguageChoice
 from solidgear.datasheet.page import check_ending
 from solidgear.datasheet.study import sheet as solved
 from solidgear.show.command import Progress, caution, command
@@ -18,11 +17,6 @@ from solidgear.show.sheet import Sheet, present
 from solidgear.show.units import units_named
 from solidgear.strength.acting import Acting, AtRestFile
 from solidgear.strength.stress.command import Rated
-
-if TYPE_CHECKING:
-    LanguageChoice = str
-else:
-    LanguageChoice = StrEnum("LanguageChoice", [(code, code) for code in LANGUAGES])
 
 
 @command

@@ -103,9 +103,9 @@ def shaft_svg(
     probe = Board(pen, 0.0, before, inch, radial, top)
     loads, carried = _blocks(probe, shaft, words)
     upper, lower = _levels(loads, width), _levels(carried, width)
-    over = max((block.foot for block in loads), default=top) + ARROW
+    upper_reach = max((block.foot for block in loads), default=top) + ARROW
     reach = max((block.foot for block in carried), default=top) + ARROW
-    above = max(over + sum(upper.heights), top + MOST_RING) + 0.05
+    above = max(upper_reach + sum(upper.heights), top + MOST_RING) + 0.05
     lower_reach = reach + sum(lower.heights)
     chain = _staggered(_lengths(probe, segments, words))
     places = _staggered(_places(probe, scene, length, words))
@@ -114,7 +114,7 @@ def shaft_svg(
     below = lower_reach + 0.3 + deep + 0.28 + deeper + 0.12
     board = replace(probe, above=above)
     _draw_shaft(board, shaft, words)
-    _draw_blocks(board, upper, over, 1, width)
+    _draw_blocks(board, upper, upper_reach, 1, width)
     _draw_blocks(board, lower, reach, -1, width)
     bearings = {bearing["name"]: bearing for bearing in scene.get("bearings") or []}
     for force in shaft.forces:
@@ -243,7 +243,7 @@ def _blocks(board: Board, shaft: DrawnShaft, words: Language) -> tuple[list[Bloc
     return above, below
 
 
-def _shown(shaft: DrawnShaft, six: Sequence[float]) -> np.ndarray:
+def _without_trifles(shaft: DrawnShaft, six: Sequence[float]) -> np.ndarray:
     """Return a load without what is next to nothing beside the largest on the shaft."""
     loads = np.abs([force.six for force in shaft.forces])
     most = np.repeat([loads[:, :3].max(), loads[:, 3:].max()], 3)
@@ -254,7 +254,7 @@ def _components(shaft: DrawnShaft, force: Force | None, words: Language) -> Iter
     """Yield forces, the size of the bending moment, and the torque of a load."""
     if force is None:
         return
-    six = _shown(shaft, force.six)
+    six = _without_trifles(shaft, force.six)
     for k, axis in enumerate("xyz"):
         if six[k]:
             yield f"F{axis} {_minus(words.text(six[k], 'N', 3))}"
@@ -305,7 +305,7 @@ def _draw_blocks(board: Board, levels: Levels, reach: float, side: int, width: f
 
 def _draw_force(board: Board, shaft: DrawnShaft, force: Force, bearing: Mapping | None) -> None:
     """Draw a load from above, or the force of a bearing from below, in its three directions."""
-    six = _shown(shaft, force.six)
+    six = _without_trifles(shaft, force.six)
     segments = shaft.scene["segments"]
     side = -1 if force.by_bearing else 1
     foot = board.radial * _radius(segments, force.y)

@@ -56,7 +56,7 @@ class Language:
     def _text_of(self, value: Any) -> str:
         if isinstance(value, Amount):
             if value.digits is None:
-                return f"{self.given(value.value, value.unit)} {self.units.unit(value.unit)}"
+                return f"{self.as_written(value.value, value.unit)} {self.units.unit(value.unit)}"
             return self.text(value.value, value.unit, value.digits)
         if isinstance(value, Place):
             return f"{self.length(value.y)} {self.units.unit('m')}"
@@ -82,13 +82,13 @@ class Language:
         """Return a value of SI in the units of the sheet, with their name."""
         return self.local(self.units.text(value, si, digits))
 
-    def given(self, value: float, si: str) -> str:
+    def as_written(self, value: float, si: str) -> str:
         """Return a number of the file without zeros behind it, and without a unit."""
         return self.local(self.units.given(value, si))
 
     def length(self, value: float) -> str:
         """Return a length of the file without zeros behind it, and without a unit."""
-        return self.given(round(value, 9), "m")
+        return self.as_written(round(value, 9), "m")
 
     def speed(self, value: float, digits: int = 5) -> str:
         """Return a speed, rad/s, in turns a minute."""

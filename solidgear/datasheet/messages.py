@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
+from enum import StrEnum
+from typing import TYPE_CHECKING
+
 #: codes of languages (ISO 639-1), in the order of the columns of `MESSAGES`
 LANGUAGES = ("en", "de")
+if TYPE_CHECKING:
+    LanguageChoice = str
+else:
+    LanguageChoice = StrEnum("LanguageChoice", [(code, code) for code in LANGUAGES])
 
 #: message of every language by key
 MESSAGES: dict[str, tuple[str, str]] = {
@@ -144,7 +151,7 @@ MESSAGES: dict[str, tuple[str, str]] = {
     "of shaft": ("{place}, shaft {shaft}", "{place}, Welle {shaft}"),
     # speeds
     "turns": ("Speed: {speed}.", "Drehzahl: {speed}."),
-    "turns of": ("Speed of the {shaft}: {speed}.", "Drehzahl der Welle {shaft}: {speed}."),
+    "turns of": ("Speed of shaft {shaft}: {speed}.", "Drehzahl der Welle {shaft}: {speed}."),
     "order of shaft": ("order {order} of the shaft", "{order}. Ordnung der Welle"),
     "order of named shaft": (
         "order {order} of shaft {source}",
@@ -274,8 +281,8 @@ MESSAGES: dict[str, tuple[str, str]] = {
         "{place}: Sicherheit gegen Fließen {safety} liegt unter {least} nach DIN 743.",
     ),
     "caution speed": (
-        "The speed is within {off} of the {order} with {mode} at {critical}.",
-        "Die Drehzahl liegt nur {off} neben: {order} mit {mode} bei {critical}.",
+        "The {order} meets {mode} at {critical}, {off} from the speed.",
+        "Nur {off} neben der Drehzahl: {order} trifft bei {critical} auf {mode}.",
     ),
     "elsewhere": (
         "{count} more in the output of solidgear deflect and stress.",

@@ -48,20 +48,20 @@ def html_of(facts: Datasheet, units: str = "engineering", zoom: float = 1.0) -> 
     )
 
 
-def _shown(facts: Datasheet) -> list:
-    """Return the shafts that are drawn, those with the most gears first left in their order."""
+def drawn_shafts(facts: Datasheet) -> list:
+    """Return the first shafts of a sheet that have segments, as many as a page holds."""
     return [shaft for shaft in facts.drawn if shaft.scene.get("segments")][:MOST_SHAFTS]
 
 
 def _room(facts: Datasheet) -> tuple[float, float]:
     """Return the largest length and radius of all drawn shafts, m."""
-    sizes = [extent(shaft.scene) for shaft in _shown(facts)]
+    sizes = [extent(shaft.scene) for shaft in drawn_shafts(facts)]
     return max(length for length, _ in sizes), max(radius for _, radius in sizes)
 
 
 def _drawings(facts: Datasheet, words: Language) -> list[tuple[str, str]]:
     """Return drawings of the shafts with their names; of one shaft a wide one and one for a phone."""
-    shafts = _shown(facts)
+    shafts = drawn_shafts(facts)
     if not shafts:
         return []
     room = _room(facts)
@@ -78,7 +78,7 @@ def _drawings(facts: Datasheet, words: Language) -> list[tuple[str, str]]:
 
 def _caption(facts: Datasheet, words: Language) -> str:
     """Return what the drawings show."""
-    shafts = _shown(facts)
+    shafts = drawn_shafts(facts)
     if not shafts:
         return ""
     loaded = any(shaft.forces for shaft in shafts)

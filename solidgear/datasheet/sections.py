@@ -22,7 +22,7 @@ from solidgear.datasheet.result import Datasheet
 from solidgear.datasheet.shaft import NEAR
 from solidgear.show.sheet import Sheet, Terminal
 from solidgear.show.table import Cell, Column, Table, text, word
-from solidgear.show.units import Units
+from solidgear.show.units import Units, in_ascii
 from solidgear.show.words import DASH
 
 #: SI unit of a stress
@@ -71,7 +71,7 @@ def sheet_of(facts: Datasheet, units: Units) -> Sheet:
         lead=lead,
         tables=[s.table for s in several if s.table],
         data=facts.as_dict(),
-        verdict=lines,
+        verdict=[*map(in_ascii, lines)],
         reached=facts.trust.reached,
         terminal=Terminal(lines="hanging"),
     )

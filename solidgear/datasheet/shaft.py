@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
 from solidgear.bearings.catalogue import catalogue_of
 from solidgear.bearings.study import BearingFacts
 from solidgear.bearings.study import bearing_facts as catalogue_facts
-from solidgear.core import LADDER, OpenNumbers, Quantity, Scene, SolidgearError, load, without_axis
-from solidgear.core.judge.answer import Answered, answer
-from solidgear.core.judge.quantities import judged
+from solidgear.core import LADDER, Scene, SolidgearError, load, without_axis
 from solidgear.core.loading import shaft as settling_body
-from solidgear.core.scene.acting import loads_of
+from solidgear.datasheet.assumed import absent_notch, assumed, assumed_at_rest
 from solidgear.datasheet.at_rest import (
     bearing_facts,
     cautions_of_bearings,
@@ -29,30 +27,23 @@ from solidgear.datasheet.at_rest import (
     worst_section,
 )
 from solidgear.datasheet.facts import (
-    Amount,
     BearingFact,
     DrawnShaft,
-    Figure,
     Frequency,
     Remark,
     Resonance,
-    Trust,
-    WorstNotch,
 )
+from solidgear.datasheet.numbers import Numbers, answered_numbers
 from solidgear.datasheet.result import Datasheet
-from solidgear.show.remarks import open_ranges
 from solidgear.strength.acting import FEW
 from solidgear.strength.deflection import at_rest
-from solidgear.strength.load import LoadsAlone
-from solidgear.strength.stress.at_rest import StressAtRest, StressSettings, stress_at_rest
+from solidgear.strength.stress.at_rest import StressSettings, stress_at_rest
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.shaft import JUDGE
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.train import ALONE, Train
 
 Progress = Callable[[str], None]
-#: frequencies that a sheet lists beside the numbers asked for
-FREQUENCIES = tuple(map(Quantity, ("bending 1", "bending 2", "axial 1", "torsion 1")))
 #: orders of a shaft that excite it most: unbalance, and misalignment or a keyway
 ORDERS = (1, 2)
 #: share of a speed within which a resonance is listed
@@ -62,31 +53,21 @@ NEAR = 0.2
 def shaft_sheet(
     assembly: Assembly,
     point: OperatingPoint,
-    settings: StressSettings,
-    tol: float | None,
-    speed: float | None,
-    progress: Progress,
+    settings: StressSettings | None = None,
+    tol: float | None = None,
+    speed: float | None = None,
+    progress: Progress = lambda text: None,
+    numbers: Numbers | None = None,
 ) -> Datasheet:
-    """Return the sheet of a shaft alone, its bearings settled once; a body without an axis is
-    refused.
+    """Return the sheet of a shaft alone, by numbers that are there or answered; a body without an
+    axis is refused.
     """
     scene = assembly.train.shafts[ALONE].scene
     if without_axis(scene):
         raise SolidgearError(f"sheet: {scene.name} has no axis: run solidgear stiffness or modes")
     settled = load(scene)
-    progress("numbers")
-    wanted = judged(settled)
-    names = [*wanted]
-    if not LADDER[JUDGE].unfit(settled):  # of other solids every further number is dear
-        names += [q for q in FREQUENCIES if q not in wanted]
-    answered = answer(settled, tol, names)
-    progress("what the data leave open")
-    ranges = open_ranges(settled)
+    numbers = numbers or answered_numbers(settled, tol, progress)
     turning = speed or point.speed or speed_of(settled)
-    figures = {value.quantity: figure(value, ranges) for value in answered.values}
-    frequencies = tuple(
-        Frequency(name, f.value, f.bar, f.open) for name, f in figures.items() if name.is_frequency
-    )
     lives = lives_of(assembly.train, speed or point.speed)
     sheet = Datasheet(
         title=settled.title or settled.name,
@@ -95,22 +76,22 @@ def shaft_sheet(
         drawn=(
             DrawnShaft(settled.name, settled.as_dict(), sense=settled.turns or "", speed=turning),
         ),
-        figures=tuple(figures[q] for q in wanted if q in figures),
-        trust=trust(answered, wanted),
+        figures=numbers.figures,
+        trust=numbers.trust,
         bearings=tuple(lives.get(b.name, without_load(b)) for b in scene.bearings),
-        frequencies=frequencies,
-        resonances=resonances(frequencies, turning),
+        frequencies=numbers.frequencies,
+        resonances=resonances(numbers.frequencies, turning),
         operation=case_of(scene),
         speed=turning,
-        assumed=tuple(assumed(scene, ranges)),
+        assumed=tuple(assumed(scene, numbers.ranges)),
         absent={} if turning else {"speeds": Remark("absent speed")},
-        cautions=tuple(cautions(answered, ranges)),
+        cautions=tuple(numbers.cautions()),
     )
     if not scene.is_loaded:
         reason = Remark("absent load")
         absent = {"worst": reason, "motions": reason}
         return replace(sheet, absent=sheet.absent | absent)
-    return _under_load(sheet, assembly, point, settings, lives, progress)
+    return _under_load(sheet, assembly, point, settings or StressSettings(), lives, progress)
 
 
 def _under_load(
@@ -150,29 +131,6 @@ def _under_load(
         assumed=(*sheet.assumed, *assumed_at_rest(stressed, notch, cuts)),
         cautions=(*sheet.cautions, *cautions_of_bearings(deflected), *cautions_of_notch(notch)),
         elsewhere=len({*deflected.cautions, *deflected.judge.notes, *stressed.cautions}),
-    )
-
-
-def figure(value: Any, ranges: OpenNumbers) -> Figure:
-    """Return a number of an answer with both error bars."""
-    number = ranges.of(value.quantity)
-    total = None if number is None else number.total
-    open_ = None if total is None else (total.low or 0.0, total.high or 0.0)
-    bar = value.bar if math.isfinite(value.bar) else None
-    return Figure(str(value.quantity), value.value, value.unit, bar, open_)
-
-
-def trust(answered: Answered, wanted: tuple[Quantity, ...]) -> Trust:
-    """Return the model of an answer, with the widest error bars of the numbers asked for."""
-    values = [v for v in answered.values if v.quantity in wanted and math.isfinite(v.bar)]
-    static = [v.bar for v in values if not v.quantity.is_frequency]
-    frequency = [v.bar for v in values if v.quantity.is_frequency]
-    return Trust(
-        model=answered.rung,
-        tolerance=answered.tolerance,
-        reached=all(v.bar <= answered.tolerance for v in answered.values if v.quantity in wanted),
-        static_bar=max(static, default=None),
-        frequency_bar=max(frequency, default=None),
     )
 
 
@@ -243,69 +201,3 @@ def resonances(frequencies: tuple[Frequency, ...], speed: float | None) -> tuple
                 )
             )
     return tuple(sorted(met, key=lambda resonance: abs(resonance.distance)))
-
-
-def assumed(scene: Scene, ranges: OpenNumbers) -> Iterator[Remark]:
-    """Yield what the data of a shaft leave to be assumed."""
-    data = {b.name: catalogue_of(b) for b in scene.bearings}
-    estimated = [name for name, d in data.items() if d is not None and d.estimated]
-    if estimated:
-        yield Remark("assumed inside", {"names": tuple(estimated)})
-    classes = [n for n, d in data.items() if d is not None and isinstance(d.clearance, str)]
-    if classes:
-        yield Remark("assumed clearance", {"names": tuple(classes)})
-    stiffness = [b.name for b in scene.bearings if b.status == "assumed" and not b.hold]
-    if stiffness:
-        yield Remark("assumed stiffness", {"names": tuple(stiffness)})
-    loads = loads_of(scene)
-    angles = [load.name for load in loads if load.kind == "gear" and load.pressure_angle is None]
-    if angles:
-        yield Remark("assumed angle", {"names": tuple(angles)})
-    belts = [load.name for load in loads if load.kind == "belt"]
-    if belts:
-        yield Remark("assumed belt", {"names": tuple(belts)})
-    stated = [entry.path for entry in scene.uncertain]
-    if stated:
-        yield Remark("assumed ranges", {"names": tuple(stated)})
-    if ranges.left_out:
-        yield Remark("assumed without ranges")
-
-
-def assumed_at_rest(
-    stressed: StressAtRest, notch: WorstNotch | None, cuts: tuple[str, ...] = ()
-) -> Iterator[Remark]:
-    """Yield what deflection and stress at rest assume, the former without some cuts."""
-    if cuts:
-        yield Remark("assumed plain", {"names": cuts})
-    names = () if notch is None else notch.assumed
-    if factors := tuple(name for name in names if name.startswith("K")):
-        yield Remark("assumed factors", {"names": factors})
-    if len(factors) < len(names):
-        yield Remark("assumed steady")
-    under = stressed.under
-    if isinstance(under, LoadsAlone) and not any(load.six[4] for load in under.acting):
-        yield Remark("assumed no torque")
-
-
-def absent_notch(stressed: StressAtRest, notch: WorstNotch | None) -> dict[str, Remark]:
-    """Return why no notch is rated, by section; empty where one is."""
-    if notch is None:
-        return {"notch": Remark("absent notch")}
-    if notch.fatigue is None:
-        weak = [name for shaft in stressed.shafts for name in shaft.weak]
-        return {"notch": Remark("absent strength", {"names": tuple(dict.fromkeys(weak))})}
-    return {}
-
-
-def cautions(answered: Answered, ranges: OpenNumbers) -> Iterator[Remark]:
-    """Yield cautions on numbers of a shaft."""
-    if not answered.reached:
-        bar = max((v.bar for v in answered.values), default=math.inf)
-        if math.isfinite(bar):
-            values = {
-                "bar": Amount(100 * bar, "%", 2),
-                "tolerance": Amount(100 * answered.tolerance, "%", 2),
-            }
-            yield Remark("caution tolerance", values)
-    for name in ranges.lost:
-        yield Remark("caution lost", {"name": name})

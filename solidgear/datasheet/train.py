@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 from solidgear.core import OpenNumbers
+from solidgear.datasheet.assumed import absent_notch, assumed, assumed_at_rest
 from solidgear.datasheet.at_rest import (
     bearing_facts,
     cautions_of_bearings,
@@ -31,7 +32,7 @@ from solidgear.datasheet.facts import (
     Trust,
 )
 from solidgear.datasheet.result import Datasheet
-from solidgear.datasheet.shaft import NEAR, absent_notch, assumed, assumed_at_rest
+from solidgear.datasheet.shaft import NEAR
 from solidgear.strength.deflection import at_rest
 from solidgear.strength.deflection.at_rest import Deflections, Measured
 from solidgear.strength.stress.at_rest import StressSettings, stress_at_rest
