@@ -4,10 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from datetime import date
 from typing import Any, NamedTuple
+
+from solidgear.core.machine.version import VERSION
+from solidgear.core.plain import plain
 
 #: least and largest of a number over the data that are open
 Range = tuple[float, float] | None
+#: share of a speed within which a resonance is listed
+NEAR = 0.2
 
 
 class Amount(NamedTuple):
@@ -186,3 +192,38 @@ class Resonance:
     low: float
     high: float
     distance: float  #: of the speed of the file from it, relative
+
+
+@dataclass(frozen=True, eq=False)
+class Facts:
+    """Facts of one page of a shaft or a train."""
+
+    title: str
+    file: str
+    train: bool
+    trust: Trust
+    drawn: tuple[DrawnShaft, ...] = ()
+    figures: tuple[Figure, ...] = ()  #: the numbers asked for
+    notch: WorstNotch | None = None
+    section: WorstSection | None = None
+    bearings: tuple[BearingFact, ...] = ()
+    motions: tuple[MotionFact, ...] = ()
+    frequencies: tuple[Frequency, ...] = ()
+    #: speeds of the shaft `turns` at which orders meet natural frequencies, the nearest first
+    resonances: tuple[Resonance, ...] = ()
+    turns: str = ""  #: shaft that speeds belong to; empty of a shaft alone
+    speed: float | None = None  #: rad/s
+    operation: Remark | None = None  #: operating point of a train
+    assumed: tuple[Remark, ...] = ()
+    absent: dict[str, Remark] = field(default_factory=dict)  #: why a section is left out
+    cautions: tuple[Remark, ...] = ()
+    elsewhere: int = 0  #: further cautions, which the commands behind the sheet print
+    language: str = "en"
+    day: date = field(default_factory=date.today)
+    version: str = VERSION
+    report: str = ""  #: page that the sheet links to
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain data in SI for JSON."""
+        data = plain(self)
+        return data | {"day": self.day.isoformat()}

@@ -9,10 +9,9 @@ from datetime import date
 from typing import Any
 
 from solidgear.core import LADDER, Quantity, SolidgearError, show
-from solidgear.core.judge.record import IntervalRecord
 from solidgear.datasheet.facts import Amount, ModeTerm, Place, Remark, Speed, Term
 from solidgear.datasheet.messages import LANGUAGES, MESSAGES
-from solidgear.show.open_words import interval
+from solidgear.show.open_words import between
 from solidgear.show.units import Units, digits_for, plain
 from solidgear.show.words import DASH, bar_percent, is_number
 
@@ -111,7 +110,7 @@ class Language:
         """Return a range relative to a number in per cent."""
         if open_ is None:
             return DASH
-        return self.local(interval(IntervalRecord(low=open_[0], high=open_[1])))
+        return self.local(between(*open_))
 
     def between(self, ends: tuple[float, float] | None, si: str, digits: int = 3) -> str:
         """Return the ends of a range, without the name of their unit."""

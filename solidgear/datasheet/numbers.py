@@ -7,8 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
 from solidgear.core import LADDER, OpenNumbers, Quantity, Record, Scene
-from solidgear.core.judge.answer import answer
-from solidgear.core.judge.quantities import judged
+from solidgear.core.judge.answer import answer, asked_for
 from solidgear.datasheet.facts import Amount, Figure, Frequency, Range, Remark, Trust
 from solidgear.show.remarks import open_ranges
 from solidgear.trains.assembly.shaft import JUDGE
@@ -54,7 +53,7 @@ class Numbers:
 def answered_numbers(scene: Scene, tol: float | None, progress: Progress) -> Numbers:
     """Return the numbers of a shaft from the cheapest model that can show them."""
     progress("numbers")
-    wanted = judged(scene)
+    wanted = asked_for(scene, ())
     names = [*wanted]
     if not LADDER[JUDGE].unfit(scene):  # of other solids every further number is dear
         names += [q for q in FREQUENCIES if q not in wanted]
@@ -72,7 +71,7 @@ def answered_numbers(scene: Scene, tol: float | None, progress: Progress) -> Num
 
 def recorded_numbers(record: Record, scene: Scene) -> Numbers:
     """Return the numbers that a comparison has of the model it trusts, or else of its reference."""
-    wanted, verdict = judged(scene), record.verdict
+    wanted, verdict = asked_for(scene, ()), record.verdict
     key = verdict.trust or verdict.reference or next(reversed(record.models), "")
     model, figures = record.model(key), {}
     for name in dict.fromkeys((*wanted, *FREQUENCIES)):

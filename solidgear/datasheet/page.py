@@ -6,11 +6,11 @@ import os
 from pathlib import Path
 
 from solidgear.core import SolidgearError
-from solidgear.core.machine.whole_file import write_files, write_page
+from solidgear.core.machine.whole_file import write_page
 from solidgear.datasheet.browser import browser, pages_of, print_pdf
 from solidgear.datasheet.drawing import NARROW, WIDE, enlarged_by, shaft_svg
+from solidgear.datasheet.facts import DrawnShaft, Facts
 from solidgear.datasheet.language import Language
-from solidgear.datasheet.result import Datasheet
 from solidgear.datasheet.sections import sections, tiles, verdict
 from solidgear.show.page_parts import template
 from solidgear.show.sketch import extent
@@ -26,7 +26,7 @@ ZOOMS = (1.0, 0.93, 0.86, 0.8, 0.74)
 HTML, PDF = (".html", ".htm"), (".pdf",)
 
 
-def html_of(facts: Datasheet, units: str = "engineering", zoom: float = 1.0) -> str:
+def html_of(facts: Facts, units: str = "engineering", zoom: float = 1.0) -> str:
     """Return the page of a sheet as HTML, printed at a zoom."""
     from markupsafe import Markup
 
@@ -48,18 +48,18 @@ def html_of(facts: Datasheet, units: str = "engineering", zoom: float = 1.0) -> 
     )
 
 
-def drawn_shafts(facts: Datasheet) -> list:
+def drawn_shafts(facts: Facts) -> list[DrawnShaft]:
     """Return the first shafts of a sheet that have segments, as many as a page holds."""
     return [shaft for shaft in facts.drawn if shaft.scene.get("segments")][:MOST_SHAFTS]
 
 
-def _room(facts: Datasheet) -> tuple[float, float]:
+def _room(facts: Facts) -> tuple[float, float]:
     """Return the largest length and radius of all drawn shafts, m."""
     sizes = [extent(shaft.scene) for shaft in drawn_shafts(facts)]
     return max(length for length, _ in sizes), max(radius for _, radius in sizes)
 
 
-def _drawings(facts: Datasheet, words: Language) -> list[tuple[str, str]]:
+def _drawings(facts: Facts, words: Language) -> list[tuple[str, str]]:
     """Return drawings of the shafts with their names; of one shaft a wide one and one for a phone."""
     shafts = drawn_shafts(facts)
     if not shafts:
@@ -76,7 +76,7 @@ def _drawings(facts: Datasheet, words: Language) -> list[tuple[str, str]]:
     ]
 
 
-def _caption(facts: Datasheet, words: Language) -> str:
+def _caption(facts: Facts, words: Language) -> str:
     """Return what the drawings show."""
     shafts = drawn_shafts(facts)
     if not shafts:
@@ -102,7 +102,7 @@ def check_ending(path: str | os.PathLike) -> Path:
     return path
 
 
-def save(facts: Datasheet, path: str | os.PathLike, units: str = "engineering") -> list[Path]:
+def save(facts: Facts, path: str | os.PathLike, units: str = "engineering") -> list[Path]:
     """Write the page of a sheet as HTML, or as PDF; where there is no browser as HTML beside it."""
     path = check_ending(path)
     program = browser() if path.suffix.lower() in PDF else None
@@ -113,4 +113,4 @@ def save(facts: Datasheet, path: str | os.PathLike, units: str = "engineering") 
         printed = print_pdf(program, html_of(facts, units, zoom), path.name)
         if pages_of(printed) == 1:
             break
-    return write_files({path: printed})
+    return [write_page(path, printed)]

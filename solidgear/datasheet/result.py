@@ -3,58 +3,19 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass, field, replace
-from datetime import date
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from solidgear.core import Sheeted
-from solidgear.core.machine.version import VERSION
-from solidgear.core.plain import plain
-from solidgear.datasheet.facts import (
-    BearingFact,
-    DrawnShaft,
-    Figure,
-    Frequency,
-    MotionFact,
-    Remark,
-    Resonance,
-    Trust,
-    WorstNotch,
-    WorstSection,
-)
+from solidgear.datasheet.facts import Facts
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Datasheet(Sheeted):
-    """One page of a shaft or a train."""
+class Datasheet(Facts, Sheeted):
+    """One page of a shaft or a train; its facts are attributes."""
 
     sheeted: ClassVar[str] = "datasheet.sections:sheet_of"
-
-    title: str
-    file: str
-    train: bool
-    trust: Trust
-    drawn: tuple[DrawnShaft, ...] = ()
-    figures: tuple[Figure, ...] = ()  #: the numbers asked for
-    notch: WorstNotch | None = None
-    section: WorstSection | None = None
-    bearings: tuple[BearingFact, ...] = ()
-    motions: tuple[MotionFact, ...] = ()
-    frequencies: tuple[Frequency, ...] = ()
-    #: speeds of the shaft `turns` at which orders meet natural frequencies, the nearest first
-    resonances: tuple[Resonance, ...] = ()
-    turns: str = ""  #: shaft that speeds belong to; empty of a shaft alone
-    speed: float | None = None  #: rad/s
-    operation: Remark | None = None  #: operating point of a train
-    assumed: tuple[Remark, ...] = ()
-    absent: dict[str, Remark] = field(default_factory=dict)  #: why a section is left out
-    cautions: tuple[Remark, ...] = ()
-    elsewhere: int = 0  #: further cautions, which the commands behind the sheet print
-    language: str = "en"
-    day: date = field(default_factory=date.today)
-    version: str = VERSION
-    report: str = ""  #: page that the sheet links to
 
     def in_language(self, language: str) -> Datasheet:
         """Return the same sheet in another language."""
@@ -97,8 +58,3 @@ class Datasheet(Sheeted):
         from solidgear.datasheet.page import save  # start-up: for pages alone
 
         return save(self, path, units)
-
-    def as_dict(self) -> dict[str, Any]:
-        """Return plain data in SI for JSON."""
-        data = plain(self)
-        return data | {"day": self.day.isoformat()}

@@ -8,8 +8,10 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from solidgear.datasheet.facts import (
+    NEAR,
     Amount,
     BearingFact,
+    Facts,
     ModeTerm,
     Place,
     Remark,
@@ -18,8 +20,6 @@ from solidgear.datasheet.facts import (
     Term,
 )
 from solidgear.datasheet.language import Language
-from solidgear.datasheet.result import Datasheet
-from solidgear.datasheet.shaft import NEAR
 from solidgear.show.sheet import Sheet, Terminal
 from solidgear.show.table import Cell, Column, Table, text, word
 from solidgear.show.units import Units, in_ascii
@@ -54,7 +54,7 @@ class Tile:
     look: str = ""
 
 
-def sheet_of(facts: Datasheet, units: Units) -> Sheet:
+def sheet_of(facts: Facts, units: Units) -> Sheet:
     """Return the sheet of a terminal and of JSON."""
     words = Language(facts.language, units)
     several = sections(facts, words)
@@ -77,7 +77,7 @@ def sheet_of(facts: Datasheet, units: Units) -> Sheet:
     )
 
 
-def sections(facts: Datasheet, words: Language) -> list[Section]:
+def sections(facts: Facts, words: Language) -> list[Section]:
     """Return the sections of a sheet in the order in which they are read."""
     parts = [
         _numbers(facts, words),
@@ -92,7 +92,7 @@ def sections(facts: Datasheet, words: Language) -> list[Section]:
     return [section for section in parts if section.table or section.sentences]
 
 
-def tiles(facts: Datasheet, words: Language) -> Iterator[Tile]:
+def tiles(facts: Facts, words: Language) -> Iterator[Tile]:
     """Yield the numbers that are read first."""
     notch, section = facts.notch, facts.section
     if notch is not None and notch.fatigue is not None:
@@ -123,7 +123,7 @@ def tiles(facts: Datasheet, words: Language) -> Iterator[Tile]:
         yield Tile(words.bar(bar), words.say("tile trust"), words.model(facts.trust.model))
 
 
-def verdict(facts: Datasheet, words: Language) -> Iterator[str]:
+def verdict(facts: Facts, words: Language) -> Iterator[str]:
     """Yield sentences on the model that is trusted, and the cheapest that would do."""
     trust, model = facts.trust, words.model(facts.trust.model)
     shares = {"static": trust.static_bar, "frequency": trust.frequency_bar}
@@ -144,7 +144,7 @@ def verdict(facts: Datasheet, words: Language) -> Iterator[str]:
         yield words.say("none cheaper", within=demand)
 
 
-def _absent(facts: Datasheet, words: Language, key: str) -> tuple[str, ...]:
+def _absent(facts: Facts, words: Language, key: str) -> tuple[str, ...]:
     remark = facts.absent.get(key)
     return () if remark is None else (_sentence(remark, words),)
 
@@ -168,7 +168,7 @@ def _local(value: Any, words: Language) -> Any:
     return words.local(value) if is_number else value
 
 
-def _numbers(facts: Datasheet, words: Language) -> Section:
+def _numbers(facts: Facts, words: Language) -> Section:
     title = words.say("section numbers")
     if not facts.figures:
         sentences = _absent(facts, words, "figures") or (words.say("absent numbers"),)
@@ -198,7 +198,7 @@ def _more(count: int, most: int, words: Language) -> tuple[str, ...]:
     return (words.say("more", count=count - most),) if count > most else ()
 
 
-def _worst(facts: Datasheet, words: Language) -> Section:
+def _worst(facts: Facts, words: Language) -> Section:
     title, notch, section = words.say("section worst"), facts.notch, facts.section
     sentences = []
     if notch is not None:
@@ -229,7 +229,7 @@ def _worst(facts: Datasheet, words: Language) -> Section:
     return Section("worst", title, sentences=tuple(sentences))
 
 
-def _of_shaft(place: str, shaft: str, facts: Datasheet, words: Language) -> str:
+def _of_shaft(place: str, shaft: str, facts: Facts, words: Language) -> str:
     return words.say("of shaft", place=place, shaft=shaft) if facts.train else place
 
 
@@ -253,7 +253,7 @@ def _life(bearing: BearingFact, words: Language) -> str:
     return f"{words.number(bearing.life / 1e6, '1', 3)} {words.say('millions')}"
 
 
-def _bearings(facts: Datasheet, words: Language) -> Section:
+def _bearings(facts: Facts, words: Language) -> Section:
     title = words.say("section bearings")
     if not facts.bearings:
         return Section("bearings", title, sentences=(words.say("absent bearings"),))
@@ -303,7 +303,7 @@ def _life_range(bearing: BearingFact, words: Language) -> str:
     return words.between((ends[0], ends[1]), "1")
 
 
-def _motions(facts: Datasheet, words: Language) -> Section:
+def _motions(facts: Facts, words: Language) -> Section:
     title = words.say("section motions")
     if not facts.motions:
         return Section("motions", title, sentences=_absent(facts, words, "motions"))
@@ -325,7 +325,7 @@ def _motions(facts: Datasheet, words: Language) -> Section:
     return Section("motions", title, Table(title, columns, rows), (), notes)
 
 
-def _frequencies(facts: Datasheet, words: Language) -> Section:
+def _frequencies(facts: Facts, words: Language) -> Section:
     title = words.say("section frequencies")
     if not facts.frequencies:
         return Section("frequencies", title, sentences=_absent(facts, words, "frequencies"))
@@ -341,7 +341,7 @@ def _frequencies(facts: Datasheet, words: Language) -> Section:
     return Section("frequencies", title, Table(title, columns, rows), (), (words.say("note spin"),))
 
 
-def _speeds(facts: Datasheet, words: Language) -> Section:
+def _speeds(facts: Facts, words: Language) -> Section:
     title = words.say("section speeds")
     if not facts.speed:
         return Section("speeds", title, sentences=_absent(facts, words, "speeds"))
@@ -384,13 +384,13 @@ def _meeting(resonance: Resonance, words: Language) -> dict[str, Any]:
     }
 
 
-def _assumed(facts: Datasheet, words: Language) -> Section:
+def _assumed(facts: Facts, words: Language) -> Section:
     sentences = [_sentence(remark, words) for remark in facts.assumed]
     most = (*sentences[:MOST_SENTENCES], words.say("assumed elastic"))
     return Section("assumed", words.say("section assumed"), sentences=most)
 
 
-def _cautions(facts: Datasheet, words: Language) -> Section:
+def _cautions(facts: Facts, words: Language) -> Section:
     sentences = [_sentence(remark, words) for remark in facts.cautions]
     near = (r for r in facts.resonances if abs(r.distance) <= NEAR)
     for resonance in sorted(near, key=lambda r: abs(r.distance))[:1]:

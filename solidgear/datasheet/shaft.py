@@ -9,9 +9,7 @@ from typing import Any
 
 from solidgear.bearings.catalogue import catalogue_of
 from solidgear.bearings.study import BearingFacts
-from solidgear.bearings.study import bearing_facts as catalogue_facts
 from solidgear.core import LADDER, Scene, SolidgearError, load, without_axis
-from solidgear.core.loading import shaft as settling_body
 from solidgear.datasheet.assumed import absent_notch, assumed, assumed_at_rest
 from solidgear.datasheet.at_rest import (
     bearing_facts,
@@ -42,12 +40,11 @@ from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.shaft import JUDGE
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.train import ALONE, Train
+from solidgear.trains.load.bearing import bearing
 
 Progress = Callable[[str], None]
 #: orders of a shaft that excite it most: unbalance, and misalignment or a keyway
 ORDERS = (1, 2)
-#: share of a speed within which a resonance is listed
-NEAR = 0.2
 
 
 def shaft_sheet(
@@ -162,8 +159,8 @@ def lives_of(train: Train, speed: float | None) -> dict[str, BearingFact]:
         return {}
     if len(scene.cases) > 1:
         return lives_over_points(train)
-    facts = catalogue_facts(scene, settling_body(scene), speed)
-    return {fact.name: _alone(fact) for fact in facts}
+    solved = bearing(scene, speed=None if speed is None else f"{speed} rad/s")
+    return {fact.name: _alone(fact) for fact in solved.facts}
 
 
 def _alone(fact: BearingFacts) -> BearingFact:

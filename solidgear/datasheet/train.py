@@ -21,6 +21,7 @@ from solidgear.datasheet.at_rest import (
     worst_section,
 )
 from solidgear.datasheet.facts import (
+    NEAR,
     Amount,
     BearingFact,
     DrawnShaft,
@@ -32,7 +33,6 @@ from solidgear.datasheet.facts import (
     Trust,
 )
 from solidgear.datasheet.result import Datasheet
-from solidgear.datasheet.shaft import NEAR
 from solidgear.strength.deflection import at_rest
 from solidgear.strength.deflection.at_rest import Deflections, Measured
 from solidgear.strength.stress.at_rest import StressSettings, stress_at_rest
