@@ -17,6 +17,8 @@ from solidgear.show.words import DASH, bar_percent, is_number
 
 #: figures of a number with an error bar
 FEWEST_DIGITS, MOST_DIGITS = 4, 5
+#: decimals of a place in a sentence, m
+PLACE = 5
 #: families of motion in names of modes
 _FAMILIES = ("bending", "axial", "torsion", "ovalising", "rotational", "along", "about")
 _MODE = re.compile(
@@ -58,7 +60,7 @@ class Language:
                 return f"{self.as_written(value.value, value.unit)} {self.units.unit(value.unit)}"
             return self.text(value.value, value.unit, value.digits)
         if isinstance(value, Place):
-            return f"{self.length(value.y)} {self.units.unit('m')}"
+            return f"{self.length(round(value.y, PLACE))} {self.units.unit('m')}"
         if isinstance(value, Speed):
             return self.speed(value.value)
         if isinstance(value, Term):

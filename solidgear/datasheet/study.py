@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
-from solidgear.core import SolidgearError, Source, explained, is_train, name_of_source
+from solidgear.core import SolidgearError, Source, explained, is_train
 from solidgear.datasheet.language import Language
 from solidgear.datasheet.result import Datasheet
 from solidgear.datasheet.shaft import shaft_sheet
@@ -101,10 +101,7 @@ def _of_train(
 ) -> Datasheet:
     """Return the sheet of a train; one without a torque has no section on loads."""
     if speed is not None:
-        raise SolidgearError(
-            f"`speed` is for a shaft, and {name_of_source(source)} is a train: write speed into "
-            "[operation]"
-        )
+        raise SolidgearError("`speed` is for a shaft alone; that of a train stands in [operation]")
     train = load_train(source)
     if not train.operation and acting.torque is None:
         return train_sheet(train, None, None, settings, progress)

@@ -207,6 +207,7 @@ def _assumed(train: Train) -> Iterator[Remark]:
             names.setdefault(remark.key, []).extend(entries)
     for key, several in names.items():
         yield Remark(key, {"names": tuple(several)})
-    unpublished = tuple(train.unpublished())
+    # bearings are named above
+    unpublished = tuple(key for key in train.unpublished() if " bearing " not in key)
     if unpublished:
         yield Remark("assumed entries", {"names": unpublished})
