@@ -57,7 +57,7 @@ def made_up_shaft(sense="+y"):
 def made_up_sheet(**changes):
     """A sheet with every section, in English."""
     notch = {"shaft": "Welle", "place": "R2", "y": 0.04, "amplitude": 81e6, "bar": 1.2e6}
-    safeties = {"mean": 0.0, "fatigue": 0.93, "yielding": 1.15, "assumed": ("K_F",)}
+    safeties = {"fatigue": 0.93, "yielding": 1.15, "assumed": ("K_F",)}
     values = {
         "title": "Welle 7",
         "file": "welle7",
@@ -69,7 +69,7 @@ def made_up_sheet(**changes):
             Figure("C_z,thx@Rad", -1.31e-8, "rad/N", 0.0037),
             Figure("bending 1", 1576.25, "Hz", 0.0014, (-0.55, 0.15)),
         ),
-        "notch": WorstNotch(**notch, **safeties, open=(79e6, 83.5e6)),
+        "notch": WorstNotch(**notch, **safeties, least=(0.81, 1.02), open=(79e6, 83.5e6)),
         "section": WorstSection("Welle", "a", 0.04, 61.5e6, 60e6, 8.25e6, 0.0),
         "bearings": (
             BearingFact("L1", "6206", 500.0, 0.0, "modified", 2.5e9, (1.5e9, 4e9), 29071.5, 8.84),

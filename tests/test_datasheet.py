@@ -3,6 +3,7 @@
 import html
 import math
 import re
+from dataclasses import replace
 from pathlib import Path
 from string import Formatter
 
@@ -162,6 +163,7 @@ def german_sheets():
     yield made_up_sheet(
         language="de",
         resonances=tuple(type(r)(**vars(r) | {"distance": -0.9}) for r in far),
+        notch=replace(made_up_sheet().notch, bar=None),
         trust=Trust("solid", 0.05, False, None, None, demand="within misalignment"),
         drawn=tuple(made_up_shaft() for _ in range(6)),
         train=True,

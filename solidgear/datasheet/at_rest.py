@@ -113,21 +113,22 @@ def _turns(bearing: Bearing) -> bool:
 
 def worst_notch(stressed: StressAtRest) -> WorstNotch | None:
     """Return the notch with the least safety, without one that with the largest stress."""
-    worst = [(shaft, shaft.found.worst[0]) for shaft in stressed.shafts if shaft.found.notches]
+    worst = [(shaft, shaft.found.worst[0]) for shaft in stressed.shafts if shaft.found.worst]
     if not worst:
         return None
     shaft, notch = min(worst, key=lambda pair: pair[1].severity)
-    rating = notch.rating
+    # stress on the surface is that of fillets, which the solid has
+    local, rating = getattr(notch, "local", None), notch.rating
     return WorstNotch(
         shaft=shaft.name,
         place=notch.name,
         y=notch.y,
-        amplitude=notch.local.amplitude,
-        bar=notch.local.amplitude_bar,
-        mean=notch.local.mean,
+        amplitude=notch.nominal.bending if local is None else local.amplitude,
+        bar=None if local is None else local.amplitude_bar,
         fatigue=None if rating is None else rating.fatigue,
         yielding=None if rating is None else rating.yielding,
         assumed=() if rating is None else rating.assumed,
+        least=getattr(rating, "least", None),
         open=shaft.open.get(notch.name),
     )
 

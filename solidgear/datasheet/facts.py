@@ -113,14 +113,15 @@ class WorstNotch:
     shaft: str
     place: str
     y: float  #: m
-    #: amplitude, bar, mean: of the stress on its surface, Pa
+    #: amplitude by bending, Pa: on its surface with an error bar, or the nominal one without
     amplitude: float
-    bar: float
-    mean: float
+    bar: float | None
     #: fatigue, yielding: safeties by DIN 743; None where it is not rated
     fatigue: float | None
     yielding: float | None
     assumed: tuple[str, ...] = ()  #: symbols of factors that were not given
+    #: safeties against fatigue and yielding with K_1 of the steels that fall most; None where known
+    least: tuple[float, float] | None = None
     open: Range = None  #: least and largest amplitude over open data, Pa
 
 

@@ -134,6 +134,14 @@ MESSAGES: dict[str, tuple[str, str]] = {
         "{place} at y = {y}: stress amplitude {amplitude} ± {bar} by bending.",
         "{place} bei y = {y}: Spannungsausschlag {amplitude} ± {bar} durch Biegung.",
     ),
+    "worst nominal": (
+        "{place} at y = {y}: nominal stress amplitude {amplitude} by bending.",
+        "{place} bei y = {y}: Nennspannungsausschlag {amplitude} durch Biegung.",
+    ),
+    "worst least": (
+        "With K_1 of the group of steels that falls most: {fatigue} and {yielding}.",
+        "Mit K_1 der ungünstigsten Stahlgruppe: {fatigue} und {yielding}.",
+    ),
     "worst open": (
         "Open data of the bearings leave {low} to {high}.",
         "Offene Daten der Lager lassen {low} bis {high} zu.",
@@ -195,8 +203,8 @@ MESSAGES: dict[str, tuple[str, str]] = {
         "Keiner der gefragten Werte existiert hier.",
     ),
     "absent notch": (
-        "No shoulder has a fillet, so no notch is rated.",
-        "Kein Absatz hat eine Rundung, daher ist keine Kerbe bewertet.",
+        "No notch is rated: no shoulder has a fillet.",
+        "Keine Kerbe ist bewertet: kein Absatz hat eine Rundung.",
     ),
     "absent strength": (
         "No safety by DIN 743: the material of {names} has no strength in the file.",

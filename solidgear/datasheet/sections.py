@@ -203,21 +203,22 @@ def _worst(facts: Facts, words: Language) -> Section:
     sentences = []
     if notch is not None:
         place = _of_shaft(notch.place, notch.shaft, facts, words)
-        sentences.append(
-            words.say(
-                "worst notch",
-                place=place,
-                y=Place(notch.y),
-                amplitude=Amount(notch.amplitude, STRESS),
-                bar=Amount(notch.bar, STRESS, 2),
-            )
-        )
+        at_place = {"place": place, "y": Place(notch.y)}
+        amplitude = Amount(notch.amplitude, STRESS)
+        if notch.bar is None:
+            sentences.append(words.say("worst nominal", amplitude=amplitude, **at_place))
+        else:
+            bar = Amount(notch.bar, STRESS, 2)
+            sentences.append(words.say("worst notch", amplitude=amplitude, bar=bar, **at_place))
         if notch.open is not None:
             low, high = (Amount(end, STRESS) for end in notch.open)
             sentences.append(words.say("worst open", low=low, high=high))
         if notch.fatigue is not None and notch.yielding is not None:
             fatigue, yielding = (_safety(s, words) for s in (notch.fatigue, notch.yielding))
             sentences.append(words.say("worst rated", fatigue=fatigue, yielding=yielding))
+        if notch.least is not None:
+            fatigue, yielding = (_safety(s, words) for s in notch.least)
+            sentences.append(words.say("worst least", fatigue=fatigue, yielding=yielding))
     sentences += _absent(facts, words, "worst") + _absent(facts, words, "notch")
     if section is not None:
         place = _of_shaft(section.segment, section.shaft, facts, words)
