@@ -25,7 +25,7 @@ from solidgear.show.units import ENGINEERING
 
 PACKAGE = Path(__file__).parent.parent / "solidgear" / "datasheet"
 E, DIAMETER, LENGTH, PLACE = 206e9, 0.03, 0.5, 0.2
-FORCE = (300.0, 400.0)
+FORCE, TORQUE = (300.0, 400.0), 40.0
 #: slender on stiff short bearings
 ROD = {
     "material": {"E": E, "nu": 0.3, "density": 7850},
@@ -38,7 +38,8 @@ ROD = {
         )
     ],
     "port": {"name": "wheel", "position": 0.01 + PLACE, "span": [0.205, 0.215]},
-    "load": {"x": FORCE[0], "z": FORCE[1]},
+    "load": [{"name": "gear", "on": "wheel", "x": FORCE[0], "z": FORCE[1], "torque": TORQUE}],
+    "torque_at": "B",
     "attachment": "section",
 }
 
@@ -50,9 +51,11 @@ def rod():
 
 def test_reactions_are_those_of_a_simple_beam(rod):
     (drawn,) = rod.drawn
-    by_name = {force.name: force for force in drawn.forces}
-    assert [force.name for force in drawn.forces] == ["A", "wheel", "B"]
-    assert [force.by_bearing for force in drawn.forces] == [True, False, True]
+    by_name = {force.name: force for force in drawn.forces if force.by_bearing}
+    loads = {force.name: force.six for force in drawn.forces if not force.by_bearing}
+    assert [force.y for force in drawn.forces] == pytest.approx([0.01, 0.21, 0.51, 0.51])
+    assert loads["gear"] == (*FORCE[:1], 0.0, *FORCE[1:], 0.0, TORQUE, 0.0)
+    assert loads["B"] == pytest.approx([0, 0, 0, 0, -TORQUE, 0])
     at_a, at_b = (LENGTH - PLACE) / LENGTH, PLACE / LENGTH
     for name, share in (("A", at_a), ("B", at_b)):
         # 4 mm of seat hold a slope with next to no moment
@@ -71,6 +74,10 @@ def test_deflection_and_stress_are_those_of_a_simple_beam(rod):
     assert motion.radial_bar < 0.05 * motion.radial
     stress = force * left * right / LENGTH * 32 / (math.pi * DIAMETER**3)
     assert rod.section.bending == pytest.approx(stress, rel=3e-3)
+    torsion = TORQUE * 16 / (math.pi * DIAMETER**3)
+    assert abs(rod.section.torsion) == pytest.approx(torsion, rel=1e-6)
+    von_mises = math.sqrt(stress**2 + 3 * torsion**2)
+    assert rod.section.equivalent == pytest.approx(von_mises, rel=3e-3)
     assert rod.notch is None and "notch" in rod.absent
 
 
@@ -95,7 +102,7 @@ def test_open_data_widen_the_range_to_avoid():
 
 
 def test_numbers_of_an_unloaded_shaft_stand_alone():
-    shaft = {key: value for key, value in ROD.items() if key != "load"}
+    shaft = {key: value for key, value in ROD.items() if key not in ("load", "torque_at")}
     facts = sg.sheet(shaft, tol=0.05)
     assert {key: remark.key for key, remark in facts.absent.items()} == {
         "worst": "absent load",
@@ -128,6 +135,15 @@ def test_every_message_has_the_same_places_in_every_language():
         names = [{name for _, name, *_ in Formatter().parse(text) if name} for text in texts]
         assert all(each == names[0] for each in names), key
         assert all(texts), key
+
+
+#: equal in both languages
+EQUAL = {"radial", "axial", "hours", "static"}
+
+
+def test_no_message_is_left_in_english():
+    same = {key for key, texts in MESSAGES.items() if texts[0] == texts[1]}
+    assert same == EQUAL
 
 
 #: beginnings of keys that are put together
