@@ -112,7 +112,7 @@ class Language:
         """Return a range relative to a number in per cent."""
         if open_ is None:
             return DASH
-        return self.local(between(*open_))
+        return self.local(between(open_[0], open_[1]))
 
     def between(self, ends: tuple[float, float] | None, si: str, digits: int = 3) -> str:
         """Return the ends of a range, without the name of their unit."""
