@@ -299,6 +299,7 @@ def test_the_command_writes_a_page_or_prints_json(solved, tmp_path):
     assert result.exit_code == 0 and f"Written: {out}" in result.stdout.replace("\n", "")
     assert "Eigenfrequenzen" in out.read_text(encoding="utf-8")
     assert command("sheet", "welle7.toml", "--json").exit_code == 0  # held to its schema
+    assert made_up_sheet().write(tmp_path / "folder") == [tmp_path / "folder" / "sheet.html"]
 
 
 def test_other_endings_and_languages_are_refused_before_anything_is_solved(solved, tmp_path):

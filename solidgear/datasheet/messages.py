@@ -247,6 +247,10 @@ MESSAGES: dict[str, tuple[str, str]] = {
         "DIN 743 with factors set to 1, as they are not given: {names}.",
         "DIN 743 mit Faktor 1, weil nicht angegeben: {names}.",
     ),
+    "assumed weight": (
+        "Weight acts as well; it is in all numbers, and not drawn.",
+        "Auch das Gewicht wirkt; es steckt in allen Zahlen und ist nicht gezeichnet.",
+    ),
     "assumed steady": (
         "Axial force and torque are taken as steady, as their amplitudes are not given.",
         "Längskraft und Drehmoment gelten als ruhend, weil ihre Ausschläge nicht angegeben sind.",

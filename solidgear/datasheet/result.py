@@ -36,6 +36,26 @@ class Datasheet(Facts, Sheeted):
 
         return html_of(self, units)
 
+    def write(self, folder: str | os.PathLike, units: str = "engineering") -> list[Path]:
+        """Write the page as ``sheet.html`` into a folder.
+
+        Parameters
+        ----------
+        folder : path
+        units : {'engineering', 'si', 'us'}
+
+        Returns
+        -------
+        list of pathlib.Path
+            The file.
+
+        Raises
+        ------
+        SolidgearError
+            If it cannot be written, or units are unknown.
+        """
+        return self.save(Path(folder) / "sheet.html", units)
+
     def save(self, path: str | os.PathLike, units: str = "engineering") -> list[Path]:
         """Write the page as HTML, or as PDF by a browser.
 

@@ -105,6 +105,7 @@ def _at_point(
     stressed = stress_at_rest(assembly, point, asked=settings)
     notch = worst_notch(stressed)
     shafts = {shaft.name: shaft for shaft in stressed.shafts}
+    weight = [Remark("assumed weight")] if point.weight else []
     drawn = tuple(
         replace(
             shaft,
@@ -125,7 +126,7 @@ def _at_point(
         absent=sheet.absent | absent_notch(stressed, notch),
         bearings=bearing_facts(deflected, assembly.scenes, lives_over_points(train)),
         motions=motions(deflected),
-        assumed=(*sheet.assumed, *assumed_at_rest(stressed, notch)),
+        assumed=(*sheet.assumed, *weight, *assumed_at_rest(stressed, notch)),
         cautions=(*sheet.cautions, *cautions_of_bearings(deflected), *cautions_of_notch(notch)),
         elsewhere=len({*deflected.cautions, *deflected.judge.notes, *stressed.cautions}),
     )
