@@ -44,6 +44,9 @@ def assumed_at_rest(
     """Yield what deflection and stress at rest assume, the former without some cuts."""
     if cuts:
         yield Remark("assumed plain", {"names": cuts})
+    unrated = [feature.name for shaft in stressed.shafts for feature in shaft.found.unrated]
+    if unrated:
+        yield Remark("assumed unrated", {"names": tuple(unrated)})
     names = () if notch is None else notch.assumed
     if factors := tuple(name for name in names if name.startswith("K")):
         yield Remark("assumed factors", {"names": factors})

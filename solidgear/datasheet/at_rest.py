@@ -26,6 +26,7 @@ from solidgear.datasheet.facts import (
 from solidgear.strength.deflection.at_rest import Deflections, Measured
 from solidgear.strength.deflection.shaft import BearingState
 from solidgear.strength.stress.at_rest import StressAtRest, StressedShaft
+from solidgear.strength.stress.shaft import Notch
 from solidgear.trains.file.train import Train
 from solidgear.trains.load.lives import train_lives
 
@@ -118,7 +119,8 @@ def worst_notch(stressed: StressAtRest) -> WorstNotch | None:
         return None
     shaft, notch = min(worst, key=lambda pair: pair[1].severity)
     # stress on the surface is that of fillets, which the solid has
-    local, rating = getattr(notch, "local", None), notch.rating
+    local = notch.local if isinstance(notch, Notch) else None
+    rating = notch.rating
     return WorstNotch(
         shaft=shaft.name,
         place=notch.name,
@@ -128,7 +130,7 @@ def worst_notch(stressed: StressAtRest) -> WorstNotch | None:
         fatigue=None if rating is None else rating.fatigue,
         yielding=None if rating is None else rating.yielding,
         assumed=() if rating is None else rating.assumed,
-        least=getattr(rating, "least", None),
+        least=None if rating is None else rating.least,
         open=shaft.open.get(notch.name),
     )
 

@@ -203,8 +203,8 @@ MESSAGES: dict[str, tuple[str, str]] = {
         "Keiner der gefragten Werte existiert hier.",
     ),
     "absent notch": (
-        "No notch is rated: no shoulder has a fillet.",
-        "Keine Kerbe ist bewertet: kein Absatz hat eine Rundung.",
+        "No notch is rated: there is no fillet, and no other notch of DIN 743.",
+        "Keine Kerbe ist bewertet: es gibt keine Rundung und keine andere Kerbe der DIN 743.",
     ),
     "absent strength": (
         "No safety by DIN 743: the material of {names} has no strength in the file.",
@@ -246,6 +246,10 @@ MESSAGES: dict[str, tuple[str, str]] = {
     "assumed factors": (
         "DIN 743 with factors set to 1, as they are not given: {names}.",
         "DIN 743 mit Faktor 1, weil nicht angegeben: {names}.",
+    ),
+    "assumed unrated": (
+        "Not rated by DIN 743: {names}.",
+        "Nicht nach DIN 743 bewertet: {names}.",
     ),
     "assumed weight": (
         "Weight acts as well; it is in all numbers, and not drawn.",

@@ -14,7 +14,8 @@ from solidgear.datasheet.train import train_sheet
 from solidgear.show.options import speed_of
 from solidgear.show.units import ENGINEERING
 from solidgear.strength.acting import Acting, Given
-from solidgear.strength.stress.at_rest import Conditions, StressSettings
+from solidgear.strength.stress.at_rest import StressSettings
+from solidgear.strength.stress.conditions import Conditions
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.file.train import Train
 from solidgear.trains.loading import load_train
