@@ -15,6 +15,7 @@ from solidgear.core.errors import SolidgearError
 from solidgear.core.scene.closed_form import volume_of
 from solidgear.core.scene.outline import Outline
 from solidgear.show import viewer
+from solidgear.show.drawing import colours
 from solidgear.show.packing import mesh_of
 from solidgear.show.turning import picks, turned
 from tests.command import command
@@ -222,3 +223,8 @@ def test_the_command_writes_a_page_also_where_nothing_can_be_drawn(tmp_path, mon
     assert not list(tmp_path.glob("*.png"))
     refused = command(*words)
     assert refused.exit_code == 1 and isinstance(refused.exception, SolidgearError)
+
+
+def test_a_page_has_the_colours_of_pictures():
+    ramp = colours()(np.linspace(0, 1, len(viewer.RAMP)))[:, :3]
+    np.testing.assert_allclose(viewer.RAMP, ramp, atol=5.1e-4)
