@@ -242,7 +242,8 @@ class TiedSolver:
         """Return the modes of a mesh whose error bars are computed next, should it be the last: those
         with section ties, and the first above the list, which bound what it hides.
         """
-        answer, sections, later = ties[SCENE], ties.get(SECTION), []
+        answer, sections = ties[SCENE], ties.get(SECTION)
+        later: list[Later] = []
         if sections is not None and sections.body is answer.body:
             later.append((sections.modes, [q for q in answer.quantities if q.is_frequency]))
         if self.count_modes:
