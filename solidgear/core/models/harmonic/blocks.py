@@ -126,6 +126,7 @@ class Work:
         # Strains are linear in (phi / r, phi,r, phi,y) of each unknown, in torsion in the last two;
         # one Gram matrix of those functions per element holds every product that occurs.
         used = slice(1 if family.waves == TORSION else 0, 3)
+        value = products = np.zeros(0)
         for part, material, t, dv in self.batches():
             area += dv.sum()
             w = family.weight(t.x[0], dv)
@@ -140,7 +141,9 @@ class Work:
             )
             law = family.stiffness(material)[used][:, :, used].transpose(1, 3, 0, 2)
             stiffness.add(part, law.reshape(c * c, k * k) @ gram)
-            heavy.add(part, material.density * w @ _products(t))
+            if value is not t.value:  # that all batches of one shape share
+                value, products = t.value, _products(t)
+            heavy.add(part, material.density * w @ products)
         self.area = area
         keep = family.free(self.geometry.on_axis).ravel()
         r, y = self.place
