@@ -1,5 +1,6 @@
 """Loads at several places of a shaft: forces of gears and belts, statics, deflection, torque."""
 
+import json
 import math
 from itertools import pairwise
 from pathlib import Path
@@ -11,11 +12,15 @@ import solidgear as sg
 from solidgear.core.errors import SolidgearError
 from solidgear.core.loading import as_written
 from solidgear.core.scene.acting import acting_loads, station_loads
+from solidgear.core.scene.uncertain import with_scaled_entry
 from solidgear.core.system.gear_mesh import line_of_action
+from solidgear.exchange.rexs.export.exporting import exported
+from solidgear.exchange.rexs.importing import imported
 from solidgear.strength.deflection.at_rest import deflection
 from solidgear.strength.load import AT_REST
 from solidgear.strength.stress.section_forces import forces_of
 from solidgear.trains.assembly.assembly import Assembly
+from solidgear.trains.load.operation import scene_loads
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 COUNTERSHAFT = GEOMETRY / "countershaft.toml"
@@ -283,3 +288,134 @@ def test_refused_in_a_sentence(kind, tmp_path):
         as_written(path)
     message = str(caught.value)
     assert says in message and message.count("\n") == 0 and "spoilt.toml: " in message, message
+
+
+# ------------------------------------------------------------------------------------------- cases
+def catalogued(*cases, **rest):
+    """The rod on deep groove ball bearings with a spur gear, which a torque at its end turns."""
+    bearings = [
+        sg.Bearing(name="A", y=0.05, bore=0.04, designation="6208", clearance="0 um"),
+        sg.Bearing(
+            name="B", y=0.35, bore=0.04, designation="6208", clearance="0 um", support="floating"
+        ),
+    ]
+    gear = sg.ShaftLoad(
+        name="teeth", on="gear", torque=150.0, pitch_diameter=0.12, towards="+x", **rest
+    )
+    hub = sg.ShaftLoad(name="coupling", position=0.39, seat_width=0.02, torque=-150.0)
+    return rod(gear, hub, bearings=bearings, cases=cases)
+
+
+FULL = sg.LoadCase(name="full", speed="1500 rpm", share=0.25)
+HALF = sg.LoadCase(
+    name="half", factors={"teeth": 0.5, "coupling": 0.5}, speed="3000 rpm", share=0.75
+)
+BACK = sg.LoadCase(name="back", factors={"teeth": -1, "coupling": -1}, speed="600 rpm")
+
+
+def test_lives_in_all_cases_add_their_damage():
+    found = sg.bearing(catalogued(FULL, HALF))
+    assert found.case == "full" and [fact.name for fact in found.facts] == ["A", "B"]
+    assert found.facts[0].life.speed == pytest.approx(50 * math.pi)
+    (a, _) = found.lives
+    full, half = (point.life for point in a.points)
+    assert [point.label for point in a.points] == ["full (1500 rpm)", "half (3000 rpm)"]
+    # half the load of a ball bearing is eight times the life, but for its small moment
+    assert half.life.basic / full.life.basic == pytest.approx(8.0, rel=0.02)
+    damage = [
+        0.25 * 1500 * 60 / full.life.reference,
+        0.75 * 3000 * 60 / half.life.reference,
+    ]
+    assert a.duty.hours == pytest.approx(1 / sum(damage))
+    assert a.duty.damage == pytest.approx([part / sum(damage) for part in damage])
+    assert [row["at"] for row in found.as_dict()["cases"][0]["points"]] == [
+        "full (1500 rpm)",
+        "half (3000 rpm)",
+    ]
+    assert found["A"] is found.facts[0]
+    chosen = sg.bearing(catalogued(FULL, HALF), "B", case="2")
+    assert chosen.case == "half" and chosen.facts[0].load == pytest.approx(
+        found.facts[1].load / 2, rel=0.02, abs=1.0
+    )
+
+
+def test_bearings_settle_under_the_first_case_and_anew_under_another():
+    scene = catalogued(FULL, HALF)
+    stiff = [s.settled.bearings[0].stiffness[2, 2] for s in (scene, scene.with_case("half"))]
+    assert stiff[1] < stiff[0]
+    assert all(b.matrix is None for b in scene.settled.with_case("half").bearings)
+    loads = tuple(load.with_changes(torque=load.torque / 2) for load in scene.loads)
+    halved = scene.with_changes(loads=loads).settled.bearings[0].stiffness[2, 2]
+    assert halved == pytest.approx(stiff[1], rel=1e-9)
+
+
+def test_every_case_is_shown_and_a_reversed_one_presses_the_other_flanks(run, tmp_path):
+    path = tmp_path / "rod.toml"
+    scene = catalogued(FULL.with_changes(share=None), BACK)
+    scene.to_toml(path)
+    said = run("deflect", path, "-f", "euler")[1]
+    assert "In the case full, under" in said and "Torque along the shaft" in said
+    rows = [line.split() for line in said.splitlines() if line.startswith((" full (", " back ("))]
+    assert [row[0] for row in rows] == ["full", "back"] + ["full", "full", "back", "back"]
+    full, back = (np.array(row[4:7], float) for row in rows[:2])  # um of the gear
+    assert back[2] == pytest.approx(-full[2], rel=0.02) and back[0] == pytest.approx(
+        full[0], rel=0.02
+    )
+    data = json.loads(run("deflect", path, "-f", "euler", "--case", "back", "--json")[1])
+    assert data["case"] == "back" and data["points"] == []
+    by_name = {load["name"]: load for load in data["loads"]}
+    assert by_name["teeth"]["factor"] == -1 and by_name["teeth"]["six"][4] == pytest.approx(-150)
+    assert data["models"]["euler"]["statics"]["left"] < 1e-9
+    code, _, refused = run("-q", "deflect", path, "-f", "euler", "--case", "forth")
+    assert code == 1 and "there is no case \"forth\"; there are 1 'full', 2 'back'" in refused
+
+
+def test_a_drive_leaves_where_the_file_says():
+    scene = rod(torque_at="B")
+    found = sg.deflect(scene, "euler", load="z=1 kN", drive={"A": "40 N*m"}).judge
+    assert [(load.name, load.station) for load in found.load.acting] == [
+        ("load", "gear"),
+        ("drive at A", "A"),
+        ("torque at B", "B"),
+    ]
+    (stretch,) = found.statics.torque
+    assert (stretch.start, stretch.end, stretch.torque) == pytest.approx((0.05, 0.35, -40.0))
+    # as the torques of the scene, which stress sees as well
+    stressed = sg.stress(scene, "euler", load="z=1 kN", drive={"A": 40.0})
+    assert stressed.shafts[0].found.forces.at(0.1)[4] == pytest.approx(-40.0)
+
+
+# ------------------------------------------------------------------------------------------- files
+def test_loads_and_cases_go_through_files_of_any_kind(tmp_path):
+    scene = catalogued(FULL, HALF).with_changes(turns="-y", torque_at="gear", name="rod")
+    assert sg.Scene.from_dict(scene.to_dict()) == scene
+    scene.to_toml(tmp_path / "rod.toml")
+    assert as_written(tmp_path / "rod.toml") == scene
+    out = exported(scene)
+    assert {"load", "case", "turns", "torque_at"} <= {*dict(out.without_place)["rod"]}
+    again = sg.Scene.from_dict(imported(out.document, "rod").tables["rod.toml"])
+    for key in ("loads", "cases", "turns", "torque_at"):
+        assert getattr(again, key) == getattr(scene, key), key
+
+
+def test_entries_of_loads_vary_and_may_have_ranges(tmp_path):
+    scene = catalogued().with_changes(torque_at="A", bearings=(held("A", 0.05), held("B", 0.35)))
+    vary = "load.teeth.torque=100 N*m,200 N*m"
+    rows = sg.sweep(scene, vary, model="euler", n=1)
+    assert rows["load.teeth.torque"].tolist() == [100.0, 200.0]
+    ranged = sg.Scene.from_dict({**scene.to_dict(), "uncertain": {"load.teeth.torque": "± 10 %"}})
+    (entry,) = ranged.uncertain
+    scaled = with_scaled_entry(ranged, entry.path, entry.high)
+    assert scaled.loads[0].torque == pytest.approx(165.0)
+    assert scaled.loads[1] == ranged.loads[1]
+
+
+def test_loads_of_a_shaft_in_a_train_act_where_they_are():
+    train = sg.load_train(GEOMETRY / "gearbox_train.toml")
+    pull = sg.ShaftLoad(name="pull", on="A", x=700.0)
+    scene = train.pinion.scene.with_changes(load=None, loads=(pull,))
+    shaft = train.shafts["pinion"].with_changes(scene=scene, scene_load="added")
+    assembly = Assembly(train.with_changes(pinion=shaft), solves_teeth=False)
+    loads, notes = scene_loads(assembly, "pinion", {}, AT_REST)
+    assert {name: six.tolist() for name, six in loads.items()} == {"A": [700.0, 0, 0, 0, 0, 0]}
+    assert "is added to the mesh force" in notes[0]

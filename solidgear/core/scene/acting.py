@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 
 #: name of what typed numbers leave of torques
 ROUNDING = "rounding"
+#: sum of torques over the sum of their sizes that is none
+EXACT = 1e-13
 
 
 @dataclass(frozen=True)
@@ -56,9 +58,11 @@ def acting_loads(scene: Scene, case: LoadCase | None = None) -> tuple[ActingLoad
             six, y = load.six(factor, turning(scene.turns)), _place(load.station, scene)
             out.append(ActingLoad(load.name, load.station, y, six, factor))
     left = fsum(load.six[4] for load in out)
-    if left and scene.torque_at is not None:
+    if abs(left) <= EXACT * fsum(abs(load.six[4]) for load in out):
+        return tuple(out)
+    if scene.torque_at is not None:
         out.append(_torque(f"torque at {scene.torque_at}", scene.torque_at, -left, scene))
-    elif left and not holders(scene.bearings):
+    elif not holders(scene.bearings):
         _refuse_torques(out, case.name)
         largest = max(out, key=lambda load: abs(load.six[4]))
         out.append(_torque(ROUNDING, largest.station, -left, scene))
