@@ -2,6 +2,7 @@
 
 import json
 import math
+import tomllib
 from itertools import pairwise
 from pathlib import Path
 
@@ -393,7 +394,7 @@ def test_loads_and_cases_go_through_files_of_any_kind(tmp_path):
     assert as_written(tmp_path / "rod.toml") == scene
     out = exported(scene)
     assert {"load", "case", "turns", "torque_at"} <= {*dict(out.without_place)["rod"]}
-    again = sg.Scene.from_dict(imported(out.document, "rod").tables["rod.toml"])
+    again = sg.Scene.from_dict(tomllib.loads(imported(out.document, "rod").files["rod.toml"]))
     for key in ("loads", "cases", "turns", "torque_at"):
         assert getattr(again, key) == getattr(scene, key), key
 
