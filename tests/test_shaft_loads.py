@@ -17,6 +17,7 @@ from solidgear.core.scene.uncertain import with_scaled_entry
 from solidgear.core.system.gear_mesh import line_of_action
 from solidgear.exchange.rexs.export.exporting import exported
 from solidgear.exchange.rexs.importing import imported
+from solidgear.show.remarks import load
 from solidgear.strength.deflection.at_rest import deflection
 from solidgear.strength.load import AT_REST
 from solidgear.strength.stress.section_forces import forces_of
@@ -179,6 +180,11 @@ def test_a_load_with_a_place_of_its_own_is_no_lumped_point():
         {"name": "pulley", "x": 1000.0, "span": [0.38, 0.4]},
     ]
     assert sg.Scene.from_dict(scene.to_dict()) == scene
+    spread = rod(sg.ShaftLoad(on="rod", z=1.0), sg.ShaftLoad(on="A", x=1.0)).loads
+    assert [(load.name, load.station, load.lo, load.hi) for load in spread] == [
+        ("rod", "rod", 0.0, 0.4),
+        ("A", "A", None, None),
+    ]
 
 
 @pytest.mark.parametrize("hand", ["left", "right"])
@@ -348,6 +354,7 @@ def test_bearings_settle_under_the_first_case_and_anew_under_another():
     loads = tuple(load.with_changes(torque=load.torque / 2) for load in scene.loads)
     halved = scene.with_changes(loads=loads).settled.bearings[0].stiffness[2, 2]
     assert halved == pytest.approx(stiff[1], rel=1e-9)
+    assert load(scene, "half").bearings[0].stiffness[2, 2] == stiff[1]  # as of --case
 
 
 def test_every_case_is_shown_and_a_reversed_one_presses_the_other_flanks(run, tmp_path):

@@ -125,7 +125,11 @@ def pulls(known: Mapping[str, float], diameter: float) -> tuple[float, float]:
     ((750.0, 250.0), (500.0, 0.0))
     """
     if len(known) != 2:
-        given = f"here are {listed([*known])}" if len(known) > 1 else "here is " + ("".join(known) or "none")
+        given = (
+            f"here are {listed([*known])}"
+            if len(known) > 1
+            else "here is " + ("".join(known) or "none")
+        )
         raise SceneError(
             "the pulls of a belt follow from its diameter and two of torque, tight, slack and "
             f"pull_ratio; {given}",
