@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import solidgear as sg
+from solidgear.comparison.two.loaded import loaded_changes
 from solidgear.core.errors import SolidgearError
 from solidgear.core.loading import as_written
 from solidgear.core.scene.acting import acting_loads, station_loads
@@ -427,3 +428,23 @@ def test_loads_of_a_shaft_in_a_train_act_where_they_are():
     loads, notes = scene_loads(assembly, "pinion", {}, AT_REST)
     assert {name: six.tolist() for name, six in loads.items()} == {"A": [700.0, 0, 0, 0, 0, 0]}
     assert "is added to the mesh force" in notes[0]
+
+
+def test_two_shafts_are_compared_under_their_loads():
+    single, double = (rod(sg.ShaftLoad(on="gear", z=f"{k} kN")) for k in (1, 2))
+    changes, reason = loaded_changes([single, double])
+    by_name = {number.name: number for number in changes}
+    assert not reason and [*by_name] == [
+        "deflection of gear",
+        "radial load of A",
+        "radial load of B",
+    ]
+    moved = by_name["deflection of gear"]
+    assert moved.change.b == pytest.approx(2 * moved.change.a) and moved.verdict == "resolved"
+    assert by_name["radial load of A"].change.a == pytest.approx(500.0)
+    assert loaded_changes([single, rod()]) == ((), "")
+    loose = [rod(sg.ShaftLoad(on="gear", y=1e3), bearings=[held("A", 0.05)])] * 2
+    free = [
+        s.with_changes(bearings=[s.bearings[0].with_changes(support="floating")]) for s in loose
+    ]
+    assert "no bearing holds shaft in y" in loaded_changes(free)[1]
