@@ -8,18 +8,16 @@ from collections.abc import Iterator
 
 from solidgear.core import Body, OpenNumbers, Scene, Source, addition, explained
 from solidgear.core import load as read
-from solidgear.core.loading import as_written
 
 
 def load(source: Source, case: str | None = None) -> Scene:
     """Read a scene, whose bearings settle under a case of its loads, by default the first, and print
     doubts about the file of its part.
     """
-    if case is None:
-        scene = read(source)
-    else:
+    scene = read(source)
+    if case is not None:
         with explained(source):
-            scene = as_written(source).with_case(case).settled
+            scene = scene.with_case(case).settled
     for sentence in scene.body.doubts(scene.material) if scene.body is not None else ():
         print(f"caution: {sentence}", file=sys.stderr)
     return scene
