@@ -410,7 +410,8 @@ class ShaftLoad(Placed):
         out = []
         if self.kind == "gear" and self.pressure_angle is None:
             out.append(f"{self.name}: pressure angle 20 deg assumed")
-        if self.kind == "belt":
+        sides = self.pulls()
+        if sides is not None and sides[1] > 0:
             out.append(f"{self.name}: both sides of the belt pull along one direction")
         return tuple(out)
 
