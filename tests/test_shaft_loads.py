@@ -396,14 +396,16 @@ def test_a_drive_leaves_where_the_file_says():
 
 # ------------------------------------------------------------------------------------------- files
 def test_loads_and_cases_go_through_files_of_any_kind(tmp_path):
-    scene = catalogued(FULL, HALF).with_changes(turns="-y", torque_at="gear", name="rod")
+    scene = catalogued(FULL, HALF).with_changes(
+        turns="-y", torque_at="gear", name="rod", weight="x"
+    )
     assert sg.Scene.from_dict(scene.to_dict()) == scene
     scene.to_toml(tmp_path / "rod.toml")
     assert as_written(tmp_path / "rod.toml") == scene
     out = exported(scene)
     assert {"load", "case", "turns", "torque_at"} <= {*dict(out.without_place)["rod"]}
     again = sg.Scene.from_dict(tomllib.loads(imported(out.document, "rod").files["rod.toml"]))
-    for key in ("loads", "cases", "turns", "torque_at"):
+    for key in ("loads", "cases", "turns", "torque_at", "weight"):
         assert getattr(again, key) == getattr(scene, key), key
 
 
@@ -448,3 +450,35 @@ def test_two_shafts_are_compared_under_their_loads():
         s.with_changes(bearings=[s.bearings[0].with_changes(support="floating")]) for s in loose
     ]
     assert "no bearing holds shaft in y" in loaded_changes(free)[1]
+
+
+# ------------------------------------------------------------------------------------------ weight
+def test_a_shaft_bends_under_its_weight():
+    """A rod on two supports near its ends: 5 q l^4 / (384 E I) less what both overhangs lift."""
+    supports = [held("A", 0.01), held("B", 0.39)]
+    scene = rod(bearings=supports, weight="-z").with_attachment("section")
+    solved = settled(scene)
+    area, inertia = math.pi * 0.02**2, math.pi * 0.02**4 / 4
+    q, stiff = sg.STEEL.density * area * 9.80665, sg.STEEL.E * inertia
+    span, over = 0.38, 0.01
+    sag = 5 * q * span**4 / 384 / stiff - q * over**2 / 2 * span**2 / 8 / stiff
+    sag += q * 0.4 / 2 / 1e9  # of the bearings
+    assert solved.displacement["gear"][2].value == pytest.approx(-sag, rel=1e-6)
+    assert [b.load[2] for b in solved.shafts[0].bearings] == pytest.approx([-q * 0.2] * 2)
+    assert solved.statics.left < 1e-9 and solved.load.acting[0].name == "weight"
+
+
+def test_bearings_settle_alike_under_weight_by_either_equilibrium():
+    """The shaft seen from its ports, and the system that carries its own mass."""
+    disc = sg.PointMass(name="disc", mass=40.0, on="gear", offset=[0.0, 0.03, 0.0])
+    scene = catalogued().with_changes(weight="-x", masses=(disc,))
+    solved = settled(scene, "timoshenko")
+    by_name = {b.name: b for b in scene.settled.bearings}
+    for bearing in solved.shafts[0].bearings:
+        tangent = bearing.stiffness
+        assert by_name[bearing.name].matrix == pytest.approx(
+            (tangent + tangent.T) / 2, rel=1e-6, abs=1e-6 * np.abs(tangent).max()
+        )
+    light = catalogued().settled.bearings[0]
+    assert abs(light.stiffness[0, 0] / by_name["A"].stiffness[0, 0] - 1) > 0.01
+    assert solved.statics.left < 1e-9

@@ -15,6 +15,8 @@ import numpy as np
 
 from solidgear.core.errors import SceneError, listed, show
 from solidgear.core.frames import shift
+from solidgear.core.scene.closed_form import mass_properties
+from solidgear.core.scene.gravity import acceleration
 from solidgear.core.scene.load_case import LoadCase
 from solidgear.core.scene.load_rules import ALL, all_loads, named_case
 from solidgear.core.scene.shaft_load import ShaftLoad
@@ -133,3 +135,26 @@ def _refuse_torques(loads: Sequence[ActingLoad], case: str) -> None:
             "shaft, or hold a bearing there (kthy)",
             path=("torque_at",),
         )
+
+
+def own_weight(scene: Scene) -> tuple[np.ndarray, float]:
+    """Return the weight (6,) of a shaft without the masses on it, N, and the place of its centre, m;
+    refused for a part from a file that is not of revolution.
+    """
+    if scene.body is not None and not scene.body.round:
+        raise SceneError(
+            "weight is that of shafts of revolution, and the part from a file is none: give loads with "
+            "a mass",
+            path=("weight",),
+        )
+    mass = mass_properties(scene.outline)
+    return np.r_[mass.mass * acceleration(scene.weight), np.zeros(3)], mass.centre
+
+
+def weights_of_masses(scene: Scene) -> dict[str, np.ndarray]:
+    """Return the weight (6,) of the masses on a shaft by the stations that carry them, N and N m."""
+    g, out = acceleration(scene.weight), dict[str, np.ndarray]()
+    for point in scene.masses:
+        six = shift(point.offset).T @ np.r_[point.mass * g, np.zeros(3)]
+        out[point.station] = out.get(point.station, np.zeros(6)) + six
+    return out

@@ -9,6 +9,7 @@ import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
 from solidgear.core.errors import SceneError, show
+from solidgear.core.scene.gravity import GRAVITY
 from solidgear.core.scene.load import ABOUT_AXIS
 from solidgear.core.scene.load_force import (
     ACROSS,
@@ -39,8 +40,6 @@ from solidgear.core.scene.units import (
 )
 from solidgear.core.scene.written import Written
 
-#: m/s^2, standard gravity (ISO 80000-3)
-GRAVITY = 9.80665
 ON_A_STATION = "belongs to a place of its own; a load on a station has that of the station"
 
 #: kinds of load with the words that make it one

@@ -157,6 +157,9 @@ class Operating:
     def _settled(self, point: OperatingPoint, start: OperatingState | None) -> OperatingState:
         """Settle the train on the meshes that its shafts have."""
         point = self.assembly.train.told(point)
+        if self.assembly.train.is_one_shaft and point.weight is None:
+            (scene,) = self.assembly.scenes.values()
+            point = point.with_changes(weight=scene.weight)
         assembly, seated = self._on_flank(point.coast)
         forces = mesh_forces(assembly.train, assembly.contacts, point)
         loads, notes = self._loads(assembly, point, forces)
@@ -247,6 +250,8 @@ def scene_loads(
     if train.is_one_shaft:
         return station_loads(scene, named_case(scene.cases, point.name or None)), []
     loads, word = station_loads(scene), train.shafts[side].scene_load
+    if not loads:  # weight alone, which a train has from the operating point
+        return {}, []
     load = sum(loads.values(), np.zeros(6))
     if word == "added":
         return loads, [f"the [load] of the {side}'s scene is added to the mesh force"]
