@@ -73,7 +73,7 @@ def test_printed_reactions_and_moments_of_a_countershaft():
     assert moments(9.5) == [2220, 907, 2398]
     assert round(abs(forces.at(5 * INCH)[4]) / POUND_INCH) == 3240
     assert forces.at(1.5 * INCH)[4] == forces.at(10 * INCH)[4] == 0
-    assert solved.statics.left < 1e-10
+    assert solved.statics.imbalance < 1e-10
     (stretch,) = solved.statics.torque
     assert (stretch.start / INCH, stretch.end / INCH) == pytest.approx((2.75, 8.5))
 
@@ -131,7 +131,7 @@ def test_twist_equals_that_of_shafts_in_a_row():
     assert twisted["gear 3"][4] == pytest.approx(angle, rel=1e-9)
 
 
-def held(name, place, turning=0.0):
+def mounted(name, place, turning=0.0):
     stiffness = dict.fromkeys(("kxx", "kyy", "kzz"), 1e9) | ({"kthy": turning} if turning else {})
     return sg.Bearing(name=name, y=place, seat_width=0.02, stiffness=stiffness)
 
@@ -140,7 +140,7 @@ def rod(*loads, bearings=(), **rest):
     """A rod of 0.4 m on two bearings, with a gear in its middle."""
     return sg.Scene.from_parts(
         [sg.Segment.cylinder("rod", length=0.4, diameter=0.04)],
-        bearings=bearings or (held("A", 0.05), held("B", 0.35)),
+        bearings=bearings or (mounted("A", 0.05), mounted("B", 0.35)),
         port=sg.Port(name="gear", y=0.2, lo=0.18, hi=0.22),
         loads=loads,
         **rest,
@@ -149,22 +149,22 @@ def rod(*loads, bearings=(), **rest):
 
 def test_bearings_that_hold_the_shaft_share_a_torque_by_stiffness():
     torque = sg.ShaftLoad(name="drive", on="gear", torque=300.0)
-    one = settled(rod(torque, bearings=[held("A", 0.05, 2e5), held("B", 0.35)]))
-    (a, b) = one.shafts[0].bearings
+    single = settled(rod(torque, bearings=[mounted("A", 0.05, 2e5), mounted("B", 0.35)]))
+    (a, b) = single.shafts[0].bearings
     assert (a.load[4], b.load[4]) == pytest.approx((300.0, 0.0))
-    assert one.shafts[0].ports["A"][4] == pytest.approx(300.0 / 2e5)
-    assert one.statics.left < 1e-10
+    assert single.shafts[0].ports["A"][4] == pytest.approx(300.0 / 2e5)
+    assert single.statics.imbalance < 1e-10
 
-    scene = rod(torque, bearings=[held("A", 0.05, 2e5), held("B", 0.35, 5e5)])
-    both = settled(scene.with_attachment("section"))
-    (a, b) = both.shafts[0].bearings
+    scene = rod(torque, bearings=[mounted("A", 0.05, 2e5), mounted("B", 0.35, 5e5)])
+    double = settled(scene.with_attachment("section"))
+    (a, b) = double.shafts[0].bearings
     polar = math.pi * 0.02**4 / 2
     shaft = sg.STEEL.E / (2 + 2 * sg.STEEL.nu) * polar / 0.15  # from the gear to either bearing
     soft = [1 / 2e5 + 1 / shaft, 1 / 5e5 + 1 / shaft]  # springs in series, two ways in parallel
     share = soft[1] / sum(soft)
     assert a.load[4] == pytest.approx(300.0 * share, rel=1e-8)
     assert a.load[4] + b.load[4] == pytest.approx(300.0)
-    assert both.shafts[0].ports["B"][4] == pytest.approx(b.load[4] / 5e5)
+    assert double.shafts[0].ports["B"][4] == pytest.approx(b.load[4] / 5e5)
 
 
 def test_a_load_with_a_place_of_its_own_is_no_lumped_point():
@@ -208,11 +208,11 @@ def test_tooth_forces_point_along_the_line_of_action(hand, torque, cone, spiral)
 
 
 def test_pulls_of_a_belt_follow_from_any_two_words():
-    told = {"torque": 50.0, "tight": 750.0, "slack": 250.0, "pull_ratio": 3.0}
-    words = [*told]
+    words_of_belt = {"torque": 50.0, "tight": 750.0, "slack": 250.0, "pull_ratio": 3.0}
+    words = [*words_of_belt]
     for k, first in enumerate(words):
         for second in words[k + 1 :]:
-            known = {word: told[word] for word in (first, second)}
+            known = {word: words_of_belt[word] for word in (first, second)}
             sense = {} if "torque" in known else {"sense": "driven"}
             belt = sg.ShaftLoad(name="b", on="b", diameter=0.2, towards="30 deg", **known, **sense)
             x, y, z, thx, thy, thz = belt.six()
@@ -322,10 +322,10 @@ BACK = sg.LoadCase(name="back", factors={"teeth": -1, "coupling": -1}, speed="60
 
 
 def test_lives_in_all_cases_add_their_damage():
-    found = sg.bearing(catalogued(FULL, HALF))
-    assert found.case == "full" and [fact.name for fact in found.facts] == ["A", "B"]
-    assert found.facts[0].life.speed == pytest.approx(50 * math.pi)
-    (a, _) = found.lives
+    result = sg.bearing(catalogued(FULL, HALF))
+    assert result.case == "full" and [fact.name for fact in result.facts] == ["A", "B"]
+    assert result.facts[0].life.speed == pytest.approx(50 * math.pi)
+    (a, _) = result.lives
     full, half = (point.life for point in a.points)
     assert [point.label for point in a.points] == ["full (1500 rpm)", "half (3000 rpm)"]
     # half the load of a ball bearing is eight times the life, but for its small moment
@@ -336,14 +336,14 @@ def test_lives_in_all_cases_add_their_damage():
     ]
     assert a.duty.hours == pytest.approx(1 / sum(damage))
     assert a.duty.damage == pytest.approx([part / sum(damage) for part in damage])
-    assert [row["at"] for row in found.as_dict()["cases"][0]["points"]] == [
+    assert [row["at"] for row in result.as_dict()["cases"][0]["points"]] == [
         "full (1500 rpm)",
         "half (3000 rpm)",
     ]
-    assert found["A"] is found.facts[0]
+    assert result["A"] is result.facts[0]
     chosen = sg.bearing(catalogued(FULL, HALF), "B", case="2")
     assert chosen.case == "half" and chosen.facts[0].load == pytest.approx(
-        found.facts[1].load / 2, rel=0.02, abs=1.0
+        result.facts[1].load / 2, rel=0.02, abs=1.0
     )
 
 
@@ -374,20 +374,20 @@ def test_every_case_is_shown_and_a_reversed_one_presses_the_other_flanks(run, tm
     assert data["case"] == "back" and data["points"] == []
     by_name = {load["name"]: load for load in data["loads"]}
     assert by_name["teeth"]["factor"] == -1 and by_name["teeth"]["six"][4] == pytest.approx(-150)
-    assert data["models"]["euler"]["statics"]["left"] < 1e-9
+    assert data["models"]["euler"]["statics"]["imbalance"] < 1e-9
     code, _, refused = run("-q", "deflect", path, "-f", "euler", "--case", "forth")
     assert code == 1 and "there is no case \"forth\"; there are 1 'full', 2 'back'" in refused
 
 
 def test_a_drive_leaves_where_the_file_says():
     scene = rod(torque_at="B")
-    found = sg.deflect(scene, "euler", load="z=1 kN", drive={"A": "40 N*m"}).judge
-    assert [(load.name, load.station) for load in found.load.acting] == [
+    result = sg.deflect(scene, "euler", load="z=1 kN", drive={"A": "40 N*m"}).judge
+    assert [(load.name, load.station) for load in result.load.acting] == [
         ("load", "gear"),
         ("drive at A", "A"),
         ("torque at B", "B"),
     ]
-    (stretch,) = found.statics.torque
+    (stretch,) = result.statics.torque
     assert (stretch.start, stretch.end, stretch.torque) == pytest.approx((0.05, 0.35, -40.0))
     # as the torques of the scene, which stress sees as well
     stressed = sg.stress(scene, "euler", load="z=1 kN", drive={"A": 40.0})
@@ -410,7 +410,9 @@ def test_loads_and_cases_go_through_files_of_any_kind(tmp_path):
 
 
 def test_entries_of_loads_vary_and_may_have_ranges(tmp_path):
-    scene = catalogued().with_changes(torque_at="A", bearings=(held("A", 0.05), held("B", 0.35)))
+    scene = catalogued().with_changes(
+        torque_at="A", bearings=(mounted("A", 0.05), mounted("B", 0.35))
+    )
     vary = "load.teeth.torque=100 N*m,200 N*m"
     rows = sg.sweep(scene, vary, model="euler", n=1)
     assert rows["load.teeth.torque"].tolist() == [100.0, 200.0]
@@ -445,7 +447,7 @@ def test_two_shafts_are_compared_under_their_loads():
     assert moved.change.b == pytest.approx(2 * moved.change.a) and moved.verdict == "resolved"
     assert by_name["radial load of A"].change.a == pytest.approx(500.0)
     assert loaded_changes([single, rod()]) == ((), "")
-    loose = [rod(sg.ShaftLoad(on="gear", y=1e3), bearings=[held("A", 0.05)])] * 2
+    loose = [rod(sg.ShaftLoad(on="gear", y=1e3), bearings=[mounted("A", 0.05)])] * 2
     free = [
         s.with_changes(bearings=[s.bearings[0].with_changes(support="floating")]) for s in loose
     ]
@@ -455,7 +457,7 @@ def test_two_shafts_are_compared_under_their_loads():
 # ------------------------------------------------------------------------------------------ weight
 def test_a_shaft_bends_under_its_weight():
     """A rod on two supports near its ends: 5 q l^4 / (384 E I) less what both overhangs lift."""
-    supports = [held("A", 0.01), held("B", 0.39)]
+    supports = [mounted("A", 0.01), mounted("B", 0.39)]
     scene = rod(bearings=supports, weight="-z").with_attachment("section")
     solved = settled(scene)
     area, inertia = math.pi * 0.02**2, math.pi * 0.02**4 / 4
@@ -465,7 +467,7 @@ def test_a_shaft_bends_under_its_weight():
     sag += q * 0.4 / 2 / 1e9  # of the bearings
     assert solved.displacement["gear"][2].value == pytest.approx(-sag, rel=1e-6)
     assert [b.load[2] for b in solved.shafts[0].bearings] == pytest.approx([-q * 0.2] * 2)
-    assert solved.statics.left < 1e-9 and solved.load.acting[0].name == "weight"
+    assert solved.statics.imbalance < 1e-9 and solved.load.acting[0].name == "weight"
 
 
 def test_bearings_settle_alike_under_weight_by_either_equilibrium():
@@ -481,4 +483,4 @@ def test_bearings_settle_alike_under_weight_by_either_equilibrium():
         )
     light = catalogued().settled.bearings[0]
     assert abs(light.stiffness[0, 0] / by_name["A"].stiffness[0, 0] - 1) > 0.01
-    assert solved.statics.left < 1e-9
+    assert solved.statics.imbalance < 1e-9

@@ -52,12 +52,12 @@ class LoadsAlone:
     def words(self, units: Units) -> str:
         """Return the loads in words, such as ``Under z 2000 N at pinion``."""
         case = f"In the case {self.case}, under" if self.case else "Under"
-        shown = [load for load in self.acting if load.name != ROUNDING]
-        if len(shown) > NAMED:
+        named = [load for load in self.acting if load.name != ROUNDING]
+        if len(named) > NAMED:
             together = _components(self.load, units)
-            return f"{case} {len(shown)} loads, together {together} at {self.port}"
+            return f"{case} {len(named)} loads, together {together} at {self.port}"
         return f"{case} " + ", and ".join(
-            f"{_components(load.six, units)} at {load.station}" for load in shown
+            f"{_components(load.six, units)} at {load.station}" for load in named
         )
 
     @property
@@ -116,10 +116,10 @@ def driven(scene: Scene, drive: Mapping[str, float]) -> Scene:
     """
     leaves = scene.torque_at or scene.port.name
     for name in drive:
-        if name not in (known := carriers(scene)):
+        if name not in (places := carriers(scene)):
             raise SolidgearError(
-                f'`drive` "{name}": the shaft has no such place{nearest(name, known)}; it has '
-                f"{', '.join(known)}"
+                f'`drive` "{name}": the shaft has no such place{nearest(name, places)}; it has '
+                f"{', '.join(places)}"
             )
         if name == leaves:
             raise SolidgearError(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from math import hypot
+from math import hypot, sqrt
 
 from solidgear.comparison.two.beside import NumberChange
 from solidgear.core import Scene, SolidgearError
@@ -54,10 +54,10 @@ def _changes(a: Deflection, b: Deflection) -> Iterator[NumberChange]:
         for word, change in changes.items():
             if word == "deflection" or arm * change.a > FORBIDDEN * moved:
                 yield NumberChange(f"{word} of {point}", ACROSS[word][1], change, change.a)
-    others = {bearing.name: bearing for bearing in b.shafts[0].bearings}
+    partners = {bearing.name: bearing for bearing in b.shafts[0].bearings}
     for bearing in a.shafts[0].bearings:
-        if bearing.name in others:
-            change = Change(bearing.radial, others[bearing.name].radial)
+        if bearing.name in partners:
+            change = Change(bearing.radial, partners[bearing.name].radial)
             yield NumberChange(f"radial load of {bearing.name}", "N", change, bearing.radial)
 
 
@@ -65,4 +65,4 @@ def _size(measures: Sequence[Measured]) -> tuple[float, float | None]:
     """Return the size of a motion by its components, and a bar that holds it."""
     bars = [measure.bar for measure in measures if measure.bar is not None]
     size = hypot(*(measure.value for measure in measures))
-    return size, hypot(*bars) if len(bars) == len(measures) else None
+    return size, sqrt(sum(bar**2 for bar in bars)) if len(bars) == len(measures) else None

@@ -59,20 +59,20 @@ def acting_loads(scene: Scene, case: LoadCase | None = None) -> tuple[ActingLoad
         if factor := case.factor(load.name):
             six, y = load.six(factor, turning(scene.turns)), _place(load.station, scene)
             out.append(ActingLoad(load.name, load.station, y, six, factor))
-    left = fsum(load.six[4] for load in out)
-    if abs(left) <= EXACT * fsum(abs(load.six[4]) for load in out):
+    remainder = fsum(load.six[4] for load in out)
+    if abs(remainder) <= EXACT * fsum(abs(load.six[4]) for load in out):
         return tuple(out)
     if scene.torque_at is not None:
-        out.append(_torque(f"torque at {scene.torque_at}", scene.torque_at, -left, scene))
+        out.append(_torque(f"torque at {scene.torque_at}", scene.torque_at, -remainder, scene))
     elif not holders(scene.bearings):
         _refuse_torques(out, case.name)
         largest = max(out, key=lambda load: abs(load.six[4]))
-        out.append(_torque(ROUNDING, largest.station, -left, scene))
+        out.append(_torque(ROUNDING, largest.station, -remainder, scene))
     return tuple(out)
 
 
 def holders(bearings: Sequence[Bearing]) -> list[str]:
-    """Return names of the bearings that hold a shaft against turning about its axis."""
+    """Return names of the bearings that hold a shaft against turning about y."""
     return [b.name for b in bearings if b.matrix is not None and b.matrix[4][4] > 0]
 
 
@@ -125,13 +125,13 @@ def torque_problems(scene: Scene) -> Iterator[SceneError]:
 def _refuse_torques(loads: Sequence[ActingLoad], case: str) -> None:
     """Refuse torques that do not add up to zero but for the rounding of typed numbers."""
     torques = {load.name: float(load.six[4]) for load in loads if load.six[4]}
-    left = fsum(torques.values())
-    if abs(left) > TYPED * fsum(map(abs, torques.values())):
+    remainder = fsum(torques.values())
+    if abs(remainder) > TYPED * fsum(map(abs, torques.values())):
         place = "" if case == ALL else f" in the case {show(case)}"
-        each = listed([f"{torque:.6g} N m of {name}" for name, torque in torques.items()])
+        parts = listed([f"{torque:.6g} N m of {name}" for name, torque in torques.items()])
         raise SceneError(
-            f"the torques do not add up to zero{place}: {each} leave {left:.6g} N m; give the load that "
-            f'takes {-left:.6g} N m, write torque_at = "NAME" of the point where the rest leaves the '
+            f"the torques do not add up to zero{place}: {parts} leave {remainder:.6g} N m; give the load that "
+            f'takes {-remainder:.6g} N m, write torque_at = "NAME" of the point where the rest leaves the '
             "shaft, or hold a bearing there (kthy)",
             path=("torque_at",),
         )

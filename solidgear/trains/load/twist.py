@@ -36,15 +36,15 @@ def held_torques(
     if not torques or not stiffness:
         return {}
     omega, shapes = system.elastic
-    seen = np.array([system.motion(end)[ABOUT] for end in stiffness]) @ shapes / omega
-    turned = seen @ (shapes.T @ system.load(torques) / omega)
+    rotations = np.array([system.motion(end)[ABOUT] for end in stiffness]) @ shapes / omega
+    turned = rotations @ (shapes.T @ system.load(torques) / omega)
     count = len(stiffness)
     matrix = np.zeros((count + 1, count + 1))
-    matrix[:count, :count] = np.diag([1 / k for k in stiffness.values()]) + seen @ seen.T
+    matrix[:count, :count] = np.diag([1 / k for k in stiffness.values()]) + rotations @ rotations.T
     matrix[:count, count], matrix[count, :count] = -1.0, 1.0
     total = sum(load[ABOUT] for load in torques.values())
-    taken = np.linalg.solve(matrix, np.r_[turned, total])[:count]
-    return dict(zip(stiffness, taken.tolist()))
+    torques_held = np.linalg.solve(matrix, np.r_[turned, total])[:count]
+    return dict(zip(stiffness, torques_held.tolist()))
 
 
 def _stiffness(assembly: Assembly) -> dict[str, float]:
