@@ -484,3 +484,8 @@ def test_bearings_settle_alike_under_weight_by_either_equilibrium():
     light = catalogued().settled.bearings[0]
     assert abs(light.stiffness[0, 0] / by_name["A"].stiffness[0, 0] - 1) > 0.01
     assert solved.statics.imbalance < 1e-9
+
+
+def test_weight_is_whole_on_a_beam_without_fillets():
+    scene = as_written(GEOMETRY / "pinion_filleted.toml").with_changes(weight="-z")
+    assert scene.blends and settled(scene).statics.imbalance < 1e-12
