@@ -488,4 +488,4 @@ def test_bearings_settle_alike_under_weight_by_either_equilibrium():
 
 def test_weight_is_whole_on_a_beam_without_fillets():
     scene = as_written(GEOMETRY / "pinion_filleted.toml").with_changes(weight="-z")
-    assert scene.blends and settled(scene).statics.imbalance < 1e-12
+    assert scene.blends and settled(scene).statics.imbalance < 1e-9

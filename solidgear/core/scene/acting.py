@@ -158,3 +158,14 @@ def weights_of_masses(scene: Scene) -> dict[str, np.ndarray]:
         six = shift(point.offset).T @ np.r_[point.mass * g, np.zeros(3)]
         out[point.station] = out.get(point.station, np.zeros(6)) + six
     return out
+
+
+def weight_about(scene: Scene, place: float) -> np.ndarray:
+    """Return the weight (6,) of a shaft with the masses on it about a place on the axis, m."""
+    six, centre = own_weight(scene)
+    places = {station.name: station.y for station in scene.stations}
+    loads = [ActingLoad("", "", centre, six)]
+    loads += [
+        ActingLoad("", name, places[name], load) for name, load in weights_of_masses(scene).items()
+    ]
+    return sum((load.about(place) for load in loads), np.zeros(6))

@@ -7,8 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from solidgear.core import Scene, System
-from solidgear.core.frames import shift
-from solidgear.core.scene.acting import own_weight, weights_of_masses
+from solidgear.core.scene.acting import weight_about
 from solidgear.trains.file.train import ALONE
 from solidgear.trains.system.equilibrium import weight
 
@@ -20,12 +19,4 @@ def weight_alone(scene: Scene, system: System, gravity: Sequence[float]) -> np.n
     spread, end = weight(system, gravity), f"{ALONE}.{scene.port.name}"
     at_port = system.motion(end) @ system.free
     resultant, *_ = np.linalg.lstsq(at_port.T, system.free.T @ spread, rcond=1e-12)
-    return spread + system.load({end: _about_port(scene) - resultant})
-
-
-def _about_port(scene: Scene) -> np.ndarray:
-    """Return the weight (6,) of a shaft with its masses about the main point, N and N m."""
-    six, centre = own_weight(scene)
-    places = {station.name: station.y for station in scene.stations}
-    rows = [(centre, six), *((places[name], w) for name, w in weights_of_masses(scene).items())]
-    return sum((shift([0.0, y - scene.port.y, 0.0]).T @ w for y, w in rows), np.zeros(6))
+    return spread + system.load({end: weight_about(scene, scene.port.y) - resultant})
