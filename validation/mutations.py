@@ -110,8 +110,8 @@ MUTATIONS = (
         "life: f_0 without the outer ring",
         "solidgear/bearings/rating.py",
         "static_ball_rating",
-        "min((ring.load(STATIC_PRESSURE[True]) for ring in row.rings))",
-        "row.rings[0].load(STATIC_PRESSURE[True])",
+        "min((ring.load(pressure) for ring in row.rings))",
+        "row.rings[0].load(pressure)",
         "tests/test_bearing_life.py::test_static_factor_is_that_of_iso_76",
     ),
     Mutation(
