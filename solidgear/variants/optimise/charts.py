@@ -9,7 +9,7 @@ from solidgear.show.plot import WIDE, Chart
 from solidgear.show.scales import Axis
 from solidgear.show.units import ENGINEERING, Units
 from solidgear.variants.optimise.pool import Design
-from solidgear.variants.optimise.sentences import written
+from solidgear.variants.optimise.sentences import value_text
 
 if TYPE_CHECKING:
     from solidgear.variants.optimise.optimise import Optimum
@@ -28,7 +28,7 @@ ROOM, EDGE = 0.08, 0.03
 def look_of(optimum: Optimum, design: Design) -> str:
     """Return the series of a design."""
     if optimum.front:
-        if any(design is other for other in optimum.front):
+        if any(design is member for member in optimum.front):
             return FRONT
     elif design is optimum.best:
         return BEST
@@ -82,7 +82,7 @@ def front_chart(
     first, second = optimum.goals
     solved = [design for design in optimum.path if design.goals]
 
-    def at(design: Design) -> tuple[float, float]:
+    def spot(design: Design) -> tuple[float, float]:
         x, y = (
             units.value(number.value, goal.unit)
             for goal, number in zip(optimum.goals, design.goals)
@@ -93,9 +93,9 @@ def front_chart(
     def half(design: Design, k: int) -> float:
         return units.value(design.goals[k].bar, optimum.goals[k].unit) or 0.0
 
-    shown = [design for design in solved if design.kept] or solved
+    drawn = [design for design in solved if design.kept] or solved
     names = [f"{goal.name}, {units.unit(goal.unit)}".removesuffix(", ") for goal in (first, second)]
-    places = [at(design) for design in shown]
+    places = [spot(design) for design in drawn]
     panel = Panel(
         _axis(names[0], [x for x, _ in places], EDGE),
         _axis(names[1], [y for _, y in places]),
@@ -103,34 +103,36 @@ def front_chart(
         series=FRONT_LOOKS,
         legend={"orient": "top"},
     )
-    line = [dict(zip("xy", at(design))) for design in optimum.front]
+    line = [dict(zip("xy", spot(design))) for design in optimum.front]
     panel.draw({"type": "line", "color": INK, "strokeWidth": 1}, line)
     bars: list[dict[str, Any]] = []
     for design in optimum.front:
-        (x, y), across, along = at(design), half(design, 0), half(design, 1)
+        (x, y), across, along = spot(design), half(design, 0), half(design, 1)
         bars += [{"x": x - across, "x2": x + across, "y": y, "y2": y}] if across else []
         bars += [{"x": x, "y": y - along, "y2": y + along}] if along else []
     panel.draw({"type": "rule", "color": GREY, "strokeWidth": 2}, bars)
-    points = [
-        {**dict(zip("xy", at(d))), "name": look_of(optimum, d), "readout": _facts(optimum, d)}
-        for d in shown
-    ]
-    panel.draw({"type": "point", "filled": True, "size": 60, "clip": True}, points)
+    for on_front, size in ((False, 25), (True, 90)):  # the front above all others
+        points = [
+            {**dict(zip("xy", spot(d))), "name": look_of(optimum, d), "readout": _facts(optimum, d)}
+            for d in drawn
+            if (look_of(optimum, d) == FRONT) == on_front
+        ]
+        panel.draw({"type": "point", "filled": True, "size": size, "clip": True}, points)
     return Chart([[panel]], width, title)
 
 
 def _axis(name: str, values: list[float], room: float = ROOM) -> Axis:
     """Return the axis of values, with room beside them."""
     low, high = min(values), max(values)
-    beside = room * (high - low) or abs(high) or 1.0
-    return Axis(name, (low - beside, high + beside))
+    margin = room * (high - low) or abs(high) or 1.0
+    return Axis(name, (low - margin, high + margin))
 
 
 def _facts(optimum: Optimum, design: Design) -> str:
     """Return the words on a design that a chart shows where it is pointed at."""
     entries = {entry.label: entry for entry in optimum.entries}
     values = [
-        (label, written(entries.get(label), value), "") for label, value in design.values.items()
+        (label, value_text(entries.get(label), value), "") for label, value in design.values.items()
     ]
     goals = [
         (goal.name, f"{number.value:.6g}", "") for goal, number in zip(optimum.goals, design.goals)

@@ -16,10 +16,10 @@ from solidgear.show.plot import Make
 from solidgear.show.sheet import Sheet, Terminal, present
 from solidgear.show.table import NUMBER, Column, Table, text
 from solidgear.show.units import ENGINEERING, Units
-from solidgear.variants.optimise.charts import KEPT, designs_chart, front_chart, look_of
+from solidgear.variants.optimise.charts import FRONT, KEPT, designs_chart, front_chart, look_of
 from solidgear.variants.optimise.optimise import Design, Optimum
 from solidgear.variants.optimise.optimise import optimise as optimised
-from solidgear.variants.optimise.sentences import sentences
+from solidgear.variants.optimise.sentences import ROUNDING, sentences
 
 #: designs that a terminal shows
 FEW = 5
@@ -152,8 +152,8 @@ def designs(optimum: Optimum) -> Table:
 def _best_designs(optimum: Optimum) -> Table:
     """Return the table of the few best designs, the best first."""
     upward = optimum.goal.upward
-    kept = [design for design in optimum.path if design.kept and design.value is not None]
-    few = sorted(kept, key=lambda d: (-1 if upward else 1) * (d.value or 0.0))[:FEW]
+    sound = [design for design in optimum.path if design.kept and design.value is not None]
+    few = sorted(sound, key=lambda d: (-1 if upward else 1) * (d.value or 0.0))[:FEW]
     return _table(optimum, few, "Best designs", "SI. Design 0 is the file as it is.")
 
 
@@ -173,9 +173,9 @@ def _table(optimum: Optimum, rows: Sequence[Design], title: str, note: str) -> T
     columns = [
         Column("", kind=NUMBER, name="design"),
         *(
-            replace(text(label), name=label)
+            replace(text(_head(label)), name=label)
             if label in words
-            else Column(label, write="{:.6g}".format, kind=NUMBER)
+            else Column(_head(label), write="{:.6g}".format, kind=NUMBER, name=label)
             for label in optimum.path[0].values
         ),
     ]
@@ -201,10 +201,20 @@ def _goals(optimum: Optimum, design: Design) -> list[float | None]:
     """Return the numbers of all goals of a design, with error bars."""
     if not design.goals:
         return [None, None] * len(optimum.goals)
-    return [number for goal in design.goals for number in goal]
+    out: list[float | None] = []
+    for value, bar in design.goals:
+        out += [value, bar if bar and bar > ROUNDING * abs(value) else None]
+    return out
+
+
+def _head(label: str) -> str:
+    """Return the path of an entry as the head of a column: the last word below the others."""
+    before, _, last = label.rpartition(".")
+    return f"{before}\n{last}" if before and "+" not in label else label
 
 
 def _remark(optimum: Optimum, design: Design) -> str:
     if design.status != "ok":
         return design.status[:60]
-    return look_of(optimum, design).replace(KEPT, "")
+    look = look_of(optimum, design)
+    return "" if look == KEPT else "front" if look == FRONT else look

@@ -67,11 +67,17 @@ def scene_designs(
     columns = {kind: [*columns_of(base, (kind,), barred=False)] for kind in AT_REST}
     kinds, modes = _kinds_of_shaft(columns, names)
     task = SceneTask(variants, model, tol, {}, modes, ask=kinds)
-    known = [*map(str, STATICS), "mass", *(name for group in columns.values() for name in group)]
+    names_at_rest = [
+        *map(str, STATICS),
+        "mass",
+        *(name for group in columns.values() for name in group),
+    ]
 
     def names_of(row: dict[str, Any]) -> list[str]:
-        found = [str(v) for k, v in row.items() if k.startswith("mode") and k != "model" and v]
-        return [*known, *found]
+        modes_of_row = [
+            str(v) for k, v in row.items() if k.startswith("mode") and k != "model" and v
+        ]
+        return [*names_at_rest, *modes_of_row]
 
     return Designs(task, base.title or base.name, 1, solved, unbarred, names_of)
 

@@ -42,7 +42,7 @@ class FrontTrace:
     open: float = 1.0
     whole: bool = False  #: whether all designs were solved, and nothing else is open
     cut: bool = False  #: whether the most designs ended it
-    found: list[Design] = field(default_factory=list)  #: ends of searches
+    reached: list[Design] = field(default_factory=list)  #: ends of searches
 
     def front(self, pool: Pool) -> list[Design]:
         """Return the front, by the first goal from its best: ends of searches, or those that beat
@@ -51,12 +51,12 @@ class FrontTrace:
         unbeaten = unbeaten_of(pool)
         if self.whole:
             return unbeaten
-        return _apart(
-            pool, [d for d in unbeaten if any(_beats(pool, d, end) for end in self.found)]
+        return _thinned(
+            pool, [d for d in unbeaten if any(_beats(pool, d, end) for end in self.reached)]
         )
 
 
-def _apart(pool: Pool, front: list[Design]) -> list[Design]:
+def _thinned(pool: Pool, front: list[Design]) -> list[Design]:
     """Return a front without designs that are next to the one before in both goals, but for the last."""
     if len(front) < 3:
         return front
@@ -66,19 +66,19 @@ def _apart(pool: Pool, front: list[Design]) -> list[Design]:
     for design in front[1:-1]:
         steps = [
             max(
-                abs(pool.loss(design, goal) - pool.loss(other, goal)) / (spans[goal] or 1.0)
+                abs(pool.loss(design, goal) - pool.loss(neighbour, goal)) / (spans[goal] or 1.0)
                 for goal in range(2)
             )
-            for other in (out[-1], last)
+            for neighbour in (out[-1], last)
         ]
         if min(steps) > NEXT:
             out.append(design)
     return [*out, last]
 
 
-def _beats(pool: Pool, design: Design, other: Design) -> bool:
+def _beats(pool: Pool, design: Design, rival: Design) -> bool:
     """Return True for a design that is as good as another in both goals."""
-    pairs = [(pool.loss(design, goal), pool.loss(other, goal)) for goal in range(2)]
+    pairs = [(pool.loss(design, goal), pool.loss(rival, goal)) for goal in range(2)]
     return all(a <= b + SAME for a, b in pairs)
 
 
@@ -86,8 +86,8 @@ def unbeaten_of(pool: Pool) -> list[Design]:
     """Return the designs that keep all limits and none of which is beaten in both goals, by the first
     goal from its best.
     """
-    kept = [design for design in pool.designs if design.kept and design.place is not None]
-    ordered = sorted(kept, key=lambda d: (pool.loss(d, 0), pool.loss(d, 1), d.number))
+    sound = [design for design in pool.designs if design.kept and design.place is not None]
+    ordered = sorted(sound, key=lambda d: (pool.loss(d, 0), pool.loss(d, 1), d.number))
     front: list[Design] = []
     for design in ordered:
         if not front or pool.loss(design, 1) < pool.loss(front[-1], 1) - SAME:
@@ -134,13 +134,13 @@ def _between_ends(pool: Pool, trace: FrontTrace) -> None:
 
 def _settle_end(pool: Pool, goal: int, trace: FrontTrace) -> None:
     """Search the best of the other goal among designs as good as the best by this one."""
-    kept = [design for design in pool.designs if design.kept and design.place is not None]
-    if not kept:
+    sound = [design for design in pool.designs if design.kept and design.place is not None]
+    if not sound:
         return
     aim = Aim(pool, goal)
-    best = aim.best(kept)
-    other = _no_worse_than(pool, 1 - goal, goal, pool.loss(best, goal) + SAME)
-    trace.found += [best, descend(other, best, FIRST / 4, FINE, are_many(pool))]
+    best = aim.best(sound)
+    second = _no_worse_than(pool, 1 - goal, goal, pool.loss(best, goal) + SAME)
+    trace.reached += [best, descend(second, best, FIRST / 4, FINE, are_many(pool))]
 
 
 def _no_worse_than(pool: Pool, goal: int, limited: int, level: float) -> Aim:
@@ -158,15 +158,15 @@ def _halve(pool: Pool, first: Design, second: Design, trace: FrontTrace) -> None
         if first.place.choices == second.place.choices and first.place.x:
             middle = [(a + b) / 2 for a, b in zip(first.place.x, second.place.x)]
             starts = [pool.solve(first.place.moved(middle))]
-    known = [d for d in pool.designs if d.place is not None and d.goals]
-    best = aim.best(known)
+    solved = [d for d in pool.designs if d.place is not None and d.goals]
+    best = aim.best(solved)
     if best.place is not None and best not in starts:
-        others = {d.place.choices for d in starts if d.place is not None}
-        starts += [best] if best.place.choices not in others else []
+        searched = {d.place.choices for d in starts if d.place is not None}
+        starts += [best] if best.place.choices not in searched else []
     for start in starts:
         if start.place is not None:
             end = descend(aim, start, FIRST / 2, FINE, are_many(pool))
-            trace.found += [end] if aim.keeps(end) else []
+            trace.reached += [end] if aim.keeps(end) else []
 
 
 def _rectangles(
@@ -178,10 +178,10 @@ def _rectangles(
     if len(front) < 2:
         return []
     ends = [(pool.loss(design, 0), pool.loss(design, 1)) for design in (front[0], front[-1])]
-    whole = abs((ends[1][0] - ends[0][0]) * (ends[1][1] - ends[0][1]))
+    span = abs((ends[1][0] - ends[0][0]) * (ends[1][1] - ends[0][1]))
     out = []
     for a, b in zip(front, front[1:]):
         area = abs((pool.loss(b, 0) - pool.loss(a, 0)) * (pool.loss(b, 1) - pool.loss(a, 1)))
         if (a.number, b.number) not in closed and math.isfinite(area):
-            out.append((area / whole if whole else 0.0, (a, b)))
+            out.append((area / span if span else 0.0, (a, b)))
     return out

@@ -200,8 +200,8 @@ def optimise(
     trace: Trace | FrontTrace
     trace = search(Aim(pool), [first]) if len(goals) == 1 else search_front(pool)
     aim = Aim(pool)
-    kept = [d for d in pool.designs if d.kept and d.place is not None]
-    best = aim.best(kept) if kept else None
+    sound = [d for d in pool.designs if d.kept and d.place is not None]
+    best = aim.best(sound) if sound else None
     return Optimum(
         tried.title,
         goals=goals,

@@ -78,9 +78,9 @@ class Pool:
 
     def solve(self, place: Place) -> Design:
         """Solve a design, or return the one at the same place."""
-        known = self._by_place.get(_rounded(place))
-        if known is not None:
-            return known
+        solved = self._by_place.get(_rounded(place))
+        if solved is not None:
+            return solved
         if len(self.designs) >= self.most:
             raise EnoughDesigns
         return self._solved(self.space.values(place), place)
@@ -112,7 +112,7 @@ class Pool:
     def _number(self, wish: Wish, rows: Rows) -> Number:
         value = wish.value(rows)
         if value is None:
-            raise self._without("goal", wish, rows)
+            raise self._lacking("goal", wish, rows)
         return Number(*value)
 
     def _refuse_unknown(self, rows: Rows) -> None:
@@ -121,16 +121,16 @@ class Pool:
             return
         for wish in self.keep:
             if wish.value(rows) is None:
-                raise self._without("keep", wish, rows)
+                raise self._lacking("keep", wish, rows)
 
-    def _without(self, option: str, wish: Wish, rows: Rows) -> SolidgearError:
+    def _lacking(self, option: str, wish: Wish, rows: Rows) -> SolidgearError:
         names = self.tried.names(rows[0])
         return SolidgearError(
             f"`{option}` {wish}: a design has no {wish.name}{nearest(wish.name, names)}; it has "
             f"{', '.join(names)}"
         )
 
-    def at(self, choices: tuple[int, ...]) -> list[Design]:
+    def of_choices(self, choices: tuple[int, ...]) -> list[Design]:
         """Return the designs with values of lists."""
         return self._by_choices.get(choices, [])
 
@@ -145,8 +145,8 @@ class Pool:
         """
         upward = self.goals[goal].upward
         if not design.goals:
-            known = [d.goals[goal].value for d in self.designs if d.goals]
-            return REFUSED * max(map(abs, known), default=1.0) / self.size(goal)
+            values = [d.goals[goal].value for d in self.designs if d.goals]
+            return REFUSED * max(map(abs, values), default=1.0) / self.size(goal)
         value = design.goals[goal].value / self.size(goal)
         return -value if upward else value
 

@@ -64,8 +64,8 @@ class Aim:
     def limits(self) -> list[Callable[[Design], float]]:
         """Relative distances beyond all limits."""
         pool = self.pool
-        kept = [lambda design, wish=wish: pool.shortfall(wish, design) for wish in pool.keep]
-        return [*kept, *self.further]
+        limits = [lambda design, wish=wish: pool.shortfall(wish, design) for wish in pool.keep]
+        return [*limits, *self.further]
 
     def loss(self, design: Design) -> float:
         """Return the number to be made small."""
@@ -142,21 +142,21 @@ def _in_rounds(aim: Aim, trace: Trace, begin: Sequence[Design]) -> None:
     """Sample and search in rounds, until one of them brings nothing better."""
     pool, searched = aim.pool, list[Design]()
     samples = _Samples(aim)
-    known = [design for design in begin if design.place is not None]
+    solved = [design for design in begin if design.place is not None]
     best: Design | None = None
     for trace.rounds in range(1, ROUNDS + 1):
         before, count, searches = best, len(pool.designs), len(trace.ends)
-        known += samples.further(best, _gain(aim, trace))
+        solved += samples.further(best, _gain(aim, trace))
         trace.further_samples = len(pool.designs) - count
         trace.sampled += trace.further_samples
-        best = aim.best(known)
-        for start in _starts(aim, known, searched, best, trace):
+        best = aim.best(solved)
+        for start in _starts(aim, solved, searched, best, trace):
             searched.append(start)
-            known.append(_searched(aim, start, trace, samples.joint))
-            best = aim.best(known)
+            solved.append(_searched(aim, start, trace, samples.joint))
+            best = aim.best(solved)
         trace.further_searches = len(trace.ends) - searches
-        known.append(_polished(aim, best))
-        best = aim.best(known)
+        solved.append(_polished(aim, best))
+        best = aim.best(solved)
         if before is not None and not _better(aim, best, before):
             enough = len(trace.ends) >= FEWEST or trace.further_searches == 0
             if enough and (aim.keeps(best) or trace.rounds >= UNKEPT):
@@ -167,8 +167,8 @@ def _better(aim: Aim, design: Design, before: Design) -> bool:
     """Return True for a design that is better than one before by more than rounding."""
     if aim.keeps(design) != aim.keeps(before):
         return aim.keeps(design)
-    (_, value), (_, other) = aim.rank(design), aim.rank(before)
-    return other - value > TOLERANCE * max(abs(value), TOLERANCE)
+    (_, value), (_, earlier) = aim.rank(design), aim.rank(before)
+    return earlier - value > TOLERANCE * max(abs(value), TOLERANCE)
 
 
 def are_many(pool: Pool) -> bool:
@@ -213,9 +213,9 @@ class _Samples:
     def _of_each(self, best: Design | None, gain: float) -> Iterator[Place]:
         """Yield places of the ranges for every combination."""
         for choices in self.space.all_choices():
-            known = self.pool.at(choices)
-            if best is not None and known:
-                nearest = self.aim.merit(self.aim.best(known))
+            samples = self.pool.of_choices(choices)
+            if best is not None and samples:
+                nearest = self.aim.merit(self.aim.best(samples))
                 if nearest > self.aim.merit(best) + gain:
                     continue
             for x in self._box(alone=self.space.combinations == 1):
@@ -245,10 +245,10 @@ def _sobol(dimension: int, skip: int, count: int) -> np.ndarray:
 
 
 def _starts(
-    aim: Aim, known: Sequence[Design], searched: Sequence[Design], best: Design, trace: Trace
+    aim: Aim, solved: Sequence[Design], searched: Sequence[Design], best: Design, trace: Trace
 ) -> list[Design]:
     """Return the designs at which the local searches of a round begin, the best first."""
-    sound = [design for design in known if design.goals]
+    sound = [design for design in solved if design.goals]
     merits = {design.number: aim.merit(design) for design in sound}
     ends = [end.end for end in trace.ends]
     worst = aim.merit(best) + _gain(aim, trace)
@@ -256,14 +256,14 @@ def _starts(
     for design in sorted(sound, key=lambda d: merits[d.number]):
         place = design.place
         assert place is not None
-        beside = aim.pool.at(place.choices)
-        linked = _link(len(beside), len(place.x))
-        near = (other for other in sound if merits[other.number] < merits[design.number])
+        samples = aim.pool.of_choices(place.choices)
+        linked = _link(len(samples), len(place.x))
+        better = (rival for rival in sound if merits[rival.number] < merits[design.number])
         if len(starts) == STARTS or merits[design.number] > worst:
             break
-        if any(_between(other, place) < linked for other in near):
+        if any(_between(rival, place) < linked for rival in better):
             continue
-        if any(_between(other, place) < TOGETHER for other in (*searched, *ends)):
+        if any(_between(rival, place) < TOGETHER for rival in (*searched, *ends)):
             continue
         starts.append(design)
     return starts
@@ -305,10 +305,10 @@ def descend(aim: Aim, start: Design, first: float, last: float, exchange: bool) 
     """
     end = trust_region(aim, start, first, last)
     while exchange:
-        other = _exchanged(aim, end)
-        if other is end:
+        exchanged = _exchanged(aim, end)
+        if exchanged is end:
             break
-        end = trust_region(aim, other, first / 2, last)
+        end = trust_region(aim, exchanged, first / 2, last)
     return end
 
 
@@ -317,8 +317,8 @@ def _exchanged(aim: Aim, design: Design) -> Design:
     best, place = design, design.place
     assert place is not None
     for k, entry in enumerate(aim.pool.space.lists):
-        here, count = place.choices[k], len(entry.values)
-        near = sorted(range(count), key=lambda value: abs(value - here))[1 : EXCHANGED + 1]
+        present, count = place.choices[k], len(entry.values)
+        near = sorted(range(count), key=lambda value: abs(value - present))[1 : EXCHANGED + 1]
         for value in near:
             choices = (*place.choices[:k], value, *place.choices[k + 1 :])
             best = aim.best([best, aim.pool.solve(place._replace(choices=choices))])
@@ -350,17 +350,17 @@ def trust_region(aim: Aim, start: Design, first: float, last: float) -> Design:
         return start
     visited = [start]
 
-    def at(x: np.ndarray) -> Design:
+    def solved(x: np.ndarray) -> Design:
         design = aim.pool.solve(place.moved(x))
         visited.append(design)
         return design
 
     def constraint(limit: Callable[[Design], float]) -> NonlinearConstraint:
-        return NonlinearConstraint(lambda x: limit(at(x)), -np.inf, 0.0)
+        return NonlinearConstraint(lambda x: limit(solved(x)), -np.inf, 0.0)
 
     limits = aim.limits
     minimize(
-        lambda x: aim.loss(at(x)),
+        lambda x: aim.loss(solved(x)),
         place.x,
         bounds=[(0.0, 1.0)] * len(place.x),
         constraints=[*map(constraint, limits)],
@@ -387,6 +387,6 @@ def _pass_over(aim: Aim, trace: Trace) -> None:
     trace.passed = len(passed)
     if passed:
         best = aim.best(designs)
-        nearest = min(aim.merit(aim.best(pool.at(choices))) for choices in passed)
+        nearest = min(aim.merit(aim.best(pool.of_choices(choices))) for choices in passed)
         size = max(abs(aim.loss(best)), TOLERANCE)
         trace.nearest_passed = (nearest - aim.merit(best)) / size

@@ -54,9 +54,9 @@ def _without_any(optimum: Optimum, solved: Sequence[Design], units: Units) -> It
 
 def _front(optimum: Optimum, units: Units) -> Iterator[str]:
     """Yield sentences on a front of two goals."""
-    front, (one, other) = optimum.front, optimum.goals
+    front, (first_goal, second_goal) = optimum.front, optimum.goals
     count = f"{len(front)} designs are" if len(front) > 1 else "1 design is"
-    yield f"{count} beaten by no other in both {one.name} and {other.name}."
+    yield f"{count} beaten by no other in both {first_goal.name} and {second_goal.name}."
     ends = (front[0], front[-1]) if len(front) > 1 else front[:1]
     for design in ends:
         yield (
@@ -76,15 +76,15 @@ def _front(optimum: Optimum, units: Units) -> Iterator[str]:
         yield f"They have no error bars ({optimum.unbarred.removeprefix('none: ')})."
 
 
-def _beats(optimum: Optimum, design: Design, other: Design) -> bool:
+def _beats(optimum: Optimum, design: Design, rival: Design) -> bool:
     """Return True for a design that is better than another in every goal."""
-    pairs = zip(optimum.goals, design.goals, other.goals)
+    pairs = zip(optimum.goals, design.goals, rival.goals)
     return all((a.value > b.value) if goal.upward else (a.value < b.value) for goal, a, b in pairs)
 
 
-def _as_good(optimum: Optimum, design: Design, other: Design) -> bool:
+def _as_good(optimum: Optimum, design: Design, rival: Design) -> bool:
     """Return True where error bars of two designs leave open which is better, in every goal."""
-    pairs = zip(design.goals, other.goals)
+    pairs = zip(design.goals, rival.goals)
     changes = [Change(a.value, b.value, a.bar, b.bar) for a, b in pairs]
     return all(change.verdict == "not resolved" for change in changes)
 
@@ -148,12 +148,12 @@ def listed_values(optimum: Optimum, design: Design, units: Units = ENGINEERING) 
     """Return the values of a design, in the units in which they were asked for."""
     entries = {entry.label: entry for entry in optimum.entries}
     return ", ".join(
-        f"{label} = {written(entries.get(label), value, units)}"
+        f"{label} = {value_text(entries.get(label), value, units)}"
         for label, value in design.values.items()
     )
 
 
-def written(entry: Entry | None, value: str | float | None, units: Units = ENGINEERING) -> str:
+def value_text(entry: Entry | None, value: str | float | None, units: Units = ENGINEERING) -> str:
     """Return a value of an entry in the unit in which it was asked for; of one that follows, in mm."""
     if value is None:
         return "as in the file"
@@ -181,10 +181,10 @@ def _searched(optimum: Optimum, trace: Trace) -> Iterator[str]:
     if trace.whole:
         yield f"Searched: all {trace.sampled} combinations, so that none is better."
         return
-    where = _where(optimum, trace)
-    searches = _counted(len(trace.ends), "local search", "local searches")
+    space = _space(optimum, trace)
+    searches = _count_of(len(trace.ends), "local search", "local searches")
     yield (
-        f"Searched: {count} designs; {trace.sampled} across {where}, then {searches} (COBYQA) from "
+        f"Searched: {count} designs; {trace.sampled} across {space}, then {searches} (COBYQA) from "
         "separate places."
     )
     if trace.missed:
@@ -201,8 +201,8 @@ def _searched(optimum: Optimum, trace: Trace) -> Iterator[str]:
         )
     elif best is not None:
         yield (
-            f"The last round, {_counted(trace.further_samples, 'further design')} and "
-            f"{_counted(trace.further_searches, 'search', 'searches')}, brought nothing better by "
+            f"The last round, {_count_of(trace.further_samples, 'further design')} and "
+            f"{_count_of(trace.further_searches, 'search', 'searches')}, brought nothing better by "
             f"{100 * TOLERANCE:g} %."
         )
     if best is not None:
@@ -218,13 +218,13 @@ def _ends(optimum: Optimum, trace: Trace, best: Design) -> Iterator[str]:
         if end.end.value is not None and end.end.kept
     ]
     at_best = sum(share <= NEAR_BEST for share in behind)
-    others = [share for share in behind if share > NEAR_BEST]
+    further = [share for share in behind if share > NEAR_BEST]
     if not trace.ends:
         return
     text = f"{at_best} of {len(trace.ends)} searches ended within {100 * NEAR_BEST:g} % of the best"
-    if others:
+    if further:
         word = "below" if upward else "above"
-        text += f", the others {100 * min(others):.2g} % or more {word} it"
+        text += f", the others {100 * min(further):.2g} % or more {word} it"
     missed = len(trace.ends) - len(behind)
     text += f"; {missed} where a limit is missed" if missed else ""
     yield f"{text}; the best was searched to {FINE:g} of the ranges."
@@ -259,12 +259,12 @@ def _searched_front(optimum: Optimum, trace: FrontTrace) -> Iterator[str]:
         )
 
 
-def _counted(count: int, thing: str, things: str = "") -> str:
+def _count_of(count: int, thing: str, things: str = "") -> str:
     """Return a number of things in words."""
     return f"{count} {thing if count == 1 else things or f'{thing}s'}"
 
 
-def _where(optimum: Optimum, trace: Trace) -> str:
+def _space(optimum: Optimum, trace: Trace) -> str:
     ranges = sum(entry.open for entry in optimum.entries)
     lists = len(optimum.entries) - ranges
     total = math.prod(len(entry.values) for entry in optimum.entries if not entry.open)

@@ -61,8 +61,9 @@ class FileVariants(Generic[T]):
         out: dict[str, type] = {
             entry.label: float if entry.numeric else str for entry in self.entries
         }
-        further = [*self.sums, *(place for f in self.followers for place in f.numbers)]
-        return out | dict.fromkeys((entry.label for entry in further), float)
+        further = [kept.label for kept in self.sums]
+        further += [place.label for follower in self.followers for place in follower.numbers]
+        return out | dict.fromkeys(further, float)
 
     @property
     def plan(self) -> dict[str, Any]:

@@ -109,15 +109,15 @@ class Seat:
         if value_in_file(keys, tables) == self.in_file:
             return tables
         for key in self.dropped:
-            tables = without(tables, (*keys[:-1], key))
+            tables = _dropping(tables, (*keys[:-1], key))
         data = catalogue_in(tables, keys[:-1])
         if data is None:
             return tables  # refused by the reader of the file
         if data.both_ways or data.floats:
-            tables = without(tables, (*keys[:-1], "holds"))
+            tables = _dropping(tables, (*keys[:-1], "holds"))
         for place in self.diameters:
             tables = replace_entry(tables, keys_of(place.path, tables), data.bore)
-        return tables if self.width is None else without(tables, (*keys[:2], "seat_width"))
+        return tables if self.width is None else _dropping(tables, (*keys[:2], "seat_width"))
 
     def refuse(self, tables: Tables, scene: Scene) -> None:
         keys = keys_of(self.place.path, tables)
@@ -125,11 +125,11 @@ class Seat:
             return
         bearing = next(b for b in scene.bearings if b.name == self.bearing)
         reason = next(misfits_of(scene, bearing), "") if self.fits else ""
-        for seat, beside in self.shoulders:
-            high, low = (_largest(scene, name) for name in (beside, seat))
+        for seat, shoulder in self.shoulders:
+            high, low = (_largest(scene, name) for name in (shoulder, seat))
             if high <= low * (1 + SAME):
                 reason = (
-                    f"its bore of {2e3 * low:.5g} mm leaves no shoulder at {beside!r} "
+                    f"its bore of {2e3 * low:.5g} mm leaves no shoulder at {shoulder!r} "
                     f"({2e3 * high:.5g} mm)"
                 )
         if reason:
@@ -227,24 +227,26 @@ def _seat(place: Place, tables: Tables, scene: Scene, moved: set[tuple[str, Keys
         seat = replace(seat, width=Place(file, label_of(wide, tables), wide))
     middle = (bearing.lo + bearing.hi) / 2
     for segment in scene.segments:
-        at = _diameter_of(segment.name, tables)
-        if at is None or (file, at) in moved or not _holds(segment, middle):
+        diameter = _diameter_of(segment.name, tables)
+        if diameter is None or (file, diameter) in moved or not _holds(segment, middle):
             continue
         if abs(2 * segment.outer0 / data.bore - 1) < SAME:
-            seat = _on(seat, scene, segment.name, Place(file, label_of(at, tables), at))
+            seat = _with_bore(
+                seat, scene, segment.name, Place(file, label_of(diameter, tables), diameter)
+            )
     return seat
 
 
-def _on(seat: Seat, scene: Scene, name: str, diameter: Place) -> Seat:
+def _with_bore(seat: Seat, scene: Scene, name: str, diameter: Place) -> Seat:
     """Return a seat with one more diameter that follows the bore, and the shoulders beside it."""
     names = [segment.name for segment in scene.segments]
     k = names.index(name)
-    beside = [names[i] for i in (k - 1, k + 1) if 0 <= i < len(names)]
-    larger = [other for other in beside if _largest(scene, other) > _largest(scene, name)]
+    neighbours = [names[i] for i in (k - 1, k + 1) if 0 <= i < len(names)]
+    larger = [n for n in neighbours if _largest(scene, n) > _largest(scene, name)]
     return replace(
         seat,
         diameters=(*seat.diameters, diameter),
-        shoulders=(*seat.shoulders, *((name, other) for other in larger)),
+        shoulders=(*seat.shoulders, *((name, n) for n in larger)),
     )
 
 
@@ -252,13 +254,13 @@ def _pitch_radius(
     place: Place, tables: Tables, moved: set[tuple[str, Keys]]
 ) -> Iterator[PitchRadius]:
     """Yield the pitch radius that a file has beside a number of teeth that varies."""
-    beside = (*place.keys[:-1], "pitch_radius")
+    at_radius = (*place.keys[:-1], "pitch_radius")
     teeth = in_si(value_in_file(place.keys, tables))
-    radius = in_si(value_in_file(beside, tables))
-    if place.keys[-1] != "teeth" or not teeth or radius is None or (place.file, beside) in moved:
+    radius = in_si(value_in_file(at_radius, tables))
+    if place.keys[-1] != "teeth" or not teeth or radius is None or (place.file, at_radius) in moved:
         return
-    at = Place(place.file, label_of(beside, tables), beside)
-    yield PitchRadius(place, at, teeth, 2 * radius / teeth, place.label)
+    gear_radius = Place(place.file, label_of(at_radius, tables), at_radius)
+    yield PitchRadius(place, gear_radius, teeth, 2 * radius / teeth, place.label)
 
 
 def _with_diameter(
@@ -290,7 +292,7 @@ def _with_diameter(
         )
     (seat,) = near
     wider = replace(seat, diameters=(*seat.diameters, place))
-    return [wider if other is seat else other for other in seats]
+    return [wider if each is seat else each for each in seats]
 
 
 def _diameter_of(segment: str, tables: Tables) -> Keys | None:
@@ -315,25 +317,25 @@ def catalogue_in(tables: Tables, keys: Keys) -> Catalogue | None:
     shaft; None where they are refused.
     """
     table = value_in_file(keys, tables)
-    for known in dict[str, Any](), {"holds": "+y"}:
+    for way in dict[str, Any](), {"holds": "+y"}:
         try:
-            return Catalogue(**{**table, **known})
+            return Catalogue(**{**table, **way})
         except (SceneError, TypeError):
             continue
     return None
 
 
-def without(tables: Any, keys: Keys) -> Any:
+def _dropping(tables: Any, keys: Keys) -> Any:
     """Return a copy of tables without one entry."""
     first, *further = keys
     if isinstance(first, int):
         out = list(tables)
-        out[first] = without(out[first], tuple(further))
+        out[first] = _dropping(out[first], tuple(further))
         return out
     if first not in tables:
         return tables
     if further:
-        return {**tables, first: without(tables[first], tuple(further))}
+        return {**tables, first: _dropping(tables[first], tuple(further))}
     return {key: value for key, value in tables.items() if key != first}
 
 

@@ -40,7 +40,7 @@ def life_numbers(bearings: Iterable[LivesOverPoints]) -> dict[str, float | str]:
         duty, kind = bearing.duty, bearing.kind
         kinds.add(KINDS[kind])
         numbers = {
-            LIFE: duty.revolutions if duty else min(_of(life, kind) for life in lives),
+            LIFE: duty.revolutions if duty else min(_lived(life, kind) for life in lives),
             HOURS: duty.hours if duty else math.inf,
             BASIC: min(life.life.basic for life in lives),
             STATIC: min(life.life.static_safety for life in lives),
@@ -54,6 +54,6 @@ def life_numbers(bearings: Iterable[LivesOverPoints]) -> dict[str, float | str]:
     return out | {KIND: "; ".join(sorted(kinds))}
 
 
-def _of(life: BearingLife, kind: str) -> float:
+def _lived(life: BearingLife, kind: str) -> float:
     lives: Mapping[str, float] = life.lives
     return lives.get(kind, life.life.reference)
