@@ -80,7 +80,7 @@ class Optimum(Sheeted):
         return {
             "kind": "optimum",
             "scene": self.scene,
-            "goal": [str(goal) for goal in self.goals],
+            "goals": [str(goal) for goal in self.goals],
             "keep": [str(wish) for wish in self.keep],
             "best": None if self.best is None else self.best.number,
             "front": [design.number for design in self.front],
