@@ -58,6 +58,7 @@ ADDITIONS = {
     "document": {
         "read scene": "core.loading:scene_of",
         "write scene": "core.scene.writing:tables_of",
+        "resolved scene": "core.scene.resolved:resolved",
         "text of scene": "core.scene_text:toml_of",
         "text of train": "trains.file.text:toml_of",
         "segment of words": "core.scene.shapes:segment_of",

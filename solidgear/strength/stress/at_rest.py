@@ -16,11 +16,11 @@ import numpy as np
 
 from solidgear.bearings.bearing_life import left_open
 from solidgear.bearings.solved import AS_STATED, Choice
-from solidgear.core import LADDER, Scene, Sheeted
+from solidgear.core import LADDER, Scene, Sheeted, listed
 from solidgear.core.plain import plain
 from solidgear.core.scene.filleted import filleted
 from solidgear.parts.body_file import BodyFile
-from solidgear.strength.load import AT_REST, LoadAtPort, load_alone
+from solidgear.strength.load import AT_REST, LoadsAlone, loads_alone
 from solidgear.strength.stress.notch import ENOUGH
 from solidgear.strength.stress.rating import Conditions
 from solidgear.strength.stress.section_forces import COMPONENTS, SectionForces, forces_of
@@ -98,7 +98,7 @@ class StressAtRest(Sheeted):
 
     title: str
     model: str  #: on which shafts and bearings settled
-    under: LoadAtPort | AtPoint
+    under: LoadsAlone | AtPoint
     asked: StressSettings
     shafts: tuple[StressedShaft, ...]
     open_by: str  #: open data of bearings, in words; empty if none
@@ -127,15 +127,12 @@ def stress_at_rest(
     model: str = MODEL,
     asked: StressSettings = StressSettings(),
     progress: Progress = lambda text: None,
-    drive: Mapping[str, float] | None = None,
 ) -> StressAtRest:
     """Compute the stress of all shafts of a train at an operating point, or of a shaft under the
-    [load] of its scene; shafts and bearings settle on a model, no lumped one, which has no places.
-
-    Torques about the axis of a shaft alone, N m, enter at bearings, masses or further points
-    (`drive`); the gear at the port takes them out. Bearings of catalogue data need no stiffness yet.
+    loads of its scene; shafts and bearings settle on a model, no lumped one, which has no places.
+    Bearings of catalogue data need no stiffness yet.
     """
-    load = load_alone(assembly.train, drive)
+    load = loads_alone(assembly.train, point)
     progress(model)
     train = _with_scenes(assembly.train, filleted)
     settling = replace(assembly, train=_settling_train(train, model))
@@ -144,12 +141,7 @@ def stress_at_rest(
     def acting(choice: Choice) -> dict[str, ShaftLoads]:
         as_stated = choice == AS_STATED
         state = usual if as_stated else Operating(settling, model, choice=choice).at(point)
-        loads = _on_shafts(settling, state)
-        if load is not None:
-            for name, torque in load.drive.items():
-                loads[ALONE].add(name, torque * np.eye(6)[4])
-                loads[ALONE].add(load.port, -torque * np.eye(6)[4])
-        return loads
+        return _on_shafts(settling, state)
 
     shafts, open_by = _shafts(train, acting, asked, progress)
     files = {side: shaft.scene.body for side, shaft in assembly.train.shafts.items()}
@@ -185,13 +177,15 @@ def _file_cautions(file: BodyFile | None, scene: Scene) -> Iterator[str]:
         )
 
 
-def _load_cautions(train: Train, load: LoadAtPort) -> Iterator[str]:
+def _load_cautions(train: Train, load: LoadsAlone) -> Iterator[str]:
     """Yield sentences on loads that do not act on a shaft alone, and perhaps should."""
-    if not load.drive:
-        yield "no torque runs along the shaft; --drive says where one enters"
+    yield from load.assumed
+    if not any(acting.six[4] for acting in load.acting):
+        yield "no torque runs along the shaft; a [[load]] with a torque, or --drive, says where one is"
+    loaded = {acting.station: None for acting in load.acting}
     for point in train.shafts[ALONE].scene.further_ports:
-        if point.name not in load.drive:
-            yield f'nothing acts at the point "{point.name}"; [load] acts at "{load.port}"'
+        if point.name not in loaded:
+            yield f'nothing acts at the point "{point.name}"; loads act at {listed([*loaded])}'
 
 
 def _on_shafts(assembly: Assembly, state: OperatingState) -> dict[str, ShaftLoads]:

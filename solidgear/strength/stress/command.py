@@ -8,8 +8,7 @@ from typing import Annotated
 
 import typer
 
-from solidgear.core import SceneError, SolidgearError, show
-from solidgear.core.scene.units import quantity
+from solidgear.core import SceneError, SolidgearError
 from solidgear.show.command import Group, command
 from solidgear.show.options import BY_MODEL, MODEL, Choice, Shown, relative
 from solidgear.show.sheet import present
@@ -67,13 +66,6 @@ def stress(
     file: AtRestFile,
     *,
     acting: Acting,
-    drive: Annotated[
-        list[str] | None,
-        typer.Option(
-            help='Torque that enters a shaft at a bearing, mass or point, such as "B=115 N*m", and '
-            "leaves at the port; repeatable."
-        ),
-    ] = None,
     fidelity: Annotated[
         Choice, typer.Option(*BY_MODEL, help="Model for bearing reactions.")
     ] = MODEL,
@@ -93,7 +85,6 @@ def stress(
             file,
             str(fidelity),
             **vars(acting),
-            drive=dict(map(_torque, drive or ())),
             tol=tol,
             conditions=rated.conditions(),
             progress=progress,
@@ -101,14 +92,3 @@ def stress(
         run,
         out,
     )
-
-
-def _torque(text: str) -> tuple[str, float]:
-    """Return the name and torque, N m, from ``B=115 N*m``."""
-    name, sep, value = (part.strip() for part in text.partition("="))
-    if not sep or not name:
-        raise SolidgearError(f'--drive {show(text)}: write NAME=TORQUE, such as "B=115 N*m"')
-    try:
-        return name, quantity(value, "torque")
-    except SceneError as error:
-        raise SolidgearError(f"--drive {show(text)}: {error}") from None

@@ -18,7 +18,7 @@ from solidgear.show.sheet import Sheet, Terminal
 from solidgear.show.table import Cell, Column, Table, exact, quantity, text, word
 from solidgear.show.units import ENGINEERING, Units, plain
 from solidgear.show.words import DASH, percent
-from solidgear.strength.load import LoadAtPort
+from solidgear.strength.load import LoadsAlone
 from solidgear.strength.stress.at_rest import StressAtRest, StressedShaft
 from solidgear.strength.stress.din743 import LOADS, Load
 from solidgear.strength.stress.rating import Entry, Rating
@@ -95,7 +95,7 @@ def sheet(stressed: StressAtRest, units: Units) -> Sheet:
 def loads_in_words(stressed: StressAtRest, units: Units) -> str:
     """Return the load, or the operating point, that the shafts are under in words."""
     load = stressed.under
-    if isinstance(load, LoadAtPort):
+    if isinstance(load, LoadsAlone):
         return load.words(units)
     force = units.text(load.mesh_force, "N", 5)
     return f"At {load.point.label}: mesh force {force} along the line of action"

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from solidgear.core import SolidgearError, Source, explained, name_of_source
-from solidgear.core.scene.units import quantity
+from solidgear.core import Source, explained
 from solidgear.strength.acting import Acting, Given
 from solidgear.strength.stress.at_rest import StressAtRest, StressSettings, stress_at_rest
 from solidgear.strength.stress.notch import ENOUGH
@@ -24,7 +23,8 @@ def stress(
     point: str | None = None,
     weight: str | None = None,
     load: str | Mapping[str, Any] | None = None,
-    drive: Mapping[str, str | float] | None = None,
+    case: str | None = None,
+    drive: Mapping[str, str | float] | list[str] | None = None,
     tol: float = ENOUGH,
     conditions: Mapping[str, Any] | Conditions | None = None,
     progress: Callable[[str], None] = lambda text: None,
@@ -37,11 +37,8 @@ def stress(
         A scene or train: its file (TOML), the tables of one, or an object.
     model : str
         Model for bearing reactions.
-    torque, of, point, weight, load
+    torque, of, point, weight, load, case, drive
         As of :func:`solidgear.deflect`.
-    drive : mapping of str to str or float, optional
-        Torques that enter a shaft at a bearing, mass or point and leave it at the port, such as
-        ``{"B": "115 N*m"}``; numbers in N m.
     tol : float
         Error bar allowed for a form factor, relative.
     conditions : mapping or Conditions, optional
@@ -74,12 +71,6 @@ def stress(
     if not isinstance(conditions, Conditions):
         conditions = Conditions(**(conditions or {}))
     settings = StressSettings(tol, conditions)
-    assembly, at = Acting(torque, of, point, weight, load).read(source)
-    torques = {name: quantity(value, "torque") for name, value in (drive or {}).items()}
-    if torques and not assembly.train.is_one_shaft:
-        raise SolidgearError(
-            f"`drive` is for a shaft, and {name_of_source(source)} is a train: torques come by the "
-            "springs of engine and load"
-        )
+    assembly, at = Acting(torque, of, point, weight, load, case, drive).read(source)
     with explained(source):
-        return stress_at_rest(assembly, at, model, settings, progress, torques)
+        return stress_at_rest(assembly, at, model, settings, progress)

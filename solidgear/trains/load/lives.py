@@ -15,8 +15,8 @@ from solidgear.trains.load.state import OperatingState
 
 
 def train_lives(train: Train) -> list[LivesOverPoints]:
-    """Return the life of every catalogue bearing of a train at all operating points; refused
-    without points or catalogue bearings.
+    """Return the life of every catalogue bearing of a train at all operating points, or of a shaft
+    alone in all cases of its loads; refused without points or catalogue bearings.
     """
     if not train.operation:
         raise SolidgearError(
@@ -49,7 +49,8 @@ def lives_in(
                 places = [(s.bearings[end], s.equilibrium.relative[end]) for s in states]
                 life = life_of(bearing, oil, unknown, point.speed_of(side, train.turns), places)
                 points.append(PointLife(point.label, life, point.share, point.hours))
-            lives_by_bearing.append(LivesOverPoints(end, tuple(points)))
+            name = bearing.name if train.is_one_shaft else end
+            lives_by_bearing.append(LivesOverPoints(name, tuple(points)))
     if not lives_by_bearing:
         raise SolidgearError(f"{train.name}: no bearing is described by catalogue data")
     return lives_by_bearing

@@ -6,19 +6,20 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from solidgear.bearings.bearing_life import life_of
-from solidgear.bearings.duty import LivesOverPoints, PointLife
-from solidgear.bearings.solved import solved
+from solidgear.bearings.duty import LivesOverPoints
 from solidgear.core import Scene, SolidgearError, build
-from solidgear.core.loading import shaft
 from solidgear.core.scene.closed_form import mass_properties
 from solidgear.guards.one_shaft import ROUNDING, mass_of
 from solidgear.strength.acting import FEW
-from solidgear.strength.deflection.at_rest import Measured, deflection
+from solidgear.strength.deflection.at_rest import Measured, deflections
 from solidgear.strength.load import AT_REST
 from solidgear.strength.stress.at_rest import stress_at_rest
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.shaft import JUDGE
+from solidgear.trains.file.operation import OperatingPoint
+from solidgear.trains.load.lives import lives_in
+from solidgear.trains.load.operation import SHAFT, Operating
+from solidgear.trains.load.state import OperatingState
 from solidgear.variants.sweep.life_numbers import life_columns, life_numbers
 
 #: kinds of numbers of a row, by the commands that show the same of one shaft
@@ -89,17 +90,28 @@ def mass_alone(scene: Scene, model: str | None) -> tuple[float, float | None]:
     return mass, bar and bar * mass
 
 
+def _points(assembly: Assembly) -> tuple[OperatingPoint, ...]:
+    """Return the cases of the loads of a shaft, or its load alone."""
+    return assembly.train.operation or (AT_REST,)
+
+
 def _deflection(scene: Scene, model: str, tolerance: float | None) -> dict[str, Any]:
-    solution = deflection(Assembly.of(scene, kept=FEW, tol=tolerance), AT_REST, model)
+    """Return motions and loads of bearings, the largest of all cases."""
+    assembly = Assembly.of(scene, kept=FEW, tol=tolerance)
     out: dict[str, Any] = {}
-    for place, (x, _, z, thx, _, thz) in solution.displacement.items():
-        pairs = {"deflection": (x, z), "slope": (thx, thz)}
-        for moved, pair in pairs.items():
-            name = f"{moved}_{place.replace(' ', '_')}"
-            out[name], out[f"{name}{BAR}"] = _across(pair)
-    for bearing in solution.shafts[0].bearings:
-        loads = bearing.radial, abs(float(bearing.load[1])), bearing.moment
-        out |= {f"{bearing.name}.{load}": value for load, value in zip(LOADS, loads)}
+    for solution in deflections(assembly, _points(assembly), model):
+        for place, (x, _, z, thx, _, thz) in solution.displacement.items():
+            pairs = {"deflection": (x, z), "slope": (thx, thz)}
+            for moved, pair in pairs.items():
+                name = f"{moved}_{place.replace(' ', '_')}"
+                value, bar = _across(pair)
+                if value >= out.get(name, 0.0):
+                    out |= {name: value, f"{name}{BAR}": bar}
+        for bearing in solution.shafts[0].bearings:
+            loads = bearing.radial, abs(float(bearing.load[1])), bearing.moment
+            for load, value in zip(LOADS, loads):
+                name = f"{bearing.name}.{load}"
+                out[name] = max(value, out.get(name, 0.0))
     return out
 
 
@@ -111,37 +123,35 @@ def _across(pair: Sequence[Measured]) -> tuple[float, float | None]:
 
 
 def _lives(scene: Scene) -> list[LivesOverPoints]:
-    """Return the life of every catalogue bearing of a shaft under its load."""
-    state = solved(scene, shaft(scene))
-    lives = []
-    for bearing in scene.bearings:
-        if bearing.catalogue is not None:
-            place = state.made[bearing.name], state.motion[bearing.name]
-            life = life_of(bearing, scene.lubrication, "", None, [place])
-            lives.append(LivesOverPoints(bearing.name, (PointLife("", life),)))
-    if not lives:
-        raise SolidgearError("no bearing is described by catalogue data, which a life needs")
-    return lives
+    """Return the life of every catalogue bearing of a shaft in all cases of its loads."""
+    assembly = Assembly.of(scene, kept=FEW)
+    operating, states = Operating(assembly, SHAFT), list[OperatingState]()
+    for point in _points(assembly):
+        states.append(operating.at(point, states[-1] if states else None))
+    return lives_in(assembly.train, [states])
 
 
 def _stress(scene: Scene, model: str) -> dict[str, Any]:
-    """Return the least safeties of all notches, and the largest local stress."""
-    (stressed,) = stress_at_rest(Assembly.of(scene, kept=FEW), AT_REST, model).shafts
-    notches = stressed.found.worst
-    if not notches:
-        raise SolidgearError("no notch has a stress: the shaft has no fillets")
-    largest = max(notches, key=lambda notch: notch.local.amplitude + abs(notch.local.mean))
-    out: dict[str, Any] = {
-        LOCAL: largest.local.amplitude + abs(largest.local.mean),
-        f"{LOCAL}{BAR}": largest.local.amplitude_bar + largest.local.mean_bar,
-        WORST: notches[0].name,
-    }
-    ratings = [notch.rating for notch in notches if notch.rating is not None]
-    if ratings:
-        worst = min(ratings, key=lambda rating: rating.fatigue)
-        out |= {
-            FATIGUE: worst.fatigue,
-            f"{FATIGUE}{BAR}": worst.fatigue_bar,
-            YIELD: min(rating.yielding for rating in ratings),
-        }
+    """Return the least safeties of all notches and the largest local stress, the worst of all cases."""
+    assembly = Assembly.of(scene, kept=FEW)
+    out: dict[str, Any] = {}
+    for point in _points(assembly):
+        (stressed,) = stress_at_rest(assembly, point, model).shafts
+        notches = stressed.found.worst
+        if not notches:
+            raise SolidgearError("no notch has a stress: the shaft has no fillets")
+        for notch in notches:
+            stress = notch.local.amplitude + abs(notch.local.mean)
+            if stress >= out.get(LOCAL, 0.0):
+                bar = notch.local.amplitude_bar + notch.local.mean_bar
+                out |= {LOCAL: stress, f"{LOCAL}{BAR}": bar}
+                out |= {WORST: notch.name} if FATIGUE not in out else {}
+            rating = notch.rating
+            if rating is None:
+                continue
+            if rating.fatigue < out.get(FATIGUE, math.inf):
+                out |= {FATIGUE: rating.fatigue, f"{FATIGUE}{BAR}": rating.fatigue_bar}
+                out |= {WORST: notch.name}
+            if rating.yielding < out.get(YIELD, math.inf):
+                out[YIELD] = rating.yielding
     return out
