@@ -10,6 +10,8 @@ import pytest
 import solidgear as sg
 from solidgear.bearings.study import bearing_facts
 from tests.command import command
+from validation.common import read_result
+from validation.optimum import PROBLEMS, beside
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 CATALOGUE, TRAIN = GEOMETRY / "gearbox_catalogue.toml", GEOMETRY / "gearbox_train.toml"
@@ -144,3 +146,26 @@ def test_the_command_draws_a_front(tmp_path):
     assert shown.exit_code == 0, shown.output
     assert "beaten by no other in both mass and life" in " ".join(shown.output.split())
     assert (tmp_path / "front.svg").read_text().count("design ") >= 2
+
+
+# ------------------------------------------------------------------------------- beside brute force
+@pytest.mark.parametrize(
+    "name",
+    [
+        "lists alone, two goals",
+        pytest.param("span", marks=pytest.mark.long),
+        pytest.param("two limits", marks=pytest.mark.long),
+    ],
+)
+def test_a_search_is_no_worse_than_a_fine_grid(name):
+    (problem,) = (problem for problem in PROBLEMS if problem.name == name)
+    row = beside(problem)
+    assert row["behind_percent"] < 0.1
+    assert row["designs"] < row["grid_designs"] + 2
+
+
+def test_all_ten_searches_are_kept_beside_their_grids():
+    rows = [row for key, row in read_result("optimum").items() if key != "made"]
+    assert {row["problem"] for row in rows} == {problem.name for problem in PROBLEMS}
+    for row in rows:
+        assert row["behind_percent"] < 0.1 or "Stopped at" in " ".join(row["words"]), row["problem"]

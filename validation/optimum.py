@@ -24,8 +24,8 @@ from solidgear.variants.optimise.wish import Wish, limit_of, wish_of
 from validation.common import ROOT, kept, stamp
 
 MODEL = "timoshenko"
-#: steps of the grid around the best of the one before, and how often
-FINER, TIMES = 9, 3
+#: places of the grid around the best of the one before, by the number of ranges, and how often
+FINER, TIMES = {1: 17, 2: 9, 3: 5}, 3
 
 
 @dataclass(frozen=True)
@@ -101,9 +101,9 @@ PROBLEMS = (
         STEPPED,
         ("min mass",),
         (
-            Range("segment.left.diameter", 40, 60, "mm", 9),
+            Range("segment.left.diameter", 40, 60, "mm", 7),
             Range("segment.middle.diameter", 60, 100, "mm", 9),
-            Range("segment.right.diameter", 40, 70, "mm", 9),
+            Range("segment.right.diameter", 40, 70, "mm", 7),
         ),
         keep=("bending 1 > 800 Hz", "C_zz < 3.6 um/kN"),
     ),
@@ -214,7 +214,7 @@ def brute(problem: Problem) -> tuple[list[dict[str, Any]], dict[str, Any]]:
     words = {path: (str(best[path]),) for path in problem.lists}
     for _ in range(TIMES if len(problem.goals) == 1 and problem.ranges else 0):
         spans = [
-            _around(_in_unit(best[r.path], r.unit), r, span)
+            _around(_in_unit(best[r.path], r.unit), r, span, FINER[len(spans)])
             for r, span in zip(problem.ranges, spans)
         ]
         rows += grid(problem, spans, words)
@@ -230,10 +230,10 @@ def _in_unit(value: float, unit: str) -> float:
     return value / {"mm": 1e-3}[unit]
 
 
-def _around(value: float, whole: Range, span: tuple[float, float, int]) -> tuple[float, float, int]:
+def _around(value: float, whole: Range, span: tuple[float, float, int], finer: int) -> tuple[float, float, int]:
     """Return a finer span, of one step to both sides, within the range."""
     step = (span[1] - span[0]) / (span[2] - 1)
-    return max(value - step, whole.low), min(value + step, whole.high), FINER
+    return max(value - step, whole.low), min(value + step, whole.high), finer
 
 
 def beside(problem: Problem) -> dict[str, Any]:

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from solidgear.show.panel import GREY, INK, Panel, Series, readout
 from solidgear.show.plot import WIDE, Chart
 from solidgear.show.scales import Axis
 from solidgear.show.units import ENGINEERING, Units
+from solidgear.variants.optimise.outcome import Outcome
 from solidgear.variants.optimise.pool import Design
 from solidgear.variants.optimise.sentences import value_text
-
-if TYPE_CHECKING:
-    from solidgear.variants.optimise.optimise import Optimum
 
 KEPT, MISSED, BEST, FRONT = "keeps every limit", "misses a limit", "best", "beaten by none in both"
 LOOKS = {
@@ -25,7 +23,7 @@ FRONT_LOOKS = {KEPT: LOOKS[KEPT], MISSED: LOOKS[MISSED], FRONT: Series("#0072b2"
 ROOM, EDGE = 0.08, 0.03
 
 
-def look_of(optimum: Optimum, design: Design) -> str:
+def look_of(optimum: Outcome, design: Design) -> str:
     """Return the series of a design."""
     if optimum.front:
         if any(design is member for member in optimum.front):
@@ -35,7 +33,7 @@ def look_of(optimum: Optimum, design: Design) -> str:
     return KEPT if design.kept else MISSED
 
 
-def designs_chart(optimum: Optimum, title: str, width: float = WIDE) -> Chart:
+def designs_chart(optimum: Outcome, title: str, width: float = WIDE) -> Chart:
     """Draw the goal over the one range that varies, or over the number of the design."""
     alone = len(optimum.entries) == 1 and optimum.entries[0].numeric
     label = optimum.entries[0].label
@@ -76,7 +74,7 @@ def designs_chart(optimum: Optimum, title: str, width: float = WIDE) -> Chart:
 
 
 def front_chart(
-    optimum: Optimum, title: str, units: Units = ENGINEERING, width: float = WIDE
+    optimum: Outcome, title: str, units: Units = ENGINEERING, width: float = WIDE
 ) -> Chart:
     """Draw the second goal over the first, with the front as a line and error bars as rules."""
     first, second = optimum.goals
@@ -128,7 +126,7 @@ def _axis(name: str, values: list[float], room: float = ROOM) -> Axis:
     return Axis(name, (low - margin, high + margin))
 
 
-def _facts(optimum: Optimum, design: Design) -> str:
+def _facts(optimum: Outcome, design: Design) -> str:
     """Return the words on a design that a chart shows where it is pointed at."""
     entries = {entry.label: entry for entry in optimum.entries}
     values = [

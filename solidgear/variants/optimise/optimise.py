@@ -13,17 +13,16 @@ from typing import Any, ClassVar
 
 from solidgear.core import Sheeted, SolidgearError, Source, document_of
 from solidgear.core.errors import names_in
-from solidgear.core.judge.change import Change
 from solidgear.core.models.limits import number
 from solidgear.core.plain import plain
 from solidgear.variants.optimise.designs import Designs, scene_designs, train_designs
 from solidgear.variants.optimise.front import FrontTrace, search_front
+from solidgear.variants.optimise.outcome import Outcome
 from solidgear.variants.optimise.pool import Design, Pool
 from solidgear.variants.optimise.search import Aim, Trace, search
 from solidgear.variants.optimise.sentences import sentences, solved_all_of
-from solidgear.variants.optimise.wish import Wish, limit_of, wish_of
+from solidgear.variants.optimise.wish import limit_of, wish_of
 from solidgear.variants.sweep.design import Design as SweepDesign
-from solidgear.variants.sweep.entries import Entry
 
 #: of a range: distance from an end of an optimum that is at it
 AT_END = 1e-6
@@ -32,42 +31,11 @@ MOST = 500
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Optimum(Sheeted):
+class Optimum(Outcome, Sheeted):
     """Result of a search."""
 
     shown: ClassVar[str] = "variants.optimise.command:designs"
     sheeted: ClassVar[str] = "variants.optimise.command:optimum_sheet"
-
-    scene: str
-    goals: tuple[Wish, ...]
-    keep: tuple[Wish, ...]
-    path: tuple[Design, ...]  #: all designs, the file as it is first
-    best: Design | None  #: by the first goal; none where no design keeps every limit
-    #: of two goals: designs none of which is beaten in both
-    front: tuple[Design, ...]
-    at_end: tuple[str, ...]  #: entries of the best design that are at an end of their range
-    entries: tuple[Entry, ...]  #: entries that vary
-    trace: Trace | FrontTrace  #: record of the search
-    most: int  #: designs at most
-    followed: tuple[str, ...]  #: sentences on entries that follow
-    #: why values have no error bars; empty where they have
-    unbarred: str = ""
-    solved: str = ""  #: how every design was solved, in words
-
-    @property
-    def goal(self) -> Wish:
-        """First goal."""
-        return self.goals[0]
-
-    @property
-    def gain(self) -> Change | None:
-        """Change from the file to the best design; None where one of them has no number, and of two
-        goals.
-        """
-        first, best = self.path[0], self.best
-        if self.front or best is None or first.value is None or best.value is None:
-            return None
-        return Change(first.value, best.value, first.bar, best.bar)
 
     @property
     def sentences(self) -> list[str]:

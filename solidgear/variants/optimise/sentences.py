@@ -4,25 +4,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
 
 from solidgear.core.judge.change import Change
 from solidgear.show.units import ENGINEERING, Units
 from solidgear.variants.optimise.front import FrontTrace
+from solidgear.variants.optimise.outcome import Outcome
 from solidgear.variants.optimise.pool import Design
 from solidgear.variants.optimise.search import FINE, TOLERANCE, Trace
 from solidgear.variants.optimise.wish import Wish
 from solidgear.variants.sweep.entries import Entry, in_si
 
-if TYPE_CHECKING:
-    from solidgear.variants.optimise.optimise import Optimum
-
-
 #: relative error bar that is rounding alone
 ROUNDING = 1e-9
 
 
-def sentences(optimum: Optimum, units: Units = ENGINEERING) -> Iterator[str]:
+def sentences(optimum: Outcome, units: Units = ENGINEERING) -> Iterator[str]:
     """Yield the conclusions of a search."""
     solved = [design for design in optimum.path if design.status == "ok"]
     if not solved:
@@ -40,7 +36,7 @@ def sentences(optimum: Optimum, units: Units = ENGINEERING) -> Iterator[str]:
         yield f"{sentence}."
 
 
-def _without_any(optimum: Optimum, solved: Sequence[Design], units: Units) -> Iterator[str]:
+def _without_any(optimum: Outcome, solved: Sequence[Design], units: Units) -> Iterator[str]:
     """Yield sentences on a search in which no design keeps all limits."""
     limits = ", ".join(map(str, optimum.keep))
     yield f"No design of {len(solved)} keeps {limits}, error bars included."
@@ -52,7 +48,7 @@ def _without_any(optimum: Optimum, solved: Sequence[Design], units: Units) -> It
     )
 
 
-def _front(optimum: Optimum, units: Units) -> Iterator[str]:
+def _front(optimum: Outcome, units: Units) -> Iterator[str]:
     """Yield sentences on a front of two goals."""
     front, (first_goal, second_goal) = optimum.front, optimum.goals
     count = f"{len(front)} designs are" if len(front) > 1 else "1 design is"
@@ -76,20 +72,20 @@ def _front(optimum: Optimum, units: Units) -> Iterator[str]:
         yield f"They have no error bars ({optimum.unbarred.removeprefix('none: ')})."
 
 
-def _beats(optimum: Optimum, design: Design, rival: Design) -> bool:
+def _beats(optimum: Outcome, design: Design, rival: Design) -> bool:
     """Return True for a design that is better than another in every goal."""
     pairs = zip(optimum.goals, design.goals, rival.goals)
     return all((a.value > b.value) if goal.upward else (a.value < b.value) for goal, a, b in pairs)
 
 
-def _as_good(optimum: Optimum, design: Design, rival: Design) -> bool:
+def _as_good(optimum: Outcome, design: Design, rival: Design) -> bool:
     """Return True where error bars of two designs leave open which is better, in every goal."""
     pairs = zip(design.goals, rival.goals)
     changes = [Change(a.value, b.value, a.bar, b.bar) for a, b in pairs]
     return all(change.verdict == "not resolved" for change in changes)
 
 
-def _best(optimum: Optimum, best: Design, units: Units) -> Iterator[str]:
+def _best(optimum: Outcome, best: Design, units: Units) -> Iterator[str]:
     """Yield sentences on the best design of one goal."""
     goal, gain = optimum.goal, optimum.gain
     yield (
@@ -128,7 +124,7 @@ def _best(optimum: Optimum, best: Design, units: Units) -> Iterator[str]:
         yield f"{label} is at the end of its range; a wider range may hold a better design."
 
 
-def numbers(optimum: Optimum, design: Design, units: Units) -> str:
+def numbers(optimum: Outcome, design: Design, units: Units) -> str:
     """Return the goals of a design in words."""
     if len(optimum.goals) == 1:
         return with_bar(optimum.goal, design.value, design.bar, units)
@@ -144,7 +140,7 @@ def with_bar(wish: Wish, value: float | None, bar: float | None, units: Units) -
     return f"{text} {units.unit(wish.unit)}".strip()
 
 
-def listed_values(optimum: Optimum, design: Design, units: Units = ENGINEERING) -> str:
+def listed_values(optimum: Outcome, design: Design, units: Units = ENGINEERING) -> str:
     """Return the values of a design, in the units in which they were asked for."""
     entries = {entry.label: entry for entry in optimum.entries}
     return ", ".join(
@@ -166,7 +162,7 @@ def value_text(entry: Entry | None, value: str | float | None, units: Units = EN
 
 
 # ------------------------------------------------------------------------------ how it was searched
-def solved_all_of(optimum: Optimum) -> Iterator[str]:
+def solved_all_of(optimum: Outcome) -> Iterator[str]:
     """Yield sentences on what was searched, and how sure the result is."""
     trace = optimum.trace
     if isinstance(trace, FrontTrace):
@@ -175,7 +171,7 @@ def solved_all_of(optimum: Optimum) -> Iterator[str]:
         yield from _searched(optimum, trace)
 
 
-def _searched(optimum: Optimum, trace: Trace) -> Iterator[str]:
+def _searched(optimum: Outcome, trace: Trace) -> Iterator[str]:
     """Yield sentences on a search by one goal."""
     best, count = optimum.best, len(optimum.path)
     if trace.whole:
@@ -209,7 +205,7 @@ def _searched(optimum: Optimum, trace: Trace) -> Iterator[str]:
         yield from _ends(optimum, trace, best)
 
 
-def _ends(optimum: Optimum, trace: Trace, best: Design) -> Iterator[str]:
+def _ends(optimum: Outcome, trace: Trace, best: Design) -> Iterator[str]:
     """Yield a sentence on where local searches ended."""
     upward, size = optimum.goal.upward, abs(best.value or 0.0)
     behind = [
@@ -234,7 +230,7 @@ def _ends(optimum: Optimum, trace: Trace, best: Design) -> Iterator[str]:
 NEAR_BEST = 0.01
 
 
-def _searched_front(optimum: Optimum, trace: FrontTrace) -> Iterator[str]:
+def _searched_front(optimum: Outcome, trace: FrontTrace) -> Iterator[str]:
     """Yield sentences on a search for a front."""
     if trace.whole:
         yield f"Searched: all {len(optimum.path) - 1} combinations, so that the front is whole."
@@ -264,7 +260,7 @@ def _count_of(count: int, thing: str, things: str = "") -> str:
     return f"{count} {thing if count == 1 else things or f'{thing}s'}"
 
 
-def _space(optimum: Optimum, trace: Trace) -> str:
+def _space(optimum: Outcome, trace: Trace) -> str:
     ranges = sum(entry.open for entry in optimum.entries)
     lists = len(optimum.entries) - ranges
     total = math.prod(len(entry.values) for entry in optimum.entries if not entry.open)
@@ -275,7 +271,7 @@ def _space(optimum: Optimum, trace: Trace) -> str:
     return f"{combinations} and {spans}" if ranges else combinations
 
 
-def _refused(optimum: Optimum) -> Iterator[str]:
+def _refused(optimum: Outcome) -> Iterator[str]:
     """Yield a sentence on designs that were refused, with the commonest reason."""
     whys = [design.status for design in optimum.path if design.status != "ok"]
     if not whys:

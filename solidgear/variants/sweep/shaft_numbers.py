@@ -8,8 +8,7 @@ from typing import Any
 
 from solidgear.bearings.duty import LivesOverPoints
 from solidgear.core import Scene, SolidgearError, build
-from solidgear.core.scene.closed_form import mass_properties
-from solidgear.guards.one_shaft import ROUNDING, mass_of
+from solidgear.guards.one_shaft import ROUNDING, mass_of, round_mass
 from solidgear.strength.acting import FEW
 from solidgear.strength.deflection.at_rest import Measured, deflections
 from solidgear.strength.load import AT_REST
@@ -84,7 +83,7 @@ def mass_alone(scene: Scene, model: str | None) -> tuple[float, float | None]:
     there is one, else that of a mesh.
     """
     if scene.body is None and not scene.features:
-        mass = mass_properties(scene.outline).mass
+        mass = round_mass(scene)
         return mass, ROUNDING * mass
     mass, bar = mass_of(scene, build(scene, model or JUDGE))
     return mass, bar and bar * mass
