@@ -108,6 +108,7 @@ class Trace:
     further_searches: int = 0  #: searches of the last round
     rounds: int = 0
     missed: int = 0  #: combinations of lists without a design
+    refused: int = 0  #: combinations whose designs were all refused
     passed: int = 0  #: combinations with samples alone
     nearest_passed: float = math.inf  #: relative distance of the best of these from the best
     whole: bool = False  #: whether every combination was solved, and nothing else is open
@@ -382,11 +383,14 @@ def _pass_over(aim: Aim, trace: Trace) -> None:
     designs = [design for design in pool.designs if design.place is not None]
     sampled = {design.place.choices for design in designs if design.place is not None}
     trace.missed = pool.space.combinations - len(sampled)
+    by_choices = {choices: pool.of_choices(choices) for choices in sampled}
+    sound = {k for k, samples in by_choices.items() if any(d.goals for d in samples)}
+    trace.refused = len(sampled - sound)
     searched = {end.end.place.choices for end in trace.ends if end.end.place is not None}
-    passed = set() if trace.whole else sampled - searched
+    passed = set() if trace.whole else sound - searched
     trace.passed = len(passed)
     if passed:
         best = aim.best(designs)
-        nearest = min(aim.merit(aim.best(pool.of_choices(choices))) for choices in passed)
+        nearest = min(aim.merit(aim.best(by_choices[choices])) for choices in passed)
         size = max(abs(aim.loss(best)), TOLERANCE)
         trace.nearest_passed = (nearest - aim.merit(best)) / size

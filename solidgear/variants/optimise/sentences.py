@@ -184,11 +184,13 @@ def _searched(optimum: Outcome, trace: Trace) -> Iterator[str]:
         "separate places."
     )
     if trace.missed:
-        yield f"{trace.missed} combinations of the lists were left out."
+        yield f"{_count_of(trace.missed, 'combination')} of the lists left out."
+    if trace.refused:
+        yield f"{_count_of(trace.refused, 'combination')} of the lists refused in every design."
     if trace.passed and math.isfinite(trace.nearest_passed) and best is not None:
         yield (
-            f"{trace.passed} combinations were sampled alone; the nearest of them is "
-            f"{100 * trace.nearest_passed:.2g} % behind the best, limits counted."
+            f"{_count_of(trace.passed, 'combination')} sampled without a local search; the nearest is "
+            f"{100 * trace.nearest_passed:.2g} % behind the best, missed limits counted."
         )
     if trace.cut:
         yield (
@@ -247,7 +249,7 @@ def _searched_front(optimum: Outcome, trace: FrontTrace) -> Iterator[str]:
     )
     missed = max((end.missed for end in trace.ends), default=0)
     if missed:
-        yield f"{missed} combinations of the lists were left out by the searches of the ends."
+        yield f"{_count_of(missed, 'combination')} of the lists left out."
     if trace.cut:
         yield (
             f"Stopped at {optimum.most} designs: the front may have gaps and ends further out; a "
