@@ -190,7 +190,7 @@ def _searched(optimum: Outcome, trace: Trace) -> Iterator[str]:
     if trace.passed and math.isfinite(trace.nearest_passed) and best is not None:
         yield (
             f"{_count_of(trace.passed, 'combination')} sampled without a local search; the nearest is "
-            f"{100 * trace.nearest_passed:.2g} % behind the best, missed limits counted."
+            f"{100 * trace.nearest_passed:.3g} % behind the best, missed limits counted."
         )
     if trace.cut:
         yield (
