@@ -211,7 +211,7 @@ def brute(problem: Problem) -> tuple[list[dict[str, Any]], dict[str, Any]]:
     goal = wish_of(problem.goals[0])
     rows = grid(problem, spans, problem.lists)
     best = _best(problem, goal, rows)
-    words = {path: (str(best[path]),) for path in problem.lists}
+    words = {path: (_word(best[path]),) for path in problem.lists}
     for _ in range(TIMES if len(problem.goals) == 1 and problem.ranges else 0):
         spans = [
             _around(_in_unit(best[r.path], r.unit), r, span, FINER[len(spans)])
@@ -220,6 +220,11 @@ def brute(problem: Problem) -> tuple[list[dict[str, Any]], dict[str, Any]]:
         rows += grid(problem, spans, words)
         best = _best(problem, goal, rows)
     return rows, best
+
+
+def _word(value: str | float) -> str:
+    """Return a value of a list as a file has it."""
+    return value if isinstance(value, str) else f"{value:g}"
 
 
 def _best(problem: Problem, goal: Wish, rows: Sequence[dict[str, Any]]) -> dict[str, Any]:
