@@ -295,7 +295,12 @@ def _link(count: int, dimension: int) -> float:
 
 def _searched(aim: Aim, start: Design, trace: Trace, exchange: bool) -> Design:
     """Return the end of a local search, and record it."""
-    end = descend(aim, start, FIRST, COARSE, exchange)
+    try:
+        end = descend(aim, start, FIRST, COARSE, exchange)
+    except EnoughDesigns:
+        assert start.place is not None
+        trace.ends.append(End(start, aim.best(aim.pool.of_choices(start.place.choices))))
+        raise
     trace.ends.append(End(start, end))
     return end
 
@@ -387,7 +392,7 @@ def _pass_over(aim: Aim, trace: Trace) -> None:
     sound = {k for k, samples in by_choices.items() if any(d.goals for d in samples)}
     trace.refused = len(sampled - sound)
     searched = {end.end.place.choices for end in trace.ends if end.end.place is not None}
-    passed = set() if trace.whole else sound - searched
+    passed = sound - searched if pool.space.lists and not trace.whole else set()
     trace.passed = len(passed)
     if passed:
         best = aim.best(designs)
