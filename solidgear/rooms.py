@@ -18,10 +18,17 @@ ADDITIONS = {
         "teeth": "cuts.features.toothed:Teeth",
         "spline": "cuts.features.toothed:Spline",
         "bolt_circle": "cuts.features.bolt_circle:BoltCircle",
+        "ring_groove": "cuts.features.grooves:RingGroove",
+        "round_groove": "cuts.features.grooves:RoundGroove",
+        "v_groove": "cuts.features.grooves:VGroove",
+        "relief": "cuts.features.relief:Relief",
+        "thread": "cuts.features.thread:Thread",
+        "press_fit": "cuts.features.press_fit:PressFit",
     },
     "table": {
         "catalogue": "bearings.catalogue:Catalogue",
         "arrangement": "bearings.arrangement:Pairs",
+        "list of bearings": "bearings.scene_list:complete",
         "body": "parts.table:Parts",
     },
     "file": {

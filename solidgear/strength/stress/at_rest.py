@@ -21,10 +21,18 @@ from solidgear.core.plain import plain
 from solidgear.core.scene.filleted import filleted
 from solidgear.parts.body_file import BodyFile
 from solidgear.strength.load import AT_REST, LoadsAlone, loads_alone
+from solidgear.strength.stress.conditions import Conditions
+from solidgear.strength.stress.duty import DutyForces, cycles_of
+from solidgear.strength.stress.norm.steels import strength_of
 from solidgear.strength.stress.notch import ENOUGH
-from solidgear.strength.stress.rating import Conditions
 from solidgear.strength.stress.section_forces import COMPONENTS, SectionForces, forces_of
-from solidgear.strength.stress.shaft import ShaftStress, check_tolerance, local_stress, shaft_stress
+from solidgear.strength.stress.shaft import (
+    ShaftStress,
+    check_tolerance,
+    least_safety,
+    local_stress,
+    shaft_stress,
+)
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.train import ALONE, Train
@@ -63,12 +71,16 @@ class StressedShaft:
     #: none are open
     open_moment: tuple[float, float] | None
     open: Mapping[str, tuple[float, float]]  #: the same of the amplitude on each fillet, Pa
+    #: the same of the least safety of all notches; None of a duty table, or without ratings
+    open_safety: tuple[float, float] | None = None
 
     @property
     def weak(self) -> tuple[str, ...]:
-        """Segments with a fillet whose material has no strength."""
+        """Segments with a notch whose material has no strength."""
         segments = [self.scene.segments[notch.found.corner.owner] for notch in self.found.notches]
-        return tuple(dict.fromkeys(s.name for s in segments if s.material.strength is None))
+        names = {drawn.segment for drawn in self.found.drawn}
+        segments += [segment for segment in self.scene.segments if segment.name in names]
+        return tuple(dict.fromkeys(s.name for s in segments if strength_of(s) is None))
 
 
 @dataclass(frozen=True)
@@ -77,6 +89,7 @@ class StressSettings:
 
     tolerance: float = ENOUGH  #: relative error bar of form factors at which their meshes stop
     conditions: Conditions = Conditions()  #: of the rating by DIN 743
+    duty: bool = False  #: whether ratings are over the duty table
 
     def __post_init__(self) -> None:
         check_tolerance(self.tolerance)
@@ -103,6 +116,8 @@ class StressAtRest(Sheeted):
     shafts: tuple[StressedShaft, ...]
     open_by: str  #: open data of bearings, in words; empty if none
     cautions: tuple[str, ...] = ()  #: beside the remarks of each shaft
+    #: labels of the points of the duty table that ratings are over; empty where they are of the loads
+    duty: tuple[str, ...] = ()
 
     @property
     def reached(self) -> bool:
@@ -143,7 +158,8 @@ def stress_at_rest(
         state = usual if as_stated else Operating(settling, model, choice=choice).at(point)
         return _on_shafts(settling, state)
 
-    shafts, open_by = _shafts(train, acting, asked, progress)
+    duty = _duty(train, settling, model, asked) if asked.duty else {}
+    shafts, open_by = _shafts(train, acting, asked, duty, progress)
     files = {side: shaft.scene.body for side, shaft in assembly.train.shafts.items()}
     left_out = [text for k in files for text in _file_cautions(files[k], train.shafts[k].scene)]
     torque = _torque_cautions(train) if load is None else _load_cautions(train, load)
@@ -155,7 +171,24 @@ def stress_at_rest(
         shafts=shafts,
         open_by=open_by,
         cautions=(*left_out, *usual.notes, *settling.data_cautions, *torque),
+        duty=tuple(each.label for each in train.operation) if asked.duty else (),
     )
+
+
+def _duty(
+    train: Train, settling: Assembly, model: str, asked: StressSettings
+) -> dict[str, list[DutyForces]]:
+    """Return section forces and turns of every shaft over the points of the duty table."""
+    turns = cycles_of(train, asked.conditions)
+    out: dict[str, list[DutyForces]] = {side: [] for side in turns}
+    operating = Operating(settling, model)
+    state: OperatingState | None = None
+    for k, each in enumerate(train.operation):
+        state = operating.at(each, state)
+        for side, acting in _on_shafts(settling, state).items():
+            forces = forces_of(train.shaft(side), acting.loads, acting.gravity)
+            out[side].append(DutyForces(each.label, forces, turns[side][k]))
+    return out
 
 
 def _file_cautions(file: BodyFile | None, scene: Scene) -> Iterator[str]:
@@ -238,6 +271,7 @@ def _shafts(
     train: Train,
     acting: Callable[[Choice], dict[str, ShaftLoads]],
     asked: StressSettings,
+    duty: Mapping[str, Sequence[DutyForces]],
     progress: Progress,
 ) -> tuple[tuple[StressedShaft, ...], str]:
     """Return the stress of every shaft, and in words which data of bearings are open."""
@@ -256,12 +290,26 @@ def _shafts(
             gravity=shaft_loads.gravity,
             tolerance=asked.tolerance,
             conditions=asked.conditions,
+            duty=duty.get(side, ()),
             progress=progress,
         )
         further = [forces_of(scene, loads[side].loads, loads[side].gravity) for loads in variants]
         name = scene.name if train.is_one_shaft else side
-        shafts.append(StressedShaft(name, scene, shaft_loads, stress, *_ranges(stress, further)))
+        safety = None if asked.duty else _open_safety(scene, stress, further, asked.conditions)
+        ranges = _ranges(stress, further)
+        shafts.append(StressedShaft(name, scene, shaft_loads, stress, *ranges, safety))
     return tuple(shafts), open_by
+
+
+def _open_safety(
+    scene: Scene, stress: ShaftStress, variants: Sequence[SectionForces], conditions: Conditions
+) -> tuple[float, float] | None:
+    """Return the range of the least safety over the section forces solved and the variants."""
+    usual = [notch.rating.worst for notch in stress.worst if notch.rating is not None]
+    if not variants or not usual:
+        return None
+    others = [least_safety(scene, stress, forces, conditions) for forces in variants]
+    return min(*others, *usual[:1]), max(*others, *usual[:1])
 
 
 def _ranges(

@@ -13,7 +13,7 @@ from solidgear.show.command import Group, command
 from solidgear.show.options import BY_MODEL, MODEL, Choice, Shown, relative
 from solidgear.show.sheet import present
 from solidgear.strength.acting import Acting, AtRestFile
-from solidgear.strength.stress.rating import Conditions
+from solidgear.strength.stress.conditions import Conditions
 from solidgear.strength.stress.study import stress as stressed
 
 
@@ -23,23 +23,55 @@ class Rated(Group):
 
     roughness: Annotated[
         str | None,
-        typer.Option(help='Roughness Rz of the fillets, such as "6.3 um"; else K_F is 1.'),
+        typer.Option(help='Roughness Rz of the notches, such as "6.3 um"; else K_F is 1.'),
     ] = None
     ultimate_at_size: Annotated[
         float | None,
-        typer.Option(help="K_1 of the tensile strength, by the size of the part; else 1."),
+        typer.Option(
+            help="K_1 of the tensile strength, by the size of the part; else by the group of the "
+            "steel, or 1."
+        ),
     ] = None
     yield_at_size: Annotated[
-        float | None, typer.Option(help="K_1 of the yield point, by the size of the part; else 1.")
+        float | None,
+        typer.Option(
+            help="K_1 of the yield point, by the size of the part; else by the group of the steel, "
+            "or 1."
+        ),
+    ] = None
+    treated_diameter: Annotated[
+        str | None,
+        typer.Option(
+            help='Diameter of heat treatment for K_1, such as "80 mm"; else the largest of the '
+            "shaft."
+        ),
     ] = None
     hardening: Annotated[
         float | None, typer.Option(help="K_V of a hardened or rolled surface; else 1.")
+    ] = None
+    hard_surface: Annotated[
+        bool, typer.Option("--hard-surface", help="The surface is case-hardened or nitrided.")
+    ] = False
+    surface_strength: Annotated[
+        str | None,
+        typer.Option(help="Tensile strength of a hard surface, for the safety of a first crack."),
     ] = None
     force_share: Annotated[
         float | None, typer.Option(help="Amplitude of the axial force over its mean; else 0.")
     ] = None
     torque_share: Annotated[
         float | None, typer.Option(help="Amplitude of the torque over its mean; else 0.")
+    ] = None
+    bending_share: Annotated[
+        float | None,
+        typer.Option(
+            help="Amplitude of bending over its mean, of a shaft that does not turn; else bending "
+            "is all amplitude."
+        ),
+    ] = None
+    overload: Annotated[
+        float | None,
+        typer.Option(help="Largest load over the load, for yielding and first cracks; else 1."),
     ] = None
     constant_mean: Annotated[
         bool,
@@ -49,6 +81,24 @@ class Rated(Group):
             "2).",
         ),
     ] = False
+
+    cycles: Annotated[
+        float | None, typer.Option(help="Cycles of the load, for a finite life; else endless.")
+    ] = None
+    spectrum: Annotated[
+        str | None,
+        typer.Option(
+            help='Factors of the load with their cycles, such as "1:2e4, 0.7:1e6"; Miner\'s '
+            "consequent rule."
+        ),
+    ] = None
+    hours: Annotated[
+        float | None,
+        typer.Option(help="Life in hours, of a duty table with shares of the time."),
+    ] = None
+    damage_sum: Annotated[
+        float | None, typer.Option(help="Sum of damage that a spectrum bears; else 0.3.")
+    ] = None
 
     def conditions(self) -> Conditions:
         """Return the options read as conditions of a rating; refuse one that cannot be read."""
@@ -73,6 +123,12 @@ def stress(
         float,
         relative("--tol", "Error bar allowed for a form factor."),
     ] = 0.01,
+    duty: Annotated[
+        bool,
+        typer.Option(
+            "--duty", help="Rate over all cases or operating points, by share or hours and speed."
+        ),
+    ] = False,
     rated: Rated,
     out: Annotated[
         Path | None,
@@ -87,6 +143,7 @@ def stress(
             **vars(acting),
             tol=tol,
             conditions=rated.conditions(),
+            duty=duty,
             progress=progress,
         ).sheet(run.units),
         run,

@@ -8,8 +8,8 @@ from typing import Any
 from solidgear.core import Source, explained
 from solidgear.strength.acting import Acting, Given
 from solidgear.strength.stress.at_rest import StressAtRest, StressSettings, stress_at_rest
+from solidgear.strength.stress.conditions import Conditions
 from solidgear.strength.stress.notch import ENOUGH
-from solidgear.strength.stress.rating import Conditions
 from solidgear.trains.assembly.shaft import JUDGE
 from solidgear.trains.file.train import Train
 
@@ -27,6 +27,7 @@ def stress(
     drive: Mapping[str, str | float] | list[str] | None = None,
     tol: float = ENOUGH,
     conditions: Mapping[str, Any] | Conditions | None = None,
+    duty: bool = False,
     progress: Callable[[str], None] = lambda text: None,
 ) -> StressAtRest:
     """Stress of shafts at rest: section forces, nominal stress, stress on fillets, DIN 743.
@@ -43,15 +44,20 @@ def stress(
         Error bar allowed for a form factor, relative.
     conditions : mapping or Conditions, optional
         Of the rating by DIN 743: ``roughness``, ``ultimate_at_size``, ``yield_at_size``,
-        ``hardening``, ``force_share``, ``torque_share``, ``constant_mean``.
+        ``treated_diameter``, ``hardening``, ``hard_surface``, ``surface_strength``,
+        ``force_share``, ``torque_share``, ``bending_share``, ``overload``, ``constant_mean``,
+        ``cycles``, ``spectrum``, ``hours``, ``damage_sum``.
+    duty : bool
+        Whether ratings are over all cases of a shaft or operating points of a train, by their
+        shares or hours and speeds.
     progress : callable
         Called with a sentence at every step.
 
     Returns
     -------
     StressAtRest
-        ``shafts``, each with its forces, nominal stress and ``notches``. ``write(folder)`` makes a
-        page, section forces and their charts.
+        ``shafts``, each with its forces, nominal stress, fillets (``notches``) and rated features
+        (``drawn``). ``write(folder)`` makes a page, section forces and their charts.
 
     Raises
     ------
@@ -70,7 +76,7 @@ def stress(
     """
     if not isinstance(conditions, Conditions):
         conditions = Conditions(**(conditions or {}))
-    settings = StressSettings(tol, conditions)
+    settings = StressSettings(tol, conditions, duty)
     assembly, at = Acting(torque, of, point, weight, load, case, drive).read(source)
     with explained(source):
         return stress_at_rest(assembly, at, model, settings, progress)

@@ -15,7 +15,7 @@ from solidgear.core.scene.paths import Tables
 from solidgear.core.scene.paths import entry as value_in_file
 from solidgear.variants.sweep.design import Design
 from solidgear.variants.sweep.entries import Entry, KeptSum, explained, in_si, put_in
-from solidgear.variants.sweep.following import Follower, followers_of
+from solidgear.variants.sweep.following import Follower, followers_of, list_in
 
 #: name of the file that was asked about, among others that it names
 MAIN = ""
@@ -225,6 +225,7 @@ def scene_variants(scene: Source, design: Design, example: str) -> SceneVariants
         files,
         owner,
         lambda name: scene_of(files[name], path, alone=False),
+        lambda name: list_in(files[name], path.parent),
         design.follow,
     )
     return SceneVariants(path, files, points.entries, points.values, points.sums, design, followers)

@@ -8,10 +8,13 @@ inner dimensions are those of one designation, and are left out for others.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any, Protocol
 
+from solidgear.bearings.bearing_list import read_list, with_listed
 from solidgear.bearings.catalogue import Catalogue, catalogue_of
 from solidgear.core import TOUCH, Scene, SceneError, SolidgearError, listed, show
 from solidgear.core.scene.paths import Keys, Tables, keys_of, label_of, replace_entry
@@ -36,6 +39,8 @@ DATA_OF_DESIGNATION = (
     "contact_angle",
     "conformity",
     "row_distance",
+    "ribs",
+    "rib_stiffness",
 )
 #: relative, of lengths that are the same
 SAME = 1e-9
@@ -77,6 +82,7 @@ class Seat:
     #: whether the bearing of the file fits its seat, as others must then
     fits: bool
     label: str  #: path of the designation
+    listed: Path | None  #: file of a list of bearings, where designations are looked up first
 
     @property
     def file(self) -> str:
@@ -99,8 +105,8 @@ class Seat:
         if self.dropped:
             parts.append(
                 f"{listed(self.dropped)} of the file {_verb(self.dropped, 'belong')} to "
-                f"{show(self.in_file)} and {_verb(self.dropped, 'are')} left out for others, which "
-                "are rated by their dimensions"
+                f"{show(self.in_file)} and {_verb(self.dropped, 'are')} left out for others, whose "
+                "data are those of a list of bearings or estimated"
             )
         return f"{self.label} varies: {'; '.join(parts)}"
 
@@ -110,7 +116,7 @@ class Seat:
             return tables
         for key in self.dropped:
             tables = _dropping(tables, (*keys[:-1], key))
-        data = catalogue_in(tables, keys[:-1])
+        data = catalogue_in(tables, keys[:-1], self.listed)
         if data is None:
             return tables  # refused by the reader of the file
         if data.both_ways or data.floats:
@@ -178,10 +184,11 @@ def followers_of(
     files: Mapping[str, Tables],
     owner: Owner,
     scene_of_file: Callable[[str], Scene],
+    list_of_file: Callable[[str], Path | None],
     follow: Iterable[str] = (),
 ) -> tuple[Follower, ...]:
-    """Return what follows the entries that vary; `follow` names further diameters that follow the
-    bore of a bearing.
+    """Return what follows the entries that vary, given the scene of a file and the list of bearings
+    that it names; `follow` names further diameters that follow the bore of a bearing.
     """
     moved = {(place.file, place.keys) for varying in varied for place in varying.places}
     seats: list[Seat] = []
@@ -190,14 +197,21 @@ def followers_of(
         for place in varying.places:
             if place.keys[-1] == "designation" and {*varying.words} - {varying.in_file}:
                 scene = scene_of_file(place.file)
-                seats.append(_seat(place, files[place.file], scene, moved))
+                listed_in = list_of_file(place.file)
+                seats.append(_seat(place, files[place.file], scene, moved, listed_in))
             radii += _pitch_radius(place, files[place.file], moved)
     for text in follow:
         seats = _with_diameter(text, seats, files, owner, moved)
     return (*seats, *radii)
 
 
-def _seat(place: Place, tables: Tables, scene: Scene, moved: set[tuple[str, Keys]]) -> Seat:
+def _seat(
+    place: Place,
+    tables: Tables,
+    scene: Scene,
+    moved: set[tuple[str, Keys]],
+    listed_in: Path | None,
+) -> Seat:
     """Return a bearing whose designation varies, with the seat that it has in the file."""
     file, keys = place.file, place.keys
     table = value_in_file(keys[:-1], tables)
@@ -218,6 +232,7 @@ def _seat(place: Place, tables: Tables, scene: Scene, moved: set[tuple[str, Keys
         shoulders=(),
         fits=not any(misfits_of(scene, bearing)),
         label=place.label,
+        listed=listed_in,
     )
     if data is None:
         return seat
@@ -312,13 +327,15 @@ def _largest(scene: Scene, name: str) -> float:
     return max(max(s.outer0, s.outer1) for s in scene.segments if s.name == name)
 
 
-def catalogue_in(tables: Tables, keys: Keys) -> Catalogue | None:
+def catalogue_in(tables: Tables, keys: Keys, listed: Path | None) -> Catalogue | None:
     """Return the catalogue data of a bearing in the tables of a file, whichever way it holds the
     shaft; None where they are refused.
     """
     table = value_in_file(keys, tables)
     for way in dict[str, Any](), {"holds": "+y"}:
         try:
+            if listed is not None:
+                table = with_listed(table, read_list(os.fspath(listed), Catalogue))
             return Catalogue(**{**table, **way})
         except (SceneError, TypeError):
             continue
@@ -337,6 +354,12 @@ def _dropping(tables: Any, keys: Keys) -> Any:
     if further:
         return {**tables, first: _dropping(tables[first], tuple(further))}
     return {key: value for key, value in tables.items() if key != first}
+
+
+def list_in(tables: Tables, folder: Path) -> Path | None:
+    """Return the file of the list of bearings that tables name; None where they name none."""
+    name = tables.get("bearings")
+    return folder / name if isinstance(name, str) else None
 
 
 def _verb(things: Sequence[Any], plural: str) -> str:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.core import Scene, SolidgearError, Source, document_of, listed
+from solidgear.core import Document, Scene, SolidgearError, Source, document_of, listed
 from solidgear.core.loading import scene_of
 from solidgear.core.scene.file import KEYS
 from solidgear.core.scene.paths import Tables, with_entry
@@ -23,7 +23,7 @@ from solidgear.trains.load.operation import named_point
 from solidgear.variants.sweep.design import Design
 from solidgear.variants.sweep.entries import Entry, Place
 from solidgear.variants.sweep.file_variants import MAIN, POINT, FileVariants
-from solidgear.variants.sweep.following import followers_of
+from solidgear.variants.sweep.following import followers_of, list_in
 
 #: table of operating points
 OPERATION = "operation"
@@ -88,7 +88,11 @@ class TrainVariants(FileVariants[Train]):
         return train
 
     def read(self, varied: Sequence[Entry], row: Sequence[float]) -> Train:
-        def of_side(side: str, path: Path, alone: bool) -> Scene:
+        def of_side(side: str, source: Path | Document, alone: bool) -> Scene:
+            # with tables come the list of bearings of the train
+            given = source.tables if isinstance(source, Document) else {}
+            path = Path(source.path) if isinstance(source, Document) else source
+            of_train = {key: given[key] for key in ("bearings",) if key in given}
             key = (
                 side,
                 str(path),
@@ -100,7 +104,7 @@ class TrainVariants(FileVariants[Train]):
                     self._scenes.clear()
                 usual = path == self.path.parent / str(shafts_in(self.files[MAIN])[side]["scene"])
                 other = None if usual else document_of(path).tables
-                tables = self.put(side, varied, row, other)
+                tables = {**of_train, **self.put(side, varied, row, other)}
                 scene = scene_of(tables, path, alone)
                 self._scenes[key] = self.fitting(side, tables, scene)
             return self._scenes[key]
@@ -145,11 +149,20 @@ def train_variants(
             keys = ("mesh", *place, "local_harmonics")
             files[MAIN] = with_entry(files[MAIN], keys, list(local_harmonics))
 
-    def scene_of_side(side: str) -> Scene:
+    def path_of_side(side: str) -> Path:
         scene = shafts[side]["scene"]
-        return scene_of(files[side], path.parent / scene if isinstance(scene, str) else path, False)
+        return path.parent / scene if isinstance(scene, str) else path
 
-    followers = followers_of(varied, files, owner, scene_of_side, design.follow)
+    def list_of_side(side: str) -> Path | None:
+        listed_in = list_in(files[side], path_of_side(side).parent)
+        return listed_in or list_in(tables, path.parent)
+
+    def scene_of_side(side: str) -> Scene:
+        listed_in = list_of_side(side)
+        of_train = {} if listed_in is None else {"bearings": str(listed_in.resolve())}
+        return scene_of({**files[side], **of_train}, path_of_side(side), False)
+
+    followers = followers_of(varied, files, owner, scene_of_side, list_of_side, design.follow)
     return TrainVariants(
         path, files, varied, design_points.values, design_points.sums, design, followers, point
     )
