@@ -9,6 +9,8 @@ import pytest
 
 import solidgear as sg
 from solidgear.bearings.study import bearing_facts
+from solidgear.strength.stress.rating import Rating
+from solidgear.variants.sweep.shaft_numbers import lesser
 from tests.command import command
 from validation.common import read_result
 from validation.optimum import PROBLEMS, beside
@@ -169,3 +171,32 @@ def test_all_ten_searches_are_kept_beside_their_grids():
     assert {row["problem"] for row in rows} == {problem.name for problem in PROBLEMS}
     for row in rows:
         assert row["behind_percent"] < 0.1 or "Stopped at" in " ".join(row["words"]), row["problem"]
+
+
+def test_the_least_safety_of_several_notches_counts():
+    known = {"fatigue_safety": 2.0, "yield_safety": 1.5, "worst_notch": "step"}
+    rating = Rating((), 1.8, 3.0, None, 0.1, (), (1.2, 2.0), None)
+    assert lesser(known, rating, "groove") == {
+        "fatigue_safety": 1.8,
+        "fatigue_safety bar": 0.1,
+        "worst_notch": "groove",
+        "fatigue_safety_least": 1.2,
+        "yield_safety_least": 2.0,
+    }
+
+
+@pytest.mark.long
+def test_the_worst_notch_in_the_worst_case_counts():
+    """The least safety of all notches in the case that is worse, as it has it by itself."""
+    edited = tables(GEOMETRY / "pinion_filleted.toml") | {"material": "42CrMo4"}
+    edited["load"] = [{"name": "teeth", "on": "pinion", "z": "10 kN"}]
+    edited["case"] = [{"name": "high"}, {"name": "low", "factors": {"teeth": 0.4}}]
+    vary = "bearing.1.seat_width=39 mm,40 mm"
+    rows = sg.sweep(edited, vary, ask=["stress", "deflect"], **BEAM)
+    (worst, *_) = sg.stress(edited, "timoshenko").shafts[0].found.worst
+    assert rows["worst_notch"][1] == worst.name
+    assert rows["fatigue_safety"][1] == pytest.approx(worst.rating.fatigue, rel=1e-9)
+    assert rows["yield_safety"][1] == pytest.approx(worst.rating.yielding, rel=1e-9)
+    moved = sg.deflect(edited, "timoshenko").judge.displacement["pinion"]
+    size = (moved[0].value ** 2 + moved[2].value ** 2) ** 0.5
+    assert rows["deflection_pinion"][1] == pytest.approx(size, rel=1e-9)

@@ -172,13 +172,12 @@ def test_a_word_in_a_table_of_ones_own_is_a_word(tmp_path):
 
 
 def test_inner_dimensions_of_one_bearing_are_left_out_for_another():
-    rows = sg.sweep(GEARBOX, "bearing.B.catalogue.designation=7208 B,7310 B", n=1, **BEAM)
+    rows = sg.sweep(GEARBOX, "bearing.B.catalogue.designation=7208 B,7310 B", **BEAM)
     (sentence,) = rows.task.variants.followed
     assert "elements, element_diameter, pitch_diameter" in sentence and '"7208 B"' in sentence
     assert rows["segment.right.diameter"].tolist() == [0.04, 0.05]
     assert (
-        sg.sweep(GEARBOX, "bearing.B.catalogue.elements=14,15", n=1, **BEAM).task.variants.followed
-        == ()
+        sg.sweep(GEARBOX, "bearing.B.catalogue.elements=14,15", **BEAM).task.variants.followed == ()
     )
 
 

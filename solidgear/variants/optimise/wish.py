@@ -15,7 +15,7 @@ from solidgear.variants.sweep.curves import FORCE, MISALIGNMENT, misalignment_un
 from solidgear.variants.sweep.entries import amount, plain_number
 from solidgear.variants.sweep.life_numbers import BASIC, HOURS, LIFE, STATIC
 from solidgear.variants.sweep.scene_task import MOST_MODES, STATICS
-from solidgear.variants.sweep.shaft_numbers import FATIGUE, LOADS, LOCAL, MOVED, YIELD
+from solidgear.variants.sweep.shaft_numbers import LOADS, LOCAL, MOVED, SAFETIES
 from solidgear.variants.sweep.tooth_numbers import TOOTH_UNITS
 
 #: rows of a design: of a shaft one, of a train one for each operating point
@@ -130,7 +130,7 @@ NAMED = {
     HOURS: "h",
     "torque": "N m",
     LOCAL: "Pa stressed",
-    **dict.fromkeys((STATIC, FATIGUE, YIELD), ""),
+    **dict.fromkeys((STATIC, *SAFETIES), ""),
     **TOOTH_UNITS,
 }
 BEGINNINGS = {FORCE: "N", **{f"{moved}_": unit for moved, unit in MOVED.items()}, **TOOTH_UNITS}

@@ -178,8 +178,8 @@ def curves_of(
         statics=[
             line
             for column in columns
-            if (unit := at_rest_unit(column)) is not None
-            for line in curve(column, column, unit)
+            if (si := at_rest_unit(column)) is not None
+            for line in curve(column, column, si)
         ],
         mesh_force=[
             line

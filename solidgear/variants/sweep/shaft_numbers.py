@@ -13,6 +13,7 @@ from solidgear.strength.acting import FEW
 from solidgear.strength.deflection.at_rest import Measured, deflections
 from solidgear.strength.load import AT_REST
 from solidgear.strength.stress.at_rest import stress_at_rest
+from solidgear.strength.stress.rating import Rating
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.shaft import JUDGE
 from solidgear.trains.file.operation import OperatingPoint
@@ -28,8 +29,11 @@ ASKED = (ANSWER, DEFLECTION, BEARING, STRESS)
 MOVED = {"deflection": "m moved", "slope": "rad moved"}
 #: columns of loads of bearings, and their units
 LOADS = {"radial": "N", "axial": "N", "moment": "N m"}
-#: columns of the worst notch
-FATIGUE, YIELD, WORST, LOCAL = "fatigue_safety", "yield_safety", "worst_notch", "notch_stress"
+#: columns of the worst notch: safeties, and with the least K_1 where none is known
+FATIGUE, YIELD, CRACK = "fatigue_safety", "yield_safety", "crack_safety"
+LEAST_FATIGUE, LEAST_YIELD = f"{FATIGUE}_least", f"{YIELD}_least"
+SAFETIES = (FATIGUE, YIELD, CRACK, LEAST_FATIGUE, LEAST_YIELD)
+WORST, LOCAL = "worst_notch", "notch_stress"
 BAR = " bar"
 
 
@@ -52,7 +56,7 @@ def columns_of(scene: Scene, ask: Sequence[str], barred: bool) -> dict[str, type
     if BEARING in ask:
         out |= life_columns(b.name for b in scene.bearings if b.catalogue is not None)
     if STRESS in ask:
-        out |= {FATIGUE: float, f"{FATIGUE}{BAR}": float, YIELD: float}
+        out |= dict.fromkeys(SAFETIES, float) | {f"{FATIGUE}{BAR}": float}
         out |= {LOCAL: float, f"{LOCAL}{BAR}": float, WORST: str}
     return out
 
@@ -136,21 +140,29 @@ def _stress(scene: Scene, model: str) -> dict[str, Any]:
     out: dict[str, Any] = {}
     for point in _points(assembly):
         (stressed,) = stress_at_rest(assembly, point, model).shafts
-        notches = stressed.found.worst
-        if not notches:
-            raise SolidgearError("no notch has a stress: the shaft has no fillets")
-        for notch in notches:
-            stress = notch.local.amplitude + abs(notch.local.mean)
+        if not stressed.found.worst:
+            raise SolidgearError("no notch has a stress: the shaft has no fillets or other notches")
+        for fillet in stressed.found.notches:
+            stress = fillet.local.amplitude + abs(fillet.local.mean)
             if stress >= out.get(LOCAL, 0.0):
-                bar = notch.local.amplitude_bar + notch.local.mean_bar
+                bar = fillet.local.amplitude_bar + fillet.local.mean_bar
                 out |= {LOCAL: stress, f"{LOCAL}{BAR}": bar}
-                out |= {WORST: notch.name} if FATIGUE not in out else {}
-            rating = notch.rating
-            if rating is None:
-                continue
-            if rating.fatigue < out.get(FATIGUE, math.inf):
-                out |= {FATIGUE: rating.fatigue, f"{FATIGUE}{BAR}": rating.fatigue_bar}
-                out |= {WORST: notch.name}
-            if rating.yielding < out.get(YIELD, math.inf):
-                out[YIELD] = rating.yielding
+        for notch in stressed.found.worst:
+            out.setdefault(WORST, notch.name)
+            if notch.rating is not None:
+                out |= lesser(out, notch.rating, notch.name)
     return out
+
+
+def lesser(out: dict[str, Any], rating: Rating, name: str) -> dict[str, Any]:
+    """Return the safeties of a notch that are less than those that are known."""
+    less: dict[str, Any] = {}
+    if rating.fatigue < out.get(FATIGUE, math.inf):
+        less |= {FATIGUE: rating.fatigue, f"{FATIGUE}{BAR}": rating.fatigue_bar, WORST: name}
+    others = {YIELD: rating.yielding, CRACK: rating.crack}
+    if rating.least is not None:
+        others |= dict(zip((LEAST_FATIGUE, LEAST_YIELD), rating.least))
+    for column, safety in others.items():
+        if safety is not None and safety < out.get(column, math.inf):
+            less[column] = safety
+    return less
