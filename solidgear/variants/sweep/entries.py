@@ -34,7 +34,7 @@ from solidgear.core.scene.paths import (
     label_of,
     replace_entry,
 )
-from solidgear.core.scene.text_keys import is_text, is_whole
+from solidgear.core.scene.text_keys import NAMES, is_text, is_whole
 from solidgear.core.scene.units import quantity
 
 _NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)", re.S)
@@ -225,6 +225,9 @@ def place_of(path: str, files: Mapping[str, Tables], owner: Owner) -> Place:
     """Return the place that a path stands for; SceneError where there is none."""
     file, within = owner(path)
     keys = keys_of(within, files[file])
+    for k in range(1, len(keys)):
+        if is_text(keys[:k]) and keys[k - 1] not in NAMES:  # a word, which holds no table
+            raise SceneError(explained(SceneError("unknown key"), path, files))
     return Place(file, label_of(keys, files[file]), keys)
 
 
