@@ -147,6 +147,7 @@ def test_the_command_draws_a_front(tmp_path):
     shown = command("optimise", CATALOGUE, *words, *goals, "-o", tmp_path)
     assert shown.exit_code == 0, shown.output
     assert "beaten by no other in both mass and life" in " ".join(shown.output.split())
+    assert "all 3 combinations, so that the front is whole" in " ".join(shown.output.split())
     assert (tmp_path / "front.svg").read_text().count("design ") >= 2
 
 

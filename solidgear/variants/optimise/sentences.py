@@ -235,7 +235,8 @@ NEAR_BEST = 0.01
 def _searched_front(optimum: Outcome, trace: FrontTrace) -> Iterator[str]:
     """Yield sentences on a search for a front."""
     if trace.whole:
-        yield f"Searched: all {len(optimum.path) - 1} combinations, so that the front is whole."
+        count = trace.ends[0].sampled
+        yield f"Searched: all {count} combinations, so that the front is whole."
         return
     searches = sum(len(end.ends) for end in trace.ends)
     yield (
