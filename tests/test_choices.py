@@ -19,6 +19,7 @@ GEOMETRY = Path(__file__).parent.parent / "geometry"
 CATALOGUE, TRAIN = GEOMETRY / "gearbox_catalogue.toml", GEOMETRY / "gearbox_train.toml"
 DESIGNATION = "bearing.A.catalogue.designation"
 BEAM = {"model": "timoshenko"}
+BEAMS = {"pinion": "timoshenko", "gear": "timoshenko"}
 
 
 def tables(path=CATALOGUE):
@@ -93,9 +94,21 @@ def test_a_bore_without_a_seat_to_follow_is_refused():
     assert "has a bore of 40 mm and sits on a diameter of 35 mm" in rows["status"][2]
 
 
+def test_a_seat_that_another_bearing_shares_does_not_grow_under_it():
+    edited = tables()
+    edited["segment"][0]["diameter"] = edited["segment"][1]["diameter"] = "40 mm"
+    edited["bearing"][0]["catalogue"] = {"designation": "NU 208", "clearance": "CN"}
+    edited["bearing"][0] |= {"position": "100 mm", "seat_width": "18 mm"}
+    rows = sg.sweep(edited, f"{DESIGNATION}=NU 208,NU 209", n=1, **BEAM)
+    assert rows["status"][0] == "ok"
+    assert (
+        "bearing 'B' (7208 B) has a bore of 40 mm and sits on a diameter of 45" in rows["status"][1]
+    )
+
+
 def test_teeth_take_their_pitch_radius_along():
-    beams = {"pinion": "timoshenko", "gear": "timoshenko"}
-    rows = sg.sweep(TRAIN, "pinion.teeth=20:21", ask=["deflect"], **beams)
+
+    rows = sg.sweep(TRAIN, "pinion.teeth=20:21", ask=["deflect"], **BEAMS)
     assert rows["pinion.teeth"].tolist() == [20, 21]
     assert rows["pinion.pitch_radius"] == pytest.approx([0.03, 0.0315])
     edited = tables(TRAIN)
@@ -201,3 +214,11 @@ def test_the_worst_notch_in_the_worst_case_counts():
     moved = sg.deflect(edited, "timoshenko").judge.displacement["pinion"]
     size = (moved[0].value ** 2 + moved[2].value ** 2) ** 0.5
     assert rows["deflection_pinion"][1] == pytest.approx(size, rel=1e-9)
+
+
+def test_lives_of_a_train_hold_for_its_duty_table():
+    rows = sg.sweep(TRAIN, "pinion.bearing.A.position=15 mm,16 mm", ask=["bearing"], **BEAMS)
+    lives = sg.bearing(TRAIN).lives
+    assert rows["life_hours"][0] == pytest.approx(min(b.duty.hours for b in lives), rel=1e-6)
+    assert rows["pinion.A.life"][0] == pytest.approx(lives[0].duty.revolutions, rel=1e-6)
+    assert rows["mass"][0] == pytest.approx(rows["mass"][1])

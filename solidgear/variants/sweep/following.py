@@ -73,14 +73,13 @@ class Seat:
     """A bearing whose designation varies, and its seat on the shaft."""
 
     place: Place  #: of the designation
-    bearing: str
     in_file: Any  #: designation
     diameters: tuple[Place, ...]  #: those that become the bore
     width: Place | None  #: seat width that becomes the width
     dropped: tuple[str, ...]  #: keys of the file that belong to its designation alone
     shoulders: tuple[tuple[str, str], ...]  #: seat, and a segment beside it that is larger
-    #: whether the bearing of the file fits its seat, as others must then
-    fits: bool
+    #: names of the bearings that fit their seats in the file, and then must go on fitting
+    fitting: tuple[str, ...]
     label: str  #: path of the designation
     listed: Path | None  #: file of a list of bearings, where designations are looked up first
 
@@ -129,8 +128,8 @@ class Seat:
         keys = keys_of(self.place.path, tables)
         if value_in_file(keys, tables) == self.in_file:
             return
-        bearing = next(b for b in scene.bearings if b.name == self.bearing)
-        reason = next(misfits_of(scene, bearing), "") if self.fits else ""
+        fitting = [b for b in scene.bearings if b.name in self.fitting]
+        reason = next((problem for b in fitting for problem in misfits_of(scene, b)), "")
         for seat, shoulder in self.shoulders:
             high, low = (_largest(scene, name) for name in (shoulder, seat))
             if high <= low * (1 + SAME):
@@ -224,13 +223,12 @@ def _seat(
     )
     seat = Seat(
         place=place,
-        bearing=bearing.name,
         in_file=table.get("designation"),
         diameters=(),
         width=None,
         dropped=dropped,
         shoulders=(),
-        fits=not any(misfits_of(scene, bearing)),
+        fitting=tuple(b.name for b in scene.bearings if not any(misfits_of(scene, b))),
         label=place.label,
         listed=listed_in,
     )
