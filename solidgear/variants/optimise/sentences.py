@@ -51,8 +51,11 @@ def _without_any(optimum: Outcome, solved: Sequence[Design], units: Units) -> It
 def _front(optimum: Outcome, units: Units) -> Iterator[str]:
     """Yield sentences on a front of two goals."""
     front, (first_goal, second_goal) = optimum.front, optimum.goals
-    count = f"{len(front)} designs are" if len(front) > 1 else "1 design is"
-    yield f"{count} beaten by no other in both {first_goal.name} and {second_goal.name}."
+    both = f"both {first_goal.name} and {second_goal.name}"
+    if len(front) > 1:
+        yield f"{len(front)} designs are beaten by no other in {both}."
+    else:
+        yield f"One design is the best in {both}."
     ends = (front[0], front[-1]) if len(front) > 1 else front[:1]
     for design in ends:
         yield (
@@ -241,13 +244,14 @@ def _searched_front(optimum: Outcome, trace: FrontTrace) -> Iterator[str]:
     searches = sum(len(end.ends) for end in trace.ends)
     yield (
         f"Searched: {len(optimum.path)} designs; each goal by itself ({searches} local searches), "
-        f"then {trace.halved} times the best {optimum.goals[1].name} for a level of "
+        f"then {_count_of(trace.halved, 'time')} the best {optimum.goals[1].name} for a level of "
         f"{optimum.goals[0].name} between neighbours of the front."
     )
-    yield (
-        f"Between neighbours, designs that neither beats are open in {100 * trace.open:.2g} % of the "
-        "area that both ends span."
-    )
+    if len(optimum.front) > 1:
+        yield (
+            f"Between neighbours, designs that neither beats are open in {100 * trace.open:.2g} % of "
+            "the area that both ends span."
+        )
     missed = max((end.missed for end in trace.ends), default=0)
     if missed:
         yield f"{_count_of(missed, 'combination')} of the lists left out."

@@ -36,15 +36,18 @@ class Wish:
     limit: float | None = None  #: SI; None of a goal
 
     def value(self, rows: Rows) -> tuple[float, float | None] | None:
-        """Return the worst value of a design over its rows and the error bar of it, SI; None where a
-        row has no number, or bar.
+        """Return the worst value of a design over its rows and the error bar of it, SI, of a
+        misalignment its size; None where a row has no number, or bar.
         """
         values = []
         for row in rows:
             column = self._column(row)
             if row.get(column) is None:
                 return None
-            values.append((float(row[column]), row.get(f"{column} bar")))
+            number = float(row[column])
+            # a misalignment has a direction, and either is as bad
+            size = abs(number) if column.startswith(MISALIGNMENT) else number
+            values.append((size, row.get(f"{column} bar")))
         worst = min if self.upward else max
         return worst(values, key=lambda number: number[0])
 
