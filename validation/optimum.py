@@ -235,7 +235,9 @@ def _in_unit(value: float, unit: str) -> float:
     return value / {"mm": 1e-3}[unit]
 
 
-def _around(value: float, whole: Range, span: tuple[float, float, int], finer: int) -> tuple[float, float, int]:
+def _around(
+    value: float, whole: Range, span: tuple[float, float, int], finer: int
+) -> tuple[float, float, int]:
     """Return a finer span, of one step to both sides, within the range."""
     step = (span[1] - span[0]) / (span[2] - 1)
     return max(value - step, whole.low), min(value + step, whole.high), finer
