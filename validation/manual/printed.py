@@ -18,7 +18,6 @@ STEEL = "E 206.8 GPa (30e6 psi), Poisson's ratio 0.292; statics does not depend 
 EXACT = "exact statics gives the printed digits"
 #: unknowns of a rigid shaft
 EQUATIONS = 6
-FORCE = "F_{} {}"
 
 
 def half_digit(text: str) -> float:
@@ -53,10 +52,10 @@ def to_the_digits(values: Mapping[str, str], units: float = 0.5) -> dict[str, fl
 
 
 def reactions(scene: sg.Scene, axes: str, unit: float) -> dict[str, float]:
-    """Forces of the bearings on the shaft by name and axis, without those that are none."""
+    """Forces of the bearings on the shaft by name and axis, in a unit."""
     shaft = sg.deflect(scene, "euler").judge.shafts[0]
     return {
-        FORCE.format(bearing.name, axis): float(-force / unit)
+        f"F_{bearing.name} {axis}": float(-force / unit)
         for bearing in shaft.bearings
         for axis, force in zip(axes, bearing.load[:3])
     }
