@@ -9,6 +9,8 @@ import numpy as np
 
 import solidgear as sg
 from solidgear.core.scene.parts import Strength
+from solidgear.cuts.features import PressFit
+from solidgear.cuts.features.fits import interference_of
 from solidgear.strength.stress.conditions import Conditions
 from solidgear.strength.stress.din743 import LOADS, Load, form_factor, gradient
 from solidgear.strength.stress.norm_notch import NotchByForm, Section
@@ -291,4 +293,42 @@ BOOK_SHOULDER = Case(
     "book goes on with notch sensitivity and DE-Goodman, which DIN 743 does not have.",
 )
 
-CASES = (BOOK_SHOULDER, SHOULDER, KEYWAY, V_GROOVE, CROSS_HOLE)
+
+# ----------------------------------------------------------------------- hub shrunk onto a shaft
+def _hub() -> Answer:
+    seat = sg.Segment.cylinder("seat", length=0.1, diameter=0.08, material=HUB_SHAFT)
+    hub = PressFit(name="hub", segment="seat", y=0.0, hub_diameter="168 mm", fit="H7/s6")
+    smoothed = hub.with_changes(fit=None, interference="68 um", hub_E="176 GPa")
+    least, most = (1e6 * value for value in interference_of("H7/s6", 0.08))
+    values = {"least interference": least, "largest interference": most}
+    return Answer(values | {"largest pressure": smoothed.pressure(seat) / 1e6}, 1)
+
+
+HUB_SHAFT = sg.Material(E="210 GPa", nu=0.3, density="7850 kg/m^3")
+HUB = "dsoftcon.be, ShaftHubLock, PressShrinkFitDesHtml: rows 32, 33 and 35"
+INTERFERENCE = {"least interference": "29", "largest interference": "78"}
+PRESSED = {"largest pressure": "61"}
+HUB_ON_SHAFT = Case(
+    name="printed_shrink_fit",
+    title="Hub shrunk onto a shaft, ShaftHubLock",
+    problem="How far apart are the diameters of a fit, and how hard does the hub press?",
+    geometry="Shaft of 80 mm, hub of 168 mm, H7/s6, smoothed by 10 um of roughness to 68 um.",
+    material="Steel shaft with a strain factor of 3.33, 210 GPa; the hub's of 10.72 means 176 GPa at "
+    "a Poisson's ratio of 0.3.",
+    supports="None.",
+    asked="Least and largest interference of the fit, and the largest pressure.",
+    printed=True,
+    references=printed(INTERFERENCE, "um", HUB) + printed(PRESSED, "N/mm^2", HUB),
+    models=(
+        Model(
+            "thick rings",
+            _hub,
+            to_the_digits(INTERFERENCE) | {"largest pressure": 0.016},
+            "ISO 286 to the digits; the printed interference of 68 um is rounded, 0.7 %",
+        ),
+    ),
+    remarks="No printed rating of a press fit by DIN 743 could be read; its factors are held by hand "
+    "in `tests/test_notches_norm.py`.",
+)
+
+CASES = (BOOK_SHOULDER, HUB_ON_SHAFT, SHOULDER, KEYWAY, V_GROOVE, CROSS_HOLE)
