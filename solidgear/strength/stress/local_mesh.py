@@ -1,0 +1,149 @@
+"""Tetrahedra in a piece of a cylinder around a cut, whose corners are rounded as a cutter leaves
+them.
+
+Planes of symmetry of the cut divide the piece: one half, a quarter or an eighth of it is meshed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from solidgear.core import SolidgearError
+from solidgear.core.meshing.element_size import _num, set_size
+from solidgear.core.meshing.gmsh_session import Session, import_gmsh
+from solidgear.core.meshing.tetrahedra import check_filling, filled
+from solidgear.core.models.solid.mesh import SolidMesh, _isoparametric
+from solidgear.cuts.features.cross_hole import CrossHole
+from solidgear.cuts.features.cut import Frame
+from solidgear.cuts.features.keyway import Keyway
+from solidgear.cuts.solid.cuts import OVERHANG
+
+if TYPE_CHECKING:
+    from solidgear.cuts.features.cut import Cut
+
+#: edges of elements: of the largest, in outer radii; along the axis of a hole and around it, in its
+#: radii; along the root of a keyway, in its radii; at its ends, in half its width
+BULK, AT_HOLE, AT_ROOT, AT_END = 0.5, 0.6, 1.2, 0.5
+#: growth of edges per distance from the cut, and from a place of largest stress
+GROWTH, NEAR_PEAK = 0.6, 0.35
+#: share of the volume that a mesh may be off by
+VOLUME = 1e-3
+
+
+@dataclass(frozen=True)
+class LocalShape:
+    """A cut in a cylinder, looking to +z."""
+
+    cut: Cut  #: at the angle 0
+    radius: float  #: of the edges at its floor, m; 0 of a hole, which has none
+    #: outer, inner: radii of the cylinder, m
+    outer: float
+    inner: float
+    reach: float  #: how far the piece goes on beyond the cut, m
+
+    @property
+    def middle(self) -> float:
+        """Place of the middle of the cut along the shaft, m."""
+        low, high = self.cut.reach(self.outer)
+        return (low + high) / 2
+
+    @property
+    def half(self) -> float:
+        """Half of the length of the piece, m."""
+        low, high = self.cut.reach(self.outer)
+        return (high - low) / 2 + self.reach
+
+    @property
+    def planes(self) -> tuple[int, ...]:
+        """Axes at right angles to the planes of symmetry through the middle."""
+        cut = self.cut
+        leans = isinstance(cut, CrossHole) and bool(cut.inclination)
+        symmetric = (cut.mirrored(False), not leans, isinstance(cut, CrossHole) and not leans)
+        return tuple(axis for axis, is_plane in enumerate(symmetric) if is_plane)
+
+    @property
+    def size(self) -> float:
+        """Extent of the notch that its stress varies over, m."""
+        return self.radius or self.cut.edges(self.outer)[1]
+
+
+Peak = tuple[np.ndarray, float]
+"""Place (3,) of a large stress, m from the middle, and the edge of elements there, m."""
+
+
+def local_mesh(shape: LocalShape, peaks: Sequence[Peak] = ()) -> SolidMesh:
+    """Mesh the piece around a cut, about its middle, with smaller elements at some places."""
+    gmsh = import_gmsh()
+    with Session(gmsh):
+        occ = gmsh.model.occ
+        piece = _drawn(occ, shape)
+        occ.synchronize()
+        volume = occ.getMass(3, piece)
+        set_size(gmsh, _sizes(shape, peaks), BULK * shape.outer)
+        filling = filled(
+            gmsh,
+            f'gmsh could not mesh the shaft around "{shape.cut.name}" ({{}}): change its size a '
+            "little",
+        )
+    check_filling(filling, volume=volume, rtol=VOLUME)
+    mesh = filling.mesh
+    mesh.doflocs[1] -= shape.middle
+    return _isoparametric(mesh, "tet10", np.zeros(mesh.t.shape[1], int))
+
+
+def _drawn(occ: Any, shape: LocalShape) -> int:
+    """Draw the part of the piece between planes of symmetry and return its tag."""
+    outer, start, length = shape.outer, shape.middle - shape.half, 2 * shape.half
+    body = [(3, occ.addCylinder(0, start, 0, 0, length, 0, outer))]
+    if shape.inner:
+        bore = [(3, occ.addCylinder(0, start, 0, 0, length, 0, shape.inner))]
+        body, _ = occ.cut(body, bore)
+    tool = [(3, _tool(occ, shape))]
+    body, _ = occ.cut(body, tool)
+    low = [-2 * outer, start - outer, -2 * outer]
+    extent = [4 * outer, length + 2 * outer, 4 * outer]
+    for axis in shape.planes:
+        at = shape.middle if axis == 1 else 0.0
+        extent[axis] += low[axis] - at
+        low[axis] = at
+    body, _ = occ.intersect(body, [(3, occ.addBox(*low, *extent))])
+    if len(body) != 1:
+        raise SolidgearError(f'"{shape.cut.name}" leaves no single piece of the shaft around it')
+    return body[0][1]
+
+
+def _tool(occ: Any, shape: LocalShape) -> int:
+    """Draw the solid that is cut out, with round edges at the floor, and return its tag."""
+    solid = shape.cut.tool(occ, shape.outer, OVERHANG * shape.outer)
+    if not shape.radius:
+        return solid
+    occ.synchronize()
+    floor = shape.outer - shape.cut.depth
+    edges = occ.getEntitiesInBoundingBox(
+        *(-2 * shape.outer, -1e3, floor - 1e-6 * shape.outer),
+        *(2 * shape.outer, 1e3, floor + 1e-6 * shape.outer),
+        dim=1,
+    )
+    rounded = occ.fillet([solid], [tag for _, tag in edges], [shape.radius])
+    return rounded[0][1]
+
+
+def _sizes(shape: LocalShape, peaks: Sequence[Peak]) -> list[str]:
+    """Return formulas of the element edge: at the cut, and at places of large stress."""
+    cut, frame = shape.cut, Frame("x", "z", _num)
+    if isinstance(cut, Keyway):
+        away, _ = cut.from_edges(shape.outer, frame)
+        # the root lies inside the sharp edge by up to its radius
+        formulas = [f"{_num(AT_ROOT * shape.radius)}+{_num(GROWTH)}*Max(0,{away}-{_num(shape.radius)})"]
+        around = AT_END * cut.width / 2
+    else:
+        formulas, around = [], AT_HOLE * shape.size * 8 / np.pi / 2
+    formulas.append(f"{_num(around)}+{_num(GROWTH)}*{cut.distance(shape.outer, frame)}")
+    for place, size in peaks:
+        x, y, z = (_num(value) for value in place + [0.0, shape.middle, 0.0])
+        formulas.append(f"{_num(size)}+{_num(NEAR_PEAK)}*Sqrt((x-{x})^2+(y-{y})^2+(z-{z})^2)")
+    return formulas
