@@ -81,6 +81,10 @@ def stress(
         float,
         relative("--tol", "Error bar allowed for a form factor."),
     ] = 0.01,
+    local: Annotated[
+        float | None,
+        relative("--local", "Solve 3D solids at keyways and cross holes, to this error bar."),
+    ] = None,
     rated: Rated,
     out: Annotated[
         Path | None,
@@ -95,6 +99,7 @@ def stress(
             **vars(acting),
             drive=dict(map(_torque, drive or ())),
             tol=tol,
+            local=local,
             conditions=rated.conditions(),
             progress=progress,
         ).sheet(run.units),

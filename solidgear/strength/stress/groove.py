@@ -19,7 +19,16 @@ from solidgear.core.models.harmonic.mesh import harmonic_mesh
 from solidgear.strength.stress.arc_stress import ArcStress, RootArc
 from solidgear.strength.stress.groove_mesh import GrooveShape, groove_meridian
 from solidgear.strength.stress.nominal import CrossSection
-from solidgear.strength.stress.notch import ENOUGH, ORDERS, REACH, Factor, Step, ends, solved, widest
+from solidgear.strength.stress.notch import (
+    ENOUGH,
+    ORDERS,
+    REACH,
+    Factor,
+    Step,
+    ends,
+    solved,
+    widest,
+)
 
 if TYPE_CHECKING:
     from solidgear.core import Body, Port
@@ -143,7 +152,7 @@ def _refuse(name: str, segment: Segment, shape: GrooveShape) -> None:
         raise SolidgearError(f'{name}: "{segment.name}" is a cone; its solid needs a cylinder')
     if shape.depth >= segment.outer0 - segment.inner0:
         raise SolidgearError(
-            f"{name}: it is as deep as the wall of \"{segment.name}\", "
+            f'{name}: it is as deep as the wall of "{segment.name}", '
             f"{segment.outer0 - segment.inner0:.6g} m"
         )
     if shape.floor < 0:

@@ -14,7 +14,6 @@ on from the sides of the box to the ends and to the bore or the axis. The left h
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -194,15 +193,13 @@ def _both_halves(cells: _Cells, half: float, outer: float) -> Meridian:
     _, first, number = np.unique(grid, axis=0, return_index=True, return_inverse=True)
     corners = number.reshape(-1, 4)
     centre = np.array(cells.centre)
-    image: Callable[[int], int] = IMAGE.__getitem__
-    twice: Callable[[list[bool]], np.ndarray] = lambda mask: np.flatnonzero(mask + mask)
     return Meridian(
         places.reshape(-1, 2)[first].T,
         corners.T,
         np.zeros(len(corners), int),
-        twice(cells.outer),
-        twice(cells.inner),
-        np.array([image(edge) for edge in cells.arc] + cells.arc),
+        np.flatnonzero(cells.outer * 2),
+        np.flatnonzero(cells.inner * 2),
+        np.array([IMAGE[edge] for edge in cells.arc] + cells.arc),
         np.concatenate([centre * (1.0, -1.0), centre]).T + [[0.0], [half]],
         conflicts(corners),
     )

@@ -68,7 +68,7 @@ class LocalShape:
     @property
     def size(self) -> float:
         """Extent of the notch that its stress varies over, m."""
-        return self.radius or self.cut.edges(self.outer)[1]
+        return self.cut.diameter / 2 if isinstance(self.cut, CrossHole) else self.radius
 
 
 Peak = tuple[np.ndarray, float]
@@ -121,15 +121,18 @@ def _tool(occ: Any, shape: LocalShape) -> int:
     solid = shape.cut.tool(occ, shape.outer, OVERHANG * shape.outer)
     if not shape.radius:
         return solid
-    occ.synchronize()
     floor = shape.outer - shape.cut.depth
-    edges = occ.getEntitiesInBoundingBox(
-        *(-2 * shape.outer, -1e3, floor - 1e-6 * shape.outer),
-        *(2 * shape.outer, 1e3, floor + 1e-6 * shape.outer),
-        dim=1,
-    )
-    rounded = occ.fillet([solid], [tag for _, tag in edges], [shape.radius])
+    _, loops = occ.getCurveLoops(_lowest_face(occ, solid, floor))
+    edges = [int(edge) for loop in loops for edge in loop]
+    rounded = occ.fillet([solid], edges, [shape.radius])
     return rounded[0][1]
+
+
+def _lowest_face(occ: Any, solid: int, floor: float) -> int:
+    """Return the face of a solid that lies nearest to the height of a floor, m."""
+    _, loops = occ.getSurfaceLoops(solid)
+    faces = [int(face) for loop in loops for face in loop]
+    return min(faces, key=lambda face: abs(occ.getCenterOfMass(2, face)[2] - floor))
 
 
 def _sizes(shape: LocalShape, peaks: Sequence[Peak]) -> list[str]:
@@ -138,10 +141,12 @@ def _sizes(shape: LocalShape, peaks: Sequence[Peak]) -> list[str]:
     if isinstance(cut, Keyway):
         away, _ = cut.from_edges(shape.outer, frame)
         # the root lies inside the sharp edge by up to its radius
-        formulas = [f"{_num(AT_ROOT * shape.radius)}+{_num(GROWTH)}*Max(0,{away}-{_num(shape.radius)})"]
+        formulas = [
+            f"{_num(AT_ROOT * shape.radius)}+{_num(GROWTH)}*Max(0,{away}-{_num(shape.radius)})"
+        ]
         around = AT_END * cut.width / 2
     else:
-        formulas, around = [], AT_HOLE * shape.size * 8 / np.pi / 2
+        formulas, around = [], AT_HOLE * shape.size
     formulas.append(f"{_num(around)}+{_num(GROWTH)}*{cut.distance(shape.outer, frame)}")
     for place, size in peaks:
         x, y, z = (_num(value) for value in place + [0.0, shape.middle, 0.0])

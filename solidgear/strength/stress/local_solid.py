@@ -31,7 +31,12 @@ from solidgear.core.models.solid.block import rigid_motions
 from solidgear.core.models.solid.matrices import integrals
 from solidgear.core.solve.factor import factorise
 from solidgear.strength.stress.local_mesh import LocalShape, Peak, local_mesh
-from solidgear.strength.stress.surface_stress import SurfaceStress, larger, surface_stress
+from solidgear.strength.stress.surface_stress import (
+    SurfaceStress,
+    larger,
+    largest_shear,
+    surface_stress,
+)
 
 if TYPE_CHECKING:
     from solidgear.core.models.solid.mesh import SolidMesh
@@ -54,51 +59,70 @@ ANGLES = 24
 
 
 @dataclass(frozen=True)
-class Peaks:
-    """Largest stress under unit loads on one mesh, over the nominal stress of the plain shaft."""
+class PeakStress:
+    """Largest stress under one load, over the nominal stress of the plain shaft."""
+
+    value: float
+    place: np.ndarray  #: (3,) m, y from the middle of the cut
+    traction: float  #: left on the surface there
+    gradient: float  #: relative, into the material, 1/m
+
+
+@dataclass(frozen=True)
+class LocalSolution:
+    """Stress on the surface around a cut by one mesh, over the nominal stress of the plain shaft."""
 
     unknowns: int
-    value: Mapping[str, float]  #: by load, with one bending of the turning shaft
-    place: Mapping[str, np.ndarray]  #: (3,) m from the middle of the cut
-    traction: Mapping[str, float]  #: left on the surface there
-    surface: SurfaceStress = field(repr=False)  #: in the order of LOADS
+    x: np.ndarray  #: (3, m) places on the surface, m, y from the middle of the cut
+    #: (m,) by load: largest principal stress under tension, its amplitude under bending of the
+    #: turning shaft, largest shear stress under torsion
+    fields: Mapping[str, np.ndarray] = field(repr=False)
+    peaks: Mapping[str, PeakStress]
 
 
-def peaks_on(shape: LocalShape, material: Material, at: Sequence[Peak] = ()) -> Peaks:
+def solution_on(shape: LocalShape, material: Material, at: Sequence[Peak] = ()) -> LocalSolution:
     """Solve a piece around a cut on one mesh, with smaller elements at some places."""
     mesh = local_mesh(shape, at)
     moved = displacements(mesh, shape, material)
-    mu = material.shear_modulus
-    lame = 2 * mu * material.nu / (1 - 2 * material.nu)
-    surface = surface_stress(mesh, _free(mesh, shape), moved, lame, mu)
-    return Peaks(moved.size // len(LOADS), *_largest(surface), surface)
-
-
-def _largest(surface: SurfaceStress):
-    """Return the largest stress, its place and the traction there, by load."""
+    surface = surface_stress(mesh, free_surface(mesh, shape), moved, *lame_of(material))
     tension, first, second, torsion = range(4)
     angles = np.linspace(0.0, np.pi, ANGLES, endpoint=False)
-    turned = np.array(
-        [larger(np.cos(t) * surface.plane[first] + np.sin(t) * surface.plane[second]) for t in angles]
-    )
-    turn = turned.max(axis=1).argmax()
+    planes = np.zeros((ANGLES, len(LOADS)))
+    planes[:, first], planes[:, second] = np.cos(angles), np.sin(angles)
+    turned = larger(np.tensordot(planes, surface.plane, axes=1))
     fields = {
-        "tension": surface.largest()[tension],
-        "bending": turned[turn],
-        "torsion": surface.shear()[torsion],
+        "tension": larger(surface.plane[tension]),
+        "bending": turned.max(axis=0),
+        "torsion": largest_shear(surface.plane[torsion]),
     }
-    left = {
-        "tension": surface.traction[tension],
-        "bending": np.cos(angles[turn]) * surface.traction[first]
-        + np.sin(angles[turn]) * surface.traction[second],
-        "torsion": surface.traction[torsion],
+    worst = planes[turned.max(axis=1).argmax()]
+    weights = dict(zip(fields, (np.eye(4)[tension], worst, np.eye(4)[torsion])))
+    peaks = {
+        load: _peak(surface.combined(w[None]), load, fields[load]) for load, w in weights.items()
     }
-    node = {load: int(values.argmax()) for load, values in fields.items()}
-    return (
-        {load: float(fields[load][k]) for load, k in node.items()},
-        {load: surface.x[:, k] for load, k in node.items()},
-        {load: float(np.linalg.norm(left[load][:, k])) for load, k in node.items()},
-    )
+    return LocalSolution(moved.shape[0], surface.x, fields, peaks)
+
+
+def _peak(surface: SurfaceStress, load: str, values: np.ndarray) -> PeakStress:
+    """Return the largest of values (m,) on a surface, with what goes with it."""
+    node = int(values.argmax())
+    sigma, slope = surface.sigma[0, node], surface.slope[0, node]
+    stress, direction = np.linalg.eigh(sigma)
+    along = np.einsum("ia,ij,ja->a", direction, slope, direction)
+    if load == "torsion":
+        # the two principal stresses between which the shear is largest
+        gradient = (along[-1] - along[0]) / (stress[-1] - stress[0])
+    else:
+        largest = int(np.abs(stress).argmax())
+        gradient = along[largest] / stress[largest]
+    traction = float(surface.traction[0, node])
+    return PeakStress(float(values[node]), surface.x[:, node], traction, float(gradient))
+
+
+def lame_of(material: Material) -> tuple[float, float]:
+    """Return the constants of Lame, Pa, the shear modulus second."""
+    mu = material.shear_modulus
+    return 2 * mu * material.nu / (1 - 2 * material.nu), mu
 
 
 def displacements(mesh: SolidMesh, shape: LocalShape, material: Material) -> np.ndarray:
@@ -108,20 +132,20 @@ def displacements(mesh: SolidMesh, shape: LocalShape, material: Material) -> np.
     points, weights = get_quadrature(RefTet, DEGREE)
     basis = Tabulation(mesh.element, mesh.element, points)
     stiffness = integrals(mesh, [material], basis, weights, mesh.dofs)[0].matrix()
-    forces = _forces(mesh, shape)
-    rigid = rigid_motions(mesh.nodes / shape.outer)
+    forces = forces_on(mesh, shape)
     moved = np.zeros_like(forces)
-    groups: dict[tuple[bool, ...], list[int]] = {}
-    for k, load in enumerate(LOADS):
-        groups.setdefault(tuple(EVEN[load][axis] for axis in shape.planes), []).append(k)
-    for even, members in groups.items():
-        free = _movable(mesh, shape, even, rigid)
+    groups: dict[bytes, list[int]] = {}
+    held = [held_unknowns(mesh, shape, load) for load in LOADS]
+    for k, mask in enumerate(held):
+        groups.setdefault(mask.tobytes(), []).append(k)
+    for members in groups.values():
+        free = np.flatnonzero(~held[members[0]])
         factor = factorise(stiffness[free][:, free])
         moved[np.ix_(free, members)] = factor.solve(forces[np.ix_(free, members)])
     return moved
 
 
-def _forces(mesh: SolidMesh, shape: LocalShape) -> np.ndarray:
+def forces_on(mesh: SolidMesh, shape: LocalShape) -> np.ndarray:
     """Return the forces (3 n, k) on the nodes of the end faces."""
     n, forces = mesh.nodes.shape[1], np.zeros((mesh.nodes.shape[1], 3, len(LOADS)))
     for side in (1.0,) if 1 in shape.planes else (-1.0, 1.0):
@@ -142,27 +166,26 @@ def _forces(mesh: SolidMesh, shape: LocalShape) -> np.ndarray:
     return forces.reshape(3 * n, -1)
 
 
-def _movable(
-    mesh: SolidMesh, shape: LocalShape, even: tuple[bool, ...], rigid: np.ndarray
-) -> np.ndarray:
-    """Return the unknowns that planes of symmetry leave free under even or odd loads, without as
-    many as hold the rigid motions that remain.
+def held_unknowns(mesh: SolidMesh, shape: LocalShape, load: str) -> np.ndarray:
+    """Return the mask (3 n,) of unknowns that planes of symmetry hold under a load, and of as many
+    as hold the rigid motions that remain.
     """
     held = np.zeros((mesh.nodes.shape[1], 3), bool)
-    for axis, is_even in zip(shape.planes, even):
+    for axis in shape.planes:
         on_plane = np.abs(mesh.nodes[axis]) < 1e-9 * shape.half
-        components = [axis] if is_even else [c for c in range(3) if c != axis]
+        components = [axis] if EVEN[load][axis] else [c for c in range(3) if c != axis]
         held[np.ix_(on_plane, components)] = True
-    fixed = held.ravel()
-    remaining = sla.null_space(rigid[fixed], rcond=1e-9) if fixed.any() else np.eye(6)
-    free = np.flatnonzero(~fixed)
-    if not remaining.shape[1]:
-        return free
-    _, _, pivots = sla.qr((rigid[free] @ remaining).T, mode="economic", pivoting=True)
-    return np.delete(free, pivots[: remaining.shape[1]])
+    out = held.ravel()
+    rigid = rigid_motions(mesh.nodes / shape.outer)
+    remaining = sla.null_space(rigid[out].T @ rigid[out], rcond=1e-12)
+    if remaining.shape[1]:
+        free = np.flatnonzero(~out)
+        _, _, pivots = sla.qr((rigid[free] @ remaining).T, mode="economic", pivoting=True)
+        out[free[pivots[: remaining.shape[1]]]] = True
+    return out
 
 
-def _free(mesh: SolidMesh, shape: LocalShape) -> np.ndarray:
+def free_surface(mesh: SolidMesh, shape: LocalShape) -> np.ndarray:
     """Return the facets of the surface that carry no load and lie on no plane of symmetry."""
     facets = mesh.boundary
     places, hair = mesh.mesh.p[:, mesh.mesh.facets[:, facets]], 1e-9 * shape.half

@@ -26,6 +26,7 @@ def stress(
     load: str | Mapping[str, Any] | None = None,
     drive: Mapping[str, str | float] | None = None,
     tol: float = ENOUGH,
+    local: float | None = None,
     conditions: Mapping[str, Any] | Conditions | None = None,
     progress: Callable[[str], None] = lambda text: None,
 ) -> StressAtRest:
@@ -44,6 +45,9 @@ def stress(
         ``{"B": "115 N*m"}``; numbers in N m.
     tol : float
         Error bar allowed for a form factor, relative.
+    local : float, optional
+        Error bar allowed for form factors of keyways and cross holes, relative, for which 3D
+        solids are solved, some seconds each; without it they have none.
     conditions : mapping or Conditions, optional
         Of the rating by DIN 743: ``roughness``, ``ultimate_at_size``, ``yield_at_size``,
         ``hardening``, ``force_share``, ``torque_share``, ``constant_mean``.
@@ -73,7 +77,7 @@ def stress(
     """
     if not isinstance(conditions, Conditions):
         conditions = Conditions(**(conditions or {}))
-    settings = StressSettings(tol, conditions)
+    settings = StressSettings(tol, conditions, local)
     assembly, at = Acting(torque, of, point, weight, load).read(source)
     torques = {name: quantity(value, "torque") for name, value in (drive or {}).items()}
     if torques and not assembly.train.is_one_shaft:
