@@ -4,7 +4,7 @@ Each mesh has smaller elements where the one before had the largest stress of ea
 bar of a factor is the largest of
 
 - its change from the mesh before,
-- the traction left on the free surface where the stress is largest, over nominal stress,
+- half of the traction left on the free surface where the stress is largest, over nominal stress,
 - 1e-2 of it.
 
 `python -m validation.campaign notches` holds error bars against finer meshes. Nominal stress is that
@@ -38,7 +38,9 @@ if TYPE_CHECKING:
 #: default relative error bar of a factor
 ENOUGH = 0.05
 #: edges of elements at the largest stress, in radii of the notch, mesh by mesh
-SIZES = (None, 0.4, 0.25, 0.15, 0.1)
+SIZES = (None, 0.3, 0.18, 0.1)
+#: share of the traction left that counts as an error
+OF_TRACTION = 0.5
 #: of a factor: error bars are no less
 FLOOR = 1e-2
 #: error bar of a gradient: multiple of its change with the last mesh, and its least share
@@ -128,18 +130,24 @@ class LocalFactors:
 
 
 def local_factors(
-    segment: Segment, cut: Cut, tolerance: float = ENOUGH, radius: float | None = None
+    segment: Segment,
+    cut: Cut,
+    tolerance: float = ENOUGH,
+    radius: float | None = None,
+    mill: float | None = None,
+    sizes: tuple[float | None, ...] = SIZES,
 ) -> LocalFactors:
     """Return stress concentration factors of a keyway or a cross hole in a segment of a shaft, a
     cylinder that goes on on both sides.
 
     Meshes are tried until relative error bars are within a tolerance, and error bars stay larger
     where none is. `radius` is that of the edges at the floor of a keyway, m, by default that of the
-    cut. A sharp edge, whose stress has no limit, is refused.
+    cut, `mill` the diameter of the disc mill that its square ends run out with, m, beyond its
+    length, and `sizes` are as ``SIZES``. A sharp edge, whose stress has no limit, is refused.
 
     Examples
     --------
-    A keyway of a shaft of 40 mm:
+    A hole of 8 mm across a shaft of 40 mm:
 
     >>> from solidgear import Segment
     >>> from solidgear.cuts.features import CrossHole
@@ -149,8 +157,8 @@ def local_factors(
     >>> f'{found.factors["bending"].value:.1f} of {found.nominal.what}'
     '2.1 of the section left'
     """
-    shape = local_shape(segment, cut, radius)
-    solutions = _solved(shape, segment.material.with_changes(name=""), tolerance)
+    shape = local_shape(segment, cut, radius, mill)
+    solutions = _solved(shape, segment.material.with_changes(name=""), tolerance, sizes)
     last = solutions[-1]
     moduli = NominalModuli.of(cut, shape.outer, shape.inner)
     share = moduli.of_plain(shape.outer, shape.inner)
@@ -182,24 +190,31 @@ def local_factors(
     )
 
 
-def local_shape(segment: Segment, cut: Cut, radius: float | None = None) -> LocalShape:
+def local_shape(
+    segment: Segment, cut: Cut, radius: float | None = None, mill: float | None = None
+) -> LocalShape:
     """Return the shape of a cut in a segment; refuse what has no stress, or no solid here."""
     if isinstance(cut, CrossHole):
         size = 0.0
     elif isinstance(cut, Keyway):
         size = radius or getattr(cut, "radius", None) or 0.0
-        _refuse_keyway(cut, size)
+        _refuse_keyway(cut, size, mill)
     else:
         raise SolidgearError(f'{cut.what} "{cut.name}": no solid gives its stress here')
     outer, inner = float(segment.outer0), float(segment.inner0)
     # alike for one cut at several places, for which it is solved once
     alike = cut.with_changes(name="cut", segment="shaft", y=0.0, angle=0.0)
-    return LocalShape(alike, size, outer, inner, REACH * outer)
+    return LocalShape(alike, size, outer, inner, REACH * outer, (mill or 0.0) / 2)
 
 
-def _refuse_keyway(cut: Keyway, radius: float) -> None:
-    """Refuse a keyway with edges whose stress has no limit."""
-    if cut.ends == "square":
+def _refuse_keyway(cut: Keyway, radius: float, mill: float | None) -> None:
+    """Refuse a keyway with edges whose stress has no limit, or that a mill does not cut."""
+    if mill and (cut.ends == "round" or mill < 4 * cut.depth):
+        raise SolidgearError(
+            f'keyway "{cut.name}": a disc mill runs out beyond square ends, and is larger than four '
+            f"times the depth, {4 * cut.depth:.6g} m"
+        )
+    if cut.ends == "square" and not mill:
         raise SolidgearError(
             f'keyway "{cut.name}": the edges of its square ends are sharp, and stress grows there '
             "without limit as a mesh is refined"
@@ -217,10 +232,12 @@ def _refuse_keyway(cut: Keyway, radius: float) -> None:
 
 
 @lru_cache(maxsize=32)
-def _solved(shape: LocalShape, material: Material, tolerance: float) -> tuple[LocalSolution, ...]:
+def _solved(
+    shape: LocalShape, material: Material, tolerance: float, sizes: tuple[float | None, ...]
+) -> tuple[LocalSolution, ...]:
     """Solve a cut mesh by mesh until the error bars of all loads are within a tolerance."""
     solutions: list[LocalSolution] = []
-    for size in SIZES:
+    for size in sizes:
         at = []
         if size is not None:
             at = [(p.place, size * shape.size) for p in solutions[-1].peaks.values()]
@@ -237,7 +254,7 @@ def _bar(solutions: list[LocalSolution] | tuple[LocalSolution, ...], load: str) 
     if len(solutions) < 2:
         return float("inf")
     change = abs(last.value - solutions[-2].peaks[load].value)
-    return max(change, last.traction, FLOOR * last.value)
+    return max(change, OF_TRACTION * last.traction, FLOOR * last.value)
 
 
 def _turned(angle: float) -> np.ndarray:

@@ -6,6 +6,7 @@ Planes of symmetry of the cut divide the piece: one half, a quarter or an eighth
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -25,11 +26,11 @@ from solidgear.cuts.solid.cuts import OVERHANG
 if TYPE_CHECKING:
     from solidgear.cuts.features.cut import Cut
 
-#: edges of elements: of the largest, in outer radii; along the axis of a hole and around it, in its
-#: radii; along the root of a keyway, in its radii; at its ends, in half its width
-BULK, AT_HOLE, AT_ROOT, AT_END = 0.5, 0.6, 1.2, 0.5
-#: growth of edges per distance from the cut, and from a place of largest stress
-GROWTH, NEAR_PEAK = 0.6, 0.35
+#: edges of elements: of the largest, in outer radii; at a hole and at the root of a keyway, in their
+#: radii; at the ends of a keyway, in half its width
+BULK, AT_HOLE, AT_ROOT, AT_END = 0.5, 0.5, 1.5, 0.5
+#: growth of edges per distance from a hole or an end, from a root, and from a place of largest stress
+GROWTH, FROM_ROOT, NEAR_PEAK = 0.6, 1.0, 0.5
 #: share of the volume that a mesh may be off by
 VOLUME = 1e-3
 
@@ -44,6 +45,8 @@ class LocalShape:
     outer: float
     inner: float
     reach: float  #: how far the piece goes on beyond the cut, m
+    #: radius of the disc mill that a keyway runs out with beyond its square ends, m; 0 without
+    mill: float = 0.0
 
     @property
     def middle(self) -> float:
@@ -55,7 +58,14 @@ class LocalShape:
     def half(self) -> float:
         """Half of the length of the piece, m."""
         low, high = self.cut.reach(self.outer)
-        return (high - low) / 2 + self.reach
+        return (high - low) / 2 + self.run_out + self.reach
+
+    @property
+    def run_out(self) -> float:
+        """Length of the run-out of a disc mill, m."""
+        if not self.mill:
+            return 0.0
+        return math.sqrt(self.mill**2 - (self.mill - self.cut.depth) ** 2)
 
     @property
     def planes(self) -> tuple[int, ...]:
@@ -118,21 +128,74 @@ def _drawn(occ: Any, shape: LocalShape) -> int:
 
 def _tool(occ: Any, shape: LocalShape) -> int:
     """Draw the solid that is cut out, with round edges at the floor, and return its tag."""
-    solid = shape.cut.tool(occ, shape.outer, OVERHANG * shape.outer)
+    if shape.mill:
+        solid = _milled(occ, shape)
+    else:
+        solid = shape.cut.tool(occ, shape.outer, OVERHANG * shape.outer)
     if not shape.radius:
         return solid
-    floor = shape.outer - shape.cut.depth
-    _, loops = occ.getCurveLoops(_lowest_face(occ, solid, floor))
-    edges = [int(edge) for loop in loops for edge in loop]
-    rounded = occ.fillet([solid], edges, [shape.radius])
-    return rounded[0][1]
+    edges = [edge for face in _lowest_faces(occ, solid, shape) for edge in _edges(occ, face)]
+    # those between two of these faces turn smoothly
+    rim = [edge for edge in dict.fromkeys(edges) if edges.count(edge) == 1]
+    if shape.mill:
+        half = shape.cut.width / 2
+        rim = [e for e in rim if abs(abs(occ.getCenterOfMass(1, e)[0]) - half) < 1e-6 * half]
+    return occ.fillet([solid], rim, [shape.radius])[0][1]
 
 
-def _lowest_face(occ: Any, solid: int, floor: float) -> int:
-    """Return the face of a solid that lies nearest to the height of a floor, m."""
+def _milled(occ: Any, shape: LocalShape) -> int:
+    """Draw what a disc mill cuts out and return its tag."""
+    low, high = shape.cut.reach(shape.outer)
+    floor, away, half = shape.outer - shape.cut.depth, shape.run_out, shape.cut.width / 2
+    top, mill = shape.outer + OVERHANG * shape.outer, shape.mill
+
+    def point(y: float, z: float) -> int:
+        return occ.addPoint(-half, y, z)
+
+    # an arc goes on beyond the crown, so that what leaves the shaft has no end face in it
+    over = math.sqrt(mill**2 - (floor + mill - top) ** 2) if top < floor + mill else mill
+    top = min(top, floor + mill)
+    corners = [
+        point(low - over, top),
+        point(low, floor),
+        point(high, floor),
+        point(high + over, top),
+    ]
+    middles = [point(low, floor + mill), point(high, floor + mill)]
+    lines = [
+        occ.addCircleArc(corners[0], middles[0], corners[1]),
+        occ.addLine(corners[1], corners[2]),
+        occ.addCircleArc(corners[2], middles[1], corners[3]),
+        occ.addLine(corners[3], corners[0]),
+    ]
+    assert over >= away
+    drawn = occ.extrude([(2, occ.addPlaneSurface([occ.addCurveLoop(lines)]))], 2 * half, 0, 0)
+    return next(tag for dim, tag in drawn if dim == 3)
+
+
+def _lowest_faces(occ: Any, solid: int, shape: LocalShape) -> list[int]:
+    """Return the floor of a solid, and the run-outs beside it."""
     _, loops = occ.getSurfaceLoops(solid)
     faces = [int(face) for loop in loops for face in loop]
-    return min(faces, key=lambda face: abs(occ.getCenterOfMass(2, face)[2] - floor))
+    floor = shape.outer - shape.cut.depth
+    lowest = min(faces, key=lambda face: abs(occ.getCenterOfMass(2, face)[2] - floor))
+    if not shape.mill:
+        return [lowest]
+    beside = set(_edges(occ, lowest))
+    # sides of the slot share long edges with the floor, run-outs the short ones across
+    half = shape.cut.width / 2
+    return [
+        face
+        for face in faces
+        if face == lowest
+        or (beside & set(_edges(occ, face)) and abs(occ.getCenterOfMass(2, face)[0]) < 0.5 * half)
+    ]
+
+
+def _edges(occ: Any, face: int) -> list[int]:
+    """Return the edges of a face."""
+    _, loops = occ.getCurveLoops(face)
+    return [int(edge) for loop in loops for edge in loop]
 
 
 def _sizes(shape: LocalShape, peaks: Sequence[Peak]) -> list[str]:
@@ -140,9 +203,11 @@ def _sizes(shape: LocalShape, peaks: Sequence[Peak]) -> list[str]:
     cut, frame = shape.cut, Frame("x", "z", _num)
     if isinstance(cut, Keyway):
         away, _ = cut.from_edges(shape.outer, frame)
+        if shape.mill:
+            away = f"Min({away},{_from_run_out(shape)})"
         # the root lies inside the sharp edge by up to its radius
         formulas = [
-            f"{_num(AT_ROOT * shape.radius)}+{_num(GROWTH)}*Max(0,{away}-{_num(shape.radius)})"
+            f"{_num(AT_ROOT * shape.radius)}+{_num(FROM_ROOT)}*Max(0,{away}-{_num(shape.radius)})"
         ]
         around = AT_END * cut.width / 2
     else:
@@ -152,3 +217,12 @@ def _sizes(shape: LocalShape, peaks: Sequence[Peak]) -> list[str]:
         x, y, z = (_num(value) for value in place + [0.0, shape.middle, 0.0])
         formulas.append(f"{_num(size)}+{_num(NEAR_PEAK)}*Sqrt((x-{x})^2+(y-{y})^2+(z-{z})^2)")
     return formulas
+
+
+def _from_run_out(shape: LocalShape) -> str:
+    """Return the formula of the distance from the edges of the run-outs of a disc mill, m."""
+    low, high = shape.cut.reach(shape.outer)
+    middle = shape.outer - shape.cut.depth + shape.mill
+    along = f"Max(0,Max({_num(low)}-y,y-{_num(high)}))"
+    off = f"(Sqrt({along}^2+(z-{_num(middle)})^2)-{_num(shape.mill)})"
+    return f"Sqrt((Sqrt(x^2)-{_num(shape.cut.width / 2)})^2+{off}^2)"
