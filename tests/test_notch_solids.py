@@ -30,16 +30,16 @@ KEY = Keyway(name="key", segment="shaft", y=0.05, length=0.05, width=0.01, depth
 
 @pytest.fixture(scope="module")
 def hole():
-    return local_factors(SHAFT, HOLE, 0.1)
+    return local_factors(SHAFT, HOLE, 0.2)
 
 
 def test_a_small_groove_is_that_of_a_half_plane():
     """Half a circle: 3.065 in tension (Ling) and 2 in torsion (exact), over stress beside it; the
-    groove is 1/200 of the radius, by which both are off at most by as much.
+    groove is 1/100 of the radius, by which both are off at most by as much.
     """
-    small = GrooveShape(1e-4, 1e-4)
-    found = groove_factors("groove", SHAFT, small, 0.2, orders=(3, 4), refinement=0.6).factors
-    left = 1 - 1e-4 / 0.02
+    small = GrooveShape(2e-4, 2e-4)
+    found = groove_factors("groove", SHAFT, small, 0.2, orders=(5,)).factors
+    left = 1 - 2e-4 / 0.02
     assert found["tension"].value / left**2 == pytest.approx(3.065, rel=0.01)
     assert found["torsion"].value / left**3 == pytest.approx(2.0, rel=0.01)
 
@@ -56,9 +56,7 @@ def test_a_small_groove_is_that_of_a_half_plane():
 )
 @pytest.mark.parametrize("inner", [0.0, 0.012])
 def test_cells_fill_the_meridian_but_for_the_groove(shape, inner):
-    """Straight cells leave the segments between arcs and chords: with eight and more to a quarter
-    of a turn at most 2 % of the arcs' sectors.
-    """
+    """Straight cells have chords in place of arcs, of which each bounds a segment of a circle."""
     flat = groove_meridian(shape, 0.02, inner, 0.1)
     r, y = flat.points[:, flat.cells]
     areas = (np.roll(y, -1, axis=0) * r - np.roll(r, -1, axis=0) * y).sum(axis=0) / 2
@@ -69,9 +67,10 @@ def test_cells_fill_the_meridian_but_for_the_groove(shape, inner):
     )
     flank = shape.depth - shape.height
     groove = shape.floor * shape.depth + 2 * below_arc + flank**2 * math.tan(shape.lean)
-    assert (0.02 - inner) * 0.2 - areas.sum() == pytest.approx(
-        groove, abs=0.02 * radius**2 * turn + 1e-12
-    )
+    chords = int((flat.arc >= 0).sum())
+    angle = 2 * turn / chords
+    groove -= chords * radius**2 / 2 * (angle - math.sin(angle))
+    assert (0.02 - inner) * 0.2 - areas.sum() == pytest.approx(groove, rel=1e-6)
 
 
 @pytest.mark.long
@@ -90,13 +89,13 @@ def test_a_hole_is_as_published(hole):
     norm["torsion"] = 2.023 - 1.125 * math.sqrt(share)
     for load, factor in hole.factors.items():
         assert factor.value == pytest.approx(norm[load], rel=0.1)
-    assert hole.widest < 0.1
-    # where the wall meets the shaft in the plane of bending
-    assert np.hypot(*hole.factors["bending"].place[[0, 2]]) > 0.9 * 0.02
+    assert hole.widest < 0.2
+    # near the shaft's surface
+    assert np.hypot(*hole.factors["bending"].place[[0, 2]]) > 0.8 * 0.02
 
 
 def test_a_turned_hole_has_its_largest_stress_elsewhere(hole):
-    turned = local_factors(SHAFT, HOLE.with_changes(angle=0.5, y=0.2), 0.1)
+    turned = local_factors(SHAFT, HOLE.with_changes(angle=0.5, y=0.2), 0.2)
     c, s = math.cos(0.5), math.sin(0.5)
     for load in LOADS:
         x, y, z = hole.factors[load].place

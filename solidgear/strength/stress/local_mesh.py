@@ -26,7 +26,7 @@ from solidgear.cuts.solid.cuts import OVERHANG
 if TYPE_CHECKING:
     from solidgear.cuts.features.cut import Cut
 
-#: edges of elements: of the largest, in outer radii; at a hole and at the root of a keyway, in their
+#: edges of elements: of the largest, in outer radii, and on the bore in its own; at a hole and at the root of a keyway, in their
 #: radii; at the ends of a keyway, in half its width
 BULK, AT_HOLE, AT_ROOT, AT_END = 0.5, 0.5, 1.5, 0.5
 #: growth of edges per distance from a hole or an end, from a root, and from a place of largest stress
@@ -213,6 +213,9 @@ def _sizes(shape: LocalShape, peaks: Sequence[Peak]) -> list[str]:
     else:
         formulas, around = [], AT_HOLE * shape.size
     formulas.append(f"{_num(around)}+{_num(GROWTH)}*{cut.distance(shape.outer, frame)}")
+    if shape.inner:
+        away = f"Sqrt((Sqrt(x^2+z^2)-{_num(shape.inner)})^2)"
+        formulas.append(f"{_num(BULK * shape.inner)}+{_num(GROWTH)}*{away}")
     for place, size in peaks:
         x, y, z = (_num(value) for value in place + [0.0, shape.middle, 0.0])
         formulas.append(f"{_num(size)}+{_num(NEAR_PEAK)}*Sqrt((x-{x})^2+(y-{y})^2+(z-{z})^2)")

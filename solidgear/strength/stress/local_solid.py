@@ -64,7 +64,8 @@ class PeakStress:
 
     value: float
     place: np.ndarray  #: (3,) m, y from the middle of the cut
-    traction: float  #: left on the surface there
+    #: left on the surface there, of which the largest shear has the share that it has in stress
+    traction: float
     gradient: float  #: relative, into the material, 1/m
 
 
@@ -104,10 +105,8 @@ def solution_on(shape: LocalShape, material: Material, at: Sequence[Peak] = ()) 
 
 
 def _peak(surface: SurfaceStress, load: str, values: np.ndarray) -> PeakStress:
-    """Return the largest of values (m,) on a surface, with what goes with it, as far as the traction
-    left there is no part of it: where elements are coarse it may be.
-    """
-    node = int((values - surface.traction[0]).argmax())
+    """Return the largest of values (m,) on a surface, with what goes with it."""
+    node = int(values.argmax())
     sigma, slope = surface.sigma[0, node], surface.slope[0, node]
     stress, direction = np.linalg.eigh(sigma)
     along = np.einsum("ia,ij,ja->a", direction, slope, direction)
@@ -117,7 +116,7 @@ def _peak(surface: SurfaceStress, load: str, values: np.ndarray) -> PeakStress:
     else:
         largest = int(np.abs(stress).argmax())
         gradient = along[largest] / stress[largest]
-    traction = float(surface.traction[0, node])
+    traction = float(surface.traction[0, node] * values[node] / np.abs(stress).max())
     return PeakStress(float(values[node]), surface.x[:, node], traction, float(gradient))
 
 

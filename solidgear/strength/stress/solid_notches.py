@@ -29,7 +29,7 @@ Factors: TypeAlias = GrooveFactors | LocalFactors
 #: disturbs its stress, which is that of a plain shaft on both sides
 NEAR = 1.0
 #: relative error bar of a 3D solid below which no mesh leads
-FINEST_LOCAL = 0.01
+FINEST_LOCAL = 0.03
 
 
 @dataclass(frozen=True)
