@@ -16,8 +16,8 @@ Models that `build` makes, cheapest first: euler, timoshenko, harmonic, correcte
 
 What there is, each with an example in its help:
 
-    scenes       load, Scene, Segment, Bearing, Port, PointMass, Housing, Lubrication, Material,
-                 STEEL, Ask
+    scenes       load, Scene, Segment, Bearing, Port, PointMass, ShaftLoad, LoadCase, Housing,
+                 Lubrication, Material, STEEL, Ask
     questions    answer, compare, condense, modes, check, bearing, deflect, stress, turn
     studies      sweep, sensitivities, optimise, budget
     measured     correlate, identify, overlay, load_measured, Measured, Responses, SurfacePoints

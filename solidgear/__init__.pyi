@@ -31,6 +31,9 @@ from solidgear.core.scene import (
     Housing as Housing,
 )
 from solidgear.core.scene import (
+    LoadCase as LoadCase,
+)
+from solidgear.core.scene import (
     Lubrication as Lubrication,
 )
 from solidgear.core.scene import (
@@ -47,6 +50,9 @@ from solidgear.core.scene import (
 )
 from solidgear.core.scene import (
     Segment as Segment,
+)
+from solidgear.core.scene import (
+    ShaftLoad as ShaftLoad,
 )
 from solidgear.core.solve.modes import modes as modes
 from solidgear.core.solve.statics import condense as condense

@@ -18,6 +18,12 @@ ADDITIONS = {
         "teeth": "cuts.features.toothed:Teeth",
         "spline": "cuts.features.toothed:Spline",
         "bolt_circle": "cuts.features.bolt_circle:BoltCircle",
+        "ring_groove": "cuts.features.grooves:RingGroove",
+        "round_groove": "cuts.features.grooves:RoundGroove",
+        "v_groove": "cuts.features.grooves:VGroove",
+        "relief": "cuts.features.relief:Relief",
+        "thread": "cuts.features.thread:Thread",
+        "press_fit": "cuts.features.press_fit:PressFit",
     },
     "table": {
         "catalogue": "bearings.catalogue:Catalogue",
@@ -58,6 +64,7 @@ ADDITIONS = {
     "document": {
         "read scene": "core.loading:scene_of",
         "write scene": "core.scene.writing:tables_of",
+        "resolved scene": "core.scene.resolved:resolved",
         "text of scene": "core.scene_text:toml_of",
         "text of train": "trains.file.text:toml_of",
         "segment of words": "core.scene.shapes:segment_of",

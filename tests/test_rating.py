@@ -10,9 +10,12 @@ from filleted import STRONG, shoulder
 from solidgear import SceneError, SolidgearError
 from solidgear.core.scene import Material, Strength
 from solidgear.strength.stress import din743
+from solidgear.strength.stress.conditions import Conditions
+from solidgear.strength.stress.fillet_rating import FilletNotch
 from solidgear.strength.stress.nominal import CrossSection, NominalStress
 from solidgear.strength.stress.notch import Factor, FilletFactors
-from solidgear.strength.stress.rating import Conditions, fatigue_factors, rated
+from solidgear.strength.stress.rated_notch import Steel
+from solidgear.strength.stress.rating import rated
 
 SCENE = shoulder(1.5, 0.1, d=0.04)
 LARGE = 0.06
@@ -26,13 +29,19 @@ def notch(bar=0.0):
     return FilletFactors("fillet", SCENE.corners[0], CrossSection(0.02, 0.0), 0.02, factors, {}, ())
 
 
+def rate(fillet, nominal, conditions):
+    """Rating of that fillet in the strong steel."""
+    plain, raised = (FilletNotch(fillet, LARGE, bars) for bars in (0.0, 1.0))
+    return rated(plain, conditions.levels(nominal), STRONG, conditions, LARGE, "", raised)
+
+
 def entry(rating, symbol):
     return next(one for one in rating.entries if one.symbol == symbol)
 
 
 def test_bending_alone_is_as_by_hand():
     """n = 1 + sqrt(0.5) 10^-(0.33 + 700/712), K_2 = 1 - 0.2 lg(40/7.5)/lg 20, Rz 10 um."""
-    rating = rated(notch(), BENDING, STRONG, Conditions(roughness=10e-6), LARGE)
+    rating = rate(notch(), BENDING, Conditions(roughness=10e-6))
     n = 1 + math.sqrt(0.5) * 10 ** -(0.33 + 700 / 712)
     k2 = 1 - 0.2 * math.log10(40 / 7.5) / math.log10(20)
     kf = 1 - 0.22 * math.log10(10) * (math.log10(1000 / 20) - 1)
@@ -47,10 +56,10 @@ def test_stresses_add_as_the_norm_says():
     """Tension and bending side by side, torsion across: 1 / S^2 = (a + b)^2 + c^2."""
     steady = Conditions(force_share=1.0, torque_share=1.0)
     alone = [
-        1 / rated(notch(), NominalStress(*s, 0.0), STRONG, steady, LARGE).yielding
+        1 / rate(notch(), NominalStress(*s, 0.0), steady).yielding
         for s in ((50e6, 0.0, 0.0), (0.0, 100e6, 0.0), (0.0, 0.0, 40e6))
     ]
-    together = rated(notch(), NominalStress(50e6, 100e6, 40e6, 0.0), STRONG, steady, LARGE)
+    together = rate(notch(), NominalStress(50e6, 100e6, 40e6, 0.0), steady)
     expected = 1 / math.hypot(alone[0] + alone[1], alone[2])
     assert together.yielding == pytest.approx(expected, rel=1e-12)
 
@@ -59,7 +68,7 @@ def test_stresses_add_as_the_norm_says():
 def test_a_mean_stress_costs_amplitude(constant_mean):
     given = Conditions(constant_mean=constant_mean)
     twisted = NominalStress(0.0, 100e6, 80e6, 0.0)
-    bare, mean = (rated(notch(), s, STRONG, given, LARGE) for s in (BENDING, twisted))
+    bare, mean = (rate(notch(), s, given) for s in (BENDING, twisted))
     assert mean.fatigue < bare.fatigue
     limit, psi = (entry(mean, name).values[1] for name in ("sigma_WK", "psi_sigmaK"))
     equivalent = math.sqrt(3) * 80e6
@@ -70,7 +79,7 @@ def test_a_mean_stress_costs_amplitude(constant_mean):
 def test_a_mean_beyond_yielding_leaves_no_amplitude():
     assert din743.amplitude_limit(200e6, 0.2, 500e6, 600e6, 10e6, constant_mean=True) == 0.0
     pulled = NominalStress(2000e6, 100e6, 0.0, 0.0)
-    rating = rated(notch(), pulled, STRONG, Conditions(constant_mean=True), LARGE)
+    rating = rate(notch(), pulled, Conditions(constant_mean=True))
     assert rating.fatigue == 0.0 and rating.yielding < 1
 
 
@@ -86,24 +95,32 @@ def test_both_cases_meet_where_the_part_yields():
 
 
 def test_what_nobody_gave_is_said_and_what_is_given_is_not():
-    bare = rated(notch(), BENDING, STRONG, Conditions(), LARGE)
-    assert bare.assumed == ("K_1 (sigma_B)", "K_1 (sigma_S)", "K_F", "K_V", "sigma_a")
+    bare = rate(notch(), BENDING, Conditions())
+    assert bare.assumed == (
+        "K_1 (sigma_B)",
+        "K_1 (sigma_S)",
+        "K_F",
+        "K_V",
+        "sigma_a",
+        "overload",
+    )
     told = Conditions(
         roughness="5 um",
         ultimate_at_size=0.9,
         yield_at_size=0.85,
         hardening=1.1,
+        overload=1.5,
         force_share=0.0,
         torque_share=0.0,
     )
-    full = rated(notch(), BENDING, STRONG, told, LARGE)
+    full = rate(notch(), BENDING, told)
     assert full.assumed == ()
     assert entry(full, "K_1 (sigma_B)").values == (0.9,) * 3
     assert all(one.source for one in full.entries)
 
 
 def test_a_bar_of_the_form_factor_is_one_of_the_safety():
-    sure, unsure = (rated(notch(bar), BENDING, STRONG, Conditions(), LARGE) for bar in (0, 0.018))
+    sure, unsure = (rate(notch(bar), BENDING, Conditions()) for bar in (0, 0.018))
     assert sure.fatigue_bar == 0 and unsure.fatigue == sure.fatigue
     assert 0.005 < unsure.fatigue_bar / unsure.fatigue < 0.011  # 1 % of Kt, a little less of S
 
@@ -111,7 +128,8 @@ def test_a_bar_of_the_form_factor_is_one_of_the_safety():
 def test_a_notch_factor_is_never_below_one():
     mild = notch()
     mild = replace(mild, factors={k: replace(v, value=1.01) for k, v in mild.factors.items()})
-    assert all(one.notch == 1.0 for one in fatigue_factors(mild, 300e6, LARGE).values())
+    soft = Steel(600e6, 300e6, hard=False)
+    assert all(one.notch == 1.0 for one in FilletNotch(mild, LARGE).by_load(soft).values())
 
 
 @pytest.mark.parametrize(

@@ -12,9 +12,10 @@ import pytest
 
 import solidgear as sg
 from solidgear.core.scene.closed_form import mass_properties
+from solidgear.strength.load import driven
 from solidgear.strength.stress import shaft
 from solidgear.strength.stress.at_rest import StressSettings, stress_at_rest
-from solidgear.strength.stress.rating import Conditions
+from solidgear.strength.stress.conditions import Conditions
 from solidgear.strength.stress.sheet import shaft_tables
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.file.operation import GRAVITY, OperatingPoint
@@ -101,7 +102,7 @@ def test_the_bending_moment_is_force_times_arm_and_the_tables_are_the_json(run):
     assert surface == pytest.approx(local["amplitude"] / 1e6, rel=5e-4)
     assert bar == pytest.approx(local["amplitude_bar"] / 1e6, rel=0.05)
     assert float(form[1]) == pytest.approx(factors["bending"]["value"], rel=5e-4)
-    assert "300.0 N m from 2 to pinion" in said
+    assert "thy 300.0 N m at 2" in " ".join(said.split())
     assert 'the material of "shaft" has no strength; write strength' in said
 
 
@@ -113,16 +114,17 @@ def test_a_shaft_without_torque_says_so(run):
 
 def test_points_where_nothing_acts_are_told():
     scene = sg.load(GEOMETRY / "intermediate_shaft.toml").with_changes(load={"x": 100.0})
-    found = stress_of(scene, drive={"pinion": 50.0})
+    found = stress_of(driven(scene, {"pinion": 50.0}))
     assert found.cautions == ()
     bare = stress_of(scene).cautions
     assert any(c.startswith('nothing acts at the point "pinion"') for c in bare)
 
 
-def test_what_is_cut_into_a_shaft_is_left_out_and_told():
+def test_what_is_cut_into_a_shaft_is_a_notch_without_a_rating_where_strength_is_missing():
     scene = sg.load(GEOMETRY / "pinion_keyed.toml").with_changes(load={"z": 1e3})
     (one,) = stress_of(scene).shafts
-    assert any("keyway" in said and "is not included" in said for said in one.found.remarks)
+    assert [(d.kind, d.rating) for d in one.found.drawn] == [("keyway", None)]
+    assert one.weak == (one.found.drawn[0].segment,)
     assert one.found.forces.largest_moment > 0
 
 

@@ -9,7 +9,7 @@ from test_fillet_stress import loads_on
 
 from solidgear.show.units import US
 from solidgear.strength.stress import sheet as stress_tables
-from solidgear.strength.stress.rating import Conditions
+from solidgear.strength.stress.conditions import Conditions
 from solidgear.strength.stress.shaft import shaft_stress
 
 
@@ -66,7 +66,8 @@ def test_a_rating_shows_every_factor_its_source_and_what_is_assumed(found):
     assert "Assumed, since not given: K_1 (sigma_B)" in table.note
     assert f"Safety against fatigue {found.worst[0].rating.fatigue:.3g}"[:28] in table.note
     (row,) = stress_tables.safeties(found).texts
-    assert float(row[1]) == pytest.approx(found.worst[0].rating.fatigue, rel=5e-3)
+    assert row[:2] == ["fillet", "fillet"]
+    assert float(row[2]) == pytest.approx(found.worst[0].rating.fatigue, rel=5e-3)
 
 
 def test_sharp_corners_are_told_in_one_sentence():

@@ -184,16 +184,16 @@ def keyway(length: float = 1.2, depth: float = DIAMETER / 8) -> Keyway:
         length=length * DIAMETER,
         width=DIAMETER / 4,
         depth=depth,
+        radius=DIAMETER / 48,
     )
 
 
 def keyways(tolerance: float) -> list[dict]:
     """Return rows of keyways."""
-    radius = DIAMETER / 48
-    found = local_factors(shaft(), keyway(), tolerance, radius)
+    found = local_factors(shaft(), keyway(), tolerance)
     rows = [row("keyway", load, found, "Fessler", value) for load, value in KEYWAY.items()]
-    long = local_factors(shaft(), keyway(4.0), tolerance, radius)
-    value = prandtl(DIAMETER, keyway().width, keyway().depth, radius)
+    long = local_factors(shaft(), keyway(4.0), tolerance)
+    value = prandtl(DIAMETER, keyway().width, keyway().depth, DIAMETER / 48)
     rows.append(row("keyway of 4 D", "torsion", long, "Prandtl", value))
     return rows
 
@@ -258,12 +258,12 @@ def keyed_section(diameter: float, width: float, depth: float, radius: float):
     )
 
 
-def beside_calculix(what: str, cut: Cut, radius: float | None, size: float) -> list[dict]:
+def beside_calculix(what: str, cut: Cut, size: float) -> list[dict]:
     """Return rows of the largest stress on one mesh, refined where a first one has it, by us and by
     CalculiX.
     """
     segment = shaft()
-    shape = local_shape(segment, cut, radius)
+    shape = local_shape(segment, cut)
     at: list[Peak] = [
         (peak.place, size * shape.size)
         for peak in solution_on(shape, segment.material).peaks.values()
@@ -344,10 +344,9 @@ def main() -> None:
             *beside_calculix(
                 "hole",
                 CrossHole(name="h", segment="shaft", y=1.0, diameter=0.2 * DIAMETER),
-                None,
                 0.2,
             ),
-            *beside_calculix("keyway", keyway(), DIAMETER / 48, 0.3),
+            *beside_calculix("keyway", keyway(), 0.3),
         ],
     }
     for name, study in studies.items():

@@ -1419,10 +1419,43 @@ MUTATIONS = (
     Mutation(
         "DIN 743: torsion adds as a normal stress does",
         "solidgear/strength/stress/rating.py",
-        "_safety",
+        "_use",
         "math.hypot(normal, shares.get('torsion', 0.0))",
         "normal + shares.get('torsion', 0.0)",
         "tests/test_rating.py::test_stresses_add_as_the_norm_says",
+    ),
+    Mutation(
+        "DIN 743: factors of tests not turned to the diameter of the notch",
+        "solidgear/strength/stress/norm/tested.py",
+        "at_diameter",
+        "size_of_notch(factor, diameter)",
+        "size_of_notch(factor, tested)",
+        "tests/test_notches_norm.py::test_factors_are_those_by_hand[keyway, 80 mm]",
+    ),
+    Mutation(
+        "Miner: levels below the fatigue limit never count",
+        "solidgear/strength/stress/norm/life.py",
+        "repetitions",
+        "np.cumsum(count * share**exponent)",
+        "np.cumsum(np.where(share > 1, count, 0.0) * share**exponent)",
+        "tests/test_notches_norm.py::"
+        "test_the_consequent_rule_is_that_of_a_limit_that_falls_with_damage[5.0]",
+    ),
+    Mutation(
+        "a notch of a drawing rated at its start alone",
+        "solidgear/strength/stress/drawn.py",
+        "_worst",
+        "min(candidates, key=lambda stress: stress.severity)",
+        "candidates[0]",
+        "tests/test_notches_shaft.py::test_each_notch_is_rated_in_the_section_where_it_is_worst",
+    ),
+    Mutation(
+        "a cross hole takes nothing from its section",
+        "solidgear/strength/stress/norm_notch.py",
+        "Section.nominal",
+        "section.second_moment - cubes / 12",
+        "section.second_moment",
+        "tests/test_notches_norm.py::test_a_cross_hole",
     ),
 )
 

@@ -66,6 +66,9 @@ OVER_POINTS = Printed(
     }
 )
 BEARING = (
-    Printed(keys={"scene": str, "bearings": list[FACTS]}),  # type: ignore[valid-type]
+    Printed(
+        keys={"scene": str, "bearings": list[FACTS]},  # type: ignore[valid-type]
+        sometimes={"case": str, "cases": list[OVER_POINTS]},  # type: ignore[valid-type]
+    ),
     Printed(keys={"train": str, "bearings": list[OVER_POINTS]}),  # type: ignore[valid-type]
 )

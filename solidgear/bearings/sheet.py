@@ -26,14 +26,27 @@ from solidgear.show.words import engineering, percent
 LIVES = {"basic": "basic L10", "reference": "reference L10r", "modified": "modified Lnmr"}
 
 
-def scene_sheet(scene: str, facts: Sequence[BearingFacts], chart: Path | None = None) -> Sheet:
-    """Return the sheet of the catalogue bearings of a shaft at their load, and their lives."""
-    blocks: list[str | Table] = []
+def scene_sheet(
+    scene: str,
+    facts: Sequence[BearingFacts],
+    chart: Path | None = None,
+    case: str = "",
+    lives: Sequence[LivesOverPoints] = (),
+) -> Sheet:
+    """Return the sheet of the catalogue bearings of a shaft at their load in a case, and their lives,
+    over all cases where there are several.
+    """
+    blocks: list[str | Table] = [f"Loads of the case {case}."] if case else []
     for fact in facts:
         blocks += [*_at_load(fact), *_life(fact.life)]
+    if lives:
+        blocks += [*_over_points(lives), *_duty(lives, "case")]
     if chart is not None:
         blocks.append(f"Chart: {chart}")
-    return _sheet(scene, blocks, {"scene": scene, "bearings": [fact.as_dict() for fact in facts]})
+    data: dict[str, Any] = {"scene": scene, "bearings": [fact.as_dict() for fact in facts]}
+    if case:
+        data |= {"case": case, "cases": [life.as_dict() for life in lives]}
+    return _sheet(scene, blocks, data)
 
 
 def train_sheet(train: str, bearings: Sequence[LivesOverPoints]) -> Sheet:
@@ -209,8 +222,8 @@ def _over_points(bearings: Sequence[LivesOverPoints]) -> Iterator[str | Table]:
         yield from (caution(f"bearing {bearing.name!r}: {n}") for n in dict.fromkeys(notes))
 
 
-def _duty(bearings: Sequence[LivesOverPoints]) -> Iterator[str | Table]:
-    """Yield lives over the duty table, where there is one."""
+def _duty(bearings: Sequence[LivesOverPoints], point: str = "point") -> Iterator[str | Table]:
+    """Yield lives over the duty table, where there is one, of points or of cases."""
     rows = []
     for bearing in bearings:
         duty = bearing.duty
@@ -221,8 +234,8 @@ def _duty(bearings: Sequence[LivesOverPoints]) -> Iterator[str | Table]:
             lives = map(_cell, (duty.hours, duty.revolutions))
             rows.append([bearing.name, *lives, bearing.kind, worst, damage])
     if not rows:
-        yield "No life over all points: give each point its speed, and its share or hours."
+        yield f"No life over all {point}s: give each {point} its speed, and its share or hours."
         return
     words = [Column("of", kind="word"), Column("most damage at", kind="text"), "of all"]
     yield Table("", ["bearing", "hours", "revolutions", *words], rows, name="duty")
-    yield "Damage of all points is added (Palmgren, Miner)."
+    yield f"Damage of all {point}s is added (Palmgren, Miner)."

@@ -18,6 +18,7 @@ from solidgear.bearings.catalogue import Preload, catalogue_of
 from solidgear.bearings.catalogued import Catalogued, End, catalogued, state
 from solidgear.bearings.equilibrium import Equilibrium, equilibrium
 from solidgear.core import Bearing, Scene, SceneError
+from solidgear.core.scene.acting import station_loads
 
 if TYPE_CHECKING:
     from solidgear.core import Body
@@ -53,7 +54,7 @@ class Solved:
 
 def waiting(scene: Scene) -> tuple[str, ...]:
     """Return names of the bearings that wait for the load that the shaft brings them."""
-    if scene.load is None:
+    if not scene.is_loaded:
         return ()
     return tuple(
         b.name
@@ -74,7 +75,7 @@ def solved(
     start: Equilibrium | None = None,
 ) -> Solved:
     """Return the stiffness of every catalogue bearing of a scene, under the loads of the bearings,
-    or that at the port.
+    or those of the shaft in the first case.
 
     Without a body, bearings that wait for the load of the shaft are taken at rest; the search
     begins at the equilibrium `start`. Refused are data that make no bearing, loads that one cannot
@@ -92,8 +93,8 @@ def solved(
     places = {b.name: k for k, b in enumerate(scene.bearings) if b.catalogue is not None}
     bearings_made = catalogued_bearings(scene, choice)
     settled = None
-    if body is not None and scene.load is not None and wants_equilibrium(scene):
-        loads = {scene.port.name: choice.load * np.array(scene.load.six)}
+    if body is not None and wants_equilibrium(scene):
+        loads = {name: choice.load * six for name, six in station_loads(scene).items()}
         around = scene.housing or scene.housing_axial
         settled = equilibrium(body, mounted(scene, bearings_made), loads, around, start)
     motion, tangent = {}, {}

@@ -254,5 +254,5 @@ def _with_load(scene: Scene, load: BearingLoad, bearing: str | None) -> Scene:
         b.with_changes(catalogue=catalogues[b.name]) if b.name in catalogues else b
         for b in scene.bearings
     )
-    on_port = {"load": load} if bearing is None else {}
+    on_port = {"load": load, "loads": (), "cases": ()} if bearing is None else {}
     return scene.with_changes(bearings=bearings, **on_port)

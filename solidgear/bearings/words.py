@@ -10,19 +10,23 @@ from solidgear.show.units import Units
 from solidgear.show.words import is_number
 
 #: of a load, in its order, with their units
-LOADS = {"x": "N", "y": "N", "z": "N", "thx": "N m", "thz": "N m"}
+LOADS = {"x": "N", "y": "N", "z": "N", "thx": "N m", "torque": "N m", "thz": "N m"}
+#: of six components
+SIX = tuple(LOADS)
 
 
 def load_row(scene: Mapping[str, Any], units: Units) -> list[list[str]]:
-    """Return the load under which catalogue bearings have their stiffness, as a row; none without
+    """Return the loads under which catalogue bearings have their stiffness, as rows; none without
     one.
     """
     sentence = loads(scene.get("load") or {}, units)
-    return (
-        [["load at the lumped point", f"{sentence}; bearings have their stiffness under it"]]
-        if sentence
-        else []
-    )
+    rows = [["load at the lumped point", sentence]] if sentence else []
+    for load in scene.get("acting") or ():
+        words = loads(dict(zip(SIX, load["load"])), units)
+        rows.append([f"load {load['name']} at {load['station']}", words or "none"])
+    if rows:
+        rows[-1][1] += "; bearings have their stiffness under " + ("it" if sentence else "them")
+    return rows
 
 
 def speed_row(scene: Mapping[str, Any]) -> list[list[str]]:

@@ -26,6 +26,7 @@ from solidgear.core.ladder.model import LUMPED, SOLID
 from solidgear.core.plain import plain
 from solidgear.core.scene.closed_form import mass_properties, whole_mass
 from solidgear.core.scene.shaft import feature_labels, resolved
+from solidgear.guards.details import details
 from solidgear.guards.notice import LEVELS, Notice, Notices, beams, everything
 from solidgear.guards.probe import Probe
 from solidgear.guards.registry import GUARDS
@@ -271,6 +272,7 @@ def _verdict(model: str, records: Iterable[GuardRecord]) -> Verdict:
 def _beyond_the_segments(scene: Scene) -> Iterator[Notice]:
     """Yield notices on features, and on models that answer for the plain part only."""
     yield from smearing(scene)
+    yield from details(scene)
     features = resolved(scene)
     if not features:
         return

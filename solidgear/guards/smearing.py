@@ -27,7 +27,7 @@ INERTIA, BY_STIFFNESS = 0.5, 0.25
 
 
 def _smeared(scene: Scene) -> list[Any]:
-    return [f for f in scene.features if f.smeared]
+    return [f for f in scene.features if f.smeared and f.toothed]
 
 
 def _lacking(scene: Scene) -> tuple[float, float]:

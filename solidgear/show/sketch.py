@@ -506,6 +506,8 @@ def _draw_entry(board: Board, entry: Entry, x: float, height: float) -> None:
 
 
 CUT, MASS = "#8a1f1f", "#6b2e8a"
+#: kinds of features around a cylinder, which are drawn as marks
+DETAILS = ("ring_groove", "round_groove", "v_groove", "relief", "thread", "press_fit")
 
 
 def draw_feature(board: Board, feature: Mapping[str, Any], segments: Sequence[Mapping]) -> None:
@@ -515,6 +517,8 @@ def draw_feature(board: Board, feature: Mapping[str, Any], segments: Sequence[Ma
         _teeth(board, feature, segment)
     elif "circle" in feature:
         _holes(board, feature, segment)
+    elif feature["kind"] in DETAILS:
+        _detail(board, feature, segment)
     else:
         _cut(board, feature, segment)
 
@@ -543,6 +547,20 @@ def _cut(board: Board, cut: Mapping, segment: Mapping) -> None:
     board.line(x, r, CUT, dashes=() if "depth" in cut else DASHED)
     place = board.x((lo + hi) / 2), board.radial * max(floor, 0) - 0.05
     board.words(*place, _name(cut), CUT, baseline="top")
+
+
+def _detail(board: Board, detail: Mapping, segment: Mapping) -> None:
+    """Mark a groove, undercut, thread or hub on both sides of a cylinder."""
+    side = segment["y0"] if detail.get("side") == "start" else segment["y1"]
+    lo = detail.get("y", side)
+    hi = lo + (detail.get("length") or 0.0)
+    if "length" in detail and detail["length"] is None:
+        hi = segment["y1"]
+    radius = board.radial * segment["outer0"]
+    for half in (1, -1):
+        board.line([board.x(lo), board.x(hi)], [half * radius] * 2, CUT, 2.4)
+        board.dot(board.x(lo), half * radius, 4, CUT, 4)
+    board.words(board.x((lo + hi) / 2), radius + 0.05, _name(detail), CUT, baseline="bottom")
 
 
 def _teeth(board: Board, teeth: Mapping, segment: Mapping) -> None:

@@ -12,9 +12,10 @@ import typer
 from solidgear.bearings.study import loaded_by
 from solidgear.core import SceneError, SolidgearError, Source, is_train, name_of_source, show
 from solidgear.core.loading import as_written
+from solidgear.core.scene.units import quantity
 from solidgear.show.command import Group
 from solidgear.show.options import refuse
-from solidgear.strength.load import AT_REST
+from solidgear.strength.load import AT_REST, driven
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.train import Train
@@ -29,8 +30,11 @@ if TYPE_CHECKING:
     Torque: TypeAlias = Given
     #: at the port: a text, or its components
     Forces: TypeAlias = str | Mapping[str, Any] | None
+    #: by the place where each enters: texts such as `B=115 N*m`, or a mapping
+    Torques: TypeAlias = list[str] | Mapping[str, Any] | None
 else:
     Torque = Forces = str | None
+    Torques = list[str] | None
 AtRestFile = Annotated[
     Path, typer.Argument(help="Train or scene file (TOML), such as geometry/axle_overhung.toml.")
 ]
@@ -63,7 +67,20 @@ class Acting(Group):
         Forces,
         typer.Option(
             "--load",
-            help='Load on a shaft in place of that in its file: "x=2 kN, z=-500 N" at the port.',
+            help='Load on a shaft in place of those in its file: "x=2 kN, z=-500 N" at the port.',
+        ),
+    ] = None
+    case: Annotated[
+        str | None,
+        typer.Option(
+            "--case", help="Case of the loads of a shaft, by name or number; the first by default."
+        ),
+    ] = None
+    drive: Annotated[
+        Torques,
+        typer.Option(
+            help='Torque that enters a shaft at a bearing, mass or point, such as "B=115 N*m", and '
+            "leaves at the port, or where the file says; repeatable."
         ),
     ] = None
 
@@ -83,7 +100,12 @@ class Acting(Group):
         scene = as_written(source)
         if self.load is not None:
             scene = loaded_by(scene, self.load)
-        return Assembly.of(scene, kept=FEW, tol=tol), AT_REST
+        if self.case is not None:
+            scene = scene.with_case(self.case)
+        if self.drive:
+            scene = driven(scene, torques(self.drive))
+        assembly = Assembly.of(scene, kept=FEW, tol=tol)
+        return assembly, assembly.train.point or AT_REST
 
     def read_train(self, source: Source | Train) -> tuple[Train, OperatingPoint]:
         """Return a train as its file has it and its operating point; refuse a load on a shaft."""
@@ -91,9 +113,11 @@ class Acting(Group):
         return self._at_point(source)
 
     def refuse_load(self, train: Source | Train) -> None:
-        """Refuse a load on a shaft."""
+        """Refuse loads of a shaft."""
         kind = f"a shaft, and {name_of_source(train)} is a train: give `torque`"
-        refuse({"`load`": self.load is not None}, kind)
+        refuse({"`load`": self.load is not None, "`drive`": bool(self.drive)}, kind)
+        kind = f"a shaft, and {name_of_source(train)} is a train: give `point`"
+        refuse({"`case`": self.case is not None}, kind)
 
     def _at_point(self, source: Source | Train) -> tuple[Train, OperatingPoint]:
         if self.torque is None:
@@ -122,3 +146,23 @@ class Acting(Group):
                 raise
             raise SolidgearError(f"`of` {show(self.of, 40)}: {error.reason}") from None
         return train, train.told(point)
+
+
+def torques(drive: list[str] | Mapping[str, Any]) -> dict[str, float]:
+    """Return torques by the place where each enters, N m, from ``B=115 N*m`` or a mapping."""
+    pairs = drive.items() if isinstance(drive, Mapping) else map(_torque, drive)
+    out = {}
+    for name, value in pairs:
+        try:
+            out[name] = quantity(value, "torque")
+        except SceneError as error:
+            raise SolidgearError(f"`drive` {name}: {error}") from None
+    return out
+
+
+def _torque(text: str) -> tuple[str, str]:
+    """Return name and torque of ``B=115 N*m``."""
+    name, sep, value = (part.strip() for part in text.partition("="))
+    if not sep or not name:
+        raise SolidgearError(f'`drive` {show(text)}: write NAME=TORQUE, such as "B=115 N*m"')
+    return name, value

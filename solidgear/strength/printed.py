@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
+from solidgear.core.scene.acting import ActingLoad
 from solidgear.show.printed import Printed
 from solidgear.strength.deflection.at_rest import Measured, Standing
 from solidgear.strength.deflection.shaft import ShaftDeflection
+from solidgear.strength.statics import Statics
 from solidgear.strength.stress.at_rest import StressAtRest, StressedShaft
 from solidgear.trains.assembly.turn import StageTurn
 
@@ -28,7 +30,16 @@ SOLUTION = Printed(
     named=str,
 )
 #: of a shaft under the load of its scene
-SHAFT = Printed((ShaftDeflection,), {"displacement": SIX, "notes": list[str], "seconds": float})
+SHAFT = Printed(
+    (ShaftDeflection,),
+    {
+        "displacement": SIX,
+        "notes": list[str],
+        "seconds": float,
+        "case": str,
+        "statics": Statics,
+    },
+)
 COMMON = {
     "tolerance": float,
     "verdict": str,
@@ -48,7 +59,11 @@ DEFLECT = (
     Printed(
         keys={
             "scene": str,
+            "port": str,
+            "case": str,
             "load": list[float],
+            "loads": list[ActingLoad],
+            "assumed": list[str],
             "why_without_bar": str,
             "models": dict[str, SHAFT],  # type: ignore[valid-type]
             "points": list[SHAFT],  # type: ignore[valid-type]

@@ -71,14 +71,15 @@ def _features(scene: Scene, mesh: SolidMesh) -> Iterator[Spots]:
     """Yield the features of a shaft, as what its mesh has of the surface that is none of the
     outline's; of those at the same place along the shaft all as one.
     """
-    if not scene.features:
+    features = [feature for feature in scene.features if not feature.smeared]
+    if not features:
         return
     nodes = _off_outline(scene.outline, mesh)
-    spans = [feature.span(scene.segments) for feature in scene.features]
+    spans = [feature.span(scene.segments) for feature in features]
     y = mesh.nodes[1, nodes].mean(axis=0)
     held = np.array([(lo <= y) & (y <= hi) for lo, hi in spans])
     for kind in np.unique(held, axis=1).T:
-        members = [f for f, is_there in zip(scene.features, kind) if is_there]
+        members = [f for f, is_there in zip(features, kind) if is_there]
         if not members:
             continue
         points = mesh.nodes[:, np.unique(nodes[:, (held == kind[:, None]).all(axis=0)])]

@@ -8,7 +8,7 @@ that are sound by themselves.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple, TypeAlias
 
@@ -16,6 +16,7 @@ from pydantic import BeforeValidator, model_validator
 
 from solidgear.core.errors import SceneError
 from solidgear.core.scene import rules
+from solidgear.core.scene.acting import torque_problems
 from solidgear.core.scene.ask import Ask
 from solidgear.core.scene.blends import BLENDS
 from solidgear.core.scene.ends import seat_masses
@@ -23,12 +24,15 @@ from solidgear.core.scene.feature_rules import FEATURES
 from solidgear.core.scene.housing import Housing, read_housing
 from solidgear.core.scene.limits import MOST_BEARINGS, MOST_MASSES, MOST_SEGMENTS
 from solidgear.core.scene.load import BearingLoad
+from solidgear.core.scene.load_case import LoadCase
+from solidgear.core.scene.load_rules import load_problems, seat_loads
 from solidgear.core.scene.lubrication import Lubrication
 from solidgear.core.scene.materials import MaterialName, by_name
 from solidgear.core.scene.model import Scene
 from solidgear.core.scene.parts import STEEL, Material, Segment
 from solidgear.core.scene.places import Placed, Places
 from solidgear.core.scene.point_mass import PointMass
+from solidgear.core.scene.shaft_load import AlongAxis, ShaftLoad
 from solidgear.core.scene.shapes import SHAPES, Cylinder, Shape, lay_out
 from solidgear.core.scene.stations import Attachment, Bearing, Port
 from solidgear.core.scene.tables import pairing, parts
@@ -73,9 +77,19 @@ class _Ask(Ask):
     port: str | None = None
 
 
-def _several(ports: Any) -> Any:
-    """Return a single [port] as a list of one."""
-    return [ports] if isinstance(ports, Mapping) else ports
+def _several(tables: Any) -> Any:
+    """Return a single table, such as [port], as a list of one."""
+    return [tables] if isinstance(tables, Mapping) else tables
+
+
+#: words for the place of a load
+PLACES = {"on", *ShaftLoad.Words.model_fields, "from"} - {"from_"}
+
+
+def _is_at_port(load: Any) -> bool:
+    """Return True for a [load] of components alone, which acts at the main lumped point."""
+    keys = {*ShaftLoad.table_keys()} - {*BearingLoad.model_fields}
+    return isinstance(load, Mapping) and not keys & {*load}
 
 
 class SceneFile(Model):
@@ -111,8 +125,20 @@ class SceneFile(Model):
     housing: Annotated[Table | None, Holds(Housing)] = None
     #: lumped points that numbers are given for, such as the middle of a gear
     port: Annotated[list[Table], BeforeValidator(_several), Holds(Port), Written(Port | list[Port])]
-    #: load on the shaft at the main lumped point, under which catalogue bearings settle
-    load: BearingLoad | None = None
+    #: loads on the shaft, under which catalogue bearings settle; a single table of components acts at
+    #: the main lumped point
+    load: Annotated[
+        list[Table],
+        BeforeValidator(_several),
+        Holds(ShaftLoad),
+        Written(BearingLoad | ShaftLoad | list[ShaftLoad]),
+    ] = []
+    #: which loads act together, at which speed and how long; without any all loads do
+    case: tuple[LoadCase, ...] = ()
+    #: point, bearing, mass or load where torques that are left leave the shaft
+    torque_at: str | None = None
+    #: sense in which the shaft turns, for loads with `sense`
+    turns: AlongAxis | None = None
     #: lubrication of the bearings, for their modified life
     lubrication: Lubrication | None = None
     #: ranges of entries by their paths, such as "material.E" = "206 GPa ± 3 %"
@@ -250,20 +276,23 @@ class _Reading:
             self.problems.append(SceneError("a scene needs a port", path=("port",)))
         ports = [self._row(Port, ("port", k), table) for k, table in enumerate(file.port)]
         masses = [self._row(PointMass, ("mass", k), table) for k, table in enumerate(file.mass)]
+        load, loads = self._loads()
         features = [row for k, t in enumerate(file.feature) for row in self._feature(k, t)]
         rows = {
             "bearings": self._turned(bearings, paired or []),
             "ports": self._main_first(ports),
             "masses": masses,
+            "loads": loads,
             "features": [row for row in features if row.kind in FEATURES.values()],
             "blends": [row for row in features if row.kind in BLENDS.values()],
         }
         if self.segments:
-            self._judge(rows)
+            self._judge(rows, load)
         self.problems.raise_any()
         things = {key: tuple(row.thing for row in kind_rows) for key, kind_rows in rows.items()}
         main, *further = things.pop("ports")
         stations = [main, *further, *things["bearings"], *things["masses"]]
+        stations += [seated.seat for seated in things["loads"] if seated.seat is not None]
         scene = Scene.from_parts(
             self.segments,
             self._material(),
@@ -276,10 +305,15 @@ class _Reading:
             body=PARTS.with_seats(self.part, stations, self.segments) if self.part else None,
             housing_axial=housing if isinstance(housing, float) else None,
             housing=None if isinstance(housing, float) else housing,
-            load=file.load,
+            load=load,
+            cases=file.case,
+            torque_at=file.torque_at,
+            turns=file.turns,
             lubrication=file.lubrication,
             ask=Ask(**{key: getattr(file.ask, key) for key in Ask.model_fields}),
         )
+        for problem in torque_problems(scene):
+            raise problem
         return with_settled(with_ranges(scene, file.uncertain, file.bearing), file.bearing)
 
     def _tables(self) -> tuple[SceneFile, set[str]]:
@@ -354,6 +388,22 @@ class _Reading:
         thing = self.problems.read(lambda: kind.read(table, self.places, **usual), path)
         return _Row(thing, kind, path, table)
 
+    def _loads(self) -> tuple[BearingLoad | None, list[_Row]]:
+        """Return the load at the main lumped point, or loads at any places."""
+        if _is_at_port(self.raw.get("load")):
+            table = self.raw["load"]
+            return self.problems.read(lambda: BearingLoad(**table), ("load",)), []
+        tables = self.file.load
+        if isinstance(self.raw.get("load"), Mapping) and not PLACES & {*tables[0]}:
+            tables = [{**tables[0], "on": self._main_name()}]
+        return None, [self._row(ShaftLoad, ("load", k), table) for k, table in enumerate(tables)]
+
+    def _main_name(self) -> str:
+        """Return the name of the main lumped point of the file."""
+        usual = Port.model_fields["name"].default
+        first = self.file.port[0] if self.file.port else {}
+        return self.file.ask.port or first.get("name", usual)
+
     def _bearing(self, index: int, table: Table) -> _Row:
         """Read a bearing, whose middle is a datum for tables that follow."""
         row = self._row(Bearing, ("bearing", index), table)
@@ -397,7 +447,7 @@ class _Reading:
         main = [row for row, name in zip(ports, names) if name == main_name][:1]
         return main + [row for row in ports if row not in main]
 
-    def _judge(self, rows: dict[str, list[_Row]]) -> None:
+    def _judge(self, rows: dict[str, list[_Row]], load: BearingLoad | None) -> None:
         """Gather problems between things that are sound by themselves."""
         # names are judged where all are known
         complete = not {"bearing", "port", "arrangement"} & self.spoilt
@@ -408,16 +458,31 @@ class _Reading:
         names = [table.get("name", Port.model_fields["name"].default) for table in tables]
         stations = {name for name in names if isinstance(name, str)}
         things["masses"] = [*seat_masses(things["masses"], self.segments, stations)]
+        stations |= {mass.name for mass in things["masses"]}
+        things["loads"] = [*seat_loads(things["loads"], self.segments, [*stations])]
         problems = [*rules.problems_between(self.segments, **things, complete=complete)]
         if complete and things["ports"]:
             problems += rules.question_problems(things["ports"], self.file.ask.quantities)
+        if complete and things["ports"] and all(row.thing for row in rows["loads"]):
+            problems += self._load_problems(things, load)
         self.problems += [
             problem.located(None, path=_in_file(problem.path, sound)) for problem in problems
         ]
 
+    def _load_problems(
+        self, things: Mapping[str, list], load: BearingLoad | None
+    ) -> Iterator[SceneError]:
+        """Yield problems of loads and cases with each other, where these are sound by themselves."""
+        if not {"load", "case", "mass", "torque_at", "turns"} & self.spoilt:
+            stations = {key: things[key] for key in ("ports", "bearings", "masses", "loads")}
+            file = self.file
+            yield from load_problems(
+                **stations, load=load, cases=file.case, torque_at=file.torque_at, turns=file.turns
+            )
+
 
 #: lists of a scene by those of a file
-LISTS = {"bearings": "bearing", "ports": "port", "masses": "mass"}
+LISTS = {"bearings": "bearing", "ports": "port", "masses": "mass", "loads": "load", "cases": "case"}
 
 
 def _in_file(path: tuple, rows: Mapping[str, Sequence[_Row]]) -> tuple:
@@ -427,7 +492,7 @@ def _in_file(path: tuple, rows: Mapping[str, Sequence[_Row]]) -> tuple:
     elif path[0] == "further_ports":
         path = ("ports", path[1] + 1, *path[2:]) if path[1:] else ("ports",)
     if path[0] not in rows:
-        return path
+        return (LISTS.get(path[0], path[0]), *path[1:])
     if len(path) == 1:
         return (LISTS.get(path[0], "feature"),)
     row = rows[path[0]][path[1]]

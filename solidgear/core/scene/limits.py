@@ -16,6 +16,8 @@ MOST_MODES = 500
 
 #: every segment takes at least a line of cells, and every bearing six ports
 MOST_SEGMENTS, MOST_BEARINGS, MOST_SPRINGS, MOST_MASSES = 100, 50, 20, 50
+#: loads of a shaft
+MOST_LOADS = 50
 #: lumped points; each is condensed to and judged
 MOST_PORTS = 12
 

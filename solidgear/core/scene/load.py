@@ -30,8 +30,8 @@ class BearingLoad(Model):
         about = [key for key in data if key.lower() in ABOUT_AXIS]
         if about:
             raise SceneError(
-                "bearings carry no moment about the axis: write x, y, z, thx and thz alone; give "
-                'a torque by the operation of a train, or solidgear stress --drive "A=115 N*m"',
+                "bearings carry no moment about the axis: write x, y, z, thx and thz alone; a torque "
+                'is a [[load]] with on = "NAME" and torque = "115 N*m", or the operation of a train',
                 path=(about[0],),
                 value=show(data[about[0]]),
             )

@@ -34,8 +34,17 @@ _FERRITIC = MaterialConstants(169e9, 0.275, 7100.0, IRON_SOURCE)
 
 MATERIALS = {
     "steel": _STEEL,
+    "S235": _STEEL,
+    "S275": _STEEL,
+    "S355": _STEEL,
+    "E295": _STEEL,
+    "E335": _STEEL,
+    "E360": _STEEL,
     "C45": _STEEL,
+    "C60": _STEEL,
+    "34CrMo4": _STEEL,
     "42CrMo4": _STEEL,
+    "50CrMo4": _STEEL,
     "34CrNiMo6": _STEEL,
     "16MnCr5": _STEEL,
     "20MnCr5": _STEEL,

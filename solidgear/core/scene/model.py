@@ -19,7 +19,6 @@ from solidgear.core.errors import SceneError
 from solidgear.core.registry import addition
 from solidgear.core.scene import rules
 from solidgear.core.scene.ask import Ask
-from solidgear.core.scene.bearing_stiffness import stiffness_entries
 from solidgear.core.scene.blends import Blend
 from solidgear.core.scene.corner import Corner
 from solidgear.core.scene.document import Origin, read_tables
@@ -27,6 +26,8 @@ from solidgear.core.scene.ends import seat_masses, snap_seats
 from solidgear.core.scene.feature_rules import Feature
 from solidgear.core.scene.housing import ONE_HOUSING, Housing
 from solidgear.core.scene.load import BearingLoad
+from solidgear.core.scene.load_case import LoadCase
+from solidgear.core.scene.load_rules import load_problems, named_case, seat_loads
 from solidgear.core.scene.lubrication import Lubrication
 from solidgear.core.scene.materials import by_name
 from solidgear.core.scene.open_range import Uncertain
@@ -34,11 +35,15 @@ from solidgear.core.scene.outline import Outline
 from solidgear.core.scene.parts import STEEL, Material, Segment
 from solidgear.core.scene.patches import off_patches
 from solidgear.core.scene.point_mass import PointMass
+from solidgear.core.scene.shaft_load import AlongAxis, ShaftLoad
 from solidgear.core.scene.shapes import places_on
 from solidgear.core.scene.stations import Bearing, Port
 from solidgear.core.scene.tables import paired, parts
 from solidgear.core.scene.typed import Model, Problems
 from solidgear.core.scene.units import AxialSpring
+
+#: fields under which bearings of catalogue data settle
+LOADED = ("load", "loads", "cases", "turns")
 
 if TYPE_CHECKING:
     BodyFile: TypeAlias = Any
@@ -95,6 +100,15 @@ class Scene(Displayed, Model):
         Other lumped points, such as a second gear.
     load : BearingLoad or None
         Load on the shaft at the main port, under which bearings of catalogue data settle.
+    loads : tuple of ShaftLoad
+        Loads at any places, in place of `load`.
+    cases : tuple of LoadCase
+        Which of the loads act together; without any all do. Bearings of catalogue data have the
+        stiffness of the first.
+    torque_at : str or None
+        Station where torques that are left leave the shaft.
+    turns : {'+y', '-y'} or None
+        Sense in which the shaft turns.
     lubrication : Lubrication or None
     uncertain : tuple of Uncertain
         Ranges of entries, as factors.
@@ -134,6 +148,10 @@ class Scene(Displayed, Model):
     port: Port
     further_ports: tuple[Port, ...] = ()
     load: BearingLoad | None = None
+    loads: tuple[ShaftLoad, ...] = ()
+    cases: tuple[LoadCase, ...] = ()
+    torque_at: str | None = None
+    turns: AlongAxis | None = None
     lubrication: Lubrication | None = None
     uncertain: tuple[Uncertain, ...] = ()
     ask: Ask = Ask()
@@ -150,14 +168,16 @@ class Scene(Displayed, Model):
             object.__setattr__(
                 self, "masses", seat_masses(self.masses, self.segments, self._stations())
             )
+            stations = [*self._stations(), *(mass.name for mass in self.masses)]
+            object.__setattr__(self, "loads", seat_loads(self.loads, self.segments, stations))
+            things: dict[str, Any] = {"ports": self.ports} | {
+                key: getattr(self, key) for key in ("bearings", "masses", "loads")
+            }
             problems += rules.problems_between(
-                self.segments,
-                ports=self.ports,
-                bearings=self.bearings,
-                masses=self.masses,
-                features=self.features,
-                blends=self.blends,
+                self.segments, features=self.features, blends=self.blends, **things
             )
+            acting = {key: getattr(self, key) for key in ("load", "cases", "torque_at", "turns")}
+            problems += load_problems(**things, **acting)
         problems += rules.question_problems(self.ports, self.ask.quantities)
         if self.housing is not None and self.housing_axial is not None:
             problems.append(SceneError(ONE_HOUSING, path=("housing_axial",)))
@@ -171,7 +191,7 @@ class Scene(Displayed, Model):
 
     def _place(self) -> None:
         """Put things made by words of a file on the shaft, bearings first, which others refer to."""
-        kinds = ("bearings", "masses", "features", "blends", "further_ports")
+        kinds = ("bearings", "masses", "loads", "features", "blends", "further_ports")
         things: dict[str, Any] = {key: getattr(self, key) for key in (*kinds, "port", "housing")}
         things = {key: value for key, value in things.items() if value is not None}
         if all(t.words is None for value in things.values() for t in _several(value)):
@@ -395,11 +415,36 @@ class Scene(Displayed, Model):
 
     @property
     def stations(self) -> tuple[Port | Bearing | PointMass, ...]:
-        """Stations on the shaft: the port, then bearings, masses on seats of their own and further
-        ports; each has name, y, lo, hi (m), attachment.
+        """Stations on the shaft: the port, then bearings, masses and loads on seats of their own and
+        further ports; each has name, y, lo, hi (m), attachment.
         """
         seated = (m for m in self.masses if m.on is None)
-        return (self.port, *self.bearings, *seated, *self.further_ports)
+        loaded = (load.seat for load in self.loads if load.seat is not None)
+        return (self.port, *self.bearings, *seated, *loaded, *self.further_ports)
+
+    @property
+    def is_loaded(self) -> bool:
+        """True where a load acts on the shaft."""
+        return self.load is not None or bool(self.loads)
+
+    def with_case(self, name: str) -> Scene:
+        """The same scene with the case of a name first, under which bearings of catalogue data settle.
+
+        Parameters
+        ----------
+        name : str
+
+        Returns
+        -------
+        Scene
+
+        Raises
+        ------
+        SolidgearError
+            If there is none of that name.
+        """
+        first = named_case(self.cases, name)
+        return self.with_changes(cases=(first, *(c for c in self.cases if c is not first)))
 
     @property
     def plain(self) -> Scene:
@@ -465,7 +510,7 @@ class Scene(Displayed, Model):
                 s.with_changes(material=s.material.following(self.material, changes["material"]))
                 for s in self.segments
             )
-        loaded = changes.get("load", self.load) != self.load
+        loaded = any(changes.get(key, getattr(self, key)) != getattr(self, key) for key in LOADED)
         anew = "material" in changes and by_name(changes["material"]) != self.material
         if (loaded or anew) and "bearings" not in changes:
             changes["bearings"] = tuple(b.unsettled for b in self.bearings)
@@ -500,6 +545,7 @@ class Scene(Displayed, Model):
             further_ports=tuple(further),
             bearings=tuple(b.attached(attachment) for b in self.bearings),
             masses=tuple(m.attached(attachment) for m in self.masses),
+            loads=tuple(load.attached(attachment) for load in self.loads),
         )
 
     def with_seat_width(self, width: float | str) -> Scene:
@@ -628,43 +674,4 @@ class Scene(Displayed, Model):
 
     def as_dict(self) -> dict[str, Any]:
         """Return everything resolved, in SI, as plain data that JSON can hold."""
-        if self.settled is not self:
-            return self.settled.as_dict()
-        data = self.model_dump(mode="json")
-        for key in ("masses", "features", "blends", "further_ports", "uncertain"):
-            if not data[key]:
-                del data[key]
-        for row, corner in zip(data.get("blends", ()), self.corners):
-            lo, hi = corner.span
-            row |= {"edge": "root" if corner.root else "rim", "lo": lo, "hi": hi}
-            row |= {"corner": [corner.r, corner.y], "outline": [list(p) for p in corner.points()]}
-            row |= {"owner": self.segments[corner.owner].name}
-        for row, segment in zip(data["segments"], self.segments):
-            row["length"] = segment.length
-        for row, bearing in zip(data["bearings"], self.bearings):
-            row |= {
-                "lo": bearing.lo,
-                "hi": bearing.hi,
-                "stiffness": bearing.stiffness.tolist(),
-                "entries": stiffness_entries(row.pop("matrix")),
-            }
-            if bearing.scale == 1:
-                del row["scale"]
-            for key in ("catalogue", "support", "hold", "face", "housing"):
-                if row[key] is None:
-                    del row[key]
-            if bearing.housing is not None:
-                row["housing"] = bearing.housing.entries
-        if self.housing is not None:
-            data["housing"] = {"y": self.housing.y, "entries": self.housing.entries}
-        for key in ("load", "lubrication", "body", "housing"):
-            if data[key] is None:
-                del data[key]
-        for key in ("groups", "told", "mixed", "remarks"):
-            if not data.get("body", {}).get(key, True):
-                del data["body"][key]
-        for row, mass in zip(data.get("masses", ()), self.masses):
-            carrier = next(s for s in self.stations if s.name == mass.station)
-            row |= {"y": carrier.y, "lo": carrier.lo, "hi": carrier.hi}
-            row |= {"attachment": carrier.attachment, "matrix": mass.matrix.tolist()}
-        return data | {"length": self.length, "steps": list(self.steps)}
+        return addition("document", "resolved scene")(self.settled)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, TypeAlias
 
 from pydantic import BeforeValidator, model_serializer, model_validator
 
@@ -21,6 +21,11 @@ from solidgear.core.scene.units import (
     Thickness,
 )
 
+#: groups of DIN 743, by which strength falls with size
+SteelGroup: TypeAlias = Literal[
+    "construction", "tempering", "case_hardening", "case_hardening_crnimo", "nitriding"
+]
+
 
 class Strength(Model):
     """Strength of a material, for ratings of fatigue only."""
@@ -29,6 +34,14 @@ class Strength(Model):
     yield_point: Stress
     #: tensile strength R_m, Pa
     ultimate: Stress
+    #: group of DIN 743: strength is that of a test bar (of 16 mm; tensile strength of construction
+    #: and nitriding steels of 100 mm) and falls with the diameter of the shaft
+    group: SteelGroup | None = None
+
+    @model_serializer(mode="wrap")
+    def _without_an_unknown_group(self, dump: Any) -> dict[str, Any]:
+        data = dump(self)
+        return {key: value for key, value in data.items() if value is not None}
 
     @model_validator(mode="after")
     def _yields_first(self) -> Strength:

@@ -199,7 +199,7 @@ class Placed(Model):
         places = Places("average", of_body=True)
         places.names, places.datums["start"] = None, 0.0
         word_entries = {key: value for key, value in data.items() if key in words}
-        if "y" in fields and "position" in words:
+        if "y" in self.sources and "y" in fields and "position" in words:
             word_entries.setdefault("position", fields.pop("y"))
         place_fields = self.place(self.Words(**word_entries), fields, places)
         provisional = {

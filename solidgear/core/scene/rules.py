@@ -15,6 +15,7 @@ from solidgear.core.scene.feature_rules import feature_problems
 from solidgear.core.scene.limits import (
     MOST_BEARINGS,
     MOST_BLENDS,
+    MOST_LOADS,
     MOST_MASSES,
     MOST_OF_FACE,
     MOST_OF_LENGTH,
@@ -36,8 +37,13 @@ if TYPE_CHECKING:
     from solidgear.core.scene.feature import OnSegment
     from solidgear.core.scene.parts import Material, Segment
     from solidgear.core.scene.point_mass import PointMass
+    from solidgear.core.scene.shaft_load import ShaftLoad
     from solidgear.core.scene.stations import Bearing, Port
     from solidgear.core.scene.tables import BearingData
+
+
+#: surface of a load, which may lie on a seat or below a point
+LOADED = "loaded surface"
 
 
 def shaft_problems(segments: Sequence[Segment]) -> list[SceneError]:
@@ -153,6 +159,7 @@ def problems_between(
     ports: Sequence[Port],
     bearings: Sequence[Bearing],
     masses: Sequence[PointMass],
+    loads: Sequence[ShaftLoad],
     features: Sequence[OnSegment],
     blends: Sequence[Blend],
     complete: bool = True,
@@ -160,14 +167,16 @@ def problems_between(
     """Yield problems between things on a sound shaft, the main port first; names are judged only
     where ports and bearings are complete.
     """
-    yield from station_problems(segments, ports, bearings, masses)
+    yield from station_problems(segments, ports, bearings, masses, loads)
     if complete:
         yield from mass_problems(ports, bearings, masses)
         yield from preload_problems(bearings)
     yield from feature_problems(segments, features)
     seated = [mass for mass in masses if mass.on is None]
+    loaded = [load.seat for load in loads if load.seat is not None]
     sound = [f for f in features if any(f.segment == s.name for s in segments)]
-    yield from blend_problems(segments, blends, [*ports, *bearings, *seated], sound)
+    stations = [*ports, *bearings, *seated, *loaded]
+    yield from blend_problems(segments, blends, stations, sound)
 
 
 def preload_problems(bearings: Sequence[Bearing]) -> Iterator[SceneError]:
@@ -212,6 +221,7 @@ def station_problems(
     ports: Sequence[Port],
     bearings: Sequence[Bearing],
     masses: Sequence[PointMass] = (),
+    loads: Sequence[ShaftLoad] = (),
 ) -> Iterator[SceneError]:
     """Yield problems of ports (the main one first) and seats that leave the shaft or its smooth
     surfaces, overlap or share a name.
@@ -220,6 +230,7 @@ def station_problems(
     for kind, stations, most in (
         ("bearings", bearings, MOST_BEARINGS),
         ("ports", ports, MOST_PORTS),
+        ("loads", loads, MOST_LOADS),
     ):
         if len(stations) > most:
             key = "further_ports" if kind == "ports" else kind
@@ -235,6 +246,11 @@ def station_problems(
         (("masses", i, "seat_width"), mass, "seat")
         for i, mass in enumerate(masses)
         if mass.on is None
+    ]
+    places += [
+        (("loads", i, "lo"), load.seat, LOADED)
+        for i, load in enumerate(loads)
+        if load.seat is not None
     ]
     for i, port in enumerate(ports):
         if port.patch is None and not -TOUCH <= port.y <= length + TOUCH:

@@ -142,7 +142,7 @@ _MISTAKES = (
 _TWICE = re.compile(
     r"(?:Cannot declare|Cannot mutate immutable namespace|Cannot redefine namespace) \((.*)\)"
 )
-_LISTS = ("segment", "bearing", "mass", "feature", "port")
+_LISTS = ("segment", "bearing", "mass", "feature", "port", "load", "case")
 _PARSER = {
     "Cannot overwrite a value": "a key is given twice in its table, or as a value and as a table",
     "Unterminated string": "a text is not closed: its last quotes are missing",

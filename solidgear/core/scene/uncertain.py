@@ -23,9 +23,12 @@ if TYPE_CHECKING:
 
 #: range of a bearing with the status "assumed" where the file states none: a factor two each way
 ASSUMED = "0.5 : 2"
+#: entries of loads that may have a range, with their dimensions
+LOAD_UNITS = dict.fromkeys(("x", "y", "z", "tangential_force", "radial", "axial"), "load")
+LOAD_UNITS |= dict.fromkeys(("thx", "thz", "torque"), "torque")
 _KNOWN = (
-    "a range may have material.E, material.density, segment.NAME.material.E, load, load.z, housing, "
-    "bearing.NAME.stiffness, bearing.NAME.stiffness.kxx or bearing.NAME.catalogue.preload"
+    "a range may have material.E, material.density, segment.NAME.material.E, load, load.z, "
+    "load.NAME.torque, housing, bearing.NAME.stiffness, bearing.NAME.stiffness.kxx or bearing.NAME.catalogue.preload"
 )
 
 
@@ -76,14 +79,30 @@ def with_scaled_entry(scene: Scene, path: str, factor: float) -> Scene:
             housing=housing and housing.scaled(factor), housing_axial=axial and axial * factor
         )
     if kind == "load":
-        assert scene.load is not None
-        return scene.with_changes(
-            load=scene.load.with_changes(**{name: getattr(scene.load, name) * factor})
-        )
+        return _with_scaled_load(scene, path, factor)
     bearing, key = _bearing(scene, path)
     return scene.with_changes(
         bearings=tuple(_scaled(b, key, factor) if b is bearing else b for b in scene.bearings)
     )
+
+
+def _with_scaled_load(scene: Scene, path: str, factor: float) -> Scene:
+    """Return the scene with an entry of a load multiplied."""
+    load, name = _load(scene, path)
+    assert load is not None
+    changed = load.with_changes(**{name: getattr(load, name) * factor})
+    if load is scene.load:
+        return scene.with_changes(load=changed)
+    loads = tuple(changed if each is load else each for each in scene.loads)
+    return scene.with_changes(loads=loads)
+
+
+def _load(scene: Scene, path: str) -> tuple[Any, str]:
+    """Return the load of a path ``load.z`` or ``load.NAME.torque``, and its entry."""
+    name, _, key = path.removeprefix("load.").rpartition(".")
+    if not name:
+        return scene.load, key
+    return next((load for load in scene.loads if load.name == name), None), key
 
 
 def _of_segments(scene: Scene, path: str, factor: float = 1.0) -> Iterator[Segment]:
@@ -177,11 +196,12 @@ def _entry(scene: Scene, path: str) -> tuple[float, str]:
         dimension = "pressure" if name == "E" else "density"
     elif path == "housing" and (scene.housing or scene.housing_axial):
         value = 1.0
-    elif path == "load" and (scene.load or any(b.catalogue for b in scene.bearings)):
+    elif path == "load" and (scene.is_loaded or any(b.catalogue for b in scene.bearings)):
         value = 1.0
-    elif path.startswith("load.") and scene.load is not None:
-        value = getattr(scene.load, path.removeprefix("load."), None)
-        dimension = "torque" if path.startswith("load.th") else "load"
+    elif path.startswith("load.") and scene.is_loaded:
+        load, name = _load(scene, path)
+        if name in LOAD_UNITS and load is not None:
+            value, dimension = getattr(load, name, None), LOAD_UNITS[name]
     else:
         bearing, key = _bearing(scene, path)
         name = key.removeprefix("stiffness.")

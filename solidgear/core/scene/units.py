@@ -350,6 +350,7 @@ AxialSpring = Annotated[
 ]
 Newtons = Annotated[float, _in("load")]
 PositiveLoad = Annotated[Newtons, _POSITIVE]
+NotNegativeLoad = Annotated[Newtons, _NOT_NEGATIVE]
 Torque = Annotated[float, _in("torque")]
 SignedAngle = Annotated[float, _in("angle")]
 Speed = Annotated[float, _in("speed"), _NOT_NEGATIVE]

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from solidgear.core.scene.parts import Material, Segment
     from solidgear.core.scene.patches import Patch
     from solidgear.core.scene.point_mass import PointMass
+    from solidgear.core.scene.shaft_load import ShaftLoad
     from solidgear.core.scene.stations import Bearing, Port
 
 Table = dict[str, Any]
@@ -69,6 +70,8 @@ def unsettled_tables(scene: Scene) -> Table:
         "title": scene.title,
         "name": scene.name,
         "source": scene.source,
+        "torque_at": scene.torque_at,
+        "turns": scene.turns,
         "material": material_entry(scene.material),
         "body": None,
         "segment": [],
@@ -77,7 +80,8 @@ def unsettled_tables(scene: Scene) -> Table:
         "feature": [_feature(feature) for feature in scene.features],
         "housing": _housing(scene),
         "port": [_port(scene, port) for port in scene.ports if not _is_usual(scene, port)],
-        "load": entry_of(scene.load),
+        "load": [_load(load) for load in scene.loads] or entry_of(scene.load),
+        "case": [table_of(case) for case in scene.cases],
         "lubrication": entry_of(scene.lubrication),
         "uncertain": {entry.path: written_range(scene, entry) for entry in scene.uncertain},
         "ask": table_of(scene.ask),
@@ -185,6 +189,11 @@ def _on_patch(body: Any, patch: Patch) -> Table:
 def _mass(mass: PointMass) -> Table:
     table = table_of(mass, leave_out=("y",))
     return table if mass.on is not None else {**table, "position": mass.y}
+
+
+def _load(load: ShaftLoad) -> Table:
+    table = table_of(load, leave_out=("lo", "hi"))
+    return table if load.seat is None else {**table, "span": [load.lo, load.hi]}
 
 
 def _feature(feature: Any, place: Table | None = None) -> Table:

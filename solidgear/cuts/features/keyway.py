@@ -11,6 +11,9 @@ from solidgear.core.scene.feature import SMALLEST
 from solidgear.core.scene.parts import Segment
 from solidgear.cuts.features.cut import Frame, Long
 
+#: diameter of a disc mill over the depth that it cuts, at least
+LEAST_MILL = 4
+
 
 class Keyway(Long):
     """A slot with a flat floor along a cylinder.
@@ -34,6 +37,10 @@ class Keyway(Long):
     depth: PositiveLength
     #: shape of both ends
     ends: Literal["round", "square"] = "round"
+    #: radius at the edges of the floor, m, for stress alone: models have sharp ones
+    radius: PositiveLength | None = None
+    #: diameter of the disc mill that square ends run out with beyond the length, m, for stress alone
+    mill: PositiveLength | None = None
 
     def _sized(self, segment: Segment) -> Iterator[SceneError]:
         yield from self._deep(segment)
@@ -52,6 +59,20 @@ class Keyway(Long):
                 "the surface at the sides of the keyway lies below its floor: it is too wide, or "
                 "not deep enough",
                 path=("depth",),
+            )
+        elif self.radius is not None and self.radius > min(self.depth, self.width / 2):
+            yield SceneError(
+                "the edges of the floor have radii up to the depth, and half the width",
+                path=("radius",),
+            )
+        elif self.mill is not None and self.ends == "round":
+            yield SceneError(
+                'a disc mill runs out beyond square ends; write ends = "square"', path=("mill",)
+            )
+        elif self.mill is not None and self.mill < LEAST_MILL * self.depth:
+            yield SceneError(
+                f"a disc mill is larger than {LEAST_MILL} times the depth, {self.depth:.6g} m",
+                path=("mill",),
             )
         elif self.ends == "round" and self.length <= self.width + TOUCH:
             yield SceneError(

@@ -197,3 +197,5 @@ class Spline(Toothed):
     on_cones: ClassVar[bool] = False
 
     kind: Literal["spline"] = "spline"
+    #: profile, for ratings of strength: involute splines, serrations or straight-sided ones
+    profile: Literal["involute", "serration", "straight"] = "involute"

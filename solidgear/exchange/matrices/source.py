@@ -195,7 +195,8 @@ def _of_scene(scene: Scene, wanted: Wanted, options: dict) -> PortMatrices:
     model = wanted.model or MODEL
     if not isinstance(model, str):
         raise SolidgearError("a shaft has one model, such as timoshenko; several are for trains")
-    free = scene.with_changes(bearings=(), housing=None, housing_axial=None)
+    bare = {"bearings": (), "loads": (), "cases": (), "torque_at": None}
+    free = scene.with_changes(**bare, housing=None, housing_axial=None)
     supports = as_supports(scene if wanted.bearings else free)
     return _of_shaft(build(scene, model, **options), supports, wanted, scene.name)
 

@@ -17,7 +17,8 @@ from solidgear.core.plain import plain
 from solidgear.strength.deflection.face_load import FaceLoad, face_loads
 from solidgear.strength.deflection.misalignment import Measure, misalignment
 from solidgear.strength.deflection.shaft import ShaftDeflection, shaft_deflection
-from solidgear.strength.load import AT_REST, LoadAtPort, load_alone
+from solidgear.strength.load import AT_REST, LoadsAlone, loads_alone
+from solidgear.strength.statics import Statics, statics
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.components import FORCE_UNITS
 from solidgear.trains.assembly.housing import BOX, housing_motion, mount_rows
@@ -66,7 +67,7 @@ class Deflection:
     """A train at rest at one operating point, or a shaft alone, by one model of each shaft."""
 
     point: OperatingPoint
-    load: LoadAtPort | None  #: of a shaft alone
+    load: LoadsAlone | None  #: of a shaft alone
     models: dict[str, str]  #: by shaft
     mesh_forces: dict[str, float]  #: N, along the line of action, by mesh
     misalignment: tuple[Measured, ...]
@@ -82,6 +83,8 @@ class Deflection:
     mounts: dict[str, tuple[Measured, ...]] = field(default_factory=dict)
     turns: tuple[StageTurn, ...] = ()  #: of planetary stages
     face_loads: tuple[FaceLoad, ...] = ()  #: by the norm, of meshes whose teeth are known
+    statics: Statics | None = None  #: of a shaft alone
+    lumped: tuple[str, ...] = ()  #: names of the lumped points of a shaft alone
 
     @property
     def model(self) -> str:
@@ -106,6 +109,7 @@ class Deflection:
         by_place = {place: _by_name(six) for place, six in self.displacement.items()}
         solved = {"notes": self.notes, "seconds": self.seconds}
         if self.load is not None:
+            solved |= {"case": self.load.case, "statics": self.statics}
             return plain(self.shafts[0]) | plain({"displacement": by_place, **solved})
         data = {
             "point": self.point,
@@ -159,7 +163,7 @@ class Deflections(Sheeted):
         return self.solutions[-1]
 
     @property
-    def load(self) -> LoadAtPort | None:
+    def load(self) -> LoadsAlone | None:
         """Load of a shaft alone; None for a train."""
         return self.judge.load
 
@@ -202,7 +206,7 @@ class Deflections(Sheeted):
         """Return plain data in SI for JSON."""
         data: dict[str, Any] = {"train": self.title}
         if self.load is not None:
-            data = {"scene": self.title, "load": self.load.load.tolist()}
+            data = {"scene": self.title, **plain(self.load)}
             data["why_without_bar"] = self.why_without_bar
         return data | {
             "tolerance": self.tolerance,
@@ -279,7 +283,8 @@ def deflections(
     """Compute the deflection of a train at several operating points, each begun at the one before,
     by one model of each shaft.
     """
-    load, by_shaft = load_alone(assembly.train), assembly.models_by_shaft(models)
+    by_shaft = assembly.models_by_shaft(models)
+    loads = [loads_alone(assembly.train, point) for point in points]
     for model in by_shaft.values():
         if model.partition("/")[0] in LUMPED:
             raise SolidgearError(
@@ -290,7 +295,7 @@ def deflections(
     operating = Operating(assembly, *models)
     state: OperatingState | None = None
     out = []
-    for point in points:
+    for point, load in zip(points, loads):
         start = perf_counter()
         state = operating.at(point, state)
         out.append(_solution(assembly, state, load, perf_counter() - start))
@@ -298,7 +303,7 @@ def deflections(
 
 
 def _solution(
-    assembly: Assembly, state: OperatingState, load: LoadAtPort | None, seconds: float
+    assembly: Assembly, state: OperatingState, load: LoadsAlone | None, seconds: float
 ) -> Deflection:
     """Return the deflection of a train at rest."""
     train, system, by_shaft = assembly.train, state.system, state.models
@@ -355,7 +360,19 @@ def _solution(
         mounts=mounts,
         turns=over_a_turn(assembly, state, by_shaft),
         face_loads=face_loads(on_flank, system, state.coordinates, skews),
+        statics=_statics(assembly, load, shafts),
+        lumped=() if load is None else tuple(p.name for p in assembly.scenes[ALONE].ports),
     )
+
+
+def _statics(
+    assembly: Assembly, load: LoadsAlone | None, shafts: Sequence[ShaftDeflection]
+) -> Statics | None:
+    """Return the statics of a shaft alone."""
+    if load is None:
+        return None
+    carried = {bearing.name: bearing.load for bearing in shafts[0].bearings}
+    return statics(assembly.scenes[ALONE], load, carried)
 
 
 def _measured(measure: Measure, state: OperatingState, errors: StaticErrors) -> Measured:

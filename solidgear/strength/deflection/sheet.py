@@ -26,6 +26,7 @@ from solidgear.strength.deflection.at_rest import (
     Measured,
 )
 from solidgear.strength.deflection.shaft import BearingState, ShaftDeflection
+from solidgear.strength.loads_sheet import loads_table, torque_table
 from solidgear.trains.assembly.components import FORCE_UNITS
 from solidgear.trains.assembly.layout import senses_sentence
 from solidgear.trains.assembly.turn import StageTurn
@@ -53,12 +54,16 @@ def sheet(deflected: Deflections, units: Units) -> Sheet:
     skew = misalignment(deflected, units)
     pressed = face_load(judge, units)
     turning = over_a_turn(judge.turns, units)
-    by_point = over_points(deflected.points, units)
+    over = over_points if deflected.load is None else over_cases
+    by_point = over(deflected.points, units)
     housed = housing(judge, units)
+    acting, turned = _of_loads(judge, units)
     carried = [
+        *acting,
         *motions(deflected, units),
         *bearings(judge.shafts, units),
         displacements(judge, units),
+        *turned,
     ]
     title = f"{deflected.title}: deflection"
     by_model = {model.model: model.shafts for model in deflected.solutions}
@@ -98,6 +103,13 @@ def sheet(deflected: Deflections, units: Units) -> Sheet:
         ),
         words=words,
     )
+
+
+def _of_loads(judge: Deflection, units: Units) -> tuple[list[Table], list[Table]]:
+    """Return tables of the loads and of the torque of a shaft alone; none of a train."""
+    if judge.load is None or judge.statics is None:
+        return [], []
+    return loads_table(judge.load, judge.statics, units), torque_table(judge.statics, units)
 
 
 def mesh_forces_in_words(deflected: Deflections, units: Units) -> str:
@@ -265,6 +277,34 @@ def over_points(points: Sequence[Deflection], units: Units = ENGINEERING) -> lis
     return [
         Table("Misalignment over the operating points", lie, lie_rows, note),
         Table("Radial bearing loads over the operating points", carried, carried_rows),
+    ]
+
+
+def over_cases(cases: Sequence[Deflection], units: Units = ENGINEERING) -> list[Table]:
+    """Return motions of lumped points and bearing loads of a shaft over the cases of its loads; none
+    for one case.
+    """
+    if not cases:
+        return []
+    points = [*cases[0].lumped]
+    moved = [
+        [case.point.label, name, *_rounded([m.value for m in case.displacement[name]])]
+        for case in cases
+        for name in points
+    ]
+    carried = [
+        [case.point.label, b.name, b.radial, float(b.load[1]), b.moment]
+        for case in cases
+        for b in case.shafts[0].bearings
+    ]
+    loads = [quantity(head, "N", units, digits=4) for head in ("radial", "axial")]
+    return [
+        Table("Motions over the cases", [text("in"), word("place"), *_six(MOVED, units)], moved),
+        Table(
+            "Bearing loads over the cases",
+            [text("in"), word("bearing"), *loads, quantity("moment", "N m", units, digits=4)],
+            carried,
+        ),
     ]
 
 

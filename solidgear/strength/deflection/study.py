@@ -22,6 +22,8 @@ def deflect(
     point: str | None = None,
     weight: str | None = None,
     load: str | Mapping[str, Any] | None = None,
+    case: str | None = None,
+    drive: Mapping[str, str | float] | list[str] | None = None,
     tol: float | None = None,
     progress: Callable[[str], None] = lambda text: None,
 ) -> at_rest.Deflections:
@@ -44,7 +46,13 @@ def deflect(
     weight : str, optional
         With a torque: direction of weight in the first shaft's scene, such as ``"-z"``.
     load : str or dict, optional
-        Load on a shaft in place of that of its scene: ``"x=2 kN, z=-500 N"`` at the port.
+        Load on a shaft in place of those of its scene: ``"x=2 kN, z=-500 N"`` at the port.
+    case : str, optional
+        Case of the loads of a shaft, by name or number; by default all, the first of which is
+        compared.
+    drive : mapping of str to str or float, optional
+        Torques that enter a shaft at a bearing, mass or point and leave it at the port, or where
+        its file says, such as ``{"B": "115 N*m"}``; numbers in N m.
     tol : float, optional
         Relative error that meshes of harmonic shafts may leave in the motions of gears; a tenth of
         the tolerance of the train by default.
@@ -69,9 +77,10 @@ def deflect(
     >>> [m.name for m in found.judge.misalignment], len(found.judge.shafts[0].bearings)
     (['E', 'P', 'G', 'shaft angle'], 3)
     """
-    acting = Acting(torque, of, point, weight, load)
+    acting = Acting(torque, of, point, weight, load, case, drive)
     assembly, at = acting.read(source, tol)
-    every_point = torque is None and point is None and len(assembly.train.operation) > 1
+    chosen = any(given is not None for given in (torque, point, case))
+    every_point = not chosen and len(assembly.train.operation) > 1
     names = (models,) if isinstance(models, str) else models or at_rest.MODELS
     with explained(source):
         return at_rest.deflect(assembly, at, names, progress, every_point)

@@ -1,1 +1,1 @@
-"""Stress of a shaft: section forces, nominal stress, fillets, and the rating of DIN 743."""
+"""Stress of a shaft: section forces, nominal stress, fillets, and notches rated by DIN 743."""

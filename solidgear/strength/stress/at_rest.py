@@ -16,13 +16,15 @@ import numpy as np
 
 from solidgear.bearings.bearing_life import left_open
 from solidgear.bearings.solved import AS_STATED, Choice
-from solidgear.core import LADDER, Scene, Sheeted, SolidgearError
+from solidgear.core import LADDER, Scene, Sheeted, SolidgearError, listed
 from solidgear.core.plain import plain
 from solidgear.core.scene.filleted import filleted
 from solidgear.parts.body_file import BodyFile
-from solidgear.strength.load import AT_REST, LoadAtPort, load_alone
+from solidgear.strength.load import AT_REST, LoadsAlone, loads_alone
+from solidgear.strength.stress.conditions import Conditions
+from solidgear.strength.stress.duty import DutyForces, cycles_of
+from solidgear.strength.stress.norm.steels import strength_of
 from solidgear.strength.stress.notch import ENOUGH
-from solidgear.strength.stress.rating import Conditions
 from solidgear.strength.stress.section_forces import COMPONENTS, SectionForces, forces_of
 from solidgear.strength.stress.shaft import ShaftStress, check_tolerance, local_stress, shaft_stress
 from solidgear.strength.stress.solid_notches import FINEST_LOCAL, SolidNotch, solid_notches
@@ -70,9 +72,11 @@ class StressedShaft:
 
     @property
     def weak(self) -> tuple[str, ...]:
-        """Segments with a fillet whose material has no strength."""
+        """Segments with a notch whose material has no strength."""
         segments = [self.scene.segments[notch.found.corner.owner] for notch in self.found.notches]
-        return tuple(dict.fromkeys(s.name for s in segments if s.material.strength is None))
+        names = {drawn.segment for drawn in self.found.drawn}
+        segments += [segment for segment in self.scene.segments if segment.name in names]
+        return tuple(dict.fromkeys(s.name for s in segments if strength_of(s) is None))
 
 
 @dataclass(frozen=True)
@@ -81,6 +85,7 @@ class StressSettings:
 
     tolerance: float = ENOUGH  #: relative error bar of form factors at which their meshes stop
     conditions: Conditions = Conditions()  #: of the rating by DIN 743
+    duty: bool = False  #: whether ratings are over the duty table
     #: the same of 3D solids at keyways and cross holes; None for no such solids
     local: float | None = None
 
@@ -108,11 +113,13 @@ class StressAtRest(Sheeted):
 
     title: str
     model: str  #: on which shafts and bearings settled
-    under: LoadAtPort | AtPoint
+    under: LoadsAlone | AtPoint
     asked: StressSettings
     shafts: tuple[StressedShaft, ...]
     open_by: str  #: open data of bearings, in words; empty if none
     cautions: tuple[str, ...] = ()  #: beside the remarks of each shaft
+    #: labels of the points of the duty table that ratings are over; empty where they are of the loads
+    duty: tuple[str, ...] = ()
 
     @property
     def reached(self) -> bool:
@@ -139,15 +146,12 @@ def stress_at_rest(
     model: str = MODEL,
     asked: StressSettings = StressSettings(),
     progress: Progress = lambda text: None,
-    drive: Mapping[str, float] | None = None,
 ) -> StressAtRest:
     """Compute the stress of all shafts of a train at an operating point, or of a shaft under the
-    [load] of its scene; shafts and bearings settle on a model, no lumped one, which has no places.
-
-    Torques about the axis of a shaft alone, N m, enter at bearings, masses or further points
-    (`drive`); the gear at the port takes them out. Bearings of catalogue data need no stiffness yet.
+    loads of its scene; shafts and bearings settle on a model, no lumped one, which has no places.
+    Bearings of catalogue data need no stiffness yet.
     """
-    load = load_alone(assembly.train, drive)
+    load = loads_alone(assembly.train, point)
     progress(model)
     train = _with_scenes(assembly.train, filleted)
     settling = replace(assembly, train=_settling_train(train, model))
@@ -156,14 +160,10 @@ def stress_at_rest(
     def acting(choice: Choice) -> dict[str, ShaftLoads]:
         as_stated = choice == AS_STATED
         state = usual if as_stated else Operating(settling, model, choice=choice).at(point)
-        loads = _on_shafts(settling, state)
-        if load is not None:
-            for name, torque in load.drive.items():
-                loads[ALONE].add(name, torque * np.eye(6)[4])
-                loads[ALONE].add(load.port, -torque * np.eye(6)[4])
-        return loads
+        return _on_shafts(settling, state)
 
-    shafts, open_by = _shafts(train, acting, asked, progress)
+    duty = _duty(train, settling, model, asked) if asked.duty else {}
+    shafts, open_by = _shafts(train, acting, asked, duty, progress)
     files = {side: shaft.scene.body for side, shaft in assembly.train.shafts.items()}
     left_out = [text for k in files for text in _file_cautions(files[k], train.shafts[k].scene)]
     torque = _torque_cautions(train) if load is None else _load_cautions(train, load)
@@ -175,7 +175,24 @@ def stress_at_rest(
         shafts=shafts,
         open_by=open_by,
         cautions=(*left_out, *usual.notes, *settling.data_cautions, *torque),
+        duty=tuple(each.label for each in train.operation) if asked.duty else (),
     )
+
+
+def _duty(
+    train: Train, settling: Assembly, model: str, asked: StressSettings
+) -> dict[str, list[DutyForces]]:
+    """Return section forces and turns of every shaft over the points of the duty table."""
+    turns = cycles_of(train, asked.conditions)
+    out: dict[str, list[DutyForces]] = {side: [] for side in turns}
+    operating = Operating(settling, model)
+    state: OperatingState | None = None
+    for k, each in enumerate(train.operation):
+        state = operating.at(each, state)
+        for side, acting in _on_shafts(settling, state).items():
+            forces = forces_of(train.shaft(side), acting.loads, acting.gravity)
+            out[side].append(DutyForces(each.label, forces, turns[side][k]))
+    return out
 
 
 def _file_cautions(file: BodyFile | None, scene: Scene) -> Iterator[str]:
@@ -197,13 +214,15 @@ def _file_cautions(file: BodyFile | None, scene: Scene) -> Iterator[str]:
         )
 
 
-def _load_cautions(train: Train, load: LoadAtPort) -> Iterator[str]:
+def _load_cautions(train: Train, load: LoadsAlone) -> Iterator[str]:
     """Yield sentences on loads that do not act on a shaft alone, and perhaps should."""
-    if not load.drive:
-        yield "no torque runs along the shaft; --drive says where one enters"
+    yield from load.assumed
+    if not any(acting.six[4] for acting in load.acting):
+        yield "no torque runs along the shaft; a [[load]] with a torque, or --drive, says where one is"
+    loaded = {acting.station: None for acting in load.acting}
     for point in train.shafts[ALONE].scene.further_ports:
-        if point.name not in load.drive:
-            yield f'nothing acts at the point "{point.name}"; [load] acts at "{load.port}"'
+        if point.name not in loaded:
+            yield f'nothing acts at the point "{point.name}"; loads act at {listed([*loaded])}'
 
 
 def _on_shafts(assembly: Assembly, state: OperatingState) -> dict[str, ShaftLoads]:
@@ -256,6 +275,7 @@ def _shafts(
     train: Train,
     acting: Callable[[Choice], dict[str, ShaftLoads]],
     asked: StressSettings,
+    duty: Mapping[str, Sequence[DutyForces]],
     progress: Progress,
 ) -> tuple[tuple[StressedShaft, ...], str]:
     """Return the stress of every shaft, and in words which data of bearings are open."""
@@ -274,11 +294,12 @@ def _shafts(
             gravity=shaft_loads.gravity,
             tolerance=asked.tolerance,
             conditions=asked.conditions,
+            duty=duty.get(side, ()),
             progress=progress,
         )
         further = [forces_of(scene, loads[side].loads, loads[side].gravity) for loads in variants]
         name = scene.name if train.is_one_shaft else side
-        solids = solid_notches(scene, stress.forces, asked.tolerance, asked.local, progress)
+        solids = solid_notches(scene, stress, asked.tolerance, asked.local, progress)
         ranges = _ranges(stress, further)
         shafts.append(StressedShaft(name, scene, shaft_loads, stress, *ranges, *solids))
     return tuple(shafts), open_by

@@ -8,13 +8,12 @@ from typing import Annotated
 
 import typer
 
-from solidgear.core import SceneError, SolidgearError, show
-from solidgear.core.scene.units import quantity
+from solidgear.core import SceneError, SolidgearError
 from solidgear.show.command import Group, command
 from solidgear.show.options import BY_MODEL, MODEL, Choice, Shown, relative
 from solidgear.show.sheet import present
 from solidgear.strength.acting import Acting, AtRestFile
-from solidgear.strength.stress.rating import Conditions
+from solidgear.strength.stress.conditions import Conditions
 from solidgear.strength.stress.study import stress as stressed
 
 
@@ -24,23 +23,55 @@ class Rated(Group):
 
     roughness: Annotated[
         str | None,
-        typer.Option(help='Roughness Rz of the fillets, such as "6.3 um"; else K_F is 1.'),
+        typer.Option(help='Roughness Rz of the notches, such as "6.3 um"; else K_F is 1.'),
     ] = None
     ultimate_at_size: Annotated[
         float | None,
-        typer.Option(help="K_1 of the tensile strength, by the size of the part; else 1."),
+        typer.Option(
+            help="K_1 of the tensile strength, by the size of the part; else by the group of the "
+            "steel, or 1."
+        ),
     ] = None
     yield_at_size: Annotated[
-        float | None, typer.Option(help="K_1 of the yield point, by the size of the part; else 1.")
+        float | None,
+        typer.Option(
+            help="K_1 of the yield point, by the size of the part; else by the group of the steel, "
+            "or 1."
+        ),
+    ] = None
+    treated_diameter: Annotated[
+        str | None,
+        typer.Option(
+            help='Diameter of heat treatment for K_1, such as "80 mm"; else the largest of the '
+            "shaft."
+        ),
     ] = None
     hardening: Annotated[
         float | None, typer.Option(help="K_V of a hardened or rolled surface; else 1.")
+    ] = None
+    hard_surface: Annotated[
+        bool, typer.Option("--hard-surface", help="The surface is case-hardened or nitrided.")
+    ] = False
+    surface_strength: Annotated[
+        str | None,
+        typer.Option(help="Tensile strength of a hard surface, for the safety of a first crack."),
     ] = None
     force_share: Annotated[
         float | None, typer.Option(help="Amplitude of the axial force over its mean; else 0.")
     ] = None
     torque_share: Annotated[
         float | None, typer.Option(help="Amplitude of the torque over its mean; else 0.")
+    ] = None
+    bending_share: Annotated[
+        float | None,
+        typer.Option(
+            help="Amplitude of bending over its mean, of a shaft that does not turn; else bending "
+            "is all amplitude."
+        ),
+    ] = None
+    overload: Annotated[
+        float | None,
+        typer.Option(help="Largest load over the load, for yielding and first cracks; else 1."),
     ] = None
     constant_mean: Annotated[
         bool,
@@ -50,6 +81,24 @@ class Rated(Group):
             "2).",
         ),
     ] = False
+
+    cycles: Annotated[
+        float | None, typer.Option(help="Cycles of the load, for a finite life; else endless.")
+    ] = None
+    spectrum: Annotated[
+        str | None,
+        typer.Option(
+            help='Factors of the load with their cycles, such as "1:2e4, 0.7:1e6"; Miner\'s '
+            "consequent rule."
+        ),
+    ] = None
+    hours: Annotated[
+        float | None,
+        typer.Option(help="Life in hours, of a duty table with shares of the time."),
+    ] = None
+    damage_sum: Annotated[
+        float | None, typer.Option(help="Sum of damage that a spectrum bears; else 0.3.")
+    ] = None
 
     def conditions(self) -> Conditions:
         """Return the options read as conditions of a rating; refuse one that cannot be read."""
@@ -67,13 +116,6 @@ def stress(
     file: AtRestFile,
     *,
     acting: Acting,
-    drive: Annotated[
-        list[str] | None,
-        typer.Option(
-            help='Torque that enters a shaft at a bearing, mass or point, such as "B=115 N*m", and '
-            "leaves at the port; repeatable."
-        ),
-    ] = None,
     fidelity: Annotated[
         Choice, typer.Option(*BY_MODEL, help="Model for bearing reactions.")
     ] = MODEL,
@@ -85,6 +127,12 @@ def stress(
         float | None,
         relative("--local", "Solve 3D solids at keyways and cross holes, to this error bar."),
     ] = None,
+    duty: Annotated[
+        bool,
+        typer.Option(
+            "--duty", help="Rate over all cases or operating points, by share or hours and speed."
+        ),
+    ] = False,
     rated: Rated,
     out: Annotated[
         Path | None,
@@ -97,23 +145,12 @@ def stress(
             file,
             str(fidelity),
             **vars(acting),
-            drive=dict(map(_torque, drive or ())),
             tol=tol,
             local=local,
             conditions=rated.conditions(),
+            duty=duty,
             progress=progress,
         ).sheet(run.units),
         run,
         out,
     )
-
-
-def _torque(text: str) -> tuple[str, float]:
-    """Return the name and torque, N m, from ``B=115 N*m``."""
-    name, sep, value = (part.strip() for part in text.partition("="))
-    if not sep or not name:
-        raise SolidgearError(f'--drive {show(text)}: write NAME=TORQUE, such as "B=115 N*m"')
-    try:
-        return name, quantity(value, "torque")
-    except SceneError as error:
-        raise SolidgearError(f"--drive {show(text)}: {error}") from None

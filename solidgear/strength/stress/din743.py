@@ -1,9 +1,9 @@
-r"""Formulas of DIN 743:2012 for shoulders of shafts, each a function.
+r"""Formulas of DIN 743:2012 for shoulders of shafts and for all notches, each a function.
 
 Inputs and results are SI; the norm writes lengths in mm and stress in MPa. Coefficients were
-checked against two public programs that share no text with each other; no worked example of the
-norm itself was at hand. Left out, and so never stated: K_1 by the group of a steel, hard surface
-layers, strength for a finite life.
+checked against two public programs that share no text with each other, and four solved
+examinations; no worked example of the norm itself was at hand. Other notches, groups of steel and
+finite life are in :mod:`solidgear.strength.stress.norm`.
 """
 
 from __future__ import annotations
@@ -65,16 +65,18 @@ def gradient(load: Load, large: float, small: float, radius: float) -> float:
     return 2.3 * (1 + phi) / radius
 
 
-def support(slope: float, yield_point: float) -> float:
+def support(slope: float, yield_point: float, hard: bool = False) -> float:
     """Return the support number n by the relative stress gradient, 1/m, and the yield point at
-    the size of the part, Pa (DIN 743-2, 4.3), for steels without a hard surface layer.
+    the size of the part, Pa (DIN 743-2, 4.3), or for a hard surface layer.
 
     Examples
     --------
     >>> round(support(2000.0, 356e6), 3)  # 1 + sqrt(2) 10^-(0.33 + 0.5)
     1.209
+    >>> round(support(2000.0, 356e6, hard=True), 3)  # 1 + sqrt(2) 10^-0.7
+    1.282
     """
-    return 1 + math.sqrt(slope * 1e-3) * 10 ** -(0.33 + yield_point / 712e6)
+    return 1 + math.sqrt(slope * 1e-3) * 10 ** -(0.7 if hard else 0.33 + yield_point / 712e6)
 
 
 def size_factor(load: Load, diameter: float) -> float:

@@ -131,17 +131,13 @@ def local_factors(
     segment: Segment,
     cut: Cut,
     tolerance: float = ENOUGH,
-    radius: float | None = None,
-    mill: float | None = None,
     sizes: tuple[float | None, ...] = SIZES,
 ) -> LocalFactors:
     """Return stress concentration factors of a keyway or a cross hole in a segment of a shaft, a
     cylinder that goes on on both sides.
 
     Meshes are tried until relative error bars are within a tolerance, and error bars stay larger
-    where none is. `radius` is that of the edges at the floor of a keyway, m, by default that of the
-    cut, `mill` the diameter of the disc mill that its square ends run out with, m, beyond its
-    length, and `sizes` are as ``SIZES``. A sharp edge, whose stress has no limit, is refused.
+    where none is; `sizes` are as ``SIZES``. A sharp edge, whose stress has no limit, is refused.
 
     Examples
     --------
@@ -155,7 +151,7 @@ def local_factors(
     >>> f'{found.factors["bending"].value:.1f} of {found.nominal.what}'
     '2.1 of the section left'
     """
-    shape = local_shape(segment, cut, radius, mill)
+    shape = local_shape(segment, cut)
     solutions = _solved(shape, segment.material.with_changes(name=""), tolerance, sizes)
     last = solutions[-1]
     moduli = NominalModuli.of(cut, shape.outer, shape.inner)
@@ -188,44 +184,35 @@ def local_factors(
     )
 
 
-def local_shape(
-    segment: Segment, cut: Cut, radius: float | None = None, mill: float | None = None
-) -> LocalShape:
+def local_shape(segment: Segment, cut: Cut) -> LocalShape:
     """Return the shape of a cut in a segment; refuse what has no stress, or no solid here."""
-    if isinstance(cut, CrossHole):
-        size = 0.0
-    elif isinstance(cut, Keyway):
-        size = radius or getattr(cut, "radius", None) or 0.0
-        _refuse_keyway(cut, size, mill)
-    else:
+    if isinstance(cut, Keyway):
+        _refuse_keyway(cut)
+    elif not isinstance(cut, CrossHole):
         raise SolidgearError(f'{cut.what} "{cut.name}": no solid gives its stress here')
     outer, inner = float(segment.outer0), float(segment.inner0)
     # alike for one cut at several places, for which it is solved once
     alike = cut.with_changes(name="cut", segment="shaft", y=0.0, angle=0.0)
-    return LocalShape(alike, size, outer, inner, REACH * outer, (mill or 0.0) / 2)
+    return LocalShape(alike, outer, inner, REACH * outer)
 
 
-def _refuse_keyway(cut: Keyway, radius: float, mill: float | None) -> None:
-    """Refuse a keyway with edges whose stress has no limit, or that a mill does not cut."""
-    if mill and (cut.ends == "round" or mill < 4 * cut.depth):
+def _refuse_keyway(cut: Keyway) -> None:
+    """Refuse a keyway with edges whose stress has no limit."""
+    without_limit = "stress grows there without limit as a mesh is refined"
+    if cut.ends == "square" and not cut.mill:
         raise SolidgearError(
-            f'keyway "{cut.name}": a disc mill runs out beyond square ends, and is larger than four '
-            f"times the depth, {4 * cut.depth:.6g} m"
+            f'keyway "{cut.name}": the edges of its square ends are sharp, and {without_limit}; give '
+            "the mill that runs out beyond them"
         )
-    if cut.ends == "square" and not mill:
+    if not cut.radius:
         raise SolidgearError(
-            f'keyway "{cut.name}": the edges of its square ends are sharp, and stress grows there '
-            "without limit as a mesh is refined"
+            f'keyway "{cut.name}": the edges of its floor are sharp, and {without_limit}; give its '
+            "radius"
         )
-    if not radius:
+    if cut.radius >= min(cut.width / 2, cut.depth):
         raise SolidgearError(
-            f'keyway "{cut.name}": the edges of its floor are sharp, and stress grows there without '
-            "limit as a mesh is refined; give its radius"
-        )
-    if radius >= min(cut.width / 2, cut.depth):
-        raise SolidgearError(
-            f'keyway "{cut.name}": a radius of {radius:.6g} m has no room in half of its width and '
-            "its depth"
+            f'keyway "{cut.name}": a radius of {cut.radius:.6g} m leaves no flat floor or no wall: its '
+            "solid needs both"
         )
 
 

@@ -40,13 +40,20 @@ class LocalShape:
     """A cut in a cylinder, looking to +z."""
 
     cut: Cut  #: at the angle 0
-    radius: float  #: of the edges at its floor, m; 0 of a hole, which has none
     #: outer, inner: radii of the cylinder, m
     outer: float
     inner: float
     reach: float  #: how far the piece goes on beyond the cut, m
-    #: radius of the disc mill that a keyway runs out with beyond its square ends, m; 0 without
-    mill: float = 0.0
+
+    @property
+    def radius(self) -> float:
+        """Radius of the edges at the floor, m; 0 of sharp ones, and of a hole, which has none."""
+        return (isinstance(self.cut, Keyway) and self.cut.radius) or 0.0
+
+    @property
+    def mill(self) -> float:
+        """Radius of the disc mill that runs out beyond square ends, m; 0 without."""
+        return ((isinstance(self.cut, Keyway) and self.cut.mill) or 0.0) / 2
 
     @property
     def middle(self) -> float:

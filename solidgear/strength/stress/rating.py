@@ -1,176 +1,108 @@
-"""Rating of a fillet against fatigue and yielding by DIN 743, every factor with a source.
+"""Rating of a notch against fatigue, yielding and a first crack by DIN 743, every factor with a
+source.
 
-The notch is that of the shaft's solid: form factors and stress gradients are computed, beside the
-formulas of the norm. Inputs of the norm that were not given are 1, and their source says *assumed*.
+A notch hands out its factors (:class:`~solidgear.strength.stress.rated_notch.RatedNotch`): a fillet
+those of the shaft's solid, other notches those of the norm. Inputs of the norm that were not given are 1, and their source says
+*assumed*.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, NamedTuple
 
-from pydantic import Field
-
-from solidgear.core import Model, PositiveLength
 from solidgear.strength.stress import din743
 from solidgear.strength.stress.din743 import LOADS, Load
+from solidgear.strength.stress.norm import steels
+from solidgear.strength.stress.norm.life import (
+    DAMAGE_SUM,
+    EXPONENTS,
+    elementary_repetitions,
+    equivalent_share,
+)
+from solidgear.strength.stress.rated_notch import ByLoad, RatedNotch, Steel
+from solidgear.strength.stress.rating_lines import ASSUMED, LINES, Entry
 
 if TYPE_CHECKING:
     from solidgear.core.scene.parts import Strength
+    from solidgear.strength.stress.conditions import Conditions, LoadLevel
     from solidgear.strength.stress.nominal import NominalStress
-    from solidgear.strength.stress.notch import FilletFactors
-
-#: m, Rz of no shaft is larger; a factor of strength by size or surface, a share of a mean
-ROUGHEST = 1e-3
-StrengthFactor = Annotated[float, Field(gt=0, le=10)]
-Share = Annotated[float, Field(ge=0)]
-ASSUMED = "assumed"
-OWN = "solid of this shaft"
-STILL = "section forces, loads at rest, shaft turning"
-BY_GRADIENT = "DIN 743-2, 4.3: 1 + sqrt(G' mm) 10^-(0.33 + sigma_S/712 MPa)"
-#: lines of a rating by their symbols: name, usual source, SI unit
-LINES: dict[str, tuple[str, str, str]] = {
-    "sigma_B": ("tensile strength", "material", "Pa"),
-    "sigma_S": ("yield point", "material", "Pa"),
-    "K_1 (sigma_B)": ("size, of strength", "", ""),
-    "K_1 (sigma_S)": ("size, of yielding", "", ""),
-    "alpha": ("form factor Kt", OWN, ""),
-    "alpha (norm)": ("the same by formula", "DIN 743-2, table 2; not used", ""),
-    "G'": ("relative stress gradient", OWN, "1/m"),
-    "G' (norm)": ("the same by formula", "DIN 743-2, table 3; not used", "1/m"),
-    "n": ("support number", BY_GRADIENT, ""),
-    "beta": ("fatigue notch factor Kf", "DIN 743-2, 4.3: alpha / n, at least 1", ""),
-    "beta (norm)": ("the same by formulas", "DIN 743-2; not used", ""),
-    "K_2": ("size, of the gradient", "DIN 743-2, eq. 15 and 16", ""),
-    "K_F": ("surface roughness", "", ""),
-    "K_V": ("hardened surface", "", ""),
-    "K_sigma, K_tau": ("total influence", "DIN 743-1: (beta/K_2 + 1/K_F - 1)/K_V", ""),
-    "sigma_W": ("limit of a polished bar", "DIN 743-3: 0.4, 0.5, 0.3 sigma_B", "Pa"),
-    "sigma_WK": ("limit of the part", "DIN 743-1: K_1 sigma_W / K_sigma", "Pa"),
-    "K_2F": ("static support", "DIN 743-1, table 3", ""),
-    "gamma_F": ("rise of yielding", "DIN 743-1, table 2", ""),
-    "sigma_FK": ("yield limit of the part", "DIN 743-1: K_1 K_2F gamma_F sigma_S", "Pa"),
-    "sigma_a": ("nominal amplitude", STILL, "Pa"),
-    "sigma_m": ("nominal mean", STILL, "Pa"),
-    "sigma_mv": ("equivalent mean", "DIN 743-1, of von Mises", "Pa"),
-    "psi_sigmaK": (
-        "influence of mean stress",
-        "DIN 743-1: sigma_WK/(2 K_1 sigma_B - sigma_WK)",
-        "",
-    ),
-    "sigma_ADK": ("amplitude borne", "", "Pa"),
-}
-#: those that are attributes of a :class:`FatigueFactor`
-FACTORS = {
-    "alpha": "form",
-    "alpha (norm)": "norm_form",
-    "G'": "gradient",
-    "G' (norm)": "norm_gradient",
-    "n": "support",
-    "beta": "notch",
-    "beta (norm)": "norm_notch",
-}
-
-
-class Conditions(Model):
-    """Data that a rating by DIN 743 needs beyond the shaft, loads and strength; a factor that is
-    not positive, or a share below zero, is refused.
-
-    Examples
-    --------
-    >>> Conditions(roughness="6.3 um", torque_share=0.2).roughness
-    6.3e-06
-    """
-
-    roughness: Annotated[PositiveLength, Field(le=ROUGHEST)] | None = None  #: rz of the fillet, m
-    #: ultimate_at_size, yield_at_size: K_1: strength at the size of the part over the one given
-    ultimate_at_size: StrengthFactor | None = None
-    yield_at_size: StrengthFactor | None = None
-    hardening: StrengthFactor | None = None  #: K_V of the surface
-    #: force_share, torque_share: amplitudes of axial force and torque over their mean; the shaft
-    #: turns, so that bending is all amplitude
-    force_share: Share | None = None
-    torque_share: Share | None = None
-    #: whether mean stress stays as loads grow (case 1 of the norm) or grows with them (case 2)
-    constant_mean: bool = False
-
-
-@dataclass(frozen=True)
-class FatigueFactor:
-    """Fatigue notch factor of one load: form factor over support number."""
-
-    #: form, gradient, support, notch: kt and G' (1/m) of the solid, n and Kf = beta
-    form: float
-    gradient: float
-    support: float
-    notch: float
-    #: norm_form, norm_gradient, norm_notch: alpha and G' by the norm's formulas, and beta from them
-    norm_form: float
-    norm_gradient: float
-    norm_notch: float
-
-
-@dataclass(frozen=True)
-class Entry:
-    """A line of a rating: one value a load, or one for all."""
-
-    symbol: str
-    what: str
-    values: tuple[float | None, ...]
-    unit: str  #: of SI; empty for a factor
-    source: str
 
 
 @dataclass(frozen=True)
 class Rating:
-    """Rating of a fillet by DIN 743."""
+    """Rating of a notch by DIN 743."""
 
     entries: tuple[Entry, ...]  #: all factors, in the order in which they are used
     #: fatigue, yielding: safeties S against fatigue and against yielding; infinite without load
     fatigue: float
     yielding: float
+    #: against a first crack in a hard surface; none without one, or without its strength
+    crack: float | None
     fatigue_bar: float  #: loss of S if the form factors lie at the upper end of their error bars
     assumed: tuple[str, ...]  #: symbols of assumed factors
+    #: safeties against fatigue and yielding with K_1 of the group of steels that falls most; none
+    #: where K_1 is known
+    least: tuple[float, float] | None
+    #: safety against fatigue of a spectrum by the elementary rule; none without one
+    elementary: float | None
 
-
-def fatigue_factors(
-    fillet: FilletFactors, yield_point: float, large: float, bars: float = 0.0
-) -> dict[Load, FatigueFactor]:
-    """Return fatigue notch factors of a fillet, by the yield point at the size of the part, Pa, and
-    the larger diameter of the shoulder, m; form factors are raised by so many error bars.
-    """
-    small, radius = 2 * fillet.corner.r, fillet.corner.radial
-    out: dict[Load, FatigueFactor] = {}
-    for load in LOADS:
-        factor = fillet.factors[load]
-        form = factor.value + bars * factor.bar
-        support = din743.support(factor.gradient, yield_point)
-        alpha = din743.form_factor(load, large, small, radius)
-        slope = din743.gradient(load, large, small, radius)
-        norm = max(alpha / din743.support(slope, yield_point), 1.0)
-        notch = max(form / support, 1.0)
-        out[load] = FatigueFactor(form, factor.gradient, support, notch, alpha, slope, norm)
-    return out
+    @property
+    def worst(self) -> float:
+        """Least of all safeties."""
+        known = (self.fatigue, self.yielding, self.crack)
+        return min(value for value in known if value is not None)
 
 
 def rated(
-    fillet: FilletFactors,
-    nominal: NominalStress,
+    notch: RatedNotch,
+    levels: Sequence[LoadLevel],
     strength: Strength,
     conditions: Conditions,
-    large: float,
+    largest: float,
+    source: str,
+    raised: RatedNotch | None = None,
 ) -> Rating:
-    """Rate a fillet by the nominal stress where it meets the cylinder and the larger diameter of
-    the shoulder, m.
+    """Rate a notch under levels of nominal stress, by a strength and its source, the largest diameter
+    of the shaft, m, and the same notch with form factors at the upper end of their error bars.
     """
     sheet = _Sheet()
-    fatigue, yielding = _safeties(sheet, fillet, nominal, strength, conditions, large)
-    worst, _ = _safeties(_Sheet(), fillet, nominal, strength, conditions, large, bars=1.0)
+    sheet.write("sigma_B", strength.ultimate, source)
+    sheet.write("sigma_S", strength.yield_point, source)
+    sizes = _sizes(sheet, strength, conditions, largest)
+    result = _safeties(sheet, notch, levels, strength, conditions, sizes)
+    other = result
+    if raised is not None:
+        other = _safeties(_Sheet(), raised, levels, strength, conditions, sizes)
     assumed = tuple(entry.symbol for entry in sheet.entries if ASSUMED in entry.source)
-    lost = fatigue - worst if math.isfinite(fatigue) else 0.0
-    return Rating(tuple(sheet.entries), fatigue, yielding, lost, assumed)
+    least = None
+    if {"K_1 (sigma_B)", "K_1 (sigma_S)"} & {*assumed}:
+        diameter = min(conditions.treated_diameter or largest, steels.LARGEST)
+        worst = steels.least_size_factors(diameter)
+        small = _safeties(_Sheet(), notch, levels, strength, conditions, worst)
+        least = small.fatigue, small.yielding
+    lost = result.fatigue - other.fatigue if math.isfinite(result.fatigue) else 0.0
+    return Rating(
+        entries=tuple(sheet.entries),
+        fatigue=result.fatigue,
+        yielding=result.yielding,
+        crack=result.crack,
+        fatigue_bar=lost,
+        assumed=assumed,
+        least=least,
+        elementary=result.elementary,
+    )
+
+
+class _Safeties(NamedTuple):
+    """Safeties of one calculation."""
+
+    fatigue: float
+    yielding: float
+    crack: float | None
+    elementary: float | None
 
 
 @dataclass(frozen=True)
@@ -179,9 +111,7 @@ class _Sheet:
 
     entries: list[Entry] = field(default_factory=list)
 
-    def write(
-        self, symbol: str, values: Mapping[Load, float] | float, source: str = ""
-    ) -> Mapping[Load, float]:
+    def write(self, symbol: str, values: ByLoad | float, source: str = "") -> ByLoad:
         """Write a line, and return the values of every load in it."""
         by_load = values if isinstance(values, Mapping) else dict.fromkeys(LOADS, values)
         name, usual, unit = LINES[symbol]
@@ -195,107 +125,244 @@ class _Sheet:
         return 1.0 if value is None else value
 
 
+def _sizes(
+    sheet: _Sheet, strength: Strength, conditions: Conditions, largest: float
+) -> tuple[float, float]:
+    """Write and return K_1 of tensile strength and of the yield point."""
+    by_group: tuple[float | None, float | None] = (None, None)
+    diameter = conditions.treated_diameter or largest
+    source = ""
+    if strength.group is not None and diameter <= steels.LARGEST:
+        by_group = steels.size_factors(strength.group, diameter)
+        of_whom = "given" if conditions.treated_diameter else "largest of the shaft"
+        group = strength.group.replace("_", " ")
+        source = f"DIN 743-2, eq. 10 to 14: {group}, d_eff {1e3 * diameter:g} mm ({of_whom})"
+    elif strength.group is not None:
+        source = f"{ASSUMED}: the norm ends at d_eff {1e3 * steels.LARGEST:g} mm"
+        by_group = (1.0, 1.0)
+    factors = []
+    given = (conditions.ultimate_at_size, conditions.yield_at_size)
+    for symbol, user, group_factor in zip(("K_1 (sigma_B)", "K_1 (sigma_S)"), given, by_group):
+        if user is None and group_factor is not None:
+            sheet.write(symbol, group_factor, source)
+            factors.append(group_factor)
+        else:
+            factors.append(sheet.user_factor(symbol, user))
+    return factors[0], factors[1]
+
+
 def _safeties(
     sheet: _Sheet,
-    fillet: FilletFactors,
-    nominal: NominalStress,
+    notch: RatedNotch,
+    levels: Sequence[LoadLevel],
     strength: Strength,
     conditions: Conditions,
-    large: float,
-    bars: float = 0.0,
-) -> tuple[float, float]:
-    """Return safeties against fatigue and yielding, line by line in the order of the norm."""
-    write, section = sheet.write, fillet.section
-    write("sigma_B", strength.ultimate)
-    write("sigma_S", strength.yield_point)
-    k1 = sheet.user_factor("K_1 (sigma_B)", conditions.ultimate_at_size)
-    ultimate = k1 * strength.ultimate
-    yields = sheet.user_factor("K_1 (sigma_S)", conditions.yield_at_size) * strength.yield_point
-    notch = _notches(sheet, fatigue_factors(fillet, yields, large, bars))
-    size = write("K_2", {load: din743.size_factor(load, 2 * section.outer) for load in LOADS})
-    surface = _surface(sheet, conditions.roughness, ultimate)
+    sizes: tuple[float, float],
+) -> _Safeties:
+    """Return the safeties, line by line in the order of the norm."""
+    write, k1 = sheet.write, sizes[0]
+    ultimate, yields = k1 * strength.ultimate, sizes[1] * strength.yield_point
+    factors = notch.factors(Steel(ultimate, yields, conditions.hard_surface))
+    for line in factors.lines:
+        write(line.symbol, line.values, line.source)
+    beta = factors.notch
+    size = write("K_2", {load: din743.size_factor(load, notch.diameter) for load in LOADS})
+    surface = _surface(sheet, conditions.roughness, ultimate, notch.tested_roughness)
     hard = sheet.user_factor("K_V", conditions.hardening)
-    total = {k: din743.total_factor(notch[k], size[k], surface[k], hard) for k in LOADS}
+    total = {k: din743.total_factor(beta[k], size[k], surface[k], hard) for k in LOADS}
     write("K_sigma, K_tau", total)
     smooth = {load: din743.ALTERNATING[load] * strength.ultimate for load in LOADS}
     write("sigma_W", smooth)
     limit = write("sigma_WK", {load: k1 * smooth[load] / total[load] for load in LOADS})
-    static = _yielding(sheet, notch, yields, hollow=section.inner > 0)
-    amplitude, mean = _stress(sheet, nominal, conditions)
-    together = math.hypot(mean["tension"], math.sqrt(3) * mean["torsion"])
-    equivalent = dict.fromkeys(LOADS, together) | {"torsion": together / math.sqrt(3)}
-    write("sigma_mv", equivalent)
-    psi = write("psi_sigmaK", {k: din743.mean_sensitivity(limit[k], ultimate) for k in LOADS})
-    borne = {}
-    for load in LOADS:
-        if amplitude[load] > 0:
-            borne[load] = din743.amplitude_limit(
+    rise = factors.rise if notch.revolved and not conditions.hard_surface else {}
+    static = _yielding(sheet, rise, yields, notch.hollow, conditions.hard_surface)
+    psi = {k: din743.mean_sensitivity(limit[k], ultimate) for k in LOADS}
+    worst = max(levels, key=lambda level: _size(level.nominal))
+    stress = _Stress.of(worst.nominal, conditions)
+    stress.write(sheet, conditions)
+    write("psi_sigmaK", psi)
+    stresses = [_Stress.of(level.nominal, conditions) for level in levels]
+    borne = [each.borne(limit, psi, static, conditions.constant_mean) for each in stresses]
+    case = "case 1: mean stays" if conditions.constant_mean else "case 2: mean grows with loads"
+    write("sigma_ADK", borne[levels.index(worst)], f"DIN 743-1, {case}")
+    shares = [each.shares(amplitudes) for each, amplitudes in zip(stresses, borne)]
+    used, elementary = _used(sheet, levels, shares, conditions.damage_sum)
+    overload = sheet.user_factor("overload", conditions.overload)
+    yielding = min(
+        _safety({load: overload * each.largest(load) / static[load] for load in LOADS})
+        for each in stresses
+    )
+    crack = _crack(sheet, factors.peak, stress, overload, conditions.surface_strength)
+    return _Safeties(_safety(used), yielding, crack, elementary)
+
+
+def _size(nominal: NominalStress) -> float:
+    return math.hypot(nominal.bending + abs(nominal.tension), math.sqrt(3) * nominal.torsion)
+
+
+@dataclass(frozen=True)
+class _Stress:
+    """Nominal amplitudes and means, Pa."""
+
+    amplitude: ByLoad
+    mean: ByLoad
+
+    @classmethod
+    def of(cls, nominal: NominalStress, conditions: Conditions) -> _Stress:
+        """Return those of a turning shaft, whose bending is all amplitude, or of one that stands."""
+        share = conditions.bending_share
+        amplitude: dict[Load, float] = {
+            "tension": abs(nominal.tension) * (conditions.force_share or 0.0),
+            "bending": nominal.bending * (1.0 if share is None else share),
+            "torsion": abs(nominal.torsion) * (conditions.torque_share or 0.0),
+        }
+        mean: dict[Load, float] = {
+            "tension": nominal.tension,
+            "bending": 0.0 if share is None else nominal.bending,
+            "torsion": nominal.torsion,
+        }
+        return cls(amplitude, mean)
+
+    @property
+    def equivalent(self) -> ByLoad:
+        """Equivalent means of von Mises, on the side where bending adds to tension."""
+        normal = abs(self.mean["tension"]) + self.mean["bending"]
+        together = math.hypot(normal, math.sqrt(3) * self.mean["torsion"])
+        out: dict[Load, float] = dict.fromkeys(LOADS, together)
+        return out | {"torsion": together / math.sqrt(3)}
+
+    def write(self, sheet: _Sheet, conditions: Conditions) -> None:
+        """Write amplitudes and means."""
+        shares = {"force": conditions.force_share, "torque": conditions.torque_share}
+        bare = " and ".join(word for word, share in shares.items() if share is None)
+        steady = f"; {ASSUMED} steady: {bare}" if bare else ""
+        sheet.write("sigma_a", self.amplitude, LINES["sigma_a"][1] + steady)
+        sheet.write("sigma_m", self.mean)
+        sheet.write("sigma_mv", self.equivalent)
+
+    def borne(
+        self, limit: ByLoad, psi: ByLoad, static: ByLoad, constant_mean: bool
+    ) -> dict[Load, float]:
+        """Return the amplitudes that the part bears, of loads that have one."""
+        equivalent = self.equivalent
+        return {
+            load: din743.amplitude_limit(
                 limit=limit[load],
                 psi=psi[load],
                 static=static[load],
                 mean=equivalent[load],
-                amplitude=amplitude[load],
-                constant_mean=conditions.constant_mean,
+                amplitude=self.amplitude[load],
+                constant_mean=constant_mean,
             )
-    case = "case 1: mean stays" if conditions.constant_mean else "case 2: mean grows with loads"
-    write("sigma_ADK", borne, f"DIN 743-1, {case}")
-    used = {
-        load: amplitude[load] / limit_amplitude if limit_amplitude > 0 else math.inf
-        for load, limit_amplitude in borne.items()
-    }
-    most = {load: (abs(mean[load]) + amplitude[load]) / static[load] for load in LOADS}
-    return _safety(used), _safety(most)
+            for load in LOADS
+            if self.amplitude[load] > 0
+        }
+
+    def shares(self, borne: ByLoad) -> dict[Load, float]:
+        """Return the amplitudes over those borne."""
+        return {
+            load: self.amplitude[load] / most if most > 0 else math.inf
+            for load, most in borne.items()
+        }
+
+    def largest(self, load: Load) -> float:
+        """Return the largest nominal stress of a load, Pa."""
+        return abs(self.mean[load]) + self.amplitude[load]
 
 
-def _notches(sheet: _Sheet, notches: Mapping[Load, FatigueFactor]) -> Mapping[Load, float]:
-    """Write notch factors with their parts, and return them."""
-    for symbol, name in FACTORS.items():
-        sheet.write(symbol, {load: getattr(factor, name) for load, factor in notches.items()})
-    return {load: factor.notch for load, factor in notches.items()}
-
-
-def _surface(sheet: _Sheet, roughness: float | None, ultimate: float) -> Mapping[Load, float]:
-    """Write and return factors of surface roughness."""
+def _surface(
+    sheet: _Sheet, roughness: float | None, ultimate: float, tested: float | None
+) -> ByLoad:
+    """Write and return factors of surface roughness, of factors from tests over that of the tests."""
+    if tested == 0:
+        return sheet.write("K_F", 1.0, "DIN 743-2, table 1: in the factors of the tests")
     if roughness is None:
         return sheet.write("K_F", 1.0, f"{ASSUMED}: no roughness given")
     factors = {load: din743.surface_factor(load, roughness, ultimate) for load in LOADS}
-    return sheet.write("K_F", factors, f"DIN 743-2, eq. 18 and 19, Rz {1e6 * roughness:g} um")
+    source = f"DIN 743-2, eq. 18 and 19, Rz {1e6 * roughness:g} um"
+    if tested is not None:
+        of_tests = {load: din743.surface_factor(load, tested, ultimate) for load in LOADS}
+        factors = {load: min(factors[load] / of_tests[load], 1.0) for load in LOADS}
+        source = (
+            f"DIN 743-2, eq. 20 and 21, Rz {1e6 * roughness:g} um over {1e6 * tested:g} um of "
+            "the tests, at most 1"
+        )
+    return sheet.write("K_F", factors, source)
 
 
-def _yielding(
-    sheet: _Sheet, notch: Mapping[Load, float], yields: float, hollow: bool
-) -> Mapping[Load, float]:
+def _yielding(sheet: _Sheet, rises: ByLoad, yields: float, hollow: bool, hard: bool) -> ByLoad:
     """Write and return the yield limits of the part."""
-    support = {load: din743.STATIC_SUPPORT[load][hollow] for load in LOADS}
-    rise = {load: din743.yield_rise(load, notch[load]) for load in LOADS}
+    support = {load: 1.0 if hard else din743.STATIC_SUPPORT[load][hollow] for load in LOADS}
+    rise = {load: din743.yield_rise(load, rises.get(load, 1.0)) for load in LOADS}
     point = dict.fromkeys(LOADS, yields) | {"torsion": yields / math.sqrt(3)}
     sheet.write("K_2F", support)
-    sheet.write("gamma_F", rise)
+    sheet.write("gamma_F", rise, "" if rises else "DIN 743-1, table 2: no notch around the shaft")
     return sheet.write("sigma_FK", {k: support[k] * rise[k] * point[k] for k in LOADS})
 
 
-def _stress(
-    sheet: _Sheet, nominal: NominalStress, conditions: Conditions
-) -> tuple[Mapping[Load, float], Mapping[Load, float]]:
-    """Write and return nominal amplitudes and means."""
-    mean: dict[Load, float]
-    mean = {"tension": nominal.tension, "bending": 0.0, "torsion": nominal.torsion}
-    amplitude: dict[Load, float] = {
-        "tension": abs(nominal.tension) * (conditions.force_share or 0.0),
-        "bending": nominal.bending,
-        "torsion": abs(nominal.torsion) * (conditions.torque_share or 0.0),
-    }
-    shares = {"force": conditions.force_share, "torque": conditions.torque_share}
-    bare = " and ".join(word for word, share in shares.items() if share is None)
-    steady = f"; {ASSUMED} steady: {bare}" if bare else ""
-    sheet.write("sigma_a", amplitude, LINES["sigma_a"][1] + steady)
-    return amplitude, sheet.write("sigma_m", mean)
+def _used(
+    sheet: _Sheet,
+    levels: Sequence[LoadLevel],
+    shares: Sequence[ByLoad],
+    damage_sum: float | None,
+) -> tuple[dict[Load, float], float | None]:
+    """Return the shares of the limits that levels use, and the safety of a spectrum by the elementary
+    rule.
+    """
+    cycles = [level.cycles for level in levels]
+    counts = [count for count in cycles if count is not None]
+    if not counts:
+        hardest: ByLoad = max(shares, key=_use)
+        return dict(hardest), None
+    several = len(levels) > 1
+    borne = (damage_sum or DAMAGE_SUM) if several else 1.0
+    used: dict[Load, float] = {}
+    elementary: dict[Load, float] = {}
+    for load in LOADS:
+        of_levels = [share.get(load, 0.0) for share in shares]
+        if max(of_levels) <= 0:
+            continue
+        if math.isinf(max(of_levels)):  # a mean beyond yielding leaves no amplitude
+            used[load] = elementary[load] = math.inf
+            continue
+        exponent = EXPONENTS[load]
+        used[load] = equivalent_share(of_levels, counts, exponent, borne)
+        repeated = borne * elementary_repetitions(of_levels, counts, exponent)
+        elementary[load] = repeated ** (-1 / exponent)
+    if several:
+        given = "given" if damage_sum is not None else f"{ASSUMED}: FKM guideline, 4.4.3, of steel"
+        sheet.write("D_M", borne, given)
+    most = "DIN 743-4: knee 1e6 cycles, slopes 5, 5, 8"
+    rule = f"{most}; consequent Miner" if several else most
+    sheet.write("u", used, rule)
+    return used, _safety(elementary) if several else None
 
 
-def _safety(shares: Mapping[Load, float]) -> float:
-    """Return the safety from shares of the limits (DIN 743-1): normal stresses add, shear is
+def _crack(
+    sheet: _Sheet, peak: ByLoad | None, stress: _Stress, overload: float, strength: float | None
+) -> float | None:
+    """Return the safety of a hard surface against a first crack: its strength over the largest
+    principal stress in the notch; none where that is not known.
+    """
+    if strength is None or peak is None:
+        return None
+    local = {load: overload * peak[load] * stress.largest(load) for load in LOADS}
+    normal, shear = (local["tension"] + local["bending"]) / 2, local["torsion"]
+    principal = normal + math.hypot(normal, shear)
+    sheet.write("sigma_B, surface", strength, "given")
+    sheet.write("sigma_1", principal)
+    return strength / principal if principal > 0 else math.inf
+
+
+def _use(shares: ByLoad) -> float:
+    """Return the share of all limits together (DIN 743-1): normal stresses add, shear is
     perpendicular.
     """
     normal = shares.get("tension", 0.0) + shares.get("bending", 0.0)
-    used = math.hypot(normal, shares.get("torsion", 0.0))
+    return math.hypot(normal, shares.get("torsion", 0.0))
+
+
+def _safety(shares: ByLoad) -> float:
+    """Return the safety from shares of the limits."""
+    used = _use(shares)
     return 1 / used if used > 0 else math.inf

@@ -80,6 +80,11 @@ class SectionForces:
             return np.zeros(6)
         return move_load(self.right[k], self.y[k], y)
 
+    def before(self, y: float) -> np.ndarray:
+        """Return the section forces (6,) at one place, m; where a load acts, just before it."""
+        k = int(np.abs(self.y - y).argmin())
+        return self.left[k] if abs(self.y[k] - y) <= TOUCH else self.at(y)
+
     @property
     def names_without_weights(self) -> tuple[str, ...]:
         """Names of the loads at each place, without weights."""

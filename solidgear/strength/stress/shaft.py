@@ -1,4 +1,4 @@
-"""Stress of a whole shaft under loads on ports: section forces, nominal stress, fillets.
+"""Stress of a whole shaft under loads on ports: section forces, nominal stress, fillets, notches.
 
 Sharp corners have no stress: that of an elastic solid grows there without end as the mesh is
 refined (Williams 1952), so they are listed and get no number.
@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -15,23 +16,22 @@ import numpy as np
 from solidgear.core import SolidgearError
 from solidgear.core.scene.corner import Corner
 from solidgear.core.scene.outline import radii_of
+from solidgear.strength.stress.conditions import Conditions
 from solidgear.strength.stress.din743 import LOADS
 from solidgear.strength.stress.din743 import Load as LoadKind
+from solidgear.strength.stress.drawn import DrawnStress, Unrated, drawn_stresses, steel_at_size
+from solidgear.strength.stress.duty import DutyForces, levels
+from solidgear.strength.stress.fillet_rating import FatigueFactor, FilletNotch
 from solidgear.strength.stress.nominal import (
     NominalRow,
     NominalStress,
     nominal_rows,
     nominal_stress,
 )
+from solidgear.strength.stress.norm.steels import source_of, strength_of
 from solidgear.strength.stress.notch import ENOUGH, FilletFactors, fillet_factors
 from solidgear.strength.stress.published import PUBLISHED
-from solidgear.strength.stress.rating import (
-    Conditions,
-    FatigueFactor,
-    Rating,
-    fatigue_factors,
-    rated,
-)
+from solidgear.strength.stress.rating import Rating, rated
 from solidgear.strength.stress.section_forces import SectionForces, forces_of
 
 if TYPE_CHECKING:
@@ -90,7 +90,7 @@ class Notch:
     @property
     def severity(self) -> tuple[float, float]:
         """Rank of a fillet, the worst least: the safety, or minus the stress where there is none."""
-        safety = self.rating.fatigue if self.rating else np.inf
+        safety = self.rating.worst if self.rating else np.inf
         return safety, -(self.local.amplitude + abs(self.local.mean))
 
 
@@ -112,17 +112,19 @@ class ShaftStress:
 
     forces: SectionForces
     nominal: tuple[NominalRow, ...]
-    notches: tuple[Notch, ...]  #: along the shaft
+    notches: tuple[Notch, ...]  #: fillets along the shaft
+    drawn: tuple[DrawnStress, ...]  #: features that DIN 743 rates, in the order of the file
+    unrated: tuple[Unrated, ...]  #: and those that it does not
     sharp: tuple[SharpCorner, ...]
     remarks: tuple[str, ...]
 
     @property
-    def worst(self) -> tuple[Notch, ...]:
-        """Fillets, that with the least safety first; without strength, that with the largest
-        stress.
+    def worst(self) -> tuple[Notch | DrawnStress, ...]:
+        """Fillets and features, that with the least safety first; without strength, the fillet with
+        the largest stress.
         """
-
-        return tuple(sorted(self.notches, key=lambda notch: notch.severity))
+        notches: list[Notch | DrawnStress] = [*self.notches, *self.drawn]
+        return tuple(sorted(notches, key=lambda notch: notch.severity))
 
 
 def shaft_stress(
@@ -132,6 +134,7 @@ def shaft_stress(
     gravity: ArrayLike | None = None,
     tolerance: float = ENOUGH,
     conditions: Conditions | None = None,
+    duty: Sequence[DutyForces] = (),
     progress: Callable[[str], None] = lambda text: None,
 ) -> ShaftStress:
     """Return the stress of a shaft under loads that balance.
@@ -149,6 +152,8 @@ def shaft_stress(
         Relative error bar of form factors at which to stop.
     conditions : Conditions, optional
         Of the rating by DIN 743.
+    duty : sequence of DutyForces
+        Points of a duty table over which ratings are; without one they are of the loads.
     progress : callable, optional
         Called with each fillet.
 
@@ -180,22 +185,22 @@ def shaft_stress(
     forces = forces_of(scene, loads, gravity)
     conditions = conditions or Conditions()
     seats = [(s.lo, s.hi) for s in scene.stations if np.any(loads.get(s.name, 0.0))]
-    remarks = [
-        f'{feature.what} "{feature.name}": its stress concentration is not included'
-        for feature in scene.features
-    ]
+    drawn, unrated = drawn_stresses(scene, forces, conditions, duty)
+    remarks = []
     notches = []
     for corner in sorted(scene.outline.corners, key=lambda c: c.y):
         if corner.root and corner.kind == "fillet":
             progress(corner.name)
             try:
-                notches.append(_notch(scene, corner, forces, seats, tolerance, conditions))
+                notches.append(_notch(scene, corner, forces, seats, tolerance, conditions, duty))
             except SolidgearError as error:  # the others have their stress all the same
                 remarks.append(f"no stress there: {error}")
     return ShaftStress(
         forces,
         nominal_rows(scene.segments, forces),
         tuple(notches),
+        drawn,
+        unrated,
         tuple(sharp_corners(scene)),
         tuple(remarks),
     )
@@ -225,12 +230,14 @@ def _notch(
     seats: Sequence[tuple[float, float]],
     tolerance: float,
     conditions: Conditions,
+    duty: Sequence[DutyForces],
 ) -> Notch:
     fillet = fillet_factors(scene, corner.name, tolerance)
     section_load = forces.at(fillet.reference)
     nominal = nominal_stress(fillet.section, section_load, fillet.radius)
     local, (small, large) = local_stress(fillet, section_load), _diameters(scene, corner)
-    strength = scene.segments[corner.owner].material.strength
+    segment = scene.segments[corner.owner]
+    strength = strength_of(segment)
     published, rating, fatigue = {}, None, {}
     if corner.surface == "outer":
         published = {
@@ -238,9 +245,17 @@ def _notch(
             for source, factor in PUBLISHED.items()
         }
         if strength is not None:
-            yields = strength.yield_point * (conditions.yield_at_size or 1.0)
-            fatigue = fatigue_factors(fillet, yields, large)
-            rating = rated(fillet, nominal, strength, conditions, large)
+            rating = rated(
+                FilletNotch(fillet, large),
+                levels(conditions, duty, nominal, partial(_nominal_at, fillet)),
+                strength,
+                conditions,
+                largest=2 * scene.outline.largest_radius,
+                source=source_of(segment),
+                raised=FilletNotch(fillet, large, bars=1.0),
+            )
+            steel = steel_at_size(strength, rating, conditions)
+            fatigue = FilletNotch(fillet, large).by_load(steel)
     return Notch(
         name=corner.name,
         y=fillet.reference,
@@ -256,6 +271,11 @@ def _notch(
         rating=rating,
         remark=_remark(corner, seats, fillet, tolerance, _excess_by_shear(fillet, nominal, local)),
     )
+
+
+def _nominal_at(fillet: FilletFactors, forces: SectionForces) -> NominalStress:
+    """Return the nominal stress of a fillet under section forces of a shaft."""
+    return nominal_stress(fillet.section, forces.at(fillet.reference), fillet.radius)
 
 
 def _diameters(scene: Scene, corner: Corner) -> tuple[float, float]:

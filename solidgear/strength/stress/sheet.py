@@ -1,8 +1,7 @@
-"""Sheet of the stress of shafts at rest: section forces, nominal stress, fillets, their rating."""
+"""Sheet of the stress of shafts at rest: section forces, nominal stress, fillets."""
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Mapping, Sequence
 from functools import partial
@@ -18,16 +17,20 @@ from solidgear.show.sheet import Sheet, Terminal
 from solidgear.show.table import Cell, Column, Table, exact, quantity, text, word
 from solidgear.show.units import ENGINEERING, Units, plain
 from solidgear.show.words import DASH, percent
-from solidgear.strength.load import LoadAtPort
+from solidgear.strength.load import LoadsAlone
 from solidgear.strength.stress.at_rest import StressAtRest, StressedShaft
 from solidgear.strength.stress.din743 import LOADS, Load
-from solidgear.strength.stress.rating import Entry, Rating
+from solidgear.strength.stress.notch_tables import (
+    STRESS,
+    drawn_notches,
+    headline,
+    rating,
+    safeties,
+)
 from solidgear.strength.stress.section_forces import SectionForces
 from solidgear.strength.stress.shaft import Notch, ShaftStress
 from solidgear.strength.stress.solid_sheet import solid_factors, solid_stress
 
-#: SI unit of a stress in tables
-STRESS = "Pa stressed"
 #: of section forces: name, place among the six, and SI unit
 COMPONENTS = (
     ("N", 1, "N"),
@@ -48,10 +51,8 @@ CHART_SHOWN = (
 NOTHING = 1e-9
 #: share of a value that is left open from which on it is told
 LITTLE = 1e-3
-#: safety that DIN 743 asks for where loads and strength are sure
-LEAST = 1.2
 #: what holds of all of it
-ELASTIC = "Linear elastic; no stress at keyways, teeth and press fits, and no residual stress."
+ELASTIC = "Linear elastic, without residual stress."
 #: px; height of a panel of the chart
 TALL = 130.0
 COLOURS = {"Q_x": "#1f5fa8", "Q_z": "#2b7a4b", "M_x": "#2b7a4b", "M_z": "#1f5fa8"}
@@ -96,7 +97,7 @@ def sheet(stressed: StressAtRest, units: Units) -> Sheet:
 def loads_in_words(stressed: StressAtRest, units: Units) -> str:
     """Return the load, or the operating point, that the shafts are under in words."""
     load = stressed.under
-    if isinstance(load, LoadAtPort):
+    if isinstance(load, LoadsAlone):
         return load.words(units)
     force = units.text(load.mesh_force, "N", 5)
     return f"At {load.point.label}: mesh force {force} along the line of action"
@@ -131,6 +132,7 @@ def shaft_tables(
         fillets(stress, units),
         surface_stress(stress, shaft.open, units, stressed.open_by),
         form_factors(stress),
+        drawn_notches(stress, units),
         solid_stress(shaft.solids, units),
         solid_factors(shaft.solids),
         safeties(stress),
@@ -140,24 +142,6 @@ def shaft_tables(
         for table in out:
             table.title = f"{table.title}, {shaft.name}"
     return [table for table in out if table]
-
-
-def headline(stressed: StressAtRest, units: Units = ENGINEERING) -> str:
-    """Return the sentence on the worst fillet of all shafts; empty where none has one."""
-    worst = [(shaft, shaft.found.worst[0]) for shaft in stressed.shafts if shaft.found.notches]
-    if not worst:
-        return ""
-    shaft, notch = min(worst, key=lambda pair: pair[1].severity)
-    value, bar = (
-        units.number(stress, STRESS, digits)
-        for stress, digits in ((notch.local.amplitude, 4), (notch.local.amplitude_bar, 2))
-    )
-    place = f"{shaft.name}, {notch.name}" if len(stressed.shafts) > 1 else notch.name
-    sentence = f"Worst at {place}: {value} ± {bar} {units.unit(STRESS)} by bending"
-    if notch.rating is not None:
-        fatigue, yielding = map(safety, (notch.rating.fatigue, notch.rating.yielding))
-        sentence += f", safety {fatigue} against fatigue and {yielding} against yielding by DIN 743"
-    return f"{sentence}."
 
 
 def sentences(stressed: StressAtRest, units: Units = ENGINEERING) -> list[str]:
@@ -176,6 +160,11 @@ def sentences(stressed: StressAtRest, units: Units = ENGINEERING) -> list[str]:
                 'yield_point = "700 MPa", ultimate = "1000 MPa" } beside E, nu and density.'
             )
         out += [lead + remark for remark in shaft_remarks]
+    if stressed.duty:
+        out.append(
+            f"Ratings are over the duty table, {listed(stressed.duty, most=6)}; tables of stress are "
+            "of the one case above."
+        )
     return [*out, ELASTIC]
 
 
@@ -362,61 +351,6 @@ def _factor(value: float) -> str:
     return plain(value, 4)
 
 
-def safeties(stress: ShaftStress) -> Table:
-    """Return safeties of all fillets that are rated, the least first."""
-    columns = [
-        text("fillet"),
-        Column("S, fatigue"),
-        Column("less by the error bar", write=partial(plain, digits=2)),
-        Column("S, yielding"),
-    ]
-    rows = [
-        [notch.name, safety(r.fatigue), r.fatigue_bar, safety(r.yielding)]
-        for notch in stress.worst
-        if (r := notch.rating) is not None
-    ]
-    note = (
-        f"The norm asks for {LEAST:g} where loads and strength are known. Less by the error bar: "
-        "loss of S with Kt at the upper end of its error bar."
-    )
-    return Table("Safety by DIN 743", columns, rows, note)
-
-
-def rating(name: str, record: Rating, units: Units = ENGINEERING) -> Table:
-    """Return the rating of one fillet by DIN 743, every factor with its source."""
-    columns = [word(""), text("what"), *map(Column, LOADS), text("source")]
-    rows = []
-    for entry in record.entries:
-        unit = units.unit(STRESS) if entry.unit == "Pa" else "1/mm" if entry.unit else ""
-        what = f"{entry.what}, {unit}" if unit else entry.what
-        values = [_value(value, entry.unit, units) for value in entry.values]
-        rows.append([entry.symbol, what, *values, _source(entry)])
-    note = (
-        f"Safety against fatigue {safety(record.fatigue)}, against yielding "
-        f"{safety(record.yielding)}, by nominal stress without shear forces, as in the norm."
-    )
-    if record.assumed:
-        note += f" Assumed, since not given: {', '.join(record.assumed)}."
-    return Table(f"DIN 743 at {name}", columns, rows, note)
-
-
-def _value(value: float | None, unit: str, units: Units) -> str | None:
-    if value is None:
-        return None
-    if unit == "Pa":
-        return units.number(value, STRESS, 4)
-    return plain(1e-3 * value if unit else value, 4)
-
-
-def _source(entry: Entry) -> str | Cell:
-    return Cell(entry.source, "mark assumed") if "assumed" in entry.source else entry.source
-
-
-def safety(value: float) -> str:
-    """Return a safety as text."""
-    return plain(value, 3) if math.isfinite(value) else "endless"
-
-
 def remarks(stress: ShaftStress, units: Units = ENGINEERING) -> list[str]:
     """Return sentences on places without a number, and on what is left out."""
     out = []
@@ -432,6 +366,10 @@ def remarks(stress: ShaftStress, units: Units = ENGINEERING) -> list[str]:
                 f"{kind} at {listed(places)}: no stress there, since it grows without limit as a "
                 "mesh is refined; give fillets."
             )
+    out += [
+        f'{drawn.kind} "{drawn.name}": {drawn.remark}.' for drawn in stress.drawn if drawn.remark
+    ]
+    out += [f'not rated: {u.kind} "{u.name}": {u.reason}.' for u in stress.unrated]
     return out + [f"{remark}." for remark in stress.remarks]
 
 

@@ -17,7 +17,7 @@ from solidgear.strength.stress.groove import GrooveFactors, groove_factors
 from solidgear.strength.stress.groove_mesh import GrooveShape
 from solidgear.strength.stress.local_factors import LocalFactors, local_factors
 from solidgear.strength.stress.nominal import NominalStress, nominal_stress
-from solidgear.strength.stress.section_forces import SectionForces
+from solidgear.strength.stress.shaft import ShaftStress
 from solidgear.strength.stress.shaft import local_stress as stress_on_arc
 
 if TYPE_CHECKING:
@@ -69,16 +69,18 @@ class SolidNotch:
 
 def solid_notches(
     scene: Scene,
-    forces: SectionForces,
+    stress: ShaftStress,
     tolerance: float,
     local: float | None = None,
     progress: Callable[[str], None] = lambda text: None,
 ) -> tuple[tuple[SolidNotch, ...], tuple[str, ...]]:
     """Return the notches of the features of a scene that a solid gives stress to, and sentences on
     those that have none; `tolerance` is the relative error bar of grooves, `local` that of keyways
-    and cross holes, which are left out without it.
+    and cross holes, which are left out without it. Section forces are those where the norm rates a
+    feature, in the middle of it where it does not.
     """
     notches, remarks = [], []
+    rated = {drawn.name: (drawn.y, drawn.forces) for drawn in stress.drawn}
     for feature in sorted(scene.features, key=lambda f: f.span(scene.segments)):
         solid = SOLIDS.get(feature.kind)
         if solid is None:
@@ -93,12 +95,13 @@ def solid_notches(
         except SolidgearError as error:  # the others have their stress all the same
             remarks.append(f"no local stress there: {error}")
             continue
-        section_load = forces.at(found.reference)
+        middle = found.reference, stress.forces.at(found.reference)
+        y, section_load = rated.get(feature.name, middle)
         notches.append(
             SolidNotch(
                 name=feature.name,
                 kind=feature.what,
-                y=found.reference,
+                y=y,
                 factors=found,
                 forces=section_load,
                 nominal=_nominal(found, section_load),

@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from solidgear.core import SolidgearError, Source, explained, name_of_source
-from solidgear.core.scene.units import quantity
+from solidgear.core import Source, explained
 from solidgear.strength.acting import Acting, Given
 from solidgear.strength.stress.at_rest import StressAtRest, StressSettings, stress_at_rest
+from solidgear.strength.stress.conditions import Conditions
 from solidgear.strength.stress.notch import ENOUGH
-from solidgear.strength.stress.rating import Conditions
 from solidgear.trains.assembly.shaft import JUDGE
 from solidgear.trains.file.train import Train
 
@@ -24,10 +23,12 @@ def stress(
     point: str | None = None,
     weight: str | None = None,
     load: str | Mapping[str, Any] | None = None,
-    drive: Mapping[str, str | float] | None = None,
+    case: str | None = None,
+    drive: Mapping[str, str | float] | list[str] | None = None,
     tol: float = ENOUGH,
     local: float | None = None,
     conditions: Mapping[str, Any] | Conditions | None = None,
+    duty: bool = False,
     progress: Callable[[str], None] = lambda text: None,
 ) -> StressAtRest:
     """Stress of shafts at rest: section forces, nominal stress, stress on fillets, DIN 743.
@@ -38,11 +39,8 @@ def stress(
         A scene or train: its file (TOML), the tables of one, or an object.
     model : str
         Model for bearing reactions.
-    torque, of, point, weight, load
+    torque, of, point, weight, load, case, drive
         As of :func:`solidgear.deflect`.
-    drive : mapping of str to str or float, optional
-        Torques that enter a shaft at a bearing, mass or point and leave it at the port, such as
-        ``{"B": "115 N*m"}``; numbers in N m.
     tol : float
         Error bar allowed for a form factor, relative.
     local : float, optional
@@ -50,15 +48,20 @@ def stress(
         solids are solved, some seconds each; without it they have none.
     conditions : mapping or Conditions, optional
         Of the rating by DIN 743: ``roughness``, ``ultimate_at_size``, ``yield_at_size``,
-        ``hardening``, ``force_share``, ``torque_share``, ``constant_mean``.
+        ``treated_diameter``, ``hardening``, ``hard_surface``, ``surface_strength``,
+        ``force_share``, ``torque_share``, ``bending_share``, ``overload``, ``constant_mean``,
+        ``cycles``, ``spectrum``, ``hours``, ``damage_sum``.
+    duty : bool
+        Whether ratings are over all cases of a shaft or operating points of a train, by their
+        shares or hours and speeds.
     progress : callable
         Called with a sentence at every step.
 
     Returns
     -------
     StressAtRest
-        ``shafts``, each with its forces, nominal stress and ``notches``. ``write(folder)`` makes a
-        page, section forces and their charts.
+        ``shafts``, each with its forces, nominal stress, fillets (``notches``) and rated features
+        (``drawn``). ``write(folder)`` makes a page, section forces and their charts.
 
     Raises
     ------
@@ -77,13 +80,7 @@ def stress(
     """
     if not isinstance(conditions, Conditions):
         conditions = Conditions(**(conditions or {}))
-    settings = StressSettings(tol, conditions, local)
-    assembly, at = Acting(torque, of, point, weight, load).read(source)
-    torques = {name: quantity(value, "torque") for name, value in (drive or {}).items()}
-    if torques and not assembly.train.is_one_shaft:
-        raise SolidgearError(
-            f"`drive` is for a shaft, and {name_of_source(source)} is a train: torques come by the "
-            "springs of engine and load"
-        )
+    settings = StressSettings(tol, conditions, duty, local)
+    assembly, at = Acting(torque, of, point, weight, load, case, drive).read(source)
     with explained(source):
-        return stress_at_rest(assembly, at, model, settings, progress, torques)
+        return stress_at_rest(assembly, at, model, settings, progress)

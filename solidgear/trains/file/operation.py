@@ -10,6 +10,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from solidgear.core import DOF_NAMES, Model, SceneError, Written
 from solidgear.core.scene.load import BearingLoad
+from solidgear.core.scene.load_case import LoadCase
 from solidgear.core.scene.model_table import table_of
 from solidgear.core.scene.units import Speed, Torque
 
@@ -117,6 +118,26 @@ class OperatingPoint(Model):
         if self.speed is None or side == self.of:
             return self.speed
         return self.speed * turns[side] / turns[self.of]
+
+
+class ShaftCase(OperatingPoint):
+    """A case of the loads of a shaft alone, as a point at which it works."""
+
+    torque: Torque = 0.0
+    of: str = "shaft"
+
+    @property
+    def label(self) -> str:
+        """Name and speed."""
+        numbers = "" if self.speed is None else f"{self.speed * 30 / pi:.6g} rpm"
+        if not self.name:
+            return numbers or "rest"
+        return f"{self.name} ({numbers})" if numbers else self.name
+
+    @classmethod
+    def of_case(cls, case: LoadCase) -> ShaftCase:
+        """Return the point of a case of the loads of a scene."""
+        return cls(name=case.name, speed=case.speed, share=case.share, hours=case.hours)
 
 
 def _as_points(value: Any) -> Any:

@@ -37,7 +37,7 @@ from solidgear.trains.file.layout import (
     turns_of,
     with_flanks,
 )
-from solidgear.trains.file.operation import OperatingPoint, Operation
+from solidgear.trains.file.operation import OperatingPoint, Operation, ShaftCase
 from solidgear.trains.file.pair_rules import pair_problems
 from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.planetary import Planetary, PlanetMesh, Stage, stage_of
@@ -111,7 +111,8 @@ class Train(Model):
 
     @classmethod
     def of(cls, scene: Scene) -> Train:
-        """A shaft as a train of one: no teeth, no engine, and the [load] of the scene.
+        """A shaft as a train of one: no teeth, no engine, the loads of the scene, and their cases as
+        operating points.
 
         Parameters
         ----------
@@ -138,6 +139,7 @@ class Train(Model):
             rotors={},
             engines=(),
             loads=(),
+            operation=tuple(map(ShaftCase.of_case, scene.cases)),
             ask=TrainAsk(tolerance=scene.ask.tolerance),
         )
 

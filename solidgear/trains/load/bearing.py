@@ -24,6 +24,7 @@ from solidgear.core import (
     name_of_source,
 )
 from solidgear.core.loading import as_written, shaft
+from solidgear.core.scene.load_rules import named_case
 from solidgear.core.scene.toml_file import name_of
 from solidgear.show.options import speed_of
 from solidgear.show.sheet import Sheet
@@ -38,14 +39,15 @@ class SolvedBearings(Sheeted):
 
     name: str
     facts: tuple[BearingFacts, ...] = ()  #: of a shaft
-    lives: tuple[LivesOverPoints, ...] = ()  #: of a train
+    lives: tuple[LivesOverPoints, ...] = ()  #: of a train, or over the cases of a shaft
+    case: str = ""  #: of the loads of a shaft that has several, of `facts`
     scene: Scene | None = field(default=None, repr=False)  #: of a shaft, under its load
     body: Body | None = field(default=None, repr=False)  #: on which its bearings settle
 
     def __getitem__(self, name: str) -> BearingFacts | LivesOverPoints:
         by_name: dict[str, BearingFacts | LivesOverPoints] = {
-            **{fact.name: fact for fact in self.facts},
             **{life.name: life for life in self.lives},
+            **{fact.name: fact for fact in self.facts},
         }
         return by_name[name]
 
@@ -70,7 +72,7 @@ def bearings_sheet(solved: SolvedBearings, units: Units, chart: Path | None = No
     """Return the sheet of catalogue bearings, which has units of its own; `chart` is drawn already."""
     if solved.scene is None:
         return sheets.train_sheet(solved.name, solved.lives)
-    return sheets.scene_sheet(solved.name, solved.facts, chart)
+    return sheets.scene_sheet(solved.name, solved.facts, chart, solved.case, solved.lives)
 
 
 def bearing(
@@ -79,9 +81,10 @@ def bearing(
     *,
     load: str | Mapping[str, Any] | None = None,
     speed: str | None = None,
+    case: str | None = None,
 ) -> SolvedBearings:
     """Catalogue bearings: stiffness at load, load of every element, pressure, life; of a train with
-    an operation lives over its points.
+    an operation lives over its points, and of a shaft over the cases of its loads.
 
     Parameters
     ----------
@@ -92,12 +95,15 @@ def bearing(
     load : str or dict, optional
         Of a shaft: another load, ``"x=2 kN, z=-500 N, thx=10 N*m"``, on the port, or on the bearing.
     speed : str, optional
-        Of a shaft: its speed, such as ``"3000 rpm"``, for lives in hours.
+        Of a shaft: its speed, such as ``"3000 rpm"``, for lives in hours; by default that of the
+        case.
+    case : str, optional
+        Of a shaft: case of its loads, by name or number; by default the first.
 
     Returns
     -------
     SolvedBearings
-        ``facts`` of the bearings of a shaft, ``lives`` of those of a train.
+        ``facts`` of the bearings of a shaft, ``lives`` of those of a train, or over several cases.
 
     Raises
     ------
@@ -112,7 +118,7 @@ def bearing(
     [('A', 'cylindrical', 13.8), ('B', 'angular_contact', 23.1)]
     """
     if is_train(source):
-        for option, value in {"`load`": load, "`speed`": speed}.items():
+        for option, value in {"`load`": load, "`speed`": speed, "`case`": case}.items():
             if value:
                 raise SolidgearError(
                     f"{option} belongs to a scene; for a train give torque and speed in [operation]"
@@ -121,12 +127,30 @@ def bearing(
     turns, scene = speed_of(speed), as_written(source)
     if load is not None:
         scene = loaded_by(scene, load, name)
+    if case is not None:
+        scene = scene.with_case(case)
+    first = named_case(scene.cases)
     with explained(source):
         body = shaft(scene)
-        facts = [f for f in bearing_facts(scene, body, turns) if name in (None, f.name)]
+        facts = [
+            fact
+            for fact in bearing_facts(scene, body, turns or first.speed)
+            if name in (None, fact.name)
+        ]
         if not facts:
             raise SolidgearError(f"`name` {name}: no bearing of catalogue data has this name")
-    return SolvedBearings(scene.name, tuple(facts), scene=scene, body=body)
+        lives = _over_cases(scene, name) if len(scene.cases) > 1 else ()
+    label = first.name if scene.cases else ""
+    return SolvedBearings(scene.name, tuple(facts), lives, label, scene, body)
+
+
+def _over_cases(scene: Scene, name: str | None) -> tuple[LivesOverPoints, ...]:
+    """Return the lives of bearings of a shaft over the cases of its loads."""
+    # start-up: a shaft with one case has no use for the equilibrium of trains
+    from solidgear.trains.file.train import Train
+    from solidgear.trains.load.lives import train_lives
+
+    return tuple(life for life in train_lives(Train.of(scene)) if name in (None, life.name))
 
 
 def _of_train(source: Source, name: str | None) -> SolvedBearings:

@@ -37,6 +37,12 @@ def bearing(
         str | None,
         typer.Option("--speed", help='Speed of the shaft, such as "3000 rpm", for lives in hours.'),
     ] = None,
+    case: Annotated[
+        str | None,
+        typer.Option(
+            "--case", help="Case of the loads of a shaft, by name or number; the first by default."
+        ),
+    ] = None,
     out: Annotated[
         Path | None,
         typer.Option(
@@ -49,7 +55,7 @@ def bearing(
         check_ending(out)
 
     def study(_: Progress) -> Sheet:
-        solved = solve(scene, name, load=load, speed=speed)
+        solved = solve(scene, name, load=load, speed=speed, case=case)
         if out is not None:
             solved.draw(out)
         return bearings_sheet(solved, ENGINEERING, out)

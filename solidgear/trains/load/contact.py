@@ -13,6 +13,7 @@ import numpy as np
 
 from solidgear.core import SceneError, SolidgearError, rotation
 from solidgear.core.gears.wheel import Wheel
+from solidgear.core.scene.acting import station_loads
 from solidgear.core.system.contact_cells import ContactWrench, contact_wrench
 from solidgear.core.system.gear_mesh import (
     MeshVector,
@@ -443,9 +444,9 @@ def _scene_load(pair: Pair, side: str, vector: MeshVector) -> list[str]:
     member = pair.members[side]
     scene = member.scene
     waiting = any(b.unsettled is not b for b in scene.bearings)
-    if pair.point or scene.load is None or not waiting or member.scene_load == "added":
+    if pair.point or not scene.is_loaded or not waiting or member.scene_load == "added":
         return []
-    force = np.array(scene.load.six[:3])
+    force = station_loads(scene).get(scene.port.name, np.zeros(6))[:3]
     if not force.any():
         return []
     normal = _in_scene(pair, side, vector).normal

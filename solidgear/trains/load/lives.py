@@ -13,8 +13,8 @@ from solidgear.trains.load.state import OperatingState
 
 
 def train_lives(train: Train) -> list[LivesOverPoints]:
-    """Return the life of every catalogue bearing of a train at all operating points; refused
-    without points or catalogue bearings.
+    """Return the life of every catalogue bearing of a train at all operating points, or of a shaft
+    alone in all cases of its loads; refused without points or catalogue bearings.
     """
     if not train.operation:
         raise SolidgearError(
@@ -31,14 +31,14 @@ def train_lives(train: Train) -> list[LivesOverPoints]:
         for bearing in scene.bearings:
             if bearing.catalogue is None:
                 continue
-            end = f"{side}.{bearing.name}"
-            points = []
+            end, points = f"{side}.{bearing.name}", []
             for k, point in enumerate(train.operation):
                 places = [(s[k].bearings[end], s[k].equilibrium.relative[end]) for s in settled]
                 speed = point.speed_of(side, train.turns)
                 life = life_of(bearing, scene.lubrication, unknown, speed, places)
                 points.append(PointLife(point.label, life, point.share, point.hours))
-            lives_by_bearing.append(LivesOverPoints(end, tuple(points)))
+            name = bearing.name if train.is_one_shaft else end
+            lives_by_bearing.append(LivesOverPoints(name, tuple(points)))
     if not lives_by_bearing:
         raise SolidgearError(f"{train.name}: no bearing is described by catalogue data")
     return lives_by_bearing

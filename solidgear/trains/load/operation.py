@@ -24,6 +24,8 @@ from solidgear.bearings.catalogued import Catalogued
 from solidgear.bearings.solved import AS_STATED, Choice, catalogued_bearings
 from solidgear.core import SceneError, SolidgearError, System, listed
 from solidgear.core.bounds.refining import Meshed
+from solidgear.core.scene.acting import station_loads
+from solidgear.core.scene.load_rules import named_case
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.housing import housing_port
 from solidgear.trains.assembly.layout import force_on, mesh_forces, rotor_torques
@@ -35,6 +37,7 @@ from solidgear.trains.file.train import Train
 from solidgear.trains.load.planet_loads import carrier_torques, centrifugal_load
 from solidgear.trains.load.state import OperatingState, with_settled_bearings
 from solidgear.trains.load.static_errors import StaticErrors
+from solidgear.trains.load.twist import held_torques, rotation, turned_back
 from solidgear.trains.system.equilibrium import (
     OnBearings,
     Seats,
@@ -164,11 +167,15 @@ class Operating:
         if start is not None and start.point.coast == point.coast:
             begin = start.equilibrium
         alone = assembly.train.is_one_shaft
+        held = held_torques(assembly, seated.system, loads) if alone else {}
+        total = total - seated.system.load({end: t * np.eye(6)[4] for end, t in held.items()})
         try:
             solved = seated.equilibrium(total, begin)
         except SolidgearError as error:
             raise SolidgearError(str(error) if alone else f"at {point.label}: {error}") from None
         solved = _engine_still(solved, seated.system, assembly.train)
+        if alone and any(load[4] for load in loads.values()):
+            solved = turned_back(assembly, seated.system, solved, held)
         if loop_shares := loop_forces(assembly, seated.system, solved.coordinates, point.label):
             forces = {name: {**forces, **loop_shares}[name] for name in assembly.contacts}
             notes.append(LOOP)
@@ -203,12 +210,12 @@ class Operating:
                 f"at {point.label} the weight of planets turns {end} by {abs(torque):.4g} N m, "
                 "which is balanced there and carried by no shaft"
             )
-        for side, scene in assembly.scenes.items():
-            added, sentences = scene_load(assembly, side, forces)
+        for side in assembly.scenes:
+            added, sentences = scene_loads(assembly, side, forces, point)
             notes += sentences
-            if added is not None:
-                end = f"{side}.{scene.port.name}"
-                loads[end] = loads.get(end, np.zeros(6)) + added
+            for station, six in added.items():
+                end = f"{side}.{station}"
+                loads[end] = loads.get(end, np.zeros(6)) + six
         return loads, notes
 
 
@@ -227,22 +234,24 @@ def refuse_own_loads(train: Train, side: str) -> None:
                 raise SceneError(reason, path=(*train.shaft_path(side), "scene"))
 
 
-def scene_load(
-    assembly: Assembly, side: str, forces: Mapping[str, float]
-) -> tuple[np.ndarray | None, list[str]]:
-    """Return the load (6,) that the [load] of a shaft's scene adds to the mesh force, and notes;
-    refused if it is neither the mesh force nor declared as added or replaced.
+def scene_loads(
+    assembly: Assembly, side: str, forces: Mapping[str, float], point: OperatingPoint
+) -> tuple[dict[str, np.ndarray], list[str]]:
+    """Return the loads (6,) by station that the scene of a shaft adds to the mesh force, in a train
+    those of its first case, and notes; refused if they are neither the mesh force nor declared as
+    added or replaced.
     """
     train, scene = assembly.train, assembly.scenes[side]
-    if scene.load is None:
-        return None, []
-    load, word = np.array(scene.load.six), train.shafts[side].scene_load
+    if not scene.is_loaded:
+        return {}, []
     if train.is_one_shaft:
-        return load, []
+        return station_loads(scene, named_case(scene.cases, point.name or None)), []
+    loads, word = station_loads(scene), train.shafts[side].scene_load
+    load = sum(loads.values(), np.zeros(6))
     if word == "added":
-        return load, [f"the [load] of the {side}'s scene is added to the mesh force"]
+        return loads, [f"the [load] of the {side}'s scene is added to the mesh force"]
     if word == "replaced":
-        return None, []
+        return {}, []
     if any(train.flows[pair.name] is None for pair in train.pairs if side in pair.shafts):
         raise SceneError(
             f"the [load] of the {side}'s scene may be the mesh force in a loop of meshes; write "
@@ -253,7 +262,7 @@ def scene_load(
     mesh_loads = [_force_on(s, side, mesh_forces(train, s.contacts, p)) for s, p in flanks]
     mesh_loads.append(_force_on(assembly, side, forces))
     if any(np.linalg.norm(load[:3] - f) <= SAME_LOAD * np.linalg.norm(f) for f in mesh_loads):
-        return None, [f"the [load] of the {side}'s scene equals its mesh force, and is not added"]
+        return {}, [f"the [load] of the {side}'s scene equals its mesh force, and is not added"]
     raise SceneError(
         f"the [load] of the {side}'s scene is ({_newtons(load[:3])}) N at its lumped point, and the "
         f"mesh force is ({_newtons(mesh_loads[0])}) N: leave [load] out of the scene, or write "
@@ -319,22 +328,13 @@ def _engine_still(solved: SystemEquilibrium, system: System, train: Train) -> Sy
     """Return the same with the train turned until the port of the engine's spring has no rotation."""
     if not train.engines:
         return solved
-    turning = _rotation(system, [*train.shafts])
+    turning = rotation(system, [*train.shafts])
     row = system.motion(f"{train.reference}.{train.spring_port(train.engines[0])}")[4]
     turned = float(row @ turning)
     if turned == 0.0:
         return solved
     factor = float(row @ solved.coordinates) / turned
     return replace(solved, coordinates=solved.coordinates - factor * turning)
-
-
-def _rotation(system: System, shafts: list[str]) -> np.ndarray:
-    """Return the (N,) free motion of the train that moves no seat of a bearing but about the axis."""
-    free = system.free
-    ends = [f"{side}.{p}" for side in shafts for p in system.parts[side].ports]
-    still = np.vstack([system.motion(end)[[0, 1, 2, 3, 5]] for end in ends]) @ free
-    _, _, vectors = np.linalg.svd(still)
-    return free @ vectors[-1]
 
 
 def at_point(train: Train, word: str | int | None = None) -> Train:

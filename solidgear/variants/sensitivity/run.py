@@ -268,8 +268,9 @@ def _supported(scene: Scene, model: str) -> None:
         raise SolidgearError(
             f"the {model} model has no derivatives; use {', '.join(MODELS[:-1])} or {MODELS[-1]}"
         )
-    if model != "solid" and (scene.body is not None or scene.features):
-        part = "a part from a file" if scene.body is not None else scene.features[0].name
+    features = [feature for feature in scene.features if not feature.smeared]
+    if model != "solid" and (scene.body is not None or features):
+        part = "a part from a file" if scene.body is not None else features[0].name
         raise SolidgearError(
             f"{part}: the {model} model has derivatives for shafts of segments only; the solid "
             "model has those by springs, masses and materials"

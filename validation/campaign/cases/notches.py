@@ -56,10 +56,10 @@ def judged(seed: int, tolerance: float) -> Found:
         cost = time.process_time() - start
         fine = groove_factors("fine", shaft, shape, 0.5, ALL, orders=ORDERS, refinement=FINER)
     else:
-        cut, radius = _hole(rng) if kind == "hole" else _keyway(rng, (DIAMETER - bore) / 2)
-        found = local_factors(shaft, cut, tolerance, radius)
+        cut = _hole(rng) if kind == "hole" else _keyway(rng, (DIAMETER - bore) / 2)
+        found = local_factors(shaft, cut, tolerance)
         cost = time.process_time() - start
-        fine = local_factors(shaft, cut, ALL, radius, sizes=(*SIZES, *FINE))
+        fine = local_factors(shaft, cut, ALL, sizes=(*SIZES, *FINE))
     out.costs.append(Cost(body, {"kind": kind}, cost))
     before, last = (step.factors for step in fine.steps[-2:])
     for load in LOADS:
@@ -83,17 +83,18 @@ def _groove(rng: np.random.Generator, wall: float) -> GrooveShape:
     return GrooveShape(depth, radius, lean=lean)
 
 
-def _hole(rng: np.random.Generator) -> tuple[CrossHole, None]:
+def _hole(rng: np.random.Generator) -> CrossHole:
     """Draw a hole across the axis."""
     size = between(rng, 0.06, 0.4) * DIAMETER
-    return CrossHole(name="hole", segment="shaft", y=0.5, diameter=size), None
+    return CrossHole(name="hole", segment="shaft", y=0.5, diameter=size)
 
 
-def _keyway(rng: np.random.Generator, wall: float) -> tuple[Keyway, float]:
+def _keyway(rng: np.random.Generator, wall: float) -> Keyway:
     """Draw a keyway with round ends, and the radius at its floor."""
     width = rng.uniform(0.2, 0.32) * DIAMETER
     depth = min(rng.uniform(0.1, 0.18) * DIAMETER, 0.6 * wall)
     length = width + rng.uniform(0.3, 1.5) * DIAMETER
     radius = between(rng, 0.05, 0.5) * depth
-    key = Keyway(name="key", segment="shaft", y=0.4, length=length, width=width, depth=depth)
-    return key, radius
+    return Keyway(
+        name="key", segment="shaft", y=0.4, length=length, width=width, depth=depth, radius=radius
+    )

@@ -86,7 +86,9 @@ def _of_scene(scene: Scene) -> Exported:
     points = add_points(parts, shaft, scene, ())
     due = scene.to_dict()
     _leave_settled_out(due)
-    parts.write(points[scene.port.name], **forces(due.get("load", {})))
+    # loads at several places stand beside what REXS has
+    load = {} if scene.loads else due.get("load", {})
+    parts.write(points[scene.port.name], **forces(load))
     parts.write(parts.unit, **{REST: "{}"})
     tables = plain(next(iter(imported(parts.document(), scene.name).tables.values())))
     rest = rest_of(tables, due, _usual)

@@ -1,0 +1,1 @@
+"""Formulas of DIN 743:2012 for notches: tested factors, form factors, steels, life."""

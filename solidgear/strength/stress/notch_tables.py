@@ -1,0 +1,202 @@
+"""Tables and sentences on all notches of a shaft: features of the drawing, safeties, ratings."""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+
+from solidgear.core import listed
+from solidgear.show.table import Cell, Column, Table, quantity, text, word
+from solidgear.show.units import ENGINEERING, Units, plain
+from solidgear.strength.stress.at_rest import StressAtRest, StressedShaft
+from solidgear.strength.stress.din743 import LOADS
+from solidgear.strength.stress.drawn import DrawnStress
+from solidgear.strength.stress.rating import Rating
+from solidgear.strength.stress.rating_lines import ASSUMED, Entry
+from solidgear.strength.stress.shaft import Notch, ShaftStress
+
+#: SI unit of a stress in tables
+STRESS = "Pa stressed"
+#: safety that DIN 743 asks for where loads and strength are sure
+LEAST = 1.2
+#: most reasons that a headline names
+NAMED = 2
+
+
+def drawn_notches(stress: ShaftStress, units: Units = ENGINEERING) -> Table:
+    """Return the features of the drawing that DIN 743 rates, each where it is worst."""
+    stresses = [
+        Column(head, write=partial(units.number, si=STRESS, digits=4), unit="Pa")
+        for head in ("sigma_N", "sigma_b", "tau_t")
+    ]
+    factors = [Column(head, write=_factor) for head in ("Kf bending", "Kf torsion")]
+    columns = [text("notch"), word("kind"), quantity("y", "m", units)]
+    columns += [quantity("d", "m", units, digits=4), *stresses, *factors]
+    rows = [
+        [
+            drawn.name,
+            drawn.kind,
+            drawn.y,
+            drawn.section.outer,
+            drawn.nominal.tension,
+            drawn.nominal.bending,
+            drawn.nominal.torsion,
+            drawn.factors.get("bending"),
+            drawn.factors.get("torsion"),
+        ]
+        for drawn in stress.drawn
+    ]
+    note = (
+        "Each in the section of its length where its safety is least. Nominal stress in the "
+        "section of the norm, of diameter d; Kf by DIN 743-2."
+    )
+    return Table(f"Notches of the drawing, {units.unit(STRESS)}", columns, rows, note)
+
+
+def _factor(value: float) -> str:
+    return plain(value, 4)
+
+
+def safeties(stress: ShaftStress) -> Table:
+    """Return safeties of all notches that are rated, the least first."""
+    rated = [(notch, notch.rating) for notch in stress.worst if notch.rating is not None]
+    ratings = [rating for _, rating in rated]
+    columns = [
+        text("notch"),
+        word("kind"),
+        Column("S, fatigue"),
+        Column("less by the error bar", write=partial(plain, digits=2), hidden=not stress.notches),
+        Column("S, yielding"),
+        Column("S, first crack", hidden=all(r.crack is None for r in ratings)),
+        Column("S, least K_1", hidden=all(r.least is None for r in ratings)),
+        Column("S, elementary", hidden=all(r.elementary is None for r in ratings)),
+    ]
+    rows = [
+        [
+            notch.name,
+            kind_of(notch),
+            safety(r.fatigue),
+            r.fatigue_bar if isinstance(notch, Notch) else None,
+            safety(r.yielding),
+            None if r.crack is None else safety(r.crack),
+            None if r.least is None else safety(min(r.least)),
+            None if r.elementary is None else safety(r.elementary),
+        ]
+        for notch, r in rated
+    ]
+    note = f"The norm asks for {LEAST:g} where loads and strength are known."
+    if stress.notches:
+        note += " Less by the error bar: loss of S with Kt at the upper end of its error bar."
+    if any(r.least is not None for r in ratings):
+        note += (
+            " Least K_1: the lesser of both S if the steel is of the group that loses most strength "
+            "at this size; write group beside strength, or give K_1."
+        )
+    if any(r.elementary is not None for r in ratings):
+        note += " Fatigue by the consequent rule of Miner; elementary: by the elementary rule."
+    return Table("Safety by DIN 743", columns, rows, note)
+
+
+def kind_of(notch: Notch | DrawnStress) -> str:
+    """Return the kind of a notch in words."""
+    return notch.kind if isinstance(notch, DrawnStress) else "fillet"
+
+
+def rating(name: str, record: Rating, units: Units = ENGINEERING) -> Table:
+    """Return the rating of one notch by DIN 743, every factor with its source."""
+    columns = [word(""), text("what"), *map(Column, LOADS), text("source")]
+    rows = []
+    for entry in record.entries:
+        unit = units.unit(STRESS) if entry.unit == "Pa" else "1/mm" if entry.unit else ""
+        what = f"{entry.what}, {unit}" if unit else entry.what
+        values = [_value(value, entry.unit, units) for value in entry.values]
+        rows.append([entry.symbol, what, *values, _source(entry)])
+    note = (
+        f"Safety against fatigue {safety(record.fatigue)}, against yielding "
+        f"{safety(record.yielding)}, by nominal stress without shear forces, as in the norm."
+    )
+    if record.crack is not None:
+        note += f" Against a first crack in the hard surface {safety(record.crack)}."
+    if record.assumed:
+        note += f" Assumed, since not given: {', '.join(record.assumed)}."
+    if record.least is not None:
+        fatigue, yielding = map(safety, record.least)
+        note += (
+            f" With the least K_1 of all groups of steel {fatigue} against fatigue and {yielding} "
+            "against yielding."
+        )
+    return Table(f"DIN 743 at {name}", columns, rows, note)
+
+
+def _value(value: float | None, unit: str, units: Units) -> str | None:
+    if value is None:
+        return None
+    if unit == "Pa":
+        return units.number(value, STRESS, 4)
+    return plain(1e-3 * value if unit else value, 4)
+
+
+def _source(entry: Entry) -> str | Cell:
+    return Cell(entry.source, "mark assumed") if ASSUMED in entry.source else entry.source
+
+
+def safety(value: float) -> str:
+    """Return a safety as text."""
+    return plain(value, 3) if math.isfinite(value) else "endless"
+
+
+def headline(stressed: StressAtRest, units: Units = ENGINEERING) -> str:
+    """Return the sentences on the worst notch of all shafts, and on what has no rating; empty where
+    there is neither.
+    """
+    worst = [(shaft, shaft.found.worst[0]) for shaft in stressed.shafts if shaft.found.worst]
+    if not worst:
+        return " ".join(_unrated_words(stressed.shafts))
+    shaft, notch = min(worst, key=lambda pair: _rank(pair[1]))
+    name = notch.name if isinstance(notch, Notch) else f'{notch.kind} "{notch.name}"'
+    place = f"{shaft.name}, {name}" if len(stressed.shafts) > 1 else name
+    count = sum(len(each.found.worst) for each in stressed.shafts)
+    lead = f"Worst of {count} notches" if count > 1 else "Worst"
+    sentence = f"{lead} at {place}: {_stress_words(notch, units)}"
+    if notch.rating is not None:
+        sentence += f", {_safety_words(notch.rating)}"
+    return " ".join([f"{sentence}.", *_unrated_words(stressed.shafts)])
+
+
+def _rank(notch: Notch | DrawnStress) -> tuple[float, bool, float]:
+    """Return the rank of a notch; without ratings fillets, with their stress, come first."""
+    safety_value, stress = notch.severity
+    return safety_value, isinstance(notch, DrawnStress), stress
+
+
+def _stress_words(notch: Notch | DrawnStress, units: Units) -> str:
+    unit = units.unit(STRESS)
+    if isinstance(notch, DrawnStress):
+        nominal = units.number(notch.nominal.bending, STRESS, 4)
+        return f"{nominal} {unit} of nominal bending"
+    value = units.number(notch.local.amplitude, STRESS, 4)
+    bar = units.number(notch.local.amplitude_bar, STRESS, 2)
+    return f"{value} ± {bar} {unit} by bending"
+
+
+def _safety_words(rating_: Rating) -> str:
+    fatigue, yielding = safety(rating_.fatigue), safety(rating_.yielding)
+    words = f"safety {fatigue} against fatigue and {yielding} against yielding"
+    if rating_.crack is not None:
+        words = f"safety {fatigue} against fatigue, {yielding} against yielding"
+        words += f" and {safety(rating_.crack)} against a first crack"
+    words += " by DIN 743"
+    if rating_.least is not None:
+        words += f", {safety(min(rating_.least))} if K_1 is the least of all steels"
+    return words
+
+
+def _unrated_words(shafts: tuple[StressedShaft, ...]) -> list[str]:
+    """Return a sentence on notches without a rating."""
+    names = [f'{u.kind} "{u.name}"' for shaft in shafts for u in shaft.found.unrated]
+    corners = sum(len(shaft.found.sharp) for shaft in shafts)
+    if corners:
+        names.append(f"{corners} sharp corner{'s' if corners > 1 else ''}")
+    if not names:
+        return []
+    return [f"Not rated: {listed(names, most=4)}."]

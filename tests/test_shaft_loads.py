@@ -1,0 +1,285 @@
+"""Loads at several places of a shaft: forces of gears and belts, statics, deflection, torque."""
+
+import math
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import solidgear as sg
+from solidgear.core.errors import SolidgearError
+from solidgear.core.loading import as_written
+from solidgear.core.scene.acting import acting_loads, station_loads
+from solidgear.core.system.gear_mesh import line_of_action
+from solidgear.strength.deflection.at_rest import deflection
+from solidgear.strength.load import AT_REST
+from solidgear.strength.stress.section_forces import forces_of
+from solidgear.trains.assembly.assembly import Assembly
+
+GEOMETRY = Path(__file__).parent.parent / "geometry"
+COUNTERSHAFT = GEOMETRY / "countershaft.toml"
+INCH, POUND = 0.0254, 4.4482216152605
+POUND_INCH = INCH * POUND
+
+
+def countershaft():
+    """Shigley, example 7-2 (9th edition, page 375): its forces as printed, in place of angles."""
+    scene = as_written(COUNTERSHAFT)
+    across, down = (540.0, -2431.0), (-197.0, -885.0)
+    loads = [
+        sg.ShaftLoad(name=f"{name}", on=name, x=x * POUND, z=z * POUND, torque=turn * POUND_INCH)
+        for name, x, z, turn in zip(("gear 3", "gear 4"), across, down, (3240.0, -3240.0))
+    ]
+    return scene.with_changes(loads=loads)
+
+
+def settled(scene, model="euler", case=None):
+    assembly = Assembly.of(scene if case is None else scene.with_case(case), kept=6)
+    return deflection(assembly, assembly.train.point or AT_REST, model)
+
+
+def test_printed_reactions_and_moments_of_a_countershaft():
+    scene = countershaft()
+    solved = settled(scene)
+    carried = {b.name: -b.load / POUND for b in solved.shafts[0].bearings}
+    assert [round(float(carried[name][k]), 1) for name in "AB" for k in (0, 2)] == [
+        115.0,
+        356.7,
+        1776.0,
+        725.3,
+    ]
+    loads = station_loads(scene)
+    for bearing in solved.shafts[0].bearings:
+        loads[bearing.name] = loads.get(bearing.name, np.zeros(6)) - bearing.load
+    forces = forces_of(scene, loads)
+
+    def moments(inches):
+        six = forces.at(inches * INCH) / POUND_INCH
+        return [round(abs(six[5])), round(abs(six[3])), round(math.hypot(six[3], six[5]))]
+
+    # at gear 3, at the shoulder I, at gear 4, and at the shoulder K
+    assert moments(2.75) == [230, 713, pytest.approx(749, abs=1)]  # printed of rounded parts
+    assert moments(7.5) == [3341, 1472, 3651]
+    assert moments(8.5) == [3996, 1632, 4316]
+    assert moments(9.5) == [2220, 907, 2398]
+    assert round(abs(forces.at(5 * INCH)[4]) / POUND_INCH) == 3240
+    assert forces.at(1.5 * INCH)[4] == forces.at(10 * INCH)[4] == 0
+    assert solved.statics.left < 1e-10
+    (stretch,) = solved.statics.torque
+    assert (stretch.start / INCH, stretch.end / INCH) == pytest.approx((2.75, 8.5))
+
+
+def beam(scene, reactions, loads, plane):
+    """Deflection (m) and slope of a stepped beam at its stations in one plane, by singularity functions:
+    M = sum F <y - a>, integrated piece by piece, with both supports moved as they are.
+    """
+    forces = [(y, f) for y, f, _ in reactions] + loads
+    marks = sorted({0.0, *(s.y1 for s in scene.segments), *(y for y, _ in forces)})
+    slope, place = [0.0], [0.0]
+    for a, b in pairwise(marks):
+        segment = next(s for s in scene.segments if s.y0 <= a and b <= s.y1 + 1e-12)
+        stiff = segment.material.E * math.pi * segment.outer0**4 / 4
+        # EI w'' = M: a load along +w bends the part beyond it towards -w
+        at_a = sum(f * (a - y) for y, f in forces if y < a + 1e-12) / stiff
+        rate = sum(f for y, f in forces if y < a + 1e-12) / stiff
+        h = b - a
+        place.append(place[-1] + slope[-1] * h + at_a * h**2 / 2 + rate * h**3 / 6)
+        slope.append(slope[-1] + at_a * h + rate * h**2 / 2)
+    raw = dict(zip(marks, zip(place, slope)))
+    (y1, _, w1), (y2, _, w2) = reactions
+    turn = ((w2 - raw[y2][0]) - (w1 - raw[y1][0])) / (y2 - y1)
+    shift = w1 - raw[y1][0] - turn * y1
+    return {y: (w + shift + turn * y, s + turn) for y, (w, s) in raw.items()}
+
+
+def test_deflection_equals_a_beam_by_hand_in_both_planes():
+    scene = countershaft()
+    solved = settled(scene)
+    places = {s.name: s.y for s in scene.stations}
+    by_name = {b.name: b.load for b in solved.shafts[0].bearings}
+    for k, tilt, sign in ((0, 5, -1.0), (2, 3, 1.0)):
+        supports = [(places[n], -by_name[n][k], solved.shafts[0].ports[n][k]) for n in "AB"]
+        loads = [(load.y, load.six[k]) for load in acting_loads(scene)]
+        by_hand = beam(scene, supports, loads, k)
+        for name, y in places.items():
+            moved = solved.shafts[0].ports[name]
+            expected = by_hand[y]
+            assert moved[k] == pytest.approx(expected[0], rel=1e-6, abs=1e-13), (name, k)
+            assert moved[tilt] == pytest.approx(sign * expected[1], rel=1e-6), (name, tilt)
+
+
+def test_twist_equals_that_of_shafts_in_a_row():
+    scene = countershaft()
+    twisted = settled(scene).shafts[0].ports
+    torque, angle = 3240.0 * POUND_INCH, 0.0
+    start, end = 2.75 * INCH, 8.5 * INCH
+    for s in scene.segments:
+        length = min(s.y1, end) - max(s.y0, start)
+        if length > 0:
+            shear = s.material.E / (2 + 2 * s.material.nu)
+            angle += torque * length / (shear * math.pi * s.outer0**4 / 2)
+    assert twisted["gear 4"][4] == pytest.approx(0, abs=1e-12)
+    assert twisted["gear 3"][4] == pytest.approx(angle, rel=1e-9)
+
+
+def held(name, place, turning=0.0):
+    stiffness = dict.fromkeys(("kxx", "kyy", "kzz"), 1e9) | ({"kthy": turning} if turning else {})
+    return sg.Bearing(name=name, y=place, seat_width=0.02, stiffness=stiffness)
+
+
+def rod(*loads, bearings=(), **rest):
+    """A rod of 0.4 m on two bearings, with a gear in its middle."""
+    return sg.Scene.from_parts(
+        [sg.Segment.cylinder("rod", length=0.4, diameter=0.04)],
+        bearings=bearings or (held("A", 0.05), held("B", 0.35)),
+        port=sg.Port(name="gear", y=0.2, lo=0.18, hi=0.22),
+        loads=loads,
+        **rest,
+    )
+
+
+def test_bearings_that_hold_the_shaft_share_a_torque_by_stiffness():
+    torque = sg.ShaftLoad(name="drive", on="gear", torque=300.0)
+    one = settled(rod(torque, bearings=[held("A", 0.05, 2e5), held("B", 0.35)]))
+    (a, b) = one.shafts[0].bearings
+    assert (a.load[4], b.load[4]) == pytest.approx((300.0, 0.0))
+    assert one.shafts[0].ports["A"][4] == pytest.approx(300.0 / 2e5)
+    assert one.statics.left < 1e-10
+
+    scene = rod(torque, bearings=[held("A", 0.05, 2e5), held("B", 0.35, 5e5)])
+    both = settled(scene.with_attachment("section"))
+    (a, b) = both.shafts[0].bearings
+    polar = math.pi * 0.02**4 / 2
+    shaft = sg.STEEL.E / (2 + 2 * sg.STEEL.nu) * polar / 0.15  # from the gear to either bearing
+    soft = [1 / 2e5 + 1 / shaft, 1 / 5e5 + 1 / shaft]  # springs in series, two ways in parallel
+    share = soft[1] / sum(soft)
+    assert a.load[4] == pytest.approx(300.0 * share, rel=1e-8)
+    assert a.load[4] + b.load[4] == pytest.approx(300.0)
+    assert both.shafts[0].ports["B"][4] == pytest.approx(b.load[4] / 5e5)
+
+
+def test_a_load_with_a_place_of_its_own_is_no_lumped_point():
+    pulley = sg.ShaftLoad(name="pulley", position=0.39, seat_width=0.02, x=1000.0)
+    scene = rod(pulley)
+    assert [s.name for s in scene.stations] == ["gear", "A", "B", "pulley"]
+    assert [port.name for port in scene.ports] == ["gear"]
+    moved = settled(scene).shafts[0]
+    assert moved.ports["pulley"][0] > 0
+    assert [b.load[0] for b in moved.bearings] == pytest.approx(
+        [-1000 * 0.04 / 0.3, 1000 * 0.34 / 0.3]
+    )
+    assert scene.to_dict()["load"] == [
+        {"name": "pulley", "x": 1000.0, "span": [0.38, 0.4]},
+    ]
+    assert sg.Scene.from_dict(scene.to_dict()) == scene
+
+
+@pytest.mark.parametrize("hand", ["left", "right"])
+@pytest.mark.parametrize("torque", [120.0, -120.0])
+@pytest.mark.parametrize(("cone", "spiral"), [(0.0, 0.0), (0.0, 0.35), (0.4, 0.0), (0.6, 0.5)])
+def test_tooth_forces_point_along_the_line_of_action(hand, torque, cone, spiral):
+    gear = {"pitch_diameter": 0.08, "pressure_angle": "20 deg", "towards": "-x"}
+    gear |= {"helix_angle": spiral, "hand": hand} if spiral else {}
+    gear |= {"pitch_angle": cone, "apex": "-y"} if cone else {}
+    force, moment = np.split(sg.ShaftLoad(name="g", on="g", torque=torque, **gear).six(), 2)
+    side = "left" if torque > 0 else "right"
+    normal = line_of_action(cone, spiral, math.radians(20), hand, side)
+    assert force / np.linalg.norm(force) == pytest.approx(normal, abs=1e-12)
+    assert moment == pytest.approx(np.cross([-0.04, 0.0, 0.0], force))
+    assert moment[1] == pytest.approx(torque)
+    # turned half round with its shaft about z: the apex lies at +y, and the torque the other way
+    turned = gear | {"towards": "+x"} | ({"apex": "+y"} if cone else {})
+    back = sg.ShaftLoad(name="g", on="g", torque=-torque, **turned).six()
+    assert back == pytest.approx(np.concatenate([force, moment]) * [-1, -1, 1, -1, -1, 1])
+
+
+def test_pulls_of_a_belt_follow_from_any_two_words():
+    told = {"torque": 50.0, "tight": 750.0, "slack": 250.0, "pull_ratio": 3.0}
+    words = [*told]
+    for k, first in enumerate(words):
+        for second in words[k + 1 :]:
+            known = {word: told[word] for word in (first, second)}
+            sense = {} if "torque" in known else {"sense": "driven"}
+            belt = sg.ShaftLoad(name="b", on="b", diameter=0.2, towards="30 deg", **known, **sense)
+            x, y, z, thx, thy, thz = belt.six()
+            assert (x, z) == pytest.approx((1000 * math.cos(math.pi / 6), 500.0))
+            assert (y, thx, thy, thz) == pytest.approx((0, 0, 50.0, 0))
+    belt = sg.ShaftLoad(name="b", on="b", diameter=0.2, towards="+z", torque=50.0, slack=0)
+    assert belt.six(-2.0).tolist() == [0, 0, 1000, 0, -100, 0]
+
+
+def test_a_torque_turned_round_takes_the_other_flanks():
+    gear = sg.ShaftLoad(name="g", on="g", torque=100.0, pitch_diameter=0.1, towards="+z")
+    forth, back = gear.six(1.0), gear.six(-0.5)
+    assert back[[0, 4]] == pytest.approx(-0.5 * forth[[0, 4]])
+    assert back[2] == pytest.approx(0.5 * forth[2]) and forth[2] < 0
+    driving = gear.with_changes(sense="driving")
+    assert driving.six(turns=1.0) == pytest.approx(gear.six(-1.0))
+    assert driving.six(turns=-1.0) == pytest.approx(gear.six())
+
+
+BAD = {
+    "off the shaft": (
+        'name = "gear 3"\non = "gear 3"\ntangential_force',
+        'name = "wheel"\nposition = "290 mm"\nseat_width = "20 mm"\ntangential_force',
+        "reaches from 0.28 to 0.3 m, which must lie inside the shaft (0 to 0.2921 m)",
+    ),
+    "unknown place": ('on = "gear 3"\ntang', 'on = "gear 5"\ntang', 'did you mean "gear 4"'),
+    "no width": (
+        'on = "gear 3"\ntang',
+        'position = "70 mm"\ntang',
+        "seat_width: this key is missing",
+    ),
+    "a station and a place": (
+        'on = "gear 3"\ntang',
+        'on = "gear 3"\nposition = "70 mm"\ntang',
+        "a load on a station has that of the station",
+    ),
+    "torque that is left": (
+        "-2431 lbf",
+        "-2000 lbf",
+        "366.071 N m of gear 3, -301.331 N m of gear 4 leave 64.7403 N m; give the load that takes "
+        "-64.7403 N m, write torque_at",
+    ),
+    "two ways": (
+        'towards = "+z"',
+        'towards = "+z"\ndiameter = "5 in"',
+        "pitch_diameter makes it a gear, diameter a belt or chain",
+    ),
+    "torque and force": ("tangential_force =", 'torque = "1 N*m"\ntangential_force =', "not both"),
+    "about the axis": ("tangential_force =", "thy = 3\ntangential_force =", "is written torque"),
+    "no direction": ('towards = "+z"\n', "", "towards: this key is missing; a gear needs towards"),
+    "strange direction": ('towards = "+z"', 'towards = "up"', "an angle from x towards z"),
+    "no hand": ('towards = "+z"', 'towards = "+z"\nhelix_angle = "15 deg"', "with helix_angle"),
+    "no sense of turning": ('towards = "+z"', 'towards = "+z"\nsense = "driven"', 'turns = "+y"'),
+    "unknown load of a case": (
+        "[[load]]",
+        '[[case]]\nname = "a"\nfactors = { "gear 5" = 2 }\n[[load]]',
+        'case[1] "a".factors."gear 5" = 2: there is no load "gear 5"',
+    ),
+    "share above one": ("[[load]]", '[[case]]\nname = "a"\nshare = 1.5\n[[load]]', "share = 1.5"),
+    "shares above one": (
+        "[[load]]",
+        '[[case]]\nname = "a"\nshare = 0.7\n[[case]]\nname = "b"\nshare = 0.7\n[[load]]',
+        "the shares of 2 cases sum to 1.4",
+    ),
+    "torque of a case": (
+        "[[load]]",
+        '[[case]]\nname = "a"\nloads = ["gear 3"]\n[[load]]',
+        'in the case "a"',
+    ),
+}
+
+
+@pytest.mark.parametrize("kind", BAD)
+def test_refused_in_a_sentence(kind, tmp_path):
+    text = COUNTERSHAFT.read_text(encoding="utf-8")
+    old, new, says = BAD[kind]
+    assert old in text
+    path = tmp_path / "spoilt.toml"
+    path.write_text(text.replace(old, new, 1), encoding="utf-8")
+    with pytest.raises(SolidgearError) as caught:
+        as_written(path)
+    message = str(caught.value)
+    assert says in message and message.count("\n") == 0 and "spoilt.toml: " in message, message
