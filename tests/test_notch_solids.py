@@ -1,12 +1,16 @@
 """Stress of grooves, cross holes and keyways by solids: known limits, bars, symmetry, refusals."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from solidgear import Segment, SolidgearError
+from solidgear.core.scene import Bearing, Port, Scene
 from solidgear.cuts.features import CrossHole, Keyway
+from solidgear.show.units import ENGINEERING
+from solidgear.strength.stress.at_rest import StressSettings
 from solidgear.strength.stress.groove import groove_factors
 from solidgear.strength.stress.groove_mesh import GrooveShape, groove_meridian
 from solidgear.strength.stress.local_factors import (
@@ -20,6 +24,9 @@ from solidgear.strength.stress.local_solid import (
     forces_on,
     free_surface,
 )
+from solidgear.strength.stress.shaft import shaft_stress
+from solidgear.strength.stress.solid_notches import solid_notches
+from solidgear.strength.stress.solid_sheet import solid_factors, solid_stress
 from solidgear.strength.stress.surface_stress import larger, largest_shear, surface_stress
 from validation.local_notches import prandtl
 
@@ -175,3 +182,40 @@ def test_sharp_edges_of_a_keyway_have_no_stress(changes, words):
 def test_grooves_without_a_stress_are_refused(shape, words):
     with pytest.raises(SolidgearError, match=words):
         groove_factors("groove", SHAFT, shape, 0.2)
+
+
+def bent(features):
+    """A shaft between two bearings with features, under 1 kN in its middle."""
+    stiff = {"kxx": 1e8, "kzz": 1e8, "kyy": 1e8}
+    bearings = [
+        Bearing(name=n, y=y, seat_width=0.01, stiffness=stiff)
+        for n, y in (("A", 0.01), ("B", 0.39))
+    ]
+    port = Port(name="gear", y=0.2, lo=0.19, hi=0.21)
+    return Scene.from_parts([SHAFT], SHAFT.material, bearings, port, features=features)
+
+
+def test_a_study_has_the_solids_that_are_asked_for(hole):
+    """Under 1 kN half way the middle of the hole has 0.5 kN x 0.09 m; its end at 104 mm rates worst."""
+    scene = bent([HOLE, KEY])
+    loads = {"gear": [0, 0, -1e3, 0, 0, 0], "A": [0, 0, 500, 0, 0, 0], "B": [0, 0, 500, 0, 0, 0]}
+    stress = shaft_stress(scene, loads)
+    assert solid_notches(scene, stress, 0.01) == ((), ())
+    (notch,), remarks = solid_notches(scene, stress, 0.01, local=0.2)
+    assert [r for r in remarks if 'keyway "key": the edges of its floor are sharp' in r]
+    moment = 500 * (notch.y - 0.01)
+    assert notch.y == pytest.approx(0.1, abs=0.00401)
+    modulus = math.pi * 0.04**3 / 32 - 0.004 * 0.04**2 / 3
+    assert notch.nominal.bending == pytest.approx(moment / modulus)
+    bending = hole.factors["bending"]
+    assert notch.local.amplitude == pytest.approx(bending.value * notch.nominal.bending)
+    assert notch.local.amplitude_bar == pytest.approx(bending.bar * notch.nominal.bending)
+    assert notch.reached
+    assert not replace(notch, enough=1e-3).reached
+    # the keyway ends at the hole's side of the bearing, 0.1 diameters and less away
+    assert any('"key" is' in remark for remark in notch.remarks)
+    units = ENGINEERING
+    for table in (solid_stress([notch], units), solid_factors([notch])):
+        assert len(table.rows) == 3 and table.rows[0][0] == "oil"
+    with pytest.raises(SolidgearError, match="from 0.03 to 1"):
+        StressSettings(local=0.001)

@@ -108,14 +108,14 @@ def groove_meridian(
             corners = [inside[0], outside[0], outside[1], inside[1]]
             arc = OUT if centre is not None and row == 0 else -1
             cells.add(corners, arc, centre or (0.0, 0.0))
-    below = np.array([y for r, y in box if r <= box[0][0] + 1e-12 * outer])
-    beside = np.array([r for r, y in box if y >= side * (1 - 1e-12)])
+    floor_lines = np.array([y for r, y in box if r <= box[0][0] + 1e-12 * outer])
+    side_radii = np.array([r for r, y in box if y >= side * (1 - 1e-12)])
     last_row = gap * (rows[-1] - rows[-2])
-    down = least - gap - _divided(least - gap - inner, last_row, refinement)
+    inwards = least - gap - _divided(least - gap - inner, last_row, refinement)
     along = side + _divided(half - side, max(last_row, shape.radius), refinement, outer / 2)
-    cells.grid(down[::-1], below, outer=False, inner=True)
-    cells.grid(down[::-1], along, outer=False, inner=True)
-    cells.grid(beside, along, outer=True, inner=False)
+    cells.grid(inwards[::-1], floor_lines, outer=False, inner=True)
+    cells.grid(inwards[::-1], along, outer=False, inner=True)
+    cells.grid(side_radii, along, outer=True, inner=False)
     return _both_halves(cells, half, outer)
 
 
@@ -166,7 +166,8 @@ def _columns(
 
 def _divided(length: float, first: float, refinement: float, most: float = math.inf) -> np.ndarray:
     """Return lines from 0 to a length between which cells grow from a first size on."""
-    sizes, size = [], min(first, length)
+    sizes: list[float] = []
+    size = min(first, length)
     while sum(sizes) + size < length * (1 - 1e-9):
         sizes.append(size)
         size = min(size * GROWTH, most)

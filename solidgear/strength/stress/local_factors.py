@@ -79,8 +79,8 @@ class NominalModuli:
         if not isinstance(cut, CrossHole):
             return cls(area, second / outer, polar / outer, "the plain shaft")
         slab = cut.diameter * 8 * (outer**3 - inner**3) / 12
-        left = area - 2 * cut.diameter * (outer - inner)
-        return cls(left, (second - slab) / outer, (polar - slab) / outer, "the section left")
+        net = area - 2 * cut.diameter * (outer - inner)
+        return cls(net, (second - slab) / outer, (polar - slab) / outer, "the section left")
 
     def stress(self, forces: np.ndarray) -> NominalStress:
         """Return nominal stress under section forces (6,); a shear force has none here."""
@@ -147,8 +147,8 @@ def local_factors(
     >>> from solidgear.cuts.features import CrossHole
     >>> shaft = Segment.cylinder("shaft", length=0.2, diameter=0.04)
     >>> hole = CrossHole(name="oil", segment="shaft", y=0.1, diameter=0.008)
-    >>> found = local_factors(shaft, hole, 0.2)
-    >>> f'{found.factors["bending"].value:.1f} of {found.nominal.what}'
+    >>> factors = local_factors(shaft, hole, 0.2)
+    >>> f'{factors.factors["bending"].value:.1f} of {factors.nominal.what}'
     '2.1 of the section left'
     """
     shape = local_shape(segment, cut)
@@ -191,9 +191,9 @@ def local_shape(segment: Segment, cut: Cut) -> LocalShape:
     elif not isinstance(cut, CrossHole):
         raise SolidgearError(f'{cut.what} "{cut.name}": no solid gives its stress here')
     outer, inner = float(segment.outer0), float(segment.inner0)
-    # alike for one cut at several places, for which it is solved once
-    alike = cut.with_changes(name="cut", segment="shaft", y=0.0, angle=0.0)
-    return LocalShape(alike, outer, inner, REACH * outer)
+    # the same for a cut at several places, for which it is solved once
+    standard = cut.with_changes(name="cut", segment="shaft", y=0.0, angle=0.0)
+    return LocalShape(standard, outer, inner, REACH * outer)
 
 
 def _refuse_keyway(cut: Keyway) -> None:
@@ -223,10 +223,10 @@ def _solved(
     """Solve a cut mesh by mesh until the error bars of all loads are within a tolerance."""
     solutions: list[LocalSolution] = []
     for size in sizes:
-        at = []
+        places = []
         if size is not None:
-            at = [(p.place, size * shape.size) for p in solutions[-1].peaks.values()]
-        solutions.append(solution_on(shape, material, at))
+            places = [(p.place, size * shape.size) for p in solutions[-1].peaks.values()]
+        solutions.append(solution_on(shape, material, places))
         bars = (_bar(solutions, load) / solutions[-1].peaks[load].value for load in LOADS)
         if max(bars) <= tolerance:
             break

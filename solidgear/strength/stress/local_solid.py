@@ -81,9 +81,11 @@ class LocalSolution:
     peaks: Mapping[str, PeakStress]
 
 
-def solution_on(shape: LocalShape, material: Material, at: Sequence[Peak] = ()) -> LocalSolution:
+def solution_on(
+    shape: LocalShape, material: Material, places: Sequence[Peak] = ()
+) -> LocalSolution:
     """Solve a piece around a cut on one mesh, with smaller elements at some places."""
-    mesh = local_mesh(shape, at)
+    mesh = local_mesh(shape, places)
     moved = displacements(mesh, shape, material)
     surface = surface_stress(mesh, free_surface(mesh, shape), moved, *lame_of(material))
     tension, first, second, torsion = range(4)
@@ -142,7 +144,8 @@ def displacements(mesh: SolidMesh, shape: LocalShape, material: Material) -> np.
     for members in groups.values():
         free = np.flatnonzero(~held[members[0]])
         factor = factorise(stiffness[free][:, free])
-        moved[np.ix_(free, members)] = factor.solve(forces[np.ix_(free, members)])
+        block = np.ix_(free, np.array(members))
+        moved[block] = factor.solve(forces[block])
     return moved
 
 

@@ -91,34 +91,38 @@ def solid_notches(
         progress(feature.name)
         segment = next(s for s in scene.segments if s.name == feature.segment)
         try:
-            found = solid.factors(segment, feature, enough)
+            concentration = solid.factors(segment, feature, enough)
         except SolidgearError as error:  # the others have their stress all the same
             remarks.append(f"no local stress there: {error}")
             continue
-        middle = found.reference, stress.forces.at(found.reference)
+        middle = concentration.reference, stress.forces.at(concentration.reference)
         y, section_load = rated.get(feature.name, middle)
         notches.append(
             SolidNotch(
                 name=feature.name,
                 kind=feature.what,
                 y=y,
-                factors=found,
+                factors=concentration,
                 forces=section_load,
-                nominal=_nominal(found, section_load),
-                local=local_stress(found, section_load),
-                remarks=(*_remarks(scene, feature, segment, found, enough),),
+                nominal=_nominal(concentration, section_load),
+                local=local_stress(concentration, section_load),
+                remarks=(*_remarks(scene, feature, segment, concentration, enough),),
                 enough=enough,
             )
         )
     return tuple(notches), tuple(remarks)
 
 
-def local_stress(found: Factors, forces: np.ndarray) -> LocalStress:
+def local_stress(concentration: Factors, forces: np.ndarray) -> LocalStress:
     """Return the stress on the surface of a notch under section forces (6,)."""
-    if isinstance(found, GrooveFactors):
-        on_arc = vars(stress_on_arc(found, forces))
+    if isinstance(concentration, GrooveFactors):
+        on_arc = vars(stress_on_arc(concentration, forces))
         return LocalStress(**{f.name: on_arc[f.name] for f in fields(LocalStress)})
-    nominal, factors, on_surface = found.nominal.stress(forces), found.factors, found.fields
+    nominal, factors, on_surface = (
+        concentration.nominal.stress(forces),
+        concentration.factors,
+        concentration.fields,
+    )
     amplitude = on_surface["bending"] * nominal.bending
     mean = on_surface["tension"] * nominal.tension
     shear = on_surface["torsion"] * nominal.torsion
@@ -134,14 +138,14 @@ def local_stress(found: Factors, forces: np.ndarray) -> LocalStress:
     )
 
 
-def _nominal(found: Factors, forces: np.ndarray) -> NominalStress:
-    if isinstance(found, GrooveFactors):
-        return nominal_stress(found.section, forces, found.radius)
-    return found.nominal.stress(forces)
+def _nominal(concentration: Factors, forces: np.ndarray) -> NominalStress:
+    if isinstance(concentration, GrooveFactors):
+        return nominal_stress(concentration.section, forces, concentration.radius)
+    return concentration.nominal.stress(forces)
 
 
 def _remarks(
-    scene: Scene, feature: Any, segment: Segment, found: Factors, tolerance: float
+    scene: Scene, feature: Any, segment: Segment, concentration: Factors, tolerance: float
 ) -> Iterator[str]:
     """Yield what a user must know with the numbers of a notch."""
     low, high = feature.span(scene.segments)
@@ -159,8 +163,8 @@ def _remarks(
                 f"{what} is {gap:.2g} diameters away, and the solid has a plain shaft there: their "
                 "stress adds up otherwise"
             )
-    if found.widest > tolerance:
-        yield f"error bar {100 * found.widest:.2g} %, above the {100 * tolerance:.2g} % asked for"
+    if concentration.widest > tolerance:
+        yield f"error bar {100 * concentration.widest:.2g} %, above the {100 * tolerance:.2g} % asked for"
 
 
 @dataclass(frozen=True)
@@ -183,7 +187,7 @@ def _round_groove(segment: Segment, groove: Any, tolerance: float) -> Factors:
 
 
 def _v_groove(segment: Segment, groove: Any, tolerance: float) -> Factors:
-    shape = GrooveShape(groove.depth_in(segment.outer0), groove.radius, lean=groove.angle / 2)
+    shape = GrooveShape(groove.depth_in(segment.outer0), groove.radius, lean=groove.flank_angle / 2)
     return _groove(segment, groove, shape, tolerance)
 
 

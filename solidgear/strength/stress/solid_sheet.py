@@ -52,10 +52,14 @@ def solid_factors(notches: Sequence[SolidNotch]) -> Table:
     """Return form factors and stress gradients of notches with error bars."""
     rows = []
     for notch in notches:
-        found = notch.factors
-        what = "the floor" if isinstance(found, GrooveFactors) else found.nominal.what
+        concentration = notch.factors
+        section = (
+            "the floor"
+            if isinstance(concentration, GrooveFactors)
+            else concentration.nominal.what
+        )
         for load in LOADS:
-            factor = found.factors[load]
+            factor = concentration.factors[load]
             bars = [value / abs(of) for value, of in _bars(factor)]
             rows.append(
                 [
@@ -65,7 +69,7 @@ def solid_factors(notches: Sequence[SolidNotch]) -> Table:
                     *(Cell(bar, "", percent(bar, signed=False)) for bar in bars[:1]),
                     1e-3 * factor.gradient,
                     *(Cell(bar, "", percent(bar, signed=False)) for bar in bars[1:]),
-                    what,
+                    section,
                 ]
             )
     columns = [
@@ -86,5 +90,5 @@ def solid_factors(notches: Sequence[SolidNotch]) -> Table:
 
 
 def _bars(factor) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Return error bars and what they are of."""
+    """Return error bars and section they are of."""
     return (factor.bar, factor.value), (factor.gradient_bar, factor.gradient)

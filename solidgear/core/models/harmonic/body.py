@@ -104,7 +104,7 @@ def harmonic(
 
 
 def on_mesh(
-    scene: Shaft,
+    scene: Any,
     mesh: HarmonicMesh,
     attachments: tuple[str, ...] | None = None,
     families: tuple[str, ...] | None = None,
