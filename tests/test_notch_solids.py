@@ -9,6 +9,12 @@ import pytest
 from solidgear import Segment, SolidgearError
 from solidgear.core.scene import Bearing, Port, Scene
 from solidgear.cuts.features import CrossHole, Keyway
+from solidgear.cuts.local.mesh import local_mesh
+from solidgear.cuts.local.solid import (
+    forces_on,
+    free_surface,
+)
+from solidgear.cuts.local.surface_stress import larger, largest_shear, surface_stress
 from solidgear.show.units import ENGINEERING
 from solidgear.strength.stress.at_rest import StressSettings
 from solidgear.strength.stress.groove import groove_factors
@@ -19,15 +25,9 @@ from solidgear.strength.stress.local_factors import (
     local_factors,
     local_shape,
 )
-from solidgear.strength.stress.local_mesh import local_mesh
-from solidgear.strength.stress.local_solid import (
-    forces_on,
-    free_surface,
-)
 from solidgear.strength.stress.shaft import shaft_stress
 from solidgear.strength.stress.solid_notches import solid_notches
 from solidgear.strength.stress.solid_sheet import solid_factors, solid_stress
-from solidgear.strength.stress.surface_stress import larger, largest_shear, surface_stress
 from validation.local_notches import prandtl
 
 SHAFT = Segment.cylinder("shaft", length=0.4, diameter=0.04)

@@ -27,12 +27,12 @@ import numpy as np
 from solidgear.core import SolidgearError
 from solidgear.cuts.features.cross_hole import CrossHole
 from solidgear.cuts.features.keyway import Keyway
-from solidgear.strength.stress.local_mesh import LocalShape
-from solidgear.strength.stress.local_solid import LocalSolution, PeakStress, solution_on
+from solidgear.cuts.local.mesh import LocalShape
+from solidgear.cuts.local.solid import LocalSolution, PeakStress, solution_on
 from solidgear.strength.stress.nominal import CrossSection, NominalStress
 
 if TYPE_CHECKING:
-    from solidgear.core.scene import Material, Segment
+    from solidgear.core.scene import Segment
     from solidgear.cuts.features.cut import Cut
 
 #: default relative error bar of a factor
@@ -152,7 +152,7 @@ def local_factors(
     '2.1 of the section left'
     """
     shape = local_shape(segment, cut)
-    solutions = _solved(shape, segment.material.with_changes(name=""), tolerance, sizes)
+    solutions = _solved(shape, segment.material.nu, tolerance, sizes)
     last = solutions[-1]
     moduli = NominalModuli.of(cut, shape.outer, shape.inner)
     share = moduli.of_plain(shape.outer, shape.inner)
@@ -218,7 +218,7 @@ def _refuse_keyway(cut: Keyway) -> None:
 
 @lru_cache(maxsize=32)
 def _solved(
-    shape: LocalShape, material: Material, tolerance: float, sizes: tuple[float | None, ...]
+    shape: LocalShape, nu: float, tolerance: float, sizes: tuple[float | None, ...]
 ) -> tuple[LocalSolution, ...]:
     """Solve a cut mesh by mesh until the error bars of all loads are within a tolerance."""
     solutions: list[LocalSolution] = []
@@ -226,7 +226,7 @@ def _solved(
         places = []
         if size is not None:
             places = [(p.place, size * shape.size) for p in solutions[-1].peaks.values()]
-        solutions.append(solution_on(shape, material, places))
+        solutions.append(solution_on(shape, nu, places))
         bars = (_bar(solutions, load) / solutions[-1].peaks[load].value for load in LOADS)
         if max(bars) <= tolerance:
             break

@@ -54,9 +54,7 @@ def solid_factors(notches: Sequence[SolidNotch]) -> Table:
     for notch in notches:
         concentration = notch.factors
         section = (
-            "the floor"
-            if isinstance(concentration, GrooveFactors)
-            else concentration.nominal.what
+            "the floor" if isinstance(concentration, GrooveFactors) else concentration.nominal.what
         )
         for load in LOADS:
             factor = concentration.factors[load]

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solidgear.core.kernel.assembly import reference
 from solidgear.core.models.solid.mesh import SolidMesh
 
 #: local coordinates of the nodes of a facet
@@ -85,14 +84,13 @@ def surface_stress(
         normal = np.where(outwards[..., None], normal, -normal)
         # of the nodal stress, which is continuous
         inside = nodal[:, mesh.dofs[:, elements]]  # (k, nb, e, 3, 3)
-        value, _ = reference(mesh.element, points)
         rate = table.gradient(np.ones_like(table.det))  # (e, dim, nb, q)
         along = np.einsum("edbq,eqd->ebq", rate, normal, optimize=True)
         k = len(nodal)
         places.append(table.x.reshape(3, -1))
         normals.append(normal.reshape(-1, 3).T)
         stresses.append(
-            np.einsum("bq,kbeij->keqij", value, inside, optimize=True).reshape(k, -1, 3, 3)
+            np.einsum("bq,kbeij->keqij", table.value, inside, optimize=True).reshape(k, -1, 3, 3)
         )
         slopes.append(
             np.einsum("ebq,kbeij->keqij", along, inside, optimize=True).reshape(k, -1, 3, 3)

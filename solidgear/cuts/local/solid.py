@@ -19,7 +19,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 import numpy as np
 import scipy.linalg as sla
@@ -30,8 +30,8 @@ from solidgear.core.kernel.assembly import Tabulation
 from solidgear.core.models.solid.block import rigid_motions
 from solidgear.core.models.solid.matrices import integrals
 from solidgear.core.solve.factor import factorise
-from solidgear.strength.stress.local_mesh import LocalShape, Peak, local_mesh
-from solidgear.strength.stress.surface_stress import (
+from solidgear.cuts.local.mesh import LocalShape, Peak, local_mesh
+from solidgear.cuts.local.surface_stress import (
     SurfaceStress,
     larger,
     largest_shear,
@@ -40,7 +40,6 @@ from solidgear.strength.stress.surface_stress import (
 
 if TYPE_CHECKING:
     from solidgear.core.models.solid.mesh import SolidMesh
-    from solidgear.core.scene import Material
 
 #: unit loads: tension, bending in the plane of the cut and across it, torsion
 LOADS = ("tension", "bending_x", "bending_z", "torsion")
@@ -81,13 +80,21 @@ class LocalSolution:
     peaks: Mapping[str, PeakStress]
 
 
-def solution_on(
-    shape: LocalShape, material: Material, places: Sequence[Peak] = ()
-) -> LocalSolution:
-    """Solve a piece around a cut on one mesh, with smaller elements at some places."""
+class Elastic(NamedTuple):
+    """A material of unit shear modulus: stress is over nominal stress, whatever the modulus."""
+
+    nu: float
+    shear_modulus: float = 1.0
+    density: float = 1.0
+
+
+def solution_on(shape: LocalShape, nu: float, places: Sequence[Peak] = ()) -> LocalSolution:
+    """Solve a piece around a cut on one mesh, with smaller elements at some places, by Poisson's
+    ratio.
+    """
     mesh = local_mesh(shape, places)
-    moved = displacements(mesh, shape, material)
-    surface = surface_stress(mesh, free_surface(mesh, shape), moved, *lame_of(material))
+    moved = displacements(mesh, shape, nu)
+    surface = surface_stress(mesh, free_surface(mesh, shape), moved, *lame_of(nu))
     tension, first, second, torsion = range(4)
     angles = np.linspace(0.0, np.pi, ANGLES, endpoint=False)
     planes = np.zeros((ANGLES, len(LOADS)))
@@ -122,19 +129,18 @@ def _peak(surface: SurfaceStress, load: str, values: np.ndarray) -> PeakStress:
     return PeakStress(float(values[node]), surface.x[:, node], traction, float(gradient))
 
 
-def lame_of(material: Material) -> tuple[float, float]:
-    """Return the constants of Lame, Pa, the shear modulus second."""
-    mu = material.shear_modulus
-    return 2 * mu * material.nu / (1 - 2 * material.nu), mu
+def lame_of(nu: float) -> tuple[float, float]:
+    """Return the constants of Lame for a unit shear modulus, that the second."""
+    return 2 * nu / (1 - 2 * nu), 1.0
 
 
-def displacements(mesh: SolidMesh, shape: LocalShape, material: Material) -> np.ndarray:
+def displacements(mesh: SolidMesh, shape: LocalShape, nu: float) -> np.ndarray:
     """Compute the displacements (3 n, k) of the nodes under unit loads, whose nominal stress on
-    the surface of the plain shaft is 1 Pa.
+    the surface of the plain shaft is one, in units of the shear modulus.
     """
     points, weights = get_quadrature(RefTet, DEGREE)
     basis = Tabulation(mesh.element, mesh.element, points)
-    stiffness = integrals(mesh, [material], basis, weights, mesh.dofs)[0].matrix()
+    stiffness = integrals(mesh, [cast(Any, Elastic(nu))], basis, weights, mesh.dofs)[0].matrix()
     forces = forces_on(mesh, shape)
     moved = np.zeros_like(forces)
     groups: dict[bytes, list[int]] = {}
