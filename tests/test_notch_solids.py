@@ -213,7 +213,7 @@ def test_a_study_has_the_solids_that_are_asked_for(hole):
     assert notch.reached
     assert not replace(notch, enough=1e-3).reached
     # the keyway ends at the hole's side of the bearing, 0.1 diameters and less away
-    assert any('"key" is' in remark for remark in notch.remarks)
+    assert notch.remarks == ('not in its solid: "key" (0 diameters away)',)
     units = ENGINEERING
     for table in (solid_stress([notch], units), solid_factors([notch])):
         assert len(table.rows) == 3 and table.rows[0][0] == "oil"

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from solidgear.core import SolidgearError
+from solidgear.core import SolidgearError, listed
 from solidgear.strength.stress.groove import GrooveFactors, groove_factors
 from solidgear.strength.stress.groove_mesh import GrooveShape
 from solidgear.strength.stress.local_factors import LocalFactors, local_factors
@@ -93,7 +93,7 @@ def solid_notches(
         try:
             concentration = solid.factors(segment, feature, enough)
         except SolidgearError as error:  # the others have their stress all the same
-            remarks.append(f"no local stress there: {error}")
+            remarks.append(f"no local stress: {error}")
             continue
         middle = concentration.reference, stress.forces.at(concentration.reference)
         y, section_load = rated.get(feature.name, middle)
@@ -156,13 +156,13 @@ def _remarks(
         for other in scene.features
         if other is not feature
     }
-    for what, (start, end) in (steps | others).items():
-        gap = max(low - end, start - high, 0.0) / diameter
-        if gap < NEAR:
-            yield (
-                f"{what} is {gap:.2g} diameters away, and the solid has a plain shaft there: their "
-                "stress adds up otherwise"
-            )
+    gaps = {
+        what: max(low - end, start - high, 0.0) / diameter
+        for what, (start, end) in (steps | others).items()
+    }
+    near = [f"{what} ({gap:.2g} diameters away)" for what, gap in gaps.items() if gap < NEAR]
+    if near:
+        yield f"not in its solid: {listed(near)}"
     if concentration.widest > tolerance:
         yield f"error bar {100 * concentration.widest:.2g} %, above the {100 * tolerance:.2g} % asked for"
 
